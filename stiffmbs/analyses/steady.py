@@ -72,9 +72,10 @@ def rotation_left_out(model: ModelData, dynamics: Dynamics, start: InitialValues
     motion, *_ = np.linalg.lstsq(np.array(carried).T, start.u, rcond=None)
     velocity, rotation = np.append(motion[:d], np.zeros(3 - d)), np.append(np.zeros(6 - 2 * d), motion[d:])
     rate = float(np.linalg.norm(rotation))
-    apart = np.max(np.abs(np.array(carried).T @ motion - start.u), initial=0.0)
-    steady = np.append(velocity @ rotation, np.cross(rotation, np.append(gravity, np.zeros(3 - d))))
-    if len(system.bodies) < 2 or not rate or apart > PRESCRIBED_BESIDE * rate or np.any(np.abs(steady) > apart):
+    tilt = np.linalg.norm(np.cross(rotation, np.append(gravity, np.zeros(3 - d))))  # m/s^2 times the rate
+    beside = np.abs(np.append(np.array(carried).T @ motion - start.u, velocity @ rotation / max(rate, 1e-300)))
+    turns = rate > 0.0 and tilt <= PRESCRIBED_BESIDE * rate * np.linalg.norm(gravity)
+    if len(system.bodies) < 2 or not turns or np.any(beside > PRESCRIBED_BESIDE * np.max(np.abs(start.u))):
         return ()
     about = _rounded(np.cross(rotation, velocity) / rate**2, system.size)[:d]
     turn = _rounded(rotation, rate)

@@ -68,6 +68,20 @@ def test_a_taper_interpolates_the_shear_centre():
         read_scene(beam(tapered, "", "spectral"))
 
 
+def test_a_taper_completes_its_sections_before_it_interpolates():
+    """I3 and J of one end by default are those of that end, whatever the other end gives."""
+    given = "{type: numbers, A: 1e-3, I2: 2e-6, I3: 1e-6, J: 2e-8}"
+    short, full = "{type: numbers, A: 1e-3, I2: 1e-6}", "{type: numbers, A: 1e-3, I2: 1e-6, I3: 1e-6, J: 2e-6}"
+    load = "F: {type: force, i: s.end, force: [0, 1e-2, 0]}, T: {type: torque, i: s.end, torque: [1e-3, 0, 0]}"
+    for tapers in (
+        [f"{given}, section_end: {end}" for end in (short, full)],
+        [f"{start}, section_end: {given}" for start in (short, full)],
+    ):
+        found, expected = (at_rest(beam(taper, load, n=4)) for taper in tapers)
+        assert found["s.end.y"] == pytest.approx(expected["s.end.y"], rel=1e-12)
+        assert turned(found)[0] == pytest.approx(turned(expected)[0], rel=1e-12)
+
+
 def test_an_angle_bends_obliquely():
     """Its end moves by F L^3/(3 E) I^-1, and the shear, in both directions (Timoshenko)."""
     of = Angle(width=0.05, height=0.08, thickness=0.005).properties(0.25)

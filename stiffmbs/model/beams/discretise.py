@@ -156,6 +156,8 @@ def _between(start: Section, end: Section | None, share: float) -> Section:
     """Return the section at a fraction of the length, with linearly interpolated numbers."""
     if end is None:
         return start
+    if isinstance(start, Numbers) and isinstance(end, Numbers):
+        start, end = start.complete(), end.complete()
     numbers: dict[str, Any] = {
         name: (1 - share) * a + share * getattr(end, name)
         for name in type(start).model_fields

@@ -268,10 +268,14 @@ class Numbers(Section):
             raise ValueError(f"I23: found {self.I23:g} m^4, expected less than the root of I2 I3, {limit:g} m^4")
         return self
 
-    def properties(self, nu: float) -> Properties:
+    def complete(self) -> Numbers:
+        """Return the section with the constants that follow from others by default."""
         I3 = self.I2 if self.I3 is None else self.I3
-        J = self.I2 + I3 if self.J is None else self.J
-        return Properties(self.A, self.I2, I3, J, self.shear2, self.shear3, self.I23, self.shear_centre)
+        return self.model_copy(update={"I3": I3, "J": self.I2 + I3 if self.J is None else self.J})
+
+    def properties(self, nu: float) -> Properties:
+        of: Any = self.complete()
+        return Properties(of.A, of.I2, of.I3, of.J, of.shear2, of.shear3, of.I23, of.shear_centre)
 
 
 _Point = tuple[si.Length, si.Length]
