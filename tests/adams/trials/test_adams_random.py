@@ -80,16 +80,20 @@ def accelerated(view, found, marker):
 
 
 def asks_force(solution, history, request, trial, joint, i, j, rm, on_j):
-    """REQUEST FORCE between the joint's markers in SI, and its functions in the dataset's units, on I or on J."""
+    """REQUEST FORCE between the joint's markers in SI, and its functions in the dataset's units, on I or on J.
+
+    The request sums the joint and its motion (Adams/Solver, FX and INFO/FORCE), the functions are those of the joint.
+    """
     axes = history.ask(lambda view: view.axes(trial.markers[rm]))
 
-    def seen(marker):
-        wanted = history.reaction(joint, trial.markers[marker])
+    def seen(element, marker):
+        wanted = history.reaction(element, trial.markers[marker])
         return np.hstack([np.einsum("tij,ti->tj", axes, wanted[:, k : k + 3]) for k in (0, 3)])
 
-    wanted = seen(i)
+    motion = f"MOTION_{joint.rpartition('_')[2]}"
+    wanted = seen(joint, i) + (seen(motion, i) if motion in trial.reactions else 0.0)
     near(table(solution, request), wanted, 5e-5, max(np.abs(wanted).max(), 1e-3))
-    wanted = seen(j if on_j else i)
+    wanted = seen(joint, j if on_j else i)
     units = np.repeat([trial.force, trial.force * trial.length], 3)
     found = table(solution, "REQUEST_5", "f2 f3 f4 f6 f7 f8") * units
     near(found, wanted, 5e-5, max(np.abs(wanted).max(), 1e-3))
