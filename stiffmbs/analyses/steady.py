@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 MOTION_AHEAD = 1e-3
 """Distance along a motion, rad or parts of the mechanism's size, after which the balance of forces is checked."""
-STEADY_IMBALANCE, PRESCRIBED_BESIDE = 1e-6, 1e-8
+STEADY_IMBALANCE, VELOCITY_ERROR = 1e-6, 1e-8
 """Accepted relative imbalance there, and accepted velocity error of joints relative to the largest velocity."""
 
 
@@ -73,9 +73,9 @@ def rotation_left_out(model: ModelData, dynamics: Dynamics, start: InitialValues
     velocity, rotation = np.append(motion[:d], np.zeros(3 - d)), np.append(np.zeros(6 - 2 * d), motion[d:])
     rate = float(np.linalg.norm(rotation))
     tilt = np.linalg.norm(np.cross(rotation, np.append(gravity, np.zeros(3 - d))))  # m/s^2 times the rate
-    beside = np.abs(np.append(np.array(carried).T @ motion - start.u, velocity @ rotation / max(rate, 1e-300)))
-    turns = rate > 0.0 and tilt <= PRESCRIBED_BESIDE * rate * np.linalg.norm(gravity)
-    if len(system.bodies) < 2 or not turns or np.any(beside > PRESCRIBED_BESIDE * np.max(np.abs(start.u))):
+    misfit = np.abs(np.append(np.array(carried).T @ motion - start.u, velocity @ rotation / max(rate, 1e-300)))
+    turns = rate > 0.0 and tilt <= VELOCITY_ERROR * rate * np.linalg.norm(gravity)
+    if len(system.bodies) < 2 or not turns or np.any(misfit > VELOCITY_ERROR * np.max(np.abs(start.u))):
         return ()
     about = _rounded(np.cross(rotation, velocity) / rate**2, system.size)[:d]
     turn = _rounded(rotation, rate)
@@ -86,7 +86,7 @@ def rotation_left_out(model: ModelData, dynamics: Dynamics, start: InitialValues
 
 
 def _rounded(vector: np.ndarray, size: float) -> list[float]:
-    return [float(f"{x:.6g}") if abs(x) > PRESCRIBED_BESIDE * size else 0.0 for x in vector]
+    return [float(f"{x:.6g}") if abs(x) > VELOCITY_ERROR * size else 0.0 for x in vector]
 
 
 def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described) -> Equilibrium:
@@ -221,7 +221,7 @@ def _refuse_joints(dynamics: Dynamics, t: float) -> None:
     state.evaluate("motion", t)
     missed = np.abs(state.vector("motion", "V"))
     worst = int(np.argmax(missed)) if len(missed) else 0
-    if len(missed) and missed[worst] > PRESCRIBED_BESIDE * max(1.0, np.max(np.abs(state.u), initial=0.0)):
+    if len(missed) and missed[worst] > VELOCITY_ERROR * max(1.0, np.max(np.abs(state.u), initial=0.0)):
         joint, equation = system.equations[worst]
         raise SolverError(
             f"joint '{joint}' (equation {equation}) does not let the mechanism move so: found {missed[worst]:.3g} of "

@@ -37,10 +37,10 @@ def mounted_alike(bodies: Mapping[str, Any], forces: Mapping[str, Any]) -> Itera
     """Yield notes on axles whose outer tyres have the same hand, although left and right tyres differ."""
     wheels = [_wheel(bodies, name, tyre) for name, tyre in forces.items() if isinstance(tyre, Tyre)]
     for right in wheels:
-        beside = [right.to_the_left_of(other) for other in wheels]
-        if not any(beside) or max(beside) > 0:
+        distances = [right.to_the_left_of(other) for other in wheels]
+        if not any(distances) or max(distances) > 0:
             continue  # not the rightmost one of an axle
-        left = wheels[int(np.argmin(beside))]
+        left = wheels[int(np.argmin(distances))]
         data, hand, differing = right.tyre.mounted_side()
         if differing and (data, hand) == left.tyre.mounted_side()[:2]:
             names = ", ".join(differing[:NAMED]) + (" and others" if len(differing) > NAMED else "")

@@ -7,7 +7,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import InputError, read_scene
-from stiffmbs.model.beams.section import Angle, Channel, Drawn
+from stiffmbs.model.beams.section import Angle, Channel, Drawn, Properties
 
 from .scenes import at_rest
 
@@ -252,7 +252,7 @@ def test_a_mirrored_section_moves_as_the_mirror_image():
 @pytest.mark.parametrize(
     ("section", "expected"),
     [
-        (U, "bodies.s.section: found a shear centre 0.0324 m beside the plane, expected it in the plane"),
+        (U, "bodies.s.section: found a shear centre 0.0324 m from the plane, expected it in the plane"),
         (LEGS, "bodies.s.section: found principal axes at "),
         ("{type: numbers, A: 1e-3, I2: 1e-6, I23: 2e-6}", "found 2e-06 m^4, expected less than the root of I2 I3"),
         ("{type: u, width: 50 mm, height: 9 mm, flange: 5 mm, web: 4 mm}", "expected less than half the height"),
@@ -270,3 +270,11 @@ def test_sections_that_leave_the_plane_are_refused_in_it(section, expected):
 def test_a_shear_centre_off_the_centroid_needs_pairs():
     with pytest.raises(InputError, match="found spectral and a section with its shear centre off the centroid"):
         read_scene(beam(U, "", "spectral"))
+
+
+def test_a_section_leaves_the_plane_from_a_product_of_inertia_and_an_offset_on():
+    """A product of 1e-6 of the second moment, and a shear centre at 0.01 of the root of the area, are the limits."""
+    for within, beyond in (({"I23": 0.7e-6}, {"I23": 1.4e-6}), ({"y": 0.007}, {"y": 0.014})):
+        for values, leaves in ((within, False), (beyond, True)):
+            of = Properties(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, values.get("I23", 0.0), (values.get("y", 0.0), 0.0))
+            assert bool(of.leaves_plane()) == leaves

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, Literal, Self, cast
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -87,7 +87,7 @@ class Properties:
             angle = math.degrees(math.atan2(-2 * self.I23, self.I2 - self.I3) / 2)
             return f"found principal axes at {angle:.4g} deg from axes 2 and 3, expected none in the plane: the beam would bend out of it"
         if abs(y) > CENTRED * math.sqrt(self.A):
-            return f"found a shear centre {abs(y):.3g} m beside the plane, expected it in the plane: bending would twist the beam"
+            return f"found a shear centre {abs(y):.3g} m from the plane, expected it in the plane: bending would twist the beam"
         return ""
 
 
@@ -160,27 +160,29 @@ class Rectangle(Section):
         return Properties(b * h, b * h**3 / 12, h * b**3 / 12, J, 5 / 6, 5 / 6)
 
 
-def _fit(profile: Any) -> Any:
-    """Return a profile with two flanges and a web, if these are within its width and height."""
-    if 2 * profile.flange >= profile.height:
-        raise ValueError(
-            f"flange: found {profile.flange:g} m, expected less than half the height of {profile.height:g} m"
-        )
-    if profile.web >= profile.width:
-        raise ValueError(f"web: found {profile.web:g} m, expected less than the width of {profile.width:g} m")
-    return profile
+class Flanged(Section):
+    """Profile of a web and two equal flanges; the web stands along the height."""
 
-
-class IProfile(Section):
-    """I profile with two equal flanges; its web stands along the height."""
-
-    type: Literal["i"] = "i"
-    width: si.PositiveLength = Field(description="of the flanges, along axis 2, m")
+    width: si.PositiveLength = Field(description="of the flanges with the web, along axis 2, m")
     height: si.PositiveLength = Field(description="overall, along axis 3, m")
     flange: si.PositiveLength = Field(description="thickness of each flange, m")
     web: si.PositiveLength = Field(description="thickness of the web, m")
 
-    _fits = model_validator(mode="after")(_fit)
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        if 2 * self.flange >= self.height:
+            raise ValueError(
+                f"flange: found {self.flange:g} m, expected less than half the height of {self.height:g} m"
+            )
+        if self.web >= self.width:
+            raise ValueError(f"web: found {self.web:g} m, expected less than the width of {self.width:g} m")
+        return self
+
+
+class IProfile(Flanged):
+    """I profile with two equal flanges; its web stands along the height."""
+
+    type: Literal["i"] = "i"
 
     def properties(self, nu: float) -> Properties:
         """Thin-walled values: shear is carried by the web along axis 3 and by the flanges along axis 2."""
@@ -216,16 +218,10 @@ class Angle(Section):
         return _thin([(0, b, 0, t), (0, t, t, h)], walls, (t, t))
 
 
-class Channel(Section):
+class Channel(Flanged):
     """U profile with two equal flanges; its web stands along the height, and the flanges extend along axis 2."""
 
     type: Literal["u"] = "u"
-    width: si.PositiveLength = Field(description="of the flanges with the web, along axis 2, m")
-    height: si.PositiveLength = Field(description="overall, along axis 3, m")
-    flange: si.PositiveLength = Field(description="thickness of each flange, m")
-    web: si.PositiveLength = Field(description="thickness of the web, m")
-
-    _fits = model_validator(mode="after")(_fit)
 
     def properties(self, nu: float) -> Properties:
         """Exact moments of area, and the shear flow and torsion of thin walls."""

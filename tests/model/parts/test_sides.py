@@ -2,10 +2,15 @@
 
 import json
 
+import numpy as np
 import pytest
 
 import stiffmbs
 from stiffmbs.elements.tyres.names import COEFFICIENTS_6, ONE_SIDED
+from stiffmbs.errors import InputError
+from stiffmbs.model.mounted_tyres import _Wheel
+from stiffmbs.model.parts.hard_points import check_sides
+from stiffmbs.model.parts.spatial_frame import SpatialFrame
 from stiffmbs.model.scene import notes_of
 from stiffmbs.tyres import TyreProperties
 
@@ -128,3 +133,28 @@ def test_the_coefficients_that_differ_between_sides_are_those_that_break_the_sym
         == (name in ONE_SIDED)
         == (name in TyreProperties(coefficients=numbers, version="6.2").one_sided)
     )
+
+
+def test_wheels_are_on_one_axle_up_to_a_tenth_of_their_distance():
+    """Of the offset from the axis, and of the cosine of the angle between the axes."""
+
+    def seen(offset, cosine):
+        sine = (1 - cosine**2) ** 0.5
+        wheels = ((0.0, 0.0, (0.0, 1.0, 0.0)), (offset, 1.0, (sine, cosine, 0.0)))
+        other, one = (_Wheel("w", None, np.array([x, y, 0.0]), np.array(axis)) for x, y, axis in wheels)
+        return one.to_the_left_of(other) > 0
+
+    assert seen(0.07, 1.0) and not seen(0.14, 1.0)
+    assert seen(0.0, 1 - 0.07) and not seen(0.0, 1 - 0.14)
+
+
+def test_wheels_are_in_one_place_up_to_a_millimetre():
+    """Of two suspensions that are mounted on one body."""
+
+    def check(apart):
+        frame = SpatialFrame()
+        check_sides((name, (0.0, 0.7 + shift, 0.3), "chassis", frame) for name, shift in (("a", 0.0), ("b", apart)))
+
+    check(1.4e-3)
+    with pytest.raises(InputError, match="in the place of the wheel of a"):
+        check(0.7e-3)
