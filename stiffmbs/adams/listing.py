@@ -17,7 +17,8 @@ from .commands.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, 
 from .functions.adams_functions import ADAMS_FUNCTIONS
 from .functions.expression import ExpressionError, parse
 from .functions.inputs import PLANTS
-from .functions.measures import ANGLES_OF_AXES, CURVES, REACTIONS
+from .functions.measures import ANGLES_OF_AXES, REACTIONS
+from .functions.splines import CURVES
 from .functions.translate import ANGLES, ANGULAR_VELOCITIES, COUPLED, PLAIN, POSITIONS, VELOCITIES
 from .functions.translate_output import ACCELERATIONS, ANGULAR_ACCELERATIONS, ROUNDING_FUNCTIONS
 from .load import ENCODING, command_file, other_commands

@@ -139,6 +139,8 @@ def test_mistakes_are_told_with_the_file_and_the_line(in_folder, change, words):
     "commands, settings, note",
     [
         ("model\nsimulate/dynamics, end=0.3, dtout=0.1\nstop\n", {"duration": 0.3, "output": 0.1}, None),
+        ("spring\nbeam_results\nsimulate/dynamics, end=0.3, dtout=0.1\nstop\n", {"duration": 0.3, "output": 0.1}, None),
+        ("model.adm\nmodel_res\nsimulate/dynamics, end=0.3, dtout=0.1\nstop\n", {"duration": 0.3, "output": 0.1}, None),
         ("file/model=model\nSIM/TRAN\n, DURATION=0.5\n, STEPS=10\n", {"duration": 0.5, "points": 11}, None),
         ("simulate/kinematics, end=1, steps=4", {"duration": 1, "points": 5, "solver": "kinematic"}, None),
         (

@@ -104,6 +104,21 @@ def test_a_dataset_written_anew_is_the_same(name):
     assert dataset_text(read_adams(written)).count("\n") == written.count("\n"), "a third time nothing is added"
 
 
+def test_tables_continue_with_the_slope_of_their_ends_in_adams_too():
+    """Adams would follow a parabola; the body leaves both tables at once."""
+    text = BETWEEN["tables"].replace("smooth(t)", "5*smooth(b.x - 3.1) + sign(0*t)").replace("- 1.1", "- 4")
+    scene = stiffmbs.read_scene(f"{BODIES}\n{text.replace('local(b.vz)', 'local(b.vz - 5)')}")
+    written = dataset_text(scene)
+    _same_motion(scene, read_adams(written), rtol=1e-7)
+    assert dataset_text(read_adams(written)).count("MIN(") == written.count("MIN(")
+
+
+def test_a_periodic_table_of_lines_is_refused():
+    teeth = BODIES.replace("lines: true", "lines: true, ends: periodic").replace("[-2, 4]", "[-2, 1]")
+    with pytest.raises(InputError, match=r"forces\.f: found the table straight \(periodic\)"):
+        dataset_text(stiffmbs.read_scene(f"{teeth}\n{BETWEEN['tables']}"))
+
+
 def test_requests_are_read_again():
     scene = stiffmbs.read_scene(f"{BODIES}\nrequests: {{r: 'accx(b.end, a, a) + 2*phi(a) - b.vx', lost: energy.total}}")
     text = dataset_text(scene)

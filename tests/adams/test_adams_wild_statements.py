@@ -37,12 +37,18 @@ def written(tmp_path, commands, text=""):
         ("FRICTION/1, JOINT=1, MU_STATIC=0.2, MU_DYNAMIC=0.1, INACTIVE_DURING=STATIC", ""),
         ("FRICTION/1, JOINT=1, MU_STATIC=0.2, MU_DYNAMIC=0.1, INACTIVE=STATIC", ""),
         ("REQUEST/3, DISPLACEMENT, I=21, J=10, COMMENT=a crank", ""),
+        ("ARRAY/1, IC, SIZE=2, NUMBERS=1,2\nARRAY/2, X, SIZE=2\nARRAY/3, U, SIZE=1, VARIABLES=4\nVARIABLE/4, FUNCTION=0", ""),
         ("SENSOR/1, FUNCTION=DX(21,10)\\, VALUE=9E9, EQ, ERROR=1, HALT", ""),
     ],
 )  # fmt: skip
 def test_arguments_that_nothing_requests_are_noted(statement, said):
     found = notes(statement)
     assert (said in found and "not used" in found) if said else "not used" not in found
+
+
+def test_an_array_of_another_size_is_refused():
+    with pytest.raises(InputError, match="ARRAY/1: found SIZE = 3 and 2 entries"):
+        read_adams(f"{BODY}ARRAY/1, IC, SIZE=3, NUMBERS=1,2\nEND\n")
 
 
 def test_friction_that_rests_in_motion_is_refused():

@@ -87,6 +87,9 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
         name = full_name(command.word)
         if name in ENDING:
             break
+        if not begun and _is_name_of_file(command):
+            continue
+        begun = True
         if name == "SIMULATE":
             simulation = read_simulation(command)
             if simulation.kind != "INITIAL_CONDITIONS":
@@ -98,11 +101,10 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
             linear.append(_linear_note(command, bool(segments)))
         elif name in SETTINGS:
             left_out.append(f"{name} (line {command.line})")
-        elif not (name in HARMLESS or (not begun and _is_name_of_file(command, name))):
+        elif name not in HARMLESS:
             if segments:
                 _refuse_between_runs(command, name or "")
             changes = _followed(changes, command, name, known)
-        begun = begun or name is not None
     notes = (f"{', '.join(left_out)} of the command file left out: analysis settings",) if left_out else ()
     return Commands(tuple(segments), changes, (*linear, *notes))
 
@@ -128,14 +130,9 @@ def full_name(word: str) -> str | None:
     return short if short in (*FOLLOWED, *ENDING) else keyword(word) or short
 
 
-def _is_name_of_file(command: Statement, name: str | None) -> bool:
-    """Return True if a line before the first command names the model or the results."""
-    return (
-        name is None
-        and command.line <= NAMED_FIRST
-        and not command.ident
-        and all("=" not in p.text for p in command.pieces)
-    )
+def _is_name_of_file(command: Statement) -> bool:
+    """Return True if a line before the first command names the model or the results: it has no slash and no argument."""
+    return command.line <= NAMED_FIRST and not command.ident and all("=" not in piece.text for piece in command.pieces)
 
 
 def _followed(changes: Changes, command: Statement, name: str | None, known: Collection[Key]) -> Changes:

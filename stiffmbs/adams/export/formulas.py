@@ -13,6 +13,7 @@ from ...reading.formula.text import UNIT
 from ...reading.marker import GROUND, MarkerReference
 from ...reading.table import Table
 from ..functions.measures import COMPONENTS
+from ..functions.splines import end_slopes, is_clamped
 from ..functions.translate import PLAIN
 from .numbering import Numbering, Refusal, number
 
@@ -122,7 +123,9 @@ class Functions:
         if is_reaction(node):
             return self._reaction(node, name, law)
         if name in law.tables:
-            return self._curve(name, law.tables[name], self._written(arguments[0], law))
+            table, argument = law.tables[name], arguments[0]
+            clamped = is_clamped(argument, table.table[0][0], table.table[-1][0])
+            return self._curve(name, table, self._written(argument, law), clamped)
         written = [self._written(argument, law) for argument in arguments]
         if name.upper() in SAME:
             return f"{name.upper()}({','.join(written)})"
@@ -139,9 +142,17 @@ class Functions:
         function, ident = self._reactions[joint]
         return f"{function}({ident},0,{COMPONENTS.index(name.upper()) + 1},0)"
 
-    def _curve(self, name: str, table: Table, argument: str) -> str:
+    def _curve(self, name: str, table: Table, argument: str, clamped: bool = False) -> str:
+        """Return a table that continues with the slope of its end, where Adams would follow a parabola."""
         way, ident = self._numbering.spline(name, table)
-        return f"INTERP({argument},1,{ident})" if way == "INTERP" else f"{way}({argument},0,{ident},0)"
+        if way == "INTERP":  # its spline has LINEAR_EXTRAPOLATE
+            return f"INTERP({argument},1,{ident})"
+        if clamped:
+            return f"{way}({argument},0,{ident},0)"
+        first, last = (f"({number(table.table[end][0])})" for end in (0, -1))
+        inside = f"{way}(MAX({first},MIN({last},{argument})),0,{ident},0)"
+        low, high = (f"({number(slope)})" for slope in end_slopes(table))
+        return f"({inside}+{low}*MIN({argument}-{first},0)+{high}*MAX({argument}-{last},0))"
 
 
 def _nested(name: str) -> Callable[[list[str]], str]:
@@ -156,7 +167,7 @@ def _nested(name: str) -> Callable[[list[str]], str]:
 WRITTEN: dict[str, Callable[[list[str]], str]] = {
     "min": _nested("MIN"),
     "max": _nested("MAX"),
-    "sign": lambda x: f"IF({x[0]}:-1,0,1)",
+    "sign": lambda x: f"SIGN(1,{x[0]})",
     "branch": lambda x: f"IF({x[0]}:{','.join(x[1:])})",
     "asinh": lambda x: f"LOG(({x[0]})+SQRT(({x[0]})**2+1))",
 }

@@ -100,7 +100,7 @@ class Numbering:
 
         Raises Refusal if Adams has no such interpolation, or the table has too few points.
         """
-        way = table.ends if table.interpolation == "spline" else table.interpolation
+        way = table.ends if table.interpolation == "spline" or table.ends == "periodic" else table.interpolation
         if way is None or way not in CURVES:
             raise Refusal(f"found the table {name} ({way or 'natural'}), expected akima, lines, or ends: not-a-knot")
         if len(table.table) < FEWEST_POINTS and way != "lines":
@@ -125,7 +125,8 @@ class Numbering:
             yield from self._of(name)
         for ident, table in self._splines.values():
             x, y = zip(*_enough(table), strict=True)
-            yield statement("SPLINE", ident, f"X = {numbers(x)}", f"Y = {numbers(y)}")
+            outside = ["LINEAR_EXTRAPOLATE"] if table.lines else []
+            yield statement("SPLINE", ident, *outside, f"X = {numbers(x)}", f"Y = {numbers(y)}")
 
     def _of(self, body: str) -> Iterator[str]:
         part = f"PART = {self.parts[body]}"

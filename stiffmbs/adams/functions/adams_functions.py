@@ -53,6 +53,16 @@ def _havsin(x: ast.expr, x0: ast.expr, h0: ast.expr, x1: ast.expr, h1: ast.expr)
     return difference(middle, product(half, call("cos", times(z, math.pi))))
 
 
+def _sweep(x: ast.expr, a: ast.expr, x0: ast.expr, f0: ast.expr, x1: ast.expr, f1: ast.expr, dx: ast.expr) -> ast.expr:
+    """Sine of amplitude a whose frequency changes linearly from f0 at x0 to f1 at x1, switched on from x0 to x0 + dx."""
+    z = difference(call("min", call("max", x, x0), x1), x0)
+    rise, after = difference(f1, f0), call("max", difference(x, x1), ZERO)
+    growth = quotient(product(rise, power(z, 2)), product(number(2), difference(x1, x0)))
+    turns = total([product(f0, x), growth, product(rise, after)])
+    on = call("step5", x, x0, ZERO, total([x0, dx]), ONE)
+    return product(product(a, on), call("sin", times(turns, 2 * math.pi)))
+
+
 def _impact(x: ast.expr, rate: ast.expr, x1: ast.expr, k: ast.expr, e: ast.expr, c: ast.expr, d: ast.expr) -> ast.expr:
     """One-sided impact: k (x1 - x)^e - c x' step(x, x1 - d, 1, x1, 0) for x < x1, never negative."""
     depth = call("max", difference(x1, x), ZERO)
@@ -89,6 +99,7 @@ ADAMS_FUNCTIONS: dict[str, Callable[..., ast.expr]] = {
     "FORCOS": _fourier("cos"),
     "FORSIN": _fourier("sin"),
     "HAVSIN": _havsin,
+    "SWEEP": _sweep,
     "IMPACT": _impact,
     "BISTOP": _bistop,
     "SIGN": _sign,

@@ -5,18 +5,13 @@ another is then a distance between markers.
 
 JOINT(id, jflag, comp, rm), and JPRIM alike: scene formulas know the reaction on marker I in ground axes. Its component
 along an axis of another marker is the dot product with that axis.
-
-AKISPL and CUBSPL(x, z, id, order), INTERP(x, method, id, order) are tables of the scene.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable
 
-from ...elements.spatial.number_format import plain
-from ...reading.files.quoted import quoted
 from ..scene.mechanism import ORIGIN, Mechanism, Place
 from ..statements.constraints import Primitive
 from .function import Function
@@ -101,50 +96,3 @@ def component_of(name: str, number_of_it: int, function: Function) -> str:
     if not 1 <= number_of_it <= len(COMPONENTS):
         raise function.fault(f"found the component {number_of_it} of {name}, expected 1 to {len(COMPONENTS)}")
     return COMPONENTS[number_of_it - 1]
-
-
-CURVES: dict[str, dict[str, Any]] = {
-    "AKISPL": {"akima": True},
-    "CUBSPL": {"ends": "not-a-knot"},
-    "LINE": {"lines": True},
-}
-"""Table options of each spline function."""
-
-
-def spline_value(
-    name: str,
-    arguments: list[ast.expr],
-    function: Function,
-    translate: Callable[[ast.expr], ast.expr],
-    mechanism: Mechanism,
-) -> ast.expr:
-    """Return the value of a spline and add its table to the mechanism.
-
-    Raises DatasetFault if the spline does not exist, or a derivative is requested.
-    """
-    x, second, *rest = [*arguments, *[ast.Constant(0)] * 4][: max(4, len(arguments))]
-    if name == "INTERP":
-        name = {1: "LINE", 3: "CUBSPL"}.get(function.identifier([second], 0), "")
-    ident, order = function.identifiers(rest, 2)
-    spline = mechanism.dataset.splines.get(ident)
-    if spline is None:
-        raise function.fault(f"found the spline {ident} in '{quoted(function.text)}', expected the number of a SPLINE")
-    if order or not name:
-        raise function.fault(f"found '{quoted(function.text)}', expected a spline's value, cubic or by straight lines")
-    table = f"{name}_{ident}"
-    points = [[plain(a), plain(b)] for a, b in zip(spline.x, spline.y, strict=True)]
-    mechanism.tables[table] = {"table": points, **CURVES[name]}
-    return ast.Call(ast.Name(table), [translate(x)], [])
-
-
-def spline_notes(mechanism: Mechanism) -> Iterator[str]:
-    """Yield one sentence on the splines that Adams extrapolates otherwise than the scene."""
-    for table in mechanism.tables:
-        name, _, ident = table.rpartition("_")
-        spline = mechanism.dataset.splines[int(ident)] if name in CURVES else None
-        if spline is not None and not (name == "LINE" and spline.lines_outside):
-            by_adams = "line through its last two" if spline.lines_outside else "parabola through its last three"
-            yield (
-                f"{spline.label}, {name if name in ('AKISPL', 'CUBSPL') else 'INTERP'}: beyond its X it has the slope of its "
-                f"end, where Adams follows the {by_adams} points"
-            )

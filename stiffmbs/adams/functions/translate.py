@@ -22,15 +22,14 @@ from .inputs import PLANTS, evaluated_name, variable_of_plant
 from .measures import (
     ANGLES_OF_AXES,
     BY_ITS_PLACE,
-    CURVES,
     REACTIONS,
     angle,
     component_of,
     included_angle,
     on_ground,
     reaction,
-    spline_value,
 )
+from .splines import CURVES, spline_value
 from .states import depending_on_themselves, differential, value_of_system
 from .trees import measured, name_of, number, over, power, product, times, total
 

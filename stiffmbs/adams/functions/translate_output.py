@@ -17,7 +17,7 @@ from ..statements.forces import SingleForce, VectorForce
 from .function import Function
 from .measures import COMPONENTS, component_of
 from .translate import Translation
-from .trees import call, measured, name_of, number, over, power, times, total
+from .trees import call, difference, measured, name_of, number, over, power, product, times, total
 
 ACCELERATIONS, ANGULAR_ACCELERATIONS = ("ACCX", "ACCY", "ACCZ", "ACCM"), ("WDTX", "WDTY", "WDTZ", "WDTM")
 ANGLES = ("PSI", "THETA", "PHI")
@@ -63,16 +63,20 @@ class OutputTranslation(Translation):
         return super().call(name, arguments, function, translate)
 
     def _measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
-        found = function.identifiers(arguments)
-        if name in ACCELERATIONS and len(found) > 3 and found[3]:
-            raise function.fault(
-                f"found the acceleration {name} as seen from a marker, expected it as seen from ground"
-            )
-        i, j, axes = [*(self.reference(ident, function) if ident else "" for ident in found[:3]), "", "", ""][:3]
-        unit = {
-            ACCELERATIONS: self.units.of(length=1, time=-2), ANGULAR_ACCELERATIONS: self.units.of(time=-2), ANGLES: 1.0,
-        }  # fmt: skip
-        return over(measured(name.lower(), i, j, axes), next(u for names, u in unit.items() if name in names))
+        found = [self.reference(ident, function) if ident else "" for ident in function.identifiers(arguments)]
+        i, j, *others = [*found, "", "", ""][:4]
+        if name in ANGLES:
+            return measured(name.lower(), i, j, others[0])
+        axes, frame = ("", others[0]) if name.endswith("M") else others
+        linear = name in ACCELERATIONS
+        unit = self.units.of(length=1 if linear else 0, time=-2)
+        if not frame or frame.startswith("ground"):
+            return over(measured(name.lower(), i, j, axes), unit)
+        relative = _acceleration_in if linear else _angular_acceleration_in
+        vector = relative(i, j, axes, frame)
+        if name.endswith("M"):
+            return over(call("sqrt", total([power(part, 2) for part in vector])), unit)
+        return over(vector["XYZ".index(name[-1])], unit)
 
     def _orientation(self, arguments: list[ast.expr], function: Function) -> ast.expr:
         sort, component, i, j = (
@@ -180,3 +184,27 @@ class OutputTranslation(Translation):
         if isinstance(found, Elastic) and not found.has_potential and component[0] == "T":
             return [found.name, found.name + TORQUE]
         return [found.name]
+
+
+def _components(name: str, i: str, j: str, axes: str) -> list[ast.expr]:
+    """Return the three components of a measure."""
+    return [measured(name + axis, i, j, axes) for axis in "xyz"]
+
+
+def _cross(a: list[ast.expr], b: list[ast.expr]) -> list[ast.expr]:
+    return [difference(product(a[k - 2], b[k - 1]), product(a[k - 1], b[k - 2])) for k in range(3)]
+
+
+def _acceleration_in(i: str, j: str, axes: str, frame: str) -> list[ast.expr]:
+    """Return the second derivative of the displacement of i from j in a marker's frame: a - w' x d - 2 w x v + w x (w x d)."""
+    w, d = _components("w", frame, "", axes), _components("d", i, j, axes)
+    turning = _cross(_components("wdt", frame, "", axes), d)
+    coriolis = _cross(w, _components("v", i, j, axes))
+    terms = zip(_components("acc", i, j, axes), turning, coriolis, _cross(w, _cross(w, d)), strict=True)
+    return [total([difference(difference(a, b), times(c, 2.0)), e]) for a, b, c, e in terms]
+
+
+def _angular_acceleration_in(i: str, j: str, axes: str, frame: str) -> list[ast.expr]:
+    """Return the derivative of the angular velocity of i relative to j in a marker's frame."""
+    turning = _cross(_components("w", frame, "", axes), _components("w", i, j, axes))
+    return [difference(a, b) for a, b in zip(_components("wdt", i, j, axes), turning, strict=True)]

@@ -11,7 +11,6 @@ import numpy as np
 
 from ...elements.spatial.number_format import vector
 from ..functions.inputs import input_values
-from ..functions.measures import spline_notes
 from ..functions.motion_law import Law
 from ..functions.states import states
 from ..functions.translate import Translation
@@ -87,7 +86,6 @@ def scene(dataset: Dataset) -> dict[str, Any]:
             *rack_notes(mechanism),
             *friction_notes(mechanism),
             *curve_notes(mechanism),
-            *spline_notes(mechanism),
             *sensor_notes(dataset),
             *start_notes(dataset),
             *requests.notes,

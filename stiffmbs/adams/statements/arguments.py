@@ -36,17 +36,26 @@ class Arguments:
         Valid arguments. An abbreviation matches the first that it begins.
     functions : sequence of str
         Arguments whose value is a function expression, in which commas do not separate values.
+    repeated : sequence of str
+        Arguments that may occur several times; their values follow each other.
 
     Raises
     ------
     DatasetFault
-        If an argument is unknown or repeated.
+        If an argument is unknown, or repeated without being one of `repeated`.
     """
 
-    def __init__(self, statement: Statement, keyword: str, names: Sequence[str], functions: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        statement: Statement,
+        keyword: str,
+        names: Sequence[str],
+        functions: Sequence[str] = (),
+        repeated: Sequence[str] = (),
+    ) -> None:
         self.statement, self.keyword = statement, keyword
         self.label = f"{keyword}/{quoted(statement.ident)}" if statement.ident else keyword
-        self._names, self._functions = names, functions
+        self._names, self._functions, self._repeated = names, functions, repeated
         found = self._read(statement.pieces)
         for line, pieces in statement.changes:
             self.label += f" (changed in line {line} of the command file)"
@@ -97,9 +106,11 @@ class Arguments:
     def _keep(self, found: dict[str, Argument], name: str, texts: list[str], line: int) -> None:
         if not name:
             return
-        if name in found:
-            raise self.fault(f"found {name} twice, expected it once", line)
         values = (" ".join(texts),) if name in self._functions and texts else tuple(texts)
+        if name in found:
+            if name not in self._repeated:
+                raise self.fault(f"found {name} twice, expected it once", line)
+            values = found[name].values + values
         found[name] = Argument(name, values, line)
 
     def without_effect(self, *names: str) -> None:

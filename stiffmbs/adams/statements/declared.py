@@ -24,6 +24,8 @@ class Numbered:
         Arguments that are not supported, with the supported ones.
     others : tuple of str
         Arguments that only `check` reads.
+    repeated : tuple of str
+        Arguments that may occur several times.
     """
 
     ident: int
@@ -33,6 +35,7 @@ class Numbered:
     ignored: ClassVar[Mapping[str, str]] = {}
     refused: ClassVar[Mapping[str, str]] = {}
     others: ClassVar[tuple[str, ...]] = ()
+    repeated: ClassVar[tuple[str, ...]] = ()
 
     @property
     def label(self) -> str:
@@ -53,7 +56,9 @@ class Numbered:
         declared = {each.name: each.metadata for each in fields(cls) if "read" in each.metadata}
         names = [name for one in declared.values() for name in one["names"]]
         functions = ["FUNCTION", *(name for one in declared.values() if one["expressions"] for name in one["names"])]
-        found = Arguments(statement, keyword, (*names, *cls.others, *cls.ignored, *cls.refused), functions)
+        found = Arguments(
+            statement, keyword, (*names, *cls.others, *cls.ignored, *cls.refused), functions, cls.repeated
+        )
         for name, expected in cls.refused.items():
             found.refuse((name,), expected)
         cls.check(found)

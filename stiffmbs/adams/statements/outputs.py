@@ -100,26 +100,47 @@ class Variable(Numbered):
         return f"{self.name}_value"
 
 
+def _families(found: Arguments, _: Units) -> tuple[tuple[float, ...], ...]:
+    """Return the values of each argument Y: of a family, its z and a curve, otherwise the only curve."""
+    x, y = found.numbers("X") or (), found.numbers("Y") or ()
+    count = len(x) + (len(y) != len(x))
+    return tuple(y[k : k + count] for k in range(0, len(y), count))
+
+
 @dataclass(frozen=True)
 class Spline(Numbered):
-    """Points of a curve with increasing arguments, in the dataset's units."""
+    """Curve of points with increasing arguments, or a family of curves with increasing `z`, in the dataset's units."""
 
     x: tuple[float, ...] = read_by(lambda found, _: found.numbers("X") or (), "X")
-    y: tuple[float, ...] = read_by(lambda found, _: found.numbers("Y") or (), "Y")
+    families: tuple[tuple[float, ...], ...] = read_by(_families, "Y")
     lines_outside: bool = given("LINEAR_EXTRAPOLATE")
     ignored = dict.fromkeys(("BLOCK", "CHANNEL"), "of a file")
     refused = {"FILE": "the points in X and Y"}
+    repeated = ("Y",)
 
     @classmethod
     def check(cls, found: Arguments) -> None:
         """Refuse points that do not define a curve."""
         x, y = found.numbers("X") or (), found.numbers("Y") or ()
-        if not x or not y or len(x) != len(y):
-            raise found.fault(f"found {len(x)} X and {len(y)} Y, expected as many of each")
-        if len(x) < FEWEST_POINTS or any(after <= before for before, after in itertools.pairwise(x)):
+        several = len(y) > len(x) + 1 and len(y) % (len(x) + 1) == 0
+        if not x or not y or not (len(x) == len(y) or several):
+            raise found.fault(f"found {len(x)} X and {len(y)} Y, expected as many of each, or more in each Y by its z")
+        z = y[:: len(x) + 1] if several else ()
+        if len(x) < FEWEST_POINTS or any(b <= a for values in (x, z) for a, b in itertools.pairwise(values)):
             raise found.fault(
-                "found less than four X or such that do not increase, expected four or more increasing ones"
+                "found fewer than four X, or X or z that do not increase, expected four or more increasing ones, and "
+                "increasing z of a family"
             )
+
+    @property
+    def z(self) -> tuple[float, ...]:
+        """Second argument of each curve of a family; empty for a single curve."""
+        return tuple(family[0] for family in self.families if len(family) > len(self.x))
+
+    @property
+    def curves(self) -> tuple[tuple[float, ...], ...]:
+        """Values of each curve."""
+        return tuple(family[-len(self.x) :] for family in self.families)
 
 
 @dataclass(frozen=True)
@@ -128,3 +149,13 @@ class Array(Numbered):
 
     numbers: tuple[float, ...] = read_by(lambda found, _: found.numbers("NUMBERS") or (), "IC", "SIZE", "NUMBERS")
     variables: tuple[int, ...] = read_by(lambda found, _: found.idents("VARIABLES"), "X", "Y", "U", "VARIABLES")
+
+    @classmethod
+    def check(cls, found: Arguments) -> None:
+        """Exclude the role of an array, which its users state too, from the notes; refuse another size than that of its list."""
+        found.without_effect("IC", "X", "Y", "U")
+        size, count = found.number("SIZE"), len(found.texts("NUMBERS") or found.texts("VARIABLES"))
+        if size is not None and count and size != count:
+            raise found.fault(
+                f"found SIZE = {found.text('SIZE')} and {count} entries, expected as many", found.line("SIZE")
+            )

@@ -39,6 +39,7 @@ REQUEST/12, F1=JOINT(2,0,1,0)\F2=JOINT(2,1,2,32)\F3=JOINT(1,1,6,0)\F4=JOINT(1,0,
 , \F7=ACCX(32,22,2)\F8=WDTY(32,22,2)
 REQUEST/13, F2=PSI(32,22)\F3=THETA(32,22)\F4=PHI(32,22)\F6=VARVAL(3)\F7=VM(32,22)\F8=ACCM(32,22)
 REQUEST/14, F2=FX(22,31,32)\F3=TZ(32,29,2)\F4=FM(22,31)\F6=FY(32,2)\F7=VTORQ(1,0,7,2)\F8=AY(32,22)
+REQUEST/15, F2=ACCX(32,22,2,22)\F3=ACCY(32,2,0,30)\F4=ACCM(30,2,22)\F6=WDTX(32,22,30,22)\F7=WDTM(32,2,22)\F8=ACCZ(32,22,2,1)
 VARIABLE/3, IC=0, FUNCTION=VARVAL(4)*2+AX(32,22)
 VARIABLE/4, FUNCTION=IF(TIME-0.5:1,2,3)+MAX(SIN(90D),PI)*RTOD*DTOR
 """
@@ -152,6 +153,40 @@ def test_accelerations_are_differences_in_ground(both):
         "f7 f8",
         lambda v, found: [linear(v, found)[0], angular(v, found)[1]],
     )
+
+
+@pytest.mark.long
+def test_accelerations_as_seen_from_moving_markers(tmp_path):
+    """Derivatives of components in the frame of marker l by differences in time, of runs that are solved at close instants."""
+    text = DATASET.format(vx=repr(float(SPEED[0])), vy=repr(float(SPEED[1])), vz=repr(float(SPEED[2])))
+    parts = [
+        Part(1.5, tensor(0.05, 0.04, 0.02), (0.3, 0.1, -0.1)),
+        Part(2, tensor(0.15, 0.14, 0.12), CENTER, CM, SPEED, SPIN),
+    ]
+    every = {"JOINT_1": joints.revolute(A, B), "JOINT_2": joints.atpoint(SEAT, BALL)}
+    step = 1e-4
+    near_half = 0.5 + step * np.arange(-2, 3)
+    history = Mechanism(parts, every, [load], gravity=(1, -2, -9)).run(np.append(0.0, near_half))
+    solution = played(tmp_path, text, 0.5, step=0.5)
+    instants = [view for view, _, _ in history.instants[1:]]
+
+    def derivative(frame, question, order):
+        """Of components in the frame, in ground axes at the middle instant."""
+        rows = np.array([view.axes(frame).T @ question(view) for view in instants])
+        weights = {1: [1 / 12, -2 / 3, 0, 2 / 3, -1 / 12], 2: [-1 / 12, 4 / 3, -5 / 2, 4 / 3, -1 / 12]}[order]
+        return instants[2].axes(frame) @ (np.array(weights) @ rows) / step**order
+
+    axes = instants[2].axes
+    wanted = [
+        (axes(FOOT).T @ derivative(SEAT, lambda v: apart(v, TIP, SEAT), 2))[0],
+        derivative(MIDDLE, lambda v: apart(v, TIP, FOOT), 2)[1],
+        np.linalg.norm(derivative(SEAT, lambda v: apart(v, MIDDLE, FOOT), 2)),
+        (axes(MIDDLE).T @ derivative(SEAT, lambda v: spins(v, TIP, SEAT), 1))[0],
+        np.linalg.norm(derivative(SEAT, lambda v: spins(v, TIP, FOOT), 1)),
+        (axes(FOOT).T @ derivative(B, lambda v: apart(v, TIP, SEAT), 2))[2],
+    ]
+    found = [solution[f"REQUEST_15.{name}"][-1] for name in ("f2", "f3", "f4", "f6", "f7", "f8")]
+    np.testing.assert_allclose(found, wanted, rtol=3e-5)
 
 
 def test_forces_act_on_i(both):
