@@ -95,8 +95,22 @@ class Link:
 
 
 @dataclass(frozen=True)
+class Segment:
+    """Straight part of a tendon between points of two links (None: the world), each in its link's frame, m.
+
+    `factor`: its share in the tendon's length, below 1 beyond a pulley.
+    """
+
+    link: str | None
+    point: tuple[float, ...]
+    other: str | None
+    other_point: tuple[float, ...]
+    factor: float
+
+
+@dataclass(frozen=True)
 class Transmission:
-    """Length that depends on joint coordinates, L = sum of gear times coordinate, with an actuator, spring or damper.
+    """Length L with an actuator, spring or damper: the sum of gear times joint coordinate and of factor times segment.
 
     An actuator's force is gain u + bias with gain = g_0 + g_1 L + g_2 L' and bias = b_0 + b_1 L + b_2 L'; a passive
     tendon has no input u, and its spring and damper are the bias.
@@ -105,6 +119,8 @@ class Transmission:
     ----------
     gears : mapping of str to float
         Gear by joint.
+    segments : tuple of Segment
+        Path of a tendon through space.
     gain, bias : tuple of float
         Three coefficients each; without a gain there is no input.
     control, force : (float, float) or None
@@ -126,6 +142,7 @@ class Transmission:
     lag: float | None = None
     tendon: str = ""
     total: tuple[float, float] | None = None
+    segments: tuple[Segment, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -167,6 +167,14 @@ def test_the_text_runs_as_the_file_does(tmp_path):
         convert_robot(path, coordinates={"elbow": 0.3})
 
 
+def test_a_body_with_a_valid_name_keeps_it(tmp_path):
+    """The other one, with a sign that names of scenes do not have, gets a suffix, whichever comes first."""
+    text = """<mujoco><worldbody><body name="left-arm"><joint/><geom size=".1" pos="1 0 0" mass="2"/>
+    <body name="left_arm"><joint axis="1 0 0"/><geom size=".1" pos="0 1 0" mass="3"/></body></body></worldbody></mujoco>"""
+    bodies = load_robot(_file(tmp_path, text)).bodies
+    assert {name: body.mass for name, body in bodies.items()} == {"left_arm_link": 2, "left_arm": 3}
+
+
 def test_limits_and_contacts_are_told(tmp_path):
     text = EVERYTHING.replace('name="roll" axis="1 0 0.3"', 'name="roll" axis="1 0 0.3" limited="true" range="-30 40"')
     notes = load_robot(_file(tmp_path, text)).notes

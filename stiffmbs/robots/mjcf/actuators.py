@@ -1,4 +1,4 @@
-"""Actuators and fixed tendons of a compiled MJCF model."""
+"""Actuators and tendons of a compiled MJCF model."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...reading.files.requested import Fields
-from ..robot import RobotFault, Transmission
+from ..robot import RobotFault, Segment, Transmission
 from .fields import name_of
 
 OF_PASSIVE = ("SPRING", "DAMPER")
@@ -101,7 +101,7 @@ def _actuator(m: Any, k: int, disabled: Disabled) -> Transmission:
     affine = bias == mujoco.mjtBias.mjBIAS_AFFINE
     return Transmission(
         name,
-        _gears(m, k, name),
+        **_geared(m, k, name),
         gain=gains,
         bias=tuple(map(float, m.actuator_biasprm[k, :3])) if affine else (0.0, 0.0, 0.0),
         control=None if disabled("CLAMPCTRL") else bounds(m.actuator_ctrllimited[k], m.actuator_ctrlrange[k]),
@@ -127,18 +127,18 @@ def bounds(limited: Any, ends: Any) -> tuple[float, float] | None:
     return (float(ends[0]), float(ends[1])) if limited else None
 
 
-def _gears(m: Any, k: int, name: str) -> dict[str, float]:
-    """Return the gears of an actuator by joint: its length is the sum of gears times coordinates."""
+def _geared(m: Any, k: int, name: str) -> dict[str, Any]:
+    """Return the length of an actuator: gears of joint coordinates, or segments of a tendon."""
     import mujoco
 
     kind, target = mujoco.mjtTrn(m.actuator_trntype[k]), int(m.actuator_trnid[k, 0])
     gear = float(m.actuator_gear[k, 0])
     if kind in (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT):
-        return {_of_one_coordinate(m, target, f"actuator {name}"): gear}
+        return {"gears": {_of_one_coordinate(m, target, f"actuator {name}"): gear}}
     if kind == mujoco.mjtTrn.mjTRN_TENDON:
-        return {joint: gear * factor for joint, factor in _fixed(m, target, f"actuator {name}").items()}
+        return _along(m, target, f"actuator {name}", gear)
     raise RobotFault(
-        f"actuator {name}: found that it acts on a {kind.name.split('_')[1].lower()}, expected a joint or fixed tendon"
+        f"actuator {name}: found that it acts on a {kind.name.split('_')[1].lower()}, expected a joint or tendon"
     )
 
 
@@ -156,20 +156,39 @@ def _tendon(m: Any, k: int, disabled: Disabled) -> Iterator[Transmission]:
     low, high = map(float, m.tendon_lengthspring[k])
     if stiffness and low != high:
         raise RobotFault(f"tendon {name}: found a spring that rests from {low:g} to {high:g} m, expected one length")
-    yield Transmission(name, _fixed(m, k, f"tendon {name}"), gain=None, bias=(stiffness * low, -stiffness, -damping))
+    along = _along(m, k, f"tendon {name}", 1.0)
+    yield Transmission(name, **along, gain=None, bias=(stiffness * low, -stiffness, -damping))
 
 
-def _fixed(m: Any, tendon: int, where: str) -> dict[str, float]:
-    """Return the joints of a fixed tendon with their coefficients."""
+def _along(m: Any, tendon: int, where: str, gear: float) -> dict[str, Any]:
+    """Return the joints of a fixed tendon with their gears, or the segments between the sites of one through space."""
     import mujoco
 
-    found: dict[str, float] = {}
+    gears: dict[str, float] = {}
+    segments: list[Segment] = []
+    site, share = None, gear
     for k in range(m.tendon_adr[tendon], m.tendon_adr[tendon] + m.tendon_num[tendon]):
-        if mujoco.mjtWrap(m.wrap_type[k]) != mujoco.mjtWrap.mjWRAP_JOINT:
-            raise RobotFault(f"{where}: found a tendon through space, expected a fixed one, of joints")
-        name = _of_one_coordinate(m, int(m.wrap_objid[k]), where)
-        found[name] = found.get(name, 0.0) + float(m.wrap_prm[k])
-    return found
+        kind, ident, value = mujoco.mjtWrap(m.wrap_type[k]), int(m.wrap_objid[k]), float(m.wrap_prm[k])
+        if kind == mujoco.mjtWrap.mjWRAP_JOINT:
+            name = _of_one_coordinate(m, ident, where)
+            gears[name] = gears.get(name, 0.0) + gear * value
+        elif kind == mujoco.mjtWrap.mjWRAP_PULLEY:
+            site, share = None, gear / value
+        elif kind == mujoco.mjtWrap.mjWRAP_SITE:
+            if site is not None:
+                segments.append(Segment(*_site(m, site), *_site(m, ident), share))
+            site = ident
+        else:
+            raise RobotFault(
+                f"{where}: found a tendon that wraps around a geom, expected one of sites and pulleys, or of joints"
+            )
+    return {"gears": gears, "segments": tuple(segments)}
+
+
+def _site(m: Any, site: int) -> tuple[str | None, tuple[float, ...]]:
+    """Return the link of a site (None: the world) and its position in the link's frame."""
+    body = int(m.site_bodyid[site])
+    return (name_of(m, "body", body) if body else None), tuple(map(float, m.site_pos[site]))
 
 
 def _of_one_coordinate(m: Any, joint: int, where: str) -> str:

@@ -62,11 +62,11 @@ def _is_weld(m: Any, k: int) -> bool:
 
 
 def _of_bodies(m: Any, k: int) -> Connection:
-    """Return a connection: a weld fixes body 2 at a pose in body 1, otherwise two points coincide."""
+    """Return a connection: two points coincide, for a weld the anchor in body 2 with its place in body 1."""
     first, second = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
     data = [tuple(map(float, m.eq_data[k, a:b])) for a, b in ((0, 3), (3, 6), (6, 10))]
     if _is_weld(m, k):
-        return Connection(name_of(m, "equality", k), _body(m, first), _body(m, second), data[1], ORIGIN, data[2])
+        return Connection(name_of(m, "equality", k), _body(m, first), _body(m, second), data[1], data[0], data[2])
     return Connection(name_of(m, "equality", k), _body(m, first), _body(m, second), data[0], data[1], None)
 
 

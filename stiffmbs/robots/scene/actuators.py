@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 from ...elements.spatial.number_format import plain
-from ..robot import Robot, RobotFault, Transmission
+from ..robot import Robot, RobotFault, Segment, Transmission
 from .joints import along_axis
 from .mechanism import Hold, Mechanism
 
@@ -25,15 +26,22 @@ def actuators(robot: Robot, mechanism: Mechanism) -> Actuators:
     """Return the scene sections of all transmissions of a robot."""
     found = Actuators()
     limited: dict[str, list[str]] = {}
-    acting = [
-        (transmission, holds)
-        for transmission in robot.transmissions
-        if (holds := [(mechanism.holds[x], gear) for x, gear in transmission.gears.items() if x in mechanism.holds])
-    ]
-    named = [(transmission, holds, _force(found, mechanism, transmission, holds)) for transmission, holds in acting]
-    for transmission, holds, name in named:
-        along = [other for t, _, other in named if transmission.total and t.tendon == transmission.tendon]
+    named = []
+    for transmission in robot.transmissions:
+        holds = [(mechanism.holds[x], gear) for x, gear in transmission.gears.items() if x in mechanism.holds]
+        lines = [_line(mechanism, transmission, k, part) for k, part in enumerate(transmission.segments, start=1)]
+        bounded = [hold.name for hold in mechanism.holds.values() if hold.joint.effort is not None]
+        if lines and bounded and transmission.gain is not None:
+            raise RobotFault(
+                f"actuator {transmission.name}: found a tendon through space and bounds of the force of actuators on "
+                f"{', '.join(bounded)}, expected one of them"
+            )
+        if holds or lines:
+            named.append((transmission, holds, lines, _force(found, mechanism, transmission, holds, lines)))
+    for transmission, holds, lines, name in named:
+        along = [other for t, *_, other in named if transmission.total and t.tendon == transmission.tendon]
         force = _of_total(transmission, name, along)
+        found.forces.update(_pulls(mechanism, transmission, lines, force))
         for hold, gear in holds:
             term = _times(repr(plain(gear)), force)
             if hold.joint.effort is not None and transmission.gain is not None:
@@ -50,11 +58,43 @@ def actuators(robot: Robot, mechanism: Mechanism) -> Actuators:
     return found
 
 
-def _force(found: Actuators, mechanism: Mechanism, transmission: Transmission, holds: list[tuple[Hold, float]]) -> str:
+Line = tuple[str, str, float]
+"""Segment of a tendon: markers at its ends, and its factor."""
+
+
+def _line(mechanism: Mechanism, transmission: Transmission, k: int, segment: Segment) -> Line:
+    """Add markers at the ends of a segment of a tendon."""
+    names = (mechanism.names.take(f"{transmission.name}_{k}{end}") for end in "ij")
+    ends = (segment.link, segment.point), (segment.other, segment.other_point)
+    i, j = (mechanism.mark(link, name, point) for (link, point), name in zip(ends, names, strict=True))
+    return i, j, segment.factor
+
+
+def _pulls(
+    mechanism: Mechanism, transmission: Transmission, lines: list[Line], force: str
+) -> Iterator[tuple[str, Any]]:
+    """Yield the forces along the segments of a tendon that connect two bodies."""
+    for i, j, factor in lines:
+        if i.partition(".")[0] != j.partition(".")[0]:
+            law = _times(repr(plain(factor)), force)
+            yield (
+                mechanism.names.take(f"{transmission.name}_pull"),
+                {"type": "line_force", "i": i, "j": j, "force": law},
+            )
+
+
+def _force(
+    found: Actuators,
+    mechanism: Mechanism,
+    transmission: Transmission,
+    holds: list[tuple[Hold, float]],
+    lines: list[Line],
+) -> str:
     """Add the formula of a transmission's force and return its name; a bounded total of its tendon is applied later."""
     name = mechanism.names.take(f"{transmission.name}_force")
-    length = " + ".join(f"{plain(gear)}*{hold.coordinate}" for hold, gear in holds)
-    rate = " + ".join(f"{plain(gear)}*{hold.rate}" for hold, gear in holds)
+    parts = [(gear, hold.coordinate, hold.rate) for hold, gear in holds]
+    parts += [(factor, f"dm({i}, {j})", f"vr({i}, {j})") for i, j, factor in lines]
+    length, rate = (" + ".join(f"{plain(part[0])}*{part[k]}" for part in parts) for k in (1, 2))
     force = _affine(transmission.bias, length, rate)
     if transmission.gain is not None:
         u = _activation(found, mechanism, transmission)

@@ -126,7 +126,7 @@ def _damped(mechanism: Mechanism, link: Link, joint: LinkJoint) -> Iterator[tupl
 
 def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, Any]]]:
     joint, ends = hold.joint, {"i": hold.i, "j": hold.j}
-    rest = plain(joint.rest - joint.zero)
+    rest = plain(joint.rest - hold.zero)
     k, d = plain(joint.stiffness), plain(joint.damping)
     if (k or d) and joint.kind == "hinge":
         spring: dict[str, Any] = {"type": "torsion_spring", **ends}
@@ -136,7 +136,7 @@ def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, 
         along = (lambda x: [0, 0, x, 0, 0, 0]) if joint.kind == "slide" else (lambda x: [0, 0, 0, x, x, x])
         spring = {"type": "bushing", **ends}
         spring |= {"stiffness": along(k)} if k else {}
-        spring |= {"preload": along(plain(joint.stiffness * (joint.rest - joint.zero)))} if k and rest else {}
+        spring |= {"preload": along(plain(joint.stiffness * rest))} if k and rest else {}
         yield mechanism.names.take(f"{hold.name}_spring"), spring | ({"damping": along(d)} if d else {})
     if joint.friction:
         formula = f"-{plain(joint.friction)}*tanh({hold.rate}/{CREEP[joint.kind]})"
@@ -158,7 +158,7 @@ def _relation(mechanism: Mechanism, relation: Relation) -> Iterator[tuple[str, d
     first, *rest = relation.coefficients
     if other is not None and rest and rest[0] and not any(rest[1:]):
         ratio = {"joint_1": hold.name, "joint_2": other.name, "scale": plain(rest[0])}
-        yield name, {"type": "coupler", **ratio, "offset": plain(first)}
+        yield name, {"type": "coupler", **ratio, "offset": plain(first + rest[0] * other.turns - hold.turns)}
         return
     x = "" if other is None else f"({other.coordinate} - {other.joint.zero!r})"
     terms = [repr(first), *(f"{c!r}*{x}^{k}" for k, c in enumerate(rest, 1) if c and x)]

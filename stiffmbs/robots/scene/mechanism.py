@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,6 +18,9 @@ from ...reading.marker import GROUND
 from ...reading.units.units import UNITS
 from ..pose import Placed, frames
 from ..robot import Link, LinkJoint, Robot
+
+ROUNDING = 1e-12
+"""Part of a turn by which an angle at the start counts as half a turn: that of measures is then positive."""
 
 
 class Names:
@@ -56,19 +60,26 @@ class Hold:
     """Joint of the robot in the scene.
 
     `name`: name of the scene's joint. `i`, `j`: markers on the child and the parent side; their z axes are the joint's,
-    and they coincide at the joint's zero.
+    and they coincide at the joint's zero. `turns`: angle of the whole turns at the start, rad, which measures of angles
+    lack.
     """
 
     joint: LinkJoint
     name: str
     i: str
     j: str
+    turns: float = 0.0
+
+    @property
+    def zero(self) -> float:
+        """Coordinate at which the measured angle or displacement is zero, rad or m."""
+        return self.joint.zero + self.turns
 
     @property
     def coordinate(self) -> str:
         """Formula of the joint's coordinate, rad or m."""
         measure = f"az({self.i}, {self.j})" if self.joint.kind == "hinge" else f"dz({self.i}, {self.j}, {self.j})"
-        return f"({measure} + {self.joint.zero!r})" if self.joint.zero else measure
+        return f"({measure} + {self.zero!r})" if self.zero else measure
 
     @property
     def rate(self) -> str:
@@ -109,9 +120,11 @@ class Mechanism:
         self.holds: dict[str, Hold] = {}
         self.fixed: dict[str, tuple[str, str]] = {}
         self.unmoved: tuple[str, ...] = ()
+        self._coordinates = coordinates
         placed = frames(robot, coordinates, rates)
         moves_mass = _with_mass(robot)
-        called = {link.name: self.names.take(link.name, "link") for link in robot.links}
+        valid_first = sorted(robot.links, key=lambda link: not re.fullmatch(r"[A-Za-z_]\w*", link.name, re.ASCII))
+        called = {link.name: self.names.take(link.name, "link") for link in valid_first}
         for link in robot.links:
             carrier = self.seats[link.parent].on(link.position, link.orientation)
             if link.joints and link.name not in moves_mass:
@@ -142,7 +155,9 @@ class Mechanism:
         if joint.kind != "free":
             name, axes = self.names.take(joint.name, "joint"), along_z(joint.axis)
             i = self._mark(after.on(joint.point, axes), name)
-            self.holds[joint.name] = Hold(joint, name, i, self._mark(before.on(joint.point, axes), name))
+            j, angle = self._mark(before.on(joint.point, axes), name), self._coordinates.get(joint.name, joint.zero)
+            turns = whole_turns(angle - joint.zero) if joint.kind == "hinge" else 0.0
+            self.holds[joint.name] = Hold(joint, name, i, j, turns)
         return after
 
     def _fix(self, link: Link, name: str, carrier: Seat, placed: Placed) -> None:
@@ -166,6 +181,11 @@ class Mechanism:
     ) -> str:
         """Add a marker in the frame of a link (None: the world); return its reference in the scene."""
         return self._mark(self.seats[link].on(point, orientation), name)
+
+
+def whole_turns(angle: float) -> float:
+    """Return the whole turns of an angle, rad; the remainder is in (-pi, pi] up to rounding."""
+    return 2 * math.pi * math.ceil(angle / (2 * math.pi) - 0.5 - ROUNDING)
 
 
 def along_z(axis: tuple[float, ...]) -> tuple[float, ...]:
