@@ -41,3 +41,14 @@ def test_bad_drawings_are_reported():
         with pytest.raises(InputError, match=expected):
             read_scene(beam % points)
     assert math.isfinite(read_scene(beam % scaled(SQUARE, 0.01)).bodies["s.start"].mass)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("taper", "symmetric"), [(0.008, True), (0.016, False)])
+def test_a_shear_centre_nearly_at_the_centroid_is_there(taper, symmetric):
+    """That of a nearly square trapezium is 0.088 times the taper from the centroid, in units of the root of the area."""
+    pytest.importorskip("sectionproperties")
+    trapezium = ((-1 - taper, -1), (1 + taper, -1), (1 - taper, 1), (-1 + taper, 1))
+    y, z = Drawn(points=scaled(trapezium, 0.01)).properties(0.3).shear_centre
+    assert y == 0.0
+    assert pytest.approx(0.0 if symmetric else 0.0884 * taper * 0.02, rel=1e-2) == z

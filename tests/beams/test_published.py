@@ -2,7 +2,10 @@
 
 import math
 
+import numpy as np
 import pytest
+from numpy.polynomial import Legendre, Polynomial
+from scipy.linalg import eigh
 
 import stiffmbs
 from stiffmbs import read_scene
@@ -100,3 +103,50 @@ forces: {{P: {{type: force, i: c.end, force: [0, -1e-4]}}}}
 """)
     moved = [(found["c.end.x"] - 1) / 1e-4, (found["c.end.y"] - 1) / 1e-4]
     assert moved == pytest.approx([0.5, -math.pi / 4], rel=2e-4)
+
+
+def flapping(rate):
+    """First three frequencies of a clamped beam in rotation, by Ritz' method with polynomials, in root of EI/(m L^4)."""
+    points, weights = np.polynomial.legendre.leggauss(40)
+    x, w = (points + 1) / 2, weights / 2
+    shapes = [Polynomial([0, 0, 1]) * Legendre.basis(k, domain=[0, 1]).convert(kind=Polynomial) for k in range(12)]
+    f, slope, bend = (np.array([shape.deriv(k)(x) for shape in shapes]) for k in range(3))
+    tension = rate**2 * (1 - x**2) / 2
+    stiffness = (bend * w) @ bend.T + (slope * w * tension) @ slope.T
+    return np.sqrt(eigh(stiffness, (f * w) @ f.T, eigvals_only=True)[:3])
+
+
+def rotating(rate, n, interpolation="pairs", stiffness=""):
+    """A bar that rotates about its end, rad/s over root of EI/(m L^4), and its frequencies in the same unit."""
+    unit = math.sqrt(210e9 * 4e-3**2 / 12 / 7850)
+    section = "section: {type: rectangle, width: 20 mm, height: 4 mm}, material: {E: 210 GPa, density: 7850}"
+    scene = read_scene(f"""
+dimensions: 3
+bodies:
+  b: {{type: beam, start: [0, 0, 0], end: [1 m, 0, 0], elements: {n}, interpolation: {interpolation}, omega: [0, 0, {rate * unit!r}],
+      {stiffness or section}}}
+joints: {{hub: {{type: revolute, i: b.start, j: ground}}}}
+start: {{rotation: {rate * unit!r} rad/s}}
+""")
+    return np.array([math.tau * mode.frequency for mode in stiffmbs.modes(scene).modes]) / unit
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("rate", [2, 4, 10])
+def test_a_rotating_cantilever_flaps_faster(rate):
+    """Wright, Smith, Thresher, Wang (1982); shear and rotary inertia lower the third frequency by 2e-4."""
+    expected = flapping(rate)
+
+    def error(n, interpolation, k):
+        return np.abs(rotating(rate, n, interpolation) / expected[k] - 1).min()
+
+    for interpolation in ("pairs", "spectral"):
+        for k, within in enumerate((4e-5, 2e-4, 4e-4)):
+            assert error(16, interpolation, k) < within
+    assert error(4, "pairs", 1) > 100 * error(16, "pairs", 1)
+
+
+def test_a_stiff_beam_in_rotation_is_steady():
+    """The pose a little later is so exact that a beam has no force of its own, with 1e6 times its bending stiffness."""
+    stiffness = "stiffness: [1e6, 1e6, 1e6, 1e2, 1, 1e2], mass_per_length: 1, inertia_per_length: [2e-6, 1e-6, 1e-6]"
+    assert len(rotating(0.3, 4, stiffness=stiffness))

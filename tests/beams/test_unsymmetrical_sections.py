@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 import stiffmbs
 from stiffmbs import InputError, read_scene
@@ -128,6 +129,7 @@ def test_drawn_profiles_have_the_constants_of_thin_walls():
             assert getattr(drawn, name) == pytest.approx(getattr(plain, name), rel=1e-9, abs=1e-15)
         assert pytest.approx(plain.J, rel=2e-2) == drawn.J
         assert drawn.shear_centre == pytest.approx(plain.shear_centre, abs=2e-4)
+        assert drawn.wagner == pytest.approx(plain.wagner, abs=1e-3)
         found = np.linalg.inv(drawn.stiffness(E, G))[:4, :4]
         expected = np.linalg.inv(plain.stiffness(E, G))[:4, :4]
         assert found == pytest.approx(expected, rel=5e-2, abs=1e-2 * np.max(expected[:3, :3]))
@@ -206,22 +208,70 @@ def test_the_natural_frequencies_of_an_angle_are_those_of_its_principal_axes():
     assert found[:2] == pytest.approx(expected, rel=2e-3)
 
 
-def test_elements_of_a_channel_twist_and_stay_straight_under_tension():
-    """Torsion about the shear centre does not shorten the axis, and tension of many times 12 EI/L^2 folds no element."""
+def test_elements_of_a_channel_twist_to_a_helix_and_stay_straight_under_tension():
+    """Torsion about the shear centre bends the beam to a helix (Wagner), and tension of many times 12 EI/L^2 folds no element."""
     of = channel()
     y = of.shear_centre[0]
     torsion = at_rest(beam(U, "M: {type: torque, i: s.end, torque: [10, 0, 0]}", n=2))
     twist = 2 * math.asin(torsion["s.end.q1"])
-    wagner = ((of.I2 + of.I3) / of.A + y * y) * (twist / L) ** 2 / 2
-    assert twist == pytest.approx(10 * L / (G * of.J), rel=1e-3)
-    places = [L * (1 - wagner), y * (1 - math.cos(twist)), -y * math.sin(twist)]
-    assert [torsion[f"s.end.{axis}"] for axis in "xyz"] == pytest.approx(places, rel=1e-6)
+    k = 10 / (G * of.J)
+    radius = (of.I2 + of.I3) / of.A + y * y
+    stretched, bent = 1 - radius * k**2 / 2, -of.wagner[1] * k**2 / 2  # by torsion alone: n1 = m3 = 0
+    helix = expm(L * np.array([[0, -bent, 0, stretched], [bent, 0, -k, 0], [0, k, 0, -y * k], [0, 0, 0, 0]]))
+    assert twist == pytest.approx(k * L, rel=1e-3)
+    assert [torsion[f"s.end.{axis}"] for axis in "xyz"] == pytest.approx(helix[:3, 3], rel=1e-3)
     pull, shear = E * of.A / 100, 1.0
     assert pull > 3 * 12 * E * of.I3 / (L / 2) ** 2
     found = at_rest(beam(U, f"F: {{type: force, i: s.end, force: [{pull!r}, {shear}, 0]}}", n=2))
     k = math.sqrt(pull / (E * of.I3))
     assert found["s.end.x"] == pytest.approx(1.01 * L, rel=1e-6)
     assert found["s.end.y"] == pytest.approx(shear / pull * (L - math.tanh(k * L) / k), rel=0.1)
+
+
+ELEMENT = """
+dimensions: 3
+bodies: {b: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}}
+forces:
+  beam: {type: exact_beam, i: b, j: ground, length: 1, stiffness: %s, %s}
+  T: {type: torque, i: b, torque: [1, 0, 0]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("fields", "shear_centre", "wagner"),
+    [
+        ("wagner: [0, 0.5, 0.3]", (0, 0), (0.5, 0.3)),
+        ("wagner: [0, 0.5, 0.3], bowing: [1.2, 1.2]", (0, 0), (0.5, 0.3)),
+        ("shear_centre: [0, 0.1, 0.2]", (0.1, 0.2), (0, 0)),
+        ("shear_centre: [0, 0.1, 0.2], wagner: [0, 0.5, 0.3], bowing: [0, 0]", (0.1, 0.2), (0.5, 0.3)),
+        ("bowing: [1.2, 1.2]", None, None),
+    ],
+)  # fmt: skip
+def test_an_element_is_a_helix_under_torsion_whichever_fields_are_given(fields, shear_centre, wagner):
+    """Its strains follow from no axial force and no moments of bending, and its end from the exponential map.
+
+    The tilt of the end is a moment of bending of about 0.01 N m, which bends the element by 1e-5.
+    """
+    found = at_rest(ELEMENT % ("[3e4, 2e4, 1.5e4, 5, 800, 900]", fields))
+    k, stretched, (about_2, about_3) = 0.2, 1.0, np.zeros(2)
+    if shear_centre is not None:
+        stretched -= (1700 / 3e4 + np.square(shear_centre).sum()) * k**2 / 2
+        about_2, about_3 = -np.array(wagner) * k**2 / 2
+    end = expm(np.array([[0, -about_3, about_2, stretched], [about_3, 0, -k, 0], [-about_2, k, 0, 0], [0, 0, 0, 0]]))
+    assert [found[f"b.{axis}"] for axis in "xyz"] == pytest.approx(end[:3, 3], abs=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "fields", "expected"),
+    [
+        ("[0, 200, 150, 5, 8, 9]", "shear_centre: [0, 0, 0]", "stiffness: found no EA, expected it with shear_centre or wagner"),
+        ("[300, 200, 150, 5, 8, 0]", "wagner: [0, 1, 1]", "stiffness: found no EI3, expected it with shear_centre or wagner"),
+    ],
+)  # fmt: skip
+def test_an_element_refuses_what_its_stretch_by_torsion_cannot_use(stiffness, fields, expected):
+    with pytest.raises(InputError) as found:
+        read_scene(ELEMENT % (stiffness, fields))
+    assert expected in str(found.value)
 
 
 def test_a_column_of_a_channel_buckles_by_bending_and_torsion():
@@ -242,9 +292,11 @@ def test_a_column_of_a_channel_buckles_by_bending_and_torsion():
 
 def test_a_mirrored_section_moves_as_the_mirror_image():
     load = "F: {type: force, i: s.end, force: [0, %s, 300]}"
-    text = "{type: numbers, A: 1e-3, I2: 2e-6, I3: 1e-6, J: 2e-8, I23: %s, shear_centre: [%s, 0.01]}"
-    one = at_rest(beam(text % (5e-7, -0.03), load % 100))
-    other = at_rest(beam(text % (-5e-7, 0.03), load % -100))
+    text = (
+        "{type: numbers, A: 1e-3, I2: 2e-6, I3: 1e-6, J: 2e-8, I23: %s, shear_centre: [%s, 0.01], wagner: [0.02, %s]}"
+    )
+    one = at_rest(beam(text % (5e-7, -0.03, 0.05), load % 100))
+    other = at_rest(beam(text % (-5e-7, 0.03, -0.05), load % -100))
     for axis, sign in (("x", 1), ("y", -1), ("z", 1), ("q1", -1), ("q2", 1), ("q3", -1)):
         assert one[f"s.end.{axis}"] == pytest.approx(sign * other[f"s.end.{axis}"], rel=1e-9)
 
@@ -278,3 +330,94 @@ def test_a_section_leaves_the_plane_from_a_product_of_inertia_and_an_offset_on()
         for values, leaves in ((within, False), (beyond, True)):
             of = Properties(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, values.get("I23", 0.0), (values.get("y", 0.0), 0.0))
             assert bool(of.leaves_plane()) == leaves
+
+
+def fibres(rectangles, centre):
+    """Wagner's coefficients by a sum over many fibres, with the shear centre from the origin of the rectangles."""
+    points, weights = [], []
+    for x0, x1, y0, y1 in rectangles:
+        x, y = (low + (high - low) * (np.arange(400) + 0.5) / 400 for low, high in ((x0, x1), (y0, y1)))
+        points.append(np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2))
+        weights.append(np.full(len(points[-1]), (x1 - x0) * (y1 - y0) / 400**2))
+    x, dA = np.concatenate(points), np.concatenate(weights)
+    stretch = ((x - centre) ** 2).sum(axis=1) / 2
+    modes = np.column_stack([np.ones(len(x)), x[:, 1], -x[:, 0]])  # axial strain and the curvatures about axes 2 and 3
+    return 2 * np.linalg.solve(modes.T @ (dA[:, None] * modes), modes.T @ (dA * stretch))[1:]
+
+
+@pytest.mark.parametrize(
+    ("section", "rectangles"),
+    [
+        (Channel(width=0.05, height=0.1, flange=0.005, web=0.004), [(0, 0.05, 0, 0.005), (0, 0.004, 0.005, 0.095), (0, 0.05, 0.095, 0.1)]),
+        (Angle(width=0.05, height=0.08, thickness=0.005), [(0, 0.05, 0, 0.005), (0, 0.005, 0.005, 0.08)]),
+    ],
+)  # fmt: skip
+def test_the_part_of_the_stretch_by_torsion_that_bends_the_section(section, rectangles):
+    of = section.properties(0.3)
+    areas = [(x1 - x0) * (y1 - y0) for x0, x1, y0, y1 in rectangles]
+    centroid = np.average([((x0 + x1) / 2, (y0 + y1) / 2) for x0, x1, y0, y1 in rectangles], axis=0, weights=areas)
+    assert of.wagner == pytest.approx(fibres(rectangles, centroid + of.shear_centre), rel=1e-4, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("outline", "hole", "rectangles"),
+    [
+        (((0, 0), (5, 0), (5, 2), (2, 2), (2, 8), (0, 8)), (), [(0, 5, 0, 2), (0, 2, 2, 8)]),
+        (((0, 0), (5, 0), (5, 2), (2, 2), (2, 8), (5, 8), (5, 10), (0, 10)), (), [(0, 5, 0, 2), (0, 2, 2, 8), (0, 5, 8, 10)]),
+        (
+            ((0, 0), (6, 0), (6, 9), (0, 9)), ((1, 1), (3, 1), (3, 6), (1, 6)),
+            [(0, 6, 0, 1), (0, 1, 1, 6), (3, 6, 1, 6), (0, 6, 6, 9)],
+        ),
+    ],
+    ids=["l", "u", "hole"],
+)  # fmt: skip
+@pytest.mark.parametrize("signs", [(1, 1), (-1, 1), (1, -1)])
+def test_the_coefficients_of_drawn_sections_are_those_of_their_fibres(outline, hole, rectangles, signs):
+    """A mirrored section has its outline clockwise."""
+    pytest.importorskip("sectionproperties")
+    scale = 0.01 * np.array(signs)
+    holes = [(np.array(hole) * scale).tolist()] if hole else []
+    of = Drawn(points=(np.array(outline) * scale).tolist(), holes=holes).properties(0)
+    areas = [
+        np.concatenate([np.sort(np.array(one[k : k + 2]) * s) for k, s in ((0, scale[0]), (2, scale[1]))])
+        for one in rectangles
+    ]
+    weights = [(x1 - x0) * (y1 - y0) for x0, x1, y0, y1 in areas]
+    centroid = np.average([((x0 + x1) / 2, (y0 + y1) / 2) for x0, x1, y0, y1 in areas], axis=0, weights=weights)
+    assert of.wagner == pytest.approx(fibres(areas, centroid + of.shear_centre), rel=1e-4, abs=1e-7)
+    assert np.linalg.norm(of.wagner) > 1e-3
+
+
+def test_a_thin_angle_of_equal_legs_has_the_coefficient_of_its_closed_form():
+    """Root of two times the leg, for bending in the plane of symmetry."""
+    of = Angle(width=1.0, height=1.0, thickness=1e-4).properties(0.3)
+    assert np.linalg.norm(of.wagner) == pytest.approx(math.sqrt(2), rel=1e-3)
+    assert of.wagner[0] == pytest.approx(-of.wagner[1], rel=1e-9)  # about the line across the plane of symmetry
+
+
+@pytest.mark.parametrize(("sign", "wagner", "z"), [(1, 0.08, 0.0), (-1, 0.08, 0.0), (1, -0.05, 0.03), (1, 0.0, 0.03)])
+def test_a_beam_of_one_symmetry_buckles_sideways_under_a_moment(sign, wagner, z):
+    """M^2 = N (G J + w M) with N = pi^2 E I3/L^2: Trahair (1993), sec. 17.4, without warping, between fork supports."""
+    I3, J = 2e-8, 4e-9
+    N = math.pi**2 * E * I3 / L**2
+    roots = np.roots([1, -N * wagner, -N * G * J]).tolist()
+    critical = next(root for root in roots if sign * root > 0)
+    section = f"{{type: numbers, A: 1e-2, I2: 1e-4, I3: {I3}, J: {J}, shear_centre: [0, {z}], wagner: [{wagner}, 0]}}"
+    shares, squares = (0.99, 0.995), []
+    for share in shares:
+        M = share * critical
+        text = f"""
+dimensions: 3
+bodies: {{s: {{type: beam, start: [0, 0, 0], end: [{L}, 0, 0], elements: 32, section: {section}, material: {{E: {E}, nu: 0.25, density: 7850}}}}}}
+joints:
+  pin: {{type: spherical, i: s.start, j: ground}}
+  line: {{type: point_on_line, i: s.end, j: {{body: ground, orientation: {{z: [1, 0, 0]}}}}}}
+  fork_a: {{type: perpendicular, i: {{body: s.start, orientation: {{z: [0, 1, 0]}}}}, j: ground}}
+  fork_b: {{type: perpendicular, i: {{body: s.end, orientation: {{z: [0, 1, 0]}}}}, j: ground}}
+forces: {{a: {{type: torque, i: s.start, torque: [0, {-M!r}, 0]}}, b: {{type: torque, i: s.end, torque: [0, {M!r}, 0]}}}}
+"""
+        scene = read_scene(text)
+        rest = stiffmbs.equilibrium(scene)
+        squares.append(stiffmbs.modes(scene, start_from=rest.solution).modes[0].frequency ** 2)
+    slope = (squares[1] - squares[0]) / (shares[1] - shares[0])
+    assert shares[1] - squares[1] / slope == pytest.approx(1, abs=3e-3)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from pydantic import Field, field_validator
 
@@ -13,6 +13,15 @@ from .bushing import times
 
 BEYOND = "found its ends turned by three quarters of a turn against each other, expected less; divide the beam into more elements"
 DOUBT = "turns its ends by more than half a turn against each other; divide the beam into more elements"
+
+
+class Stretch(NamedTuple):
+    """Term b/2 x^2 of a component of the strain. `slopes`: derivatives of the strain x by components."""
+
+    to: int
+    b: Expr
+    x: Expr
+    slopes: dict[int, Expr]
 
 
 class BeamStrain(Force):
@@ -44,20 +53,20 @@ class BeamStrain(Force):
         return e.named([x / e.length - rest for x, rest in zip(screw, e.unloaded, strict=True)])  # type: ignore[no-any-return]
 
     @staticmethod
-    def stretching(e: Symbolic, strain: list[Expr]) -> list[tuple[Expr, Expr, dict[int, Expr]]]:
-        """Return b, the strain x that stretches the axis by b/2 x^2, and its derivatives by components, of each such strain."""
-        return [(b, strain[k], {k: 1}) for k, b in enumerate(e.bowing, 1)]
+    def stretching(e: Symbolic, strain: list[Expr]) -> list[Stretch]:
+        """Return the terms of second order that are added to the strain."""
+        return [Stretch(0, b, strain[k], {k: 1}) for k, b in enumerate(e.bowing or (), 1)]
 
     @classmethod
     def stress(cls, e: Symbolic) -> list[Expr]:
         """Return the section forces and moments, N and N m."""
         strain = cls.strain(e)
         elastic = times(e.stiffness, cls.bowed(e, strain))
-        if e.bowing is not None:
-            axial = e.named(elastic[0])
-            for b, x, slopes in cls.stretching(e, strain):
+        if terms := cls.stretching(e, strain):
+            linear = e.named(list(elastic))
+            for to, b, x, slopes in terms:
                 for k, slope in slopes.items():
-                    elastic[k] += b * axial * x * slope
+                    elastic[k] += b * linear[to] * x * slope
         if e.damping_ratio is None:
             return e.named(elastic)  # type: ignore[no-any-return]
         viscous = times(e.stiffness, e.named([rate / e.length for rate in e.logarithm(e.i, e.j).rates]))
@@ -66,10 +75,10 @@ class BeamStrain(Force):
     @classmethod
     def bowed(cls, e: Symbolic, strain: list[Expr]) -> list[Expr]:
         """Return the strain with the stretch of an axis that is bent to an S between the nodes, as the shear shows."""
-        if e.bowing is None:
-            return strain
-        stretch = sum(b * x**2 for b, x, _ in cls.stretching(e, strain)) / 2
-        return e.named([strain[0] + stretch, *strain[1:]])  # type: ignore[no-any-return]
+        found = list(strain)
+        for to, b, x, _ in cls.stretching(e, strain):
+            found[to] += b * x**2 / 2
+        return e.named(found)  # type: ignore[no-any-return]
 
     @classmethod
     def condensed_powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:

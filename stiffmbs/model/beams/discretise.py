@@ -88,6 +88,8 @@ class Element:
         Factors of the stretch by both shears; of elements between two nodes.
     shear_centre : (float, float)
         From the axis along axes 2 and 3, m; of elements between two nodes.
+    wagner : (float, float)
+        Curvatures by torsion, per kappa_1^2/2, m; of elements between two nodes.
     reference : int
         Place of the reference node.
     shapes, slopes : ndarrays
@@ -101,6 +103,7 @@ class Element:
     stiffness: np.ndarray
     bowing: np.ndarray = field(default_factory=lambda: np.zeros(2))
     shear_centre: tuple[float, float] = (0.0, 0.0)
+    wagner: tuple[float, float] = (0.0, 0.0)
     reference: int = 0
     shapes: np.ndarray = field(default_factory=lambda: np.zeros(0))
     slopes: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -127,12 +130,15 @@ class Constants(NamedTuple):
         Per length, kg m.
     shear_centre : (float, float)
         From the axis along axes 2 and 3, m.
+    wagner : (float, float)
+        Curvatures by torsion, per kappa_1^2/2, m.
     """
 
     stiffness: np.ndarray
     mass: float
     inertia: np.ndarray
     shear_centre: tuple[float, float] = (0.0, 0.0)
+    wagner: tuple[float, float] = (0.0, 0.0)
 
 
 def _constants(beam: Any, share: float) -> Constants:
@@ -144,7 +150,7 @@ def _constants(beam: Any, share: float) -> Constants:
         if beam.dimensions == 2 and (why := of.leaves_plane()):
             raise ValueError(f"section: {why}")
         K, density = of.stiffness(material.E, material.G), material.density
-        return Constants(K, density * of.A, of.inertia(density), of.shear_centre)
+        return Constants(K, density * of.A, of.inertia(density), of.shear_centre, of.wagner)
     given, inertia = beam.stiffness, beam.inertia_per_length
     if len(given) != 6:
         EA, GA, EI = given
@@ -164,8 +170,9 @@ def _between(start: Section, end: Section | None, share: float) -> Section:
         if isinstance(a := getattr(start, name), float) and getattr(end, name) is not None
     }
     if isinstance(start, Numbers) and isinstance(end, Numbers):
-        pairs = zip(start.shear_centre, end.shear_centre, strict=True)
-        numbers["shear_centre"] = tuple((1 - share) * a + share * b for a, b in pairs)
+        for name in ("shear_centre", "wagner"):
+            pairs = zip(getattr(start, name), getattr(end, name), strict=True)
+            numbers[name] = tuple((1 - share) * a + share * b for a, b in pairs)
     return start.model_copy(update=numbers)
 
 
@@ -266,9 +273,11 @@ class _Interval:
             of = self.constants(float(s))
             node.lump(float(weight) * (end - start), of.mass, of.inertia, axes)
         turned = own[0].axes.T @ poses[0][1]
-        if group.sections and any(any(self.constants(s).shear_centre) for s in (start, end)):
+        ends = [self.constants(s) for s in (start, end)]
+        if group.sections and any(any((*of.shear_centre, *of.wagner)) for of in ends):
             raise ValueError(
-                "interpolation: found spectral and a section with its shear centre off the centroid, expected pairs for it"
+                "interpolation: found spectral and a section with its shear centre off the centroid or with Wagner's coefficients, "
+                "expected pairs for it"
             )
         if not group.sections:
             for k, pair in enumerate(pairwise(where)):
@@ -306,9 +315,10 @@ class _Interval:
         unloaded = np.where(np.abs(screw) < 1e-14 * length, 0.0, screw) / length
         K = element_stiffness(unloaded, length, lambda share: self._stiffness(start + share * (end - start)))
         middle = (start + end) / 2
-        shear_centre = (0.0, 0.0) if self.planar else self.constants(middle).shear_centre
+        of = self.constants(middle)
+        shear_centre, wagner = ((0.0, 0.0),) * 2 if self.planar else (of.shear_centre, of.wagner)
         bow = bowing(K, self._stiffness(middle), shear_centre)
-        return Element(nodes, turned, length, unloaded, K, bow, shear_centre)
+        return Element(nodes, turned, length, unloaded, K, bow, shear_centre, wagner)
 
     def _pose(self, s: float) -> tuple[np.ndarray, np.ndarray]:
         point, along = self.piece.at(s - self.first)

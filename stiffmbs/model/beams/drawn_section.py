@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
-from .section import Properties
+import numpy as np
+
+from .section import Properties, wagner_coefficients
+
+if TYPE_CHECKING:
+    from shapely import Polygon
 
 Loop = tuple[tuple[float, float], ...]
 ELEMENTS = 300
@@ -35,6 +41,7 @@ def constants_of(points: Loop, holes: tuple[Loop, ...]) -> Properties:
         from sectionproperties.analysis import Section
         from sectionproperties.pre.geometry import Geometry
         from shapely import Polygon
+        from shapely.geometry.polygon import orient
     except ImportError:
         raise ValueError("found no package for drawn sections, expected it: pip install 'stiffmbs[sections]'") from None
     outline = Polygon(points, holes)
@@ -47,11 +54,34 @@ def constants_of(points: Loop, holes: tuple[Loop, ...]) -> Properties:
     section.calculate_warping_properties()
     A = float(section.get_area())
     I2, I3, product = (float(value) for value in section.get_ic())
-    y, z = (
-        float(a - b) if abs(a - b) > SYMMETRIC * math.sqrt(A) else 0.0
-        for a, b in zip(section.get_sc(), section.get_c(), strict=True)
-    )
+    offset = [float(a - b) for a, b in zip(section.get_sc(), section.get_c(), strict=True)]
+    y, z = (_without_error(part, A) for part in offset)
+    third = _third_moments(orient(outline), np.array(section.get_c()))
+    wagner = wagner_coefficients((I2, I3, product), third, (y, z))
     along2, along3 = (float(value) for value in section.get_as())
     coupling = A / float(section.section_props.a_sxy or math.inf)
     coupling = coupling if abs(coupling) > SYMMETRIC else 0.0
-    return Properties(A, I2, I3, float(section.get_j()), along2 / A, along3 / A, product, (y, z), coupling)
+    return Properties(
+        A, I2, I3, float(section.get_j()), along2 / A, along3 / A, product, (y, z), coupling,
+        (_without_error(wagner[0], A), _without_error(wagner[1], A)),
+    )  # fmt: skip
+
+
+def _third_moments(outline: Polygon, centroid: np.ndarray) -> list[float]:
+    """Return the integrals of each coordinate times the square of the distance from the centroid, m^5.
+
+    Each edge, with the area on its left, adds that of the triangle to the centroid: 2/5 of the area times the mean along
+    the edge, as the integrand is homogeneous of degree three. Simpson's rule is exact for this mean.
+    """
+    total = np.zeros(2)
+    for ring in (outline.exterior, *outline.interiors):
+        points = np.array(ring.coords) - centroid
+        a, b = points[:-1], points[1:]
+        mean = sum(w * x * (x**2).sum(axis=1)[:, None] for w, x in ((1, a), (4, (a + b) / 2), (1, b))) / 6
+        total += (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) @ mean / 5
+    return total.tolist()
+
+
+def _without_error(length: float, A: float) -> float:
+    """Return a length of the section, or zero if it is an error of the mesh."""
+    return length if abs(length) > SYMMETRIC * math.sqrt(A) else 0.0

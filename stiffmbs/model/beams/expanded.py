@@ -93,6 +93,11 @@ def _spatial_marker(body: str, turned: np.ndarray) -> dict[str, Any]:
     return {"body": body, "orientation": list(IDENTITY if straight else from_matrix(turned))}
 
 
+def _of_torsion(element: Element) -> dict[str, Any]:
+    """Return the fields of an element whose torsion stretches and bends it."""
+    return {name: [0.0, *_numbers(np.array(getattr(element, name)))] for name in ("shear_centre", "wagner")}
+
+
 def _force(name: str, element: Element, beam: Any) -> dict[str, Any]:
     """Return the entry of an element."""
     marker, components = (_planar_marker, IN_PLANE) if beam.dimensions == 2 else (_spatial_marker, list(range(6)))
@@ -108,7 +113,7 @@ def _force(name: str, element: Element, beam: Any) -> dict[str, Any]:
             "type": "exact_beam",
             "stiffness": [[part or None for part in row] for row in K],
             "bowing": _numbers(element.bowing[: len(components) // 3]),
-            **({"shear_centre": [0.0, *_numbers(element.shear_centre)]} if any(element.shear_centre) else {}),
+            **(_of_torsion(element) if any((*element.shear_centre, *element.wagner)) else {}),
             **common,
             "i": i,
             "j": j,

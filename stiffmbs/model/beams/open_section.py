@@ -11,9 +11,12 @@ GAUSS = np.polynomial.legendre.leggauss(3)
 """Points and weights, exact for the square of the shear flow, a polynomial of degree four."""
 
 
-def of_rectangles(rectangles: Sequence[tuple[float, float, float, float]]) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return the area, the centroid and the moments of second order about it, shape (2, 2), of rectangles.
+def of_rectangles(
+    rectangles: Sequence[tuple[float, float, float, float]],
+) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
+    """Return area, centroid, moments of second order about it, shape (2, 2), and of third order of rectangles.
 
+    The last are the integrals of each coordinate times the square of the distance from the centroid, shape (2,).
     Each rectangle has its smallest and largest coordinate along axis 2, then along axis 3, m.
     """
     low, high = (np.array([one[k::2] for one in rectangles]) for k in (0, 1))
@@ -21,8 +24,9 @@ def of_rectangles(rectangles: Sequence[tuple[float, float, float, float]]) -> tu
     A = float(areas.sum())
     centroid = areas @ centres / A
     away = centres - centroid
-    own = np.diag(areas @ (high - low) ** 2 / 12)
-    return A, centroid, (areas[:, None] * away).T @ away + own
+    own = (high - low) ** 2 / 12
+    third = (areas[:, None] * away).T @ ((away**2 + own).sum(axis=1)) + areas @ (2 * away * own)
+    return A, centroid, (areas[:, None] * away).T @ away + np.diag(areas @ own), third
 
 
 def of_walls(points: Sequence[tuple[float, float]], thickness: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:

@@ -8,6 +8,7 @@ of that direction.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self, cast
@@ -49,6 +50,8 @@ class Properties:
         From the centroid along axes 2 and 3, m.
     shear23 : float
         Inverse of a shear factor: the shear strain along axis 2 by a force along axis 3 is shear23 V/(G A).
+    wagner : (float, float)
+        Curvatures about axes 2 and 3 by torsion, per kappa_1^2/2, m (`wagner_coefficients`).
     """
 
     A: float
@@ -60,6 +63,7 @@ class Properties:
     I23: float = 0.0
     shear_centre: tuple[float, float] = (0.0, 0.0)
     shear23: float = 0.0
+    wagner: tuple[float, float] = (0.0, 0.0)
 
     def stiffness(self, E: float, G: float) -> np.ndarray:
         """Return the matrix of the strains (Gamma, kappa) of the centroid, shape (6, 6).
@@ -233,13 +237,37 @@ class Channel(Flanged):
 def _thin(
     rectangles: list[tuple[float, float, float, float]], walls: tuple[tuple[float, float], ...], t: tuple[float, ...]
 ) -> Properties:
-    A, centroid, moments = of_rectangles(rectangles)
+    A, centroid, moments, third = of_rectangles(rectangles)
     centre, compliance = of_walls(walls, t)
     J = sum(math.dist(a, b) * each**3 for (a, b), each in zip(pairwise(walls), t, strict=True)) / 3
     (I3, I23), (_, I2) = moments.tolist()
     (shear2, shear23), (_, shear3) = (A * compliance).tolist()
     y, z = (centre - centroid).tolist()
-    return Properties(A, I2, I3, J, 1 / shear2, 1 / shear3, I23, (y, z), shear23)
+    wagner = wagner_coefficients((I2, I3, I23), third.tolist(), (y, z))
+    return Properties(A, I2, I3, J, 1 / shear2, 1 / shear3, I23, (y, z), shear23, wagner)
+
+
+def wagner_coefficients(
+    second: tuple[float, float, float], third: Sequence[float], shear_centre: tuple[float, float]
+) -> tuple[float, float]:
+    """Return Wagner's coefficients for both axes, m.
+
+    Torsion about the shear centre stretches a fibre at the distance r from it by r^2 kappa_1^2/2. The part of this strain
+    that is linear in the coordinates of the section is a curvature. For bending in a plane of symmetry its coefficient
+    is the beta of lateral buckling (Trahair, Flexural-Torsional Buckling of Structures, 1993, sec. 17.4).
+
+    Parameters
+    ----------
+    second : (float, float, float)
+        I2, I3 and I23, m^4.
+    third : sequence of two floats
+        Integrals of the coordinates along axes 2 and 3 times the square of the distance from the centroid, m^5.
+    shear_centre : (float, float)
+        From the centroid along axes 2 and 3, m.
+    """
+    (I2, I3, I23), (y, z) = second, shear_centre
+    about_2, about_3 = np.linalg.solve([[I2, -I23], [-I23, I3]], [third[1], -third[0]]).tolist()
+    return about_2 - 2 * z, about_3 + 2 * y
 
 
 class Numbers(Section):
@@ -256,6 +284,9 @@ class Numbers(Section):
         0.0, description="product of inertia, positive where the area is in the first and third quadrant, m^4"
     )
     shear_centre: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="from the centroid along axes 2 and 3, m")
+    wagner: tuple[si.Length, si.Length] = Field(
+        (0.0, 0.0), description="curvature about axes 2 and 3 by torsion over half of its square (Wagner), m"
+    )
 
     @model_validator(mode="after")
     def _positive(self) -> Numbers:
@@ -271,7 +302,9 @@ class Numbers(Section):
 
     def properties(self, nu: float) -> Properties:
         of: Any = self.complete()
-        return Properties(of.A, of.I2, of.I3, of.J, of.shear2, of.shear3, of.I23, of.shear_centre)
+        return Properties(
+            of.A, of.I2, of.I3, of.J, of.shear2, of.shear3, of.I23, of.shear_centre, wagner=of.wagner
+        )  # fmt: skip
 
 
 _Point = tuple[si.Length, si.Length]

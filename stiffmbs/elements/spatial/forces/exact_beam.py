@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
-from pydantic import Field, field_validator
+from pydantic import Field, field_validator, model_validator
 
 from ....reading.fields import Measured
 from ....reading.units import si
 from ...element import Expr, Symbolic
 from ...forces.beam_section import BeamSectionLaw
-from ...forces.beam_strain import BeamStrain
+from ...forces.beam_strain import BeamStrain, Stretch
 from ...forces.bushing import check_symmetric
 from ..elastic import AS_WRITTEN, nearest, six_rows, without_zeros
 from ..marker import Marker
@@ -44,9 +44,12 @@ class ExactBeam(BeamStrain):
 
     With `bowing`, the axial strain is Gamma_1 + 1/2 sum b Gamma_k^2, and an axial force stiffens or softens the shear. A
     slender element of a beam, whose shear stands for bending between its nodes, then neither folds under tension nor
-    buckles late. Its b is 6/5, as in the geometric stiffness matrix of beams (Przemieniecki 1968, ch. 15). These shears
-    are those of the shear centre y, z (`shear_centre`), and torsion about it stretches the fibres of the section, on average
-    by r^2/2 kappa_1^2 with r^2 = (EI2 + EI3)/EA + y^2 + z^2 (Wagner 1929): tension stiffens torsion.
+    buckles late. Its b is 6/5, as in the geometric stiffness matrix of beams (Przemieniecki 1968, ch. 15).
+
+    With `shear_centre` or `wagner`, these shears are those of the shear centre y, z, and torsion about it stretches the
+    fibres of the section, on average by r^2/2 kappa_1^2 with r^2 = (EI2 + EI3)/EA + y^2 + z^2 (Wagner 1929): tension
+    stiffens torsion. The part of this stretch that varies over the section adds w/2 kappa_1^2 to the curvatures
+    (`wagner`): bending stiffens or softens torsion. Of both fields, one that is not given is zero.
 
     n is the axial force and the two shear forces, m the torque and the two bending moments, along the axes of the
     section; they are reported as n1, n2, n3, m1, m2, m3. Its properties, limits and sources are those of the planar
@@ -58,10 +61,10 @@ class ExactBeam(BeamStrain):
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
         {"stiffness": (1,) * 6},
         {"stiffness": (1,) * 6, "bowing": (1.2, 1.2)},
-        {"stiffness": (1,) * 6, "bowing": (1.2, 1.2), "shear_centre": (0, 1, 1)},
+        {"stiffness": (1,) * 6, "bowing": (1.2, 1.2), "shear_centre": (0, 1, 1), "wagner": (0, 1, 1)},
     )
     reflected: ClassVar[dict[str, str] | None] = {
-        "stiffness": "matrix", "unloaded": "components", "shear_centre": "vector"
+        "stiffness": "matrix", "unloaded": "components", "shear_centre": "vector", "wagner": "rotations"
     }  # fmt: skip
 
     i: Marker = Field(description="marker at the end, on whose body force and torque are reported")
@@ -76,26 +79,39 @@ class ExactBeam(BeamStrain):
         None,
         description="place of the shear centre from the axis, along axes 1, 2, 3 of the section, for the stretch, m",
     )
+    wagner: tuple[si.Length, si.Length, si.Length] | None = Field(
+        None, description="w of the curvatures by torsion, about axes 1, 2, 3 of the section, m"
+    )
 
     _six_rows = field_validator("stiffness", mode="before")(six_rows)
     _symmetric = field_validator("stiffness")(check_symmetric)
     _sparse = field_validator("stiffness", "damping_ratio")(without_zeros)
+
+    @model_validator(mode="after")
+    def _with_radius(self) -> Self:
+        if self.shear_centre is None and self.wagner is None:
+            return self
+        for k, name in ((0, "EA"), (4, "EI2"), (5, "EI3")):
+            if self.stiffness[k][k] is None:
+                raise ValueError(f"stiffness: found no {name}, expected it with shear_centre or wagner")
+        return self
 
     def at_initial_pose(self, model: ModelData) -> Self:
         """Return the element with the sign of marker i's quaternion for an initial rotation below half a turn."""
         return self.model_copy(update={"i": nearest(model, self.i, self.j)})
 
     @staticmethod
-    def stretching(e: Symbolic, strain: list[Expr]) -> list[tuple[Expr, Expr, dict[int, Expr]]]:
-        if e.shear_centre is None:
+    def stretching(e: Symbolic, strain: list[Expr]) -> list[Stretch]:
+        if e.shear_centre is None and e.wagner is None:
             return BeamStrain.stretching(e, strain)
-        _, y, z = e.shear_centre
+        _, y, z = e.shear_centre or (0, 0, 0)
         radius = (e.stiffness[4][4] + e.stiffness[5][5]) / e.stiffness[0][0] + y**2 + z**2
-        b2, b3 = e.bowing
+        sheared = ((strain[1] - z * strain[3], {1: 1, 3: -z}), (strain[2] + y * strain[3], {2: 1, 3: y}))
         return [
-            (b2, strain[1] - z * strain[3], {1: 1, 3: -z}), (b3, strain[2] + y * strain[3], {2: 1, 3: y}),
-            (e.named(radius), strain[3], {3: 1}),
-        ]  # fmt: skip
+            *(Stretch(0, b, *shear) for b, shear in zip(e.bowing or (), sheared, strict=False)),
+            Stretch(0, e.named(radius), strain[3], {3: 1}),
+            *(Stretch(4 + k, w, strain[3], {3: 1}) for k, w in enumerate((e.wagner or ())[1:])),
+        ]
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
