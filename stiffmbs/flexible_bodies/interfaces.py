@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import InputError
 from .finite_elements import PRECISION, FiniteElements, rigid_displacements
 
-RIGID, AVERAGE, POINT = "rigid", "average", "point"
+AVERAGE, POINT = "average", "point"
 
 
 @dataclass(frozen=True, eq=False)

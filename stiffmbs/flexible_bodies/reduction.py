@@ -20,6 +20,10 @@ from .interfaces import Interface, check_interfaces
 from .second_order import SecondOrder, second_order
 from .static_solver import StaticSolver
 
+SAME_FREQUENCY = 1e-9
+"""Relative difference of the squares of two frequencies that are equal apart from rounding."""
+DIRECTIONS = (1.0, 2.0, 3.0)
+"""Different weights of kinetic energy along x, y and z."""
 DEPENDENT = 1e-10
 """Relative bound below which a combination of unit-mass modes, or an equation of a held interface, is dependent. It is the
 ratio of an eigenvalue of the mass matrix, or of a singular value, to the largest."""
@@ -260,7 +264,23 @@ def _free_modes(
     orthogonal -= rigid @ np.linalg.solve(rigid.T @ by_rigid, by_rigid.T @ orthogonal)  # rounding of the null space
     stiffness = orthogonal.T @ (model.stiffness @ orthogonal)
     squares, vectors = eigh(stiffness, orthogonal.T @ (model.mass @ orthogonal))
-    return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi), orthogonal @ vectors
+    return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi), _separated(model, squares, orthogonal @ vectors)
+
+
+def _separated(model: FiniteElements, squares: np.ndarray, modes: np.ndarray) -> np.ndarray:
+    """Return modes whose combinations at equal frequencies have extreme kinetic energies along the axes of the mesh.
+
+    Such combinations are determined by rounding otherwise. These are symmetric or antisymmetric if the body is.
+    """
+    weights = np.tile(DIRECTIONS, len(modes) // 3)[:, None]
+    found, last = modes.copy(), 0
+    ends = np.flatnonzero(np.diff(squares, append=np.inf) > SAME_FREQUENCY * squares) + 1
+    for end in ends.tolist():
+        if end - last > 1:
+            shapes = modes[:, last:end]
+            found[:, last:end] = shapes @ eigh(shapes.T @ (weights * (model.mass @ shapes)))[1]
+        last = end
+    return found
 
 
 def _rigid_frequencies(model: FiniteElements, basis: np.ndarray) -> np.ndarray:

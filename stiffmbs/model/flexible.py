@@ -13,7 +13,7 @@ from pydantic import Field, ValidationError
 from ..elements.body import FLEXIBLE
 from ..elements.element import Joint
 from ..elements.spatial.body import Body
-from ..elements.spatial.flexible.bodies import FloatingFrame, ModalCoordinates
+from ..elements.spatial.flexible.bodies import AXES_HELD, UNUSED_HELD, FloatingFrame, ModalCoordinates
 from ..elements.spatial.flexible.interface import FlexibleInterface
 from ..elements.spatial.flexible.layout import COUPLINGS, components, numbers_of
 from ..elements.spatial.joints.orientation import Orientation as HeldAxes
@@ -94,8 +94,13 @@ def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dic
         except InputError as error:
             raise InputError(f"bodies.{name}: {error}") from None
         parts = _Parts(name, body, reduced, Path(context.get(FOLDER) or ""))
-        added_bodies |= dict(parts.bodies())
-        added_joints |= dict(parts.joints())
+        own_bodies, own_joints = dict(parts.bodies()), dict(parts.joints())
+        taken = [f"bodies.{part}" for part in own_bodies if part in bodies]
+        taken += [f"joints.{part}" for part in own_joints if part in added_joints]
+        if taken:
+            raise InputError(f"{taken[0]}: found the name of a part of the flexible body {name}, expected another")
+        added_bodies |= own_bodies
+        added_joints |= own_joints
     return {**raw, "bodies": added_bodies, "joints": added_joints}
 
 
@@ -202,13 +207,13 @@ class _Parts:
         """Yield the joints of the interfaces, and those that hold the axes and the unused ones of modal coordinates."""
         modes = tuple(Marker(body=name) for name in self._of_modes())
         for name in self._of_modes():
-            yield f"{name}_axes", HeldAxes(i=Marker(body=name), j=Marker(body="ground"))
+            yield AXES_HELD.format(name), HeldAxes(i=Marker(body=name), j=Marker(body="ground"))
         used = len(self._reduced.frequencies) % BY_BODY
         if used:
             held = PointOnLine if used == 1 else PointOnPlane
             along = {"z": (1.0, 0.0, 0.0)} if used == 1 else {"z": (0.0, 0.0, 1.0)}
             name = self._of_modes()[-1]
-            yield f"{name}_unused", held(i=Marker(body=name), j=Marker(body="ground", orientation=along))  # type: ignore[arg-type]
+            yield UNUSED_HELD.format(name), held(i=Marker(body=name), j=Marker(body="ground", orientation=along))  # type: ignore[arg-type]
         for k, name in enumerate(self._body.interfaces):
             shapes = self._by_coordinates(self._reduced.markers[k].T)
             yield f"{self._name}.{name}_interface", FlexibleInterface(

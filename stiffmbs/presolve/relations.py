@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from typing import NamedTuple
@@ -32,6 +32,8 @@ class Relations:
     satisfied: np.ndarray
     held: list[int] = field(default_factory=list)
     """Bodies with constant orientation."""
+    at_rest: list[int] = field(default_factory=list)
+    """Coordinates that no equation holds."""
 
     @classmethod
     def none(cls, system: System) -> Relations:
@@ -48,7 +50,7 @@ class Relations:
         for body in self.held:
             turning = slice(system.of_body.n_u * body + system.of_body.linear, system.of_body.n_u * (body + 1))
             independent_of[turning], ratio[turning] = FIXED, 0.0
-        return Coordinates(self.independent_of, self.ratio, independent_of, ratio, self.satisfied)
+        return Coordinates(self.independent_of, self.ratio, independent_of, ratio, self.satisfied, tuple(self.at_rest))
 
     def extended(self, rows: dict[int, list[tuple[int, float]]]) -> bool:
         """Use rows with one or two leaders, else a set with common leaders; return True if there was any."""
@@ -242,12 +244,18 @@ def _sizes(group: Group, of_kind: _Summands) -> np.ndarray:
     return products
 
 
-def independent_coordinates(system: System, state: State, t: float) -> Coordinates:
+def independent_coordinates(
+    system: System, state: State, t: float, at_rest: Mapping[str, Sequence[int]]
+) -> Coordinates:
     """Return the coordinates that remain after elimination by equations with constant coefficients.
 
-    `state`: at a pose that satisfies the constraints; it is not changed. `t`: s.
+    `state`: at a pose that satisfies the constraints; it is not changed. `t`: s. `at_rest`: positions that stay zero, by
+    bodies.
     """
     found = Relations.none(system)
+    for k, body in enumerate(system.bodies):
+        found.at_rest += [system.of_body.n_q * k + axis for axis in at_rest.get(body, ())]
+    found.independent_of[found.at_rest], found.ratio[found.at_rest] = FIXED, 0.0
     candidates = _candidates(system)
     if not candidates.any():
         return found.coordinates(system)
@@ -317,7 +325,7 @@ def _held_orientations(
     least, most = np.full(system.n_c, len(system.bodies)), np.full(system.n_c, -1)
     np.minimum.at(least, row, np.where(place < of_body.linear, -1, body))
     np.maximum.at(most, row, body)
-    for held in np.unique(most[least == most]).tolist():
+    for held in sorted({*most[least == most].tolist()}):
         rows = np.flatnonzero((most == held) & (least == held))
         inside = np.isin(row, rows)
         C_q_held = np.zeros((len(rows), of_body.n_q))

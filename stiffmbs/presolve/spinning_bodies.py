@@ -83,7 +83,7 @@ class SpinningBodies(NamedTuple):
 
         yield from self.model.elements()
         for body, axis in self.axes.items():
-            state, marker = StateName(name_of_angle(body)), MarkerReference(body=body)
+            state, marker = StateName(name_of_angle(body)), MarkerReference.model_construct(body=body)
             yield state, SpinAngle.model_construct(state=state, i=marker, axis=axis)  # type: ignore[arg-type]
 
 

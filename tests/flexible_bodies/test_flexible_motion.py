@@ -17,6 +17,7 @@ from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.matrices import from_archive
 from stiffmbs.flexible_bodies.read import read_flexible_body
 from stiffmbs.flexible_bodies.reduced import reduced_body
+from stiffmbs.model.flexible import _Parts
 
 from .bars import HEIGHT, LENGTH, MASS, REFERENCES, WIDTH, E, bar
 
@@ -201,6 +202,21 @@ STIFFENED = {
     "{group: end}": "{plane: {point: [400 mm, 0, 0], normal: [1, 0, 0]}}",
 }  # fmt: skip
 """The same body as a mesh, with geometric stiffening."""
+
+
+def test_the_motion_is_the_same_with_another_basis_of_the_modes(folder):
+    """Combinations of modes have coupled stiffness and damping; the body's motion does not depend on them."""
+    one = scene(folder, PIN, motion="omega: [3, 5, 20]", gravity="[1, -9.81, 2]", bodies__bar__damping="0.02")
+    frame = one.bodies["bar.frame"]
+    body, reduced = frame.source[0], reduced_body(*frame.source)
+    turn = np.linalg.qr(np.random.default_rng(1).normal(size=(len(reduced.frequencies),) * 2))[0]
+    parts_in_basis = _Parts("bar", body, reduced.in_basis(turn), frame.source[1], None, turn)
+    bodies, joints = {**one.bodies, **dict(parts_in_basis.bodies())}, {**one.joints, **dict(parts_in_basis.joints())}
+    other = one.model_copy(update={"bodies": bodies, "joints": joints})
+    expected, found = run(one), run(other)
+    assert np.abs(expected["bar.modes1.x"] - found["bar.modes1.x"]).max() > 1e-8
+    for name in ("bar.b.x", "bar.b.y", "bar.b.z", "bar.frame.x", "bar.frame.q1"):
+        np.testing.assert_allclose(found[name], expected[name], atol=1e-10)
 
 
 def test_derivatives_of_the_kernels(folder):

@@ -170,9 +170,9 @@ def test_a_request_of_the_angle_keeps_counting_turns():
     assert spins(model) == {}
 
 
-def test_auto_keeps_spins_apart_where_it_begins_with_bdf():
+def test_auto_keeps_spins_apart_where_it_begins_with_implicit_steps():
     found = rolling(20).run(duration=20, output=0.5, solver="auto")
-    assert any("auto chose bdf" in note for note in found.notes)
+    assert any("auto chose radau" in note for note in found.notes)
     assert any("spin" in line for line in found.presolve)
     assert found.solver["steps"] < 500
 

@@ -8,6 +8,9 @@ from pydantic import Field
 
 from ..body import Body
 
+AXES_HELD, UNUSED_HELD = "{}_axes", "{}_unused"
+"""Names of the joints that hold the axes, and the unused coordinates, of a body with modal coordinates."""
+
 
 class ModalCoordinates(Body):
     """Three modal coordinates of a flexible body as x, y and z, without weight; its axes are held by a joint."""
