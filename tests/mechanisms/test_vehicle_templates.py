@@ -236,3 +236,8 @@ def test_a_fifth_wheel_carries_roll_and_a_ball_does_not():
 @pytest.mark.parametrize("name", ["hatchback", "formula_student", "motorcycle", "truck", "car"])
 def test_it_starts_in_equilibrium_as_the_torques_of_its_wheels_balance(name):
     assert stiffmbs.modes(scene(name)).notes == ()
+
+
+@pytest.mark.long
+def test_tyres_that_bend_in_their_slip_have_no_breakpoint_on_a_truck_on_bushings():
+    assert stiffmbs.modes(scene("truck", ("choose.compliance", "bushing"))).notes == ()

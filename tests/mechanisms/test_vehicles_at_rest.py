@@ -31,3 +31,18 @@ def test_the_half_car_from_its_rest_is_the_one_with_loads_by_hand():
     height = [run["chassis.y"] - run["chassis.y"][0] for run in (by_hand, sought)]
     assert np.ptp(height[0]) > 0.04
     assert np.max(np.abs(height[0] - height[1])) < 1e-3
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["leaf_sprung_car", "bushing_axle", "truck", "hatchback", "formula_student", "motorcycle", "car"])  # fmt: skip
+def test_a_vehicle_starts_in_steady_motion(name):
+    """No wheel is accelerated or braked at the start, and no body falls."""
+    scene = stiffmbs.load_scene(EXAMPLE_SCENES[name])
+    run = stiffmbs.run(scene, duration=2e-4, output=1e-4, rtol=1e-9)
+    rates = {
+        f"{body}.{c}": np.diff(run[f"{body}.{c}"])[0] / 1e-4
+        for body in scene.bodies
+        for c in ("vx", "vy", "vz", "wx", "wy", "wz")
+    }
+    worst = max(rates, key=lambda each: abs(rates[each]))
+    assert abs(rates[worst]) < 0.05, (worst, rates[worst])

@@ -65,7 +65,7 @@ def _read(name: str) -> dict[str, Any]:
 
 NAMED = ("bodies", "states", "joints", "forces", "requests")
 """Sections of a part whose names formulas and other entries can use."""
-KEYS = ("parameters", "markers", *NAMED, "use", "mounts", OPTIONS)
+KEYS = ("parameters", "limits", "markers", *NAMED, "use", "mounts", OPTIONS)
 
 
 @dataclass(frozen=True)

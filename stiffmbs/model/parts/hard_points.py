@@ -1,9 +1,10 @@
-"""Checks of the hard points of a suspension for wrong units and for the wrong side of the car."""
+"""Checks of the hard points of a suspension for wrong units, for the wrong side of the car, and for points in one place."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import combinations
 from typing import Any
 
 from ...errors import InputError
@@ -15,7 +16,7 @@ from .vectors import COMPONENTS, Vectors
 WHEEL = "wheel_centre"
 """Name of the point by which the others are checked; parts without it are not suspensions of a wheel."""
 SAME_PLACE = 1e-3
-"""Largest distance between two wheels in one place, m."""
+"""Largest distance between two wheels, or two hard points, in one place, m."""
 FARTHEST = 5.0
 """Largest distance of a hard point from the centre of its wheel, m; those in millimetres lie farther away."""
 
@@ -25,8 +26,9 @@ def check_hard_points(
 ) -> tuple[float, ...] | None:
     """Return the centre of the wheel in the frame of a part; None for a part without one.
 
-    Hard points that are far from the wheel, or that lie on the other side of the car, are refused. The sides of points
-    that the use does not set are those of the part: a twist beam has points on both. `default`: parameters of the part.
+    Hard points that are far from the wheel, or that lie on the other side of the car, are refused, and two in one place:
+    points of one arm, rod or strut, and both ball joints of an upright. The sides of points that the use does not set are
+    those of the part: a twist beam has points on both. `default`: parameters of the part.
     """
     points = dict(_points(vectors, own))
     wheel = points.get(WHEEL)
@@ -47,7 +49,19 @@ def check_hard_points(
         given = any(f"{name}_{axis}" in use.parameters for axis in COMPONENTS)
         if given and point[1] * wheel[1] < -(wheel[1] ** 2) / 2:
             raise InputError(f"{place}, on the other side of the car from {centre}, expected the side of the wheel")
+    for (name, point), (other, there) in combinations(points.items(), 2):
+        if math.dist(point, there) < SAME_PLACE and _on_one_member(name, other):
+            raise InputError(
+                f"{where}.parameters.{other}: found ({', '.join(f'{x:g}' for x in there)}) m, in the place of {name}, "
+                "expected two points apart"
+            )
     return wheel
+
+
+def _on_one_member(name: str, other: str) -> bool:
+    """Return True for points such as `lower_front` and `lower_ball`, and for `lower_ball` and `upper_ball`."""
+    (member, _, end), (second, _, other_end) = name.rpartition("_"), other.rpartition("_")
+    return bool(member and second) and (member == second or end == other_end == "ball")
 
 
 def check_sides(wheels: Iterable[tuple[str, tuple[float, ...], str, Any]]) -> None:

@@ -16,6 +16,12 @@ from ..files.expand import read_parameters
 from .frame import Use
 from .vectors import COMPONENTS
 
+LIMITS = {
+    "positive": (lambda value: value > 0, "a value above zero"),
+    "nonnegative": (lambda value: value >= 0, "zero or more"),
+    "fraction": (lambda value: 0 <= value <= 1, "a value from 0 to 1"),
+}
+"""Limits that a part can set to a parameter, with what they expect of its SI value."""
 COMPONENT_ENDS = tuple(f"_{axis}" for axis in COMPONENTS)
 
 
@@ -52,6 +58,29 @@ def parameters_of(use: Use, where: str, found: object, outside: Mapping[str, Qua
         except InputError as error:
             raise InputError(f"{place}{error}") from None
     return inside
+
+
+def check_limits(use: Use, where: str, limits: object, own: Mapping[str, Quantity]) -> None:
+    """Refuse parameters beyond the limits of their part, ``limits: {ratio: positive, split: fraction}``.
+
+    A limit of a vector is that of its components. `where`: path of the use. `own`: parameters of the instance.
+    """
+    for name, word in _limits(limits, f"parts.{use.part}.limits").items():
+        found = [each for each in (name, *(f"{name}{end}" for end in COMPONENT_ENDS)) if each in own]
+        if not found or not isinstance(word, str) or word not in LIMITS:
+            raise InputError(
+                f"parts.{use.part}.limits.{name}: found {written(word)}, expected one of {', '.join(LIMITS)} for one of its parameters"
+            )
+        holds, expected = LIMITS[word]
+        for each in found:
+            if not holds(own[each].value):
+                raise InputError(f"{where}.parameters.{each}: found {own[each].value:g}, expected {expected}")
+
+
+def _limits(limits: object, where: str) -> dict[str, object]:
+    if not isinstance(limits, dict | None):
+        raise InputError(f"{where}: found {written(limits)}, expected a mapping of parameters to {', '.join(LIMITS)}")
+    return limits or {}
 
 
 def _vector(name: Any, own: Mapping[Any, Any]) -> str:

@@ -10,6 +10,8 @@ from ...errors import InputError
 
 LINEAR = 4.0
 """Lateral acceleration up to which the gradients at zero are fitted, m/s^2."""
+UNEQUAL = 1e-6
+"""Difference of time steps, relative to the longest, above which they are not equal: more than rounding of files."""
 
 
 def gradient_at_zero(x: np.ndarray, y: np.ndarray, limit: float = LINEAR) -> float:
@@ -105,6 +107,13 @@ def _first(time: np.ndarray, values: np.ndarray, level: float) -> float:
     return float(time[k - 1] + part * (time[k] - time[k - 1]))
 
 
+def _at(time: np.ndarray, values: np.ndarray, t: float) -> float:
+    """Return a value at a time, s. Raises InputError if the run does not last until then."""
+    if not time[0] <= t <= time[-1] + 1e-9 * (time[-1] - time[0]):
+        raise InputError(f"found times from {time[0]:.6g} to {time[-1]:.6g} s, expected values at {t:.6g} s")
+    return float(np.interp(t, time, values))
+
+
 @dataclass(frozen=True)
 class FrequencyResponse:
     """Frequency response by cross spectra.
@@ -136,9 +145,19 @@ def frequency_response(
         At equal time steps.
     segment : float
         Length of a segment, s: the resolution is its reciprocal.
+
+    Raises
+    ------
+    InputError
+        If the time steps are not equal.
     """
     from scipy.signal import coherence, csd, welch
 
+    steps = np.diff(time)
+    if np.ptp(steps) > UNEQUAL * np.max(steps):
+        raise InputError(
+            f"found time steps from {steps.min():.3g} to {steps.max():.3g} s, expected equal ones: set output"
+        )
     rate = (len(time) - 1) / (time[-1] - time[0])
     settings = {"fs": rate, "nperseg": min(len(time), round(segment * rate)), "detrend": False}
     frequency, cross = csd(steer, response, **settings)
@@ -184,12 +203,17 @@ def sine_with_dwell(
         Lateral displacement of the vehicle from its straight path, m, positive to the left.
     begin, end : float
         Begin and end of steering, s.
+
+    Raises
+    ------
+    InputError
+        If the run ends less than 1.75 s after steering.
     """
     sign = np.sign(steer[np.argmax((time >= begin) & (np.abs(steer) > 0.1 * np.max(np.abs(steer))))])
     reversed_steer = (time >= begin) & (sign * steer < 0)
     peak = float(np.max(-sign * yaw_rate[reversed_steer | (time > end)]))
-    first, second = (float(np.interp(end + after, time, -sign * yaw_rate)) / peak for after in (1.0, 1.75))
-    displacement = sign * float(np.interp(begin + 1.07, time, lateral) - np.interp(begin, time, lateral))
+    first, second = (_at(time, -sign * yaw_rate, end + after) / peak for after in (1.0, 1.75))
+    displacement = sign * (_at(time, lateral, begin + 1.07) - _at(time, lateral, begin))
     return SineWithDwell(first, second, displacement)
 
 
@@ -215,10 +239,10 @@ def yaw_rate_ratio(
     """Return the yaw rate some time after braking begins, relative to that of the initial radius (ISO 7975).
 
     The reference is the yaw rate of the initial curvature at the current speed: 1 means that the car keeps its radius.
+    Raises InputError if the run ends before.
     """
-    rate, v = np.interp(begin + after, time, yaw_rate), np.interp(begin + after, time, speed)
-    curvature = np.interp(begin, time, yaw_rate) / np.interp(begin, time, speed)
-    return float(rate / (curvature * v))
+    rate, v = _at(time, yaw_rate, begin + after), _at(time, speed, begin + after)
+    return rate / (_at(time, yaw_rate, begin) / _at(time, speed, begin) * v)
 
 
 def static_stability_factor(track: float, height: float) -> float:

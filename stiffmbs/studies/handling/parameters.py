@@ -168,15 +168,16 @@ def _value(path: str, given: object, parameters: Any, name: str) -> Any:
         listed = read_yaml(given, path) if isinstance(given, str) else given
         if not isinstance(listed, list | tuple) or not listed:
             raise InputError(f"test parameter {path}: found '{given}', expected a list of numbers such as [1.5, 3]")
-        return tuple(_positive(path, each, dimension) for each in listed)
-    return _positive(path, given, dimension)
+        return tuple(positive(f"test parameter {path}", each, dimension) for each in listed)
+    return positive(f"test parameter {path}", given, dimension)
 
 
-def _positive(path: str, given: object, dimension: str) -> float:
+def positive(name: str, given: object, dimension: str) -> float:
+    """Return a number or text with a unit in SI units; raise an InputError if it is not above zero."""
     try:
         value = in_si(given, dimension)
     except FormulaError as error:
-        raise InputError(f"test parameter {path}: {error}") from None
+        raise InputError(f"{name}: {error}") from None
     if value <= 0:
-        raise InputError(f"test parameter {path}: found {given}, expected a value above zero")
+        raise InputError(f"{name}: found {given}, expected a value above zero")
     return value

@@ -14,12 +14,15 @@ import numpy as np
 
 from ...analyses.load_scene import load_scene
 from ...analyses.run import run
-from ...errors import InputError, SolverError, StiffmbsError
+from ...errors import InputError, SolverError, StiffmbsError, refuse_text
 from ...model.scene import Scene
 from ...reading.did_you_mean import did_you_mean
+from ..executors import refuse_workers
 from .car import Car, Manoeuvre, car_of, with_manoeuvre
-from .parameters import SPEED, with_changes
-from .standards import PROBE, TESTS, Known, Metrics, Run, curvature_of, probe, ramp, up_to_the_limit
+from .known import Known, Metrics, Run
+from .parameters import SPEED, positive, with_changes
+from .standards import TESTS
+from .steady_state_cornering import PROBE, curvature_of, probe, ramp, up_to_the_limit
 
 WIDER = 0.2
 """Width of the body beyond the track, m, unless given: tyres and wings."""
@@ -93,7 +96,7 @@ class Handling:
 
 def handling(
     model: Scene | str | Any, tests: Sequence[str] | None = None, *, body: str | None = None, steering: str | None = None,
-    width: float | None = None, workers: int | None = None, parameters: Mapping[str, float | str | Sequence[float]] | None = None,
+    width: float | str | None = None, workers: int | None = None, parameters: Mapping[str, float | str | Sequence[float]] | None = None,
 ) -> Handling:  # fmt: skip
     """Run handling and ride tests of the standards on a car.
 
@@ -109,8 +112,8 @@ def handling(
         Names among `stiffmbs.studies.handling.standards.TESTS`; all by default.
     body, steering : str, optional
         Sprung body and joint that steers; see `stiffmbs.studies.handling.car.car_of`.
-    width : float, optional
-        Width of the vehicle, m; by default the track and 0.2 m.
+    width : float or str, optional
+        Width of the vehicle, m, or text with a unit; by default the track and 0.2 m.
     workers : int, optional
         Number of processes; by default one for each core.
     parameters : mapping of str to number or str, optional
@@ -128,6 +131,10 @@ def handling(
     SolverError
         If a preliminary run stops.
     """
+    if width is not None:
+        width = positive("width", width, "length")
+    refuse_workers(workers)
+    refuse_text("tests", tests, "tests")
     scene = model if isinstance(model, Scene) else load_scene(model)
     names = list(TESTS if tests is None else tests)
     for name in names:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 
 import numpy as np
 
@@ -164,14 +165,14 @@ def axle_of(
         If a suspension, its markers or a named part is missing in the scene.
     """
     start = f"{name}." if name else ""
-    if radius is not None and not 0 < radius < np.inf:
-        raise InputError(f"radius: found {radius}, expected a length above zero, m")
+    if radius is not None and not (isinstance(radius, Real) and 0 < radius < np.inf):
+        raise InputError(f"radius: found {radius!r}, expected a length above zero, m")
     if wheels:
         found = tuple(_of_body(model, each, radius) for each in wheels)
     else:
         found = _named(model, name, start) or _with_tyres(model, name, radius)
     _check(found, name)
-    body = body or ("chassis" if "chassis" in model.bodies else _carrying(model, start, found))
+    body = body or _clamped(model, name, start, found)
     if body != GROUND and body not in model.bodies:
         near = did_you_mean(body, model.bodies)
         raise InputError(f"found no body '{body}'{near} to clamp, expected one of {', '.join(model.bodies)}")
@@ -288,6 +289,30 @@ def _check(wheels: Sequence[Wheel], name: str) -> None:
     sides = [wheel.side for wheel in wheels]
     if len(wheels) > 2 or (len(wheels) == 2 and sorted(sides) != ["left", "right"]):
         raise InputError(f"axle '{name}': found the wheels {', '.join(sides)}, expected one, or a left and a right one")
+
+
+def _clamped(model: ModelData, name: str, start: str, wheels: Sequence[Wheel]) -> str:
+    """Return the body to clamp: `chassis`, or the one that carries the axle.
+
+    Raises InputError if the suspensions are attached to another body than `chassis`, such as a trailer.
+    """
+    carrying = _carrying(model, start, wheels)
+    if "chassis" not in model.bodies:
+        return carrying
+    of_wheels = [wheel.carrier for wheel in wheels]
+    if carrying not in ("chassis", GROUND) and not _reaches(model, "chassis", of_wheels, carrying):
+        raise InputError(
+            f"axle '{name}': found its suspension on {carrying} and not on chassis, expected the name of the body to clamp: "
+            f"--body {carrying}"
+        )
+    return "chassis"
+
+
+def _reaches(model: ModelData, body: str, carriers: Sequence[str], without: str) -> bool:
+    """Return True if elements connect the carriers of the wheels to a body also without another body."""
+    linked = bodies_of(model, without, carriers) - {without}
+    elements = [each for each in (*model.joints.values(), *model.forces.values()) if not depends_on_more(each)]
+    return any(body in ends and ends & linked for ends in (set(bodies_at(each)) for each in elements))
 
 
 def _carrying(model: ModelData, start: str, wheels: Sequence[Wheel]) -> str:

@@ -324,13 +324,16 @@ def _steering(pose: Pose) -> dict[str, float]:
     wheelbase = pose.setup.vehicle.wheelbase
     if wheelbase:
         track = float(pose.hubs[0].contact[1] - pose.hubs[1].contact[1])
-        found |= _ackermann([hub.steer for hub in pose.hubs], track / wheelbase, wheelbase)
+        # rear wheels that steer to the left turn to the right
+        sign = -1.0 if pose.setup.vehicle.front is False else 1.0
+        found |= _ackermann([sign * hub.steer for hub in pose.hubs], track / wheelbase, wheelbase)
     return found
 
 
 def _ackermann(steer: list[float], part: float, wheelbase: float) -> dict[str, float]:
     """Return the difference of the steer angles relative to that of Ackermann, %, and the radius of the turn, m.
 
+    Angles are positive in a turn to the left.
     The inner wheel's ideal angle follows from the outer one's: cot(outer) - cot(inner) = track / wheelbase.
     """
     left, right = steer

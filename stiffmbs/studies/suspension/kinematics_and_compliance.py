@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
 
 from ...analyses.equilibrium import equilibria_over_time
 from ...analyses.job import Runnable, data_of, prepare
-from ...errors import InputError
+from ...errors import InputError, refuse_text
 from ...reading.did_you_mean import did_you_mean
 from ...reading.table import Table
 from .axle import Axle, axle_of
@@ -226,14 +227,15 @@ def kinematics_and_compliance(
     SolverError
         If the axle has no equilibrium on the rig.
     """
-    if points < 5 or points % 2 == 0:
+    if not isinstance(points, Integral) or points < 5 or points % 2 == 0:
         raise InputError(f"points: found {points}, expected an odd number, 5 or more")
     for name, amplitude in amplitudes.items():
-        if name not in AMPLITUDES or not np.isfinite(amplitude) or amplitude < 0:
+        if name not in AMPLITUDES:
             near = did_you_mean(name, AMPLITUDES)
-            raise InputError(
-                f"{name}={amplitude!r}: found no such case or amplitude{near}, expected {', '.join(AMPLITUDES)}"
-            )
+            raise InputError(f"{name}={amplitude!r}: found no such case{near}, expected {', '.join(AMPLITUDES)}")
+        if not isinstance(amplitude, Real) or not 0 <= amplitude < np.inf:
+            raise InputError(f"{name}: found {amplitude!r}, expected a number, zero or more, in the unit of the case")
+    refuse_text("wheels", wheels, "bodies")
     data = data_of(model)
     if data.dimensions != 3:
         raise InputError("found a scene in the plane, expected one in space")

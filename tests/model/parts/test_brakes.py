@@ -6,7 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs.studies.handling.metrics import sine_with_dwell
 from stiffmbs.studies.handling.parameters import SineWithDwell
-from stiffmbs.studies.handling.standards import dwell_end, dwell_formula
+from stiffmbs.studies.handling.steering_inputs import dwell_end, dwell_formula
 
 pytestmark = pytest.mark.long
 WHEELS = [f"{end}_{side}" for end in ("front", "rear") for side in ("left", "right")]
@@ -51,16 +51,21 @@ def test_the_torque_of_each_wheel_is_built_up_held_and_released_sample_by_sample
     found = braked(
         examples, "abs: slip", "rolling_radius: r, holds: 0.1, releases: 0.2, builds: 4 kN m/s, dumps: 20 kN m/s"
     )
-    spin = found["front.left.wheel.wy"] - found["front.left.upright.wy"]
-    assert found["brakes.front_left_slip"] == pytest.approx(
-        1 - 0.3075 * spin / np.maximum(found["brakes.front_left_speed"], 2), abs=2e-3
-    )  # the axle is nearly parallel to y of its upright
-    slip, demand, torque = (found[f"brakes.front_left_{name}"] for name in ("slip", "demand", "limited"))
-    change = np.select([slip < 0.1, slip < 0.2], [0.005 * 4e3, 0.0], -0.005 * 20e3)
-    expected = np.minimum(demand, np.maximum(0, torque + change))
-    fast = found["brakes.front_left_speed"] > 2
-    assert torque[1:][fast[:-1]] == pytest.approx(expected[:-1][fast[:-1]], abs=1e-6)
-    assert {float(x) for x in np.sign(np.round(change[fast], 9))} == {-1.0, 0.0, 1.0}
+    for wheel in WHEELS:
+        name = wheel.replace("_", ".")
+        spin = found[f"{name}.wheel.wy"] - found[f"{name}.upright.wy"]
+        speed, slip, demand, torque = (
+            found[f"brakes.{wheel}_{each}"] for each in ("speed", "slip", "demand", "limited")
+        )
+        # the axle is nearly parallel to y of its upright
+        assert slip == pytest.approx(1 - 0.3075 * spin / np.maximum(speed, 2), abs=4e-3)
+        share = 0.65 if wheel.startswith("front") else 0.35
+        assert demand == pytest.approx(0.3075 * share / 2 * found["brakes.demand"], abs=1e-6)
+        change = np.select([slip < 0.1, slip < 0.2], [0.005 * 4e3, 0.0], -0.005 * 20e3)
+        expected = np.minimum(demand, np.maximum(0, torque + change))
+        fast = speed > 2
+        assert torque[1:][fast[:-1]] == pytest.approx(expected[:-1][fast[:-1]], abs=1e-6)
+        assert {float(x) for x in np.sign(np.round(change[fast], 9))} == {-1.0, 0.0, 1.0}
 
 
 def dwelt(examples, words):

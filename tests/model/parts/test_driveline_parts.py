@@ -82,6 +82,38 @@ def test_a_locked_differential_turns_both_outputs_alike():
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("locking", ["open", "limited_slip", "viscous", "locked"])
+def test_differentials_at_random(locking, seed):
+    """Torques add up, the input turns by the weighted mean, and the locking torque obeys its law, forwards and backwards."""
+    rng = np.random.default_rng([len(locking), seed])
+    split, ratio, drive = rng.uniform(0.2, 0.8), rng.uniform(1, 5), (-1) ** seed * rng.uniform(50, 200)
+    left, right = rng.uniform(5, 40, 2)
+    law = {"open": {}, "locked": {}, "viscous": {"viscosity": rng.uniform(1, 80)}, "limited_slip": dict(zip(("preload", "drive_locking", "coast_locking"), rng.uniform(0, (60, 0.3, 0.3)).tolist(), strict=True))}[locking]  # fmt: skip
+    part = {"use": "differential", "mounts": {"left": "left", "right": "right"}, "locking": locking, "parameters": {"ratio": ratio, "split": split, **law}}  # fmt: skip
+    forces = {"engine": torque("diff.input", f"{drive} N m"), "load": torque("left", f"-{left}*wy(left)"), "other": torque("right", f"-{right}*wy(right)")}  # fmt: skip
+    found = stiffmbs.run(
+        stiffmbs.read_scene(json.dumps(outputs(parts={"diff": part}, forces=forces))), duration=6, points=201, rtol=1e-9
+    )
+    shafts, a, b = found["diff.shaft_torque"], found["left.wy"], found["right.wy"]
+    assert found["diff.torque_left"] + found["diff.torque_right"] == pytest.approx(shafts, abs=1e-9 * abs(drive))
+    assert shafts[-1] == pytest.approx(ratio * drive, rel=1e-6)
+    assert found["diff.input.wy"][-1] == pytest.approx(ratio * (split * a[-1] + (1 - split) * b[-1]), rel=1e-6)
+    locked, slip = split * shafts - found["diff.torque_left"], a - b
+    if locking == "open":
+        assert np.max(np.abs(locked)) < 1e-9
+    elif locking == "viscous":
+        assert locked == pytest.approx(law["viscosity"] * slip, abs=1e-6)
+    elif locking == "limited_slip":
+        capacity = law["preload"] + np.where(shafts > 0, law["drive_locking"], -law["coast_locking"]) * shafts
+        assert np.max(np.abs(locked) - capacity) < 1e-6 * abs(drive)
+        if abs(slip[-1]) > 1e-3 * abs(a[-1]):
+            assert locked[-1] == pytest.approx(np.sign(slip[-1]) * capacity[-1], rel=1e-5)
+    else:
+        assert slip[-1] == pytest.approx(0, abs=1e-6 * abs(a[-1]))
+
+
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("drive", "shares"), [("front", (0.5, 0)), ("rear", (0, 0.5)), ("all", (0.2, 0.3))], ids=["front", "rear", "all"]
 )
@@ -146,6 +178,40 @@ def test_a_powertrain_accelerates_by_torque_times_ratio_over_inertia(gear, ratio
     measured = np.polyfit(found.time[200:], found["left.wy"][200:], 1)[0]
     assert measured == pytest.approx(acceleration, rel=1e-3)
     assert found["engine.engine_speed"][-1] == pytest.approx(total * found["left.wy"][-1], rel=1e-3)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(6))
+def test_engine_maps_gears_and_losses_at_random(seed):
+    """Torque by the parabolas of the speed, and acceleration by it, by the ratio of the gear and by the losses, also when it drags."""
+    rng = np.random.default_rng(seed)
+    names, gear = ("first", "second", "third", "fourth", "fifth", "sixth"), seed + 1
+    ratios = dict(zip(names, np.sort(rng.uniform(0.6, 4, 6))[::-1].tolist(), strict=True))
+    peak, top, falling, drag, rise = rng.uniform((80, 250, 0.1, 5, 0), (300, 450, 0.5, 30, 0.1)).tolist()
+    throttle, efficiency, inertia, spin = (seed % 2) * rng.uniform(0, 1), rng.uniform(0.85, 1), rng.uniform(0.05, 0.3), rng.uniform(20, 40)  # fmt: skip
+    total = RATIO * ratios[names[gear - 1]]
+    given = {**ratios, "gear": gear, "throttle": throttle, "efficiency": efficiency, "engine_inertia": inertia, "peak_torque": peak,
+             "peak_speed": top, "falling": falling, "drag_torque": drag, "drag_rise": rise, "idle": 0, "start_speed": total * spin, "limit": 2000}  # fmt: skip
+    parts = {
+        "diff": {
+            "use": "differential",
+            "mounts": {"left": "left", "right": "right"},
+            "parameters": {"speed": 0.3 * spin},
+        },
+        "engine": {"use": "powertrain", "mounts": {"output": "diff.input"}, "parameters": given},
+    }
+    scene = outputs(inertia=60.0, parts=parts)
+    for name in ("left", "right"):
+        scene["bodies"][name]["omega"] = [0, spin, 0]
+    found = stiffmbs.run(stiffmbs.read_scene(json.dumps(scene)), duration=3, output=0.005, rtol=1e-9)
+    n, later = found["engine.engine_speed"], slice(200, None)
+    closed = -drag * np.tanh(n / 10) - rise * n
+    torques = closed + (peak * (1 - falling * (n / top - 1) ** 2) - closed) * throttle
+    assert found["engine.engine_torque"] == pytest.approx(torques, rel=1e-9)
+    clutch = (torques - inertia * np.gradient(n, found.time))[later]
+    driving = total * (clutch - (1 - efficiency) * np.abs(clutch))
+    assert (120 + 0.01 * RATIO**2) * np.gradient(found["left.wy"], found.time)[later] == pytest.approx(driving, abs=5e-3 * np.max(np.abs(driving)))  # fmt: skip
+    assert n[later] == pytest.approx(total * found["left.wy"][later], rel=1e-2)
 
 
 @pytest.mark.long

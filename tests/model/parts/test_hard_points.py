@@ -29,6 +29,18 @@ def corner(parameters, part="double_wishbone", **words):
             "on the other side of the car from wheel_centre (0, 0.76, 0.3) m",
         ),
         ({"lower_ball_z": 5.5}, "m from wheel_centre"),
+        (
+            {"upper_ball": [0, 0.70, 0.17]},
+            "left.parameters.upper_ball: found (0, 0.7, 0.17) m, in the place of lower_ball, expected two points apart",
+        ),
+        (
+            {"tie_outer": [0.12, 0.3701, 0.287]},
+            "left.parameters.tie_outer: found (0.12, 0.3701, 0.287) m, in the place of tie_inner",
+        ),
+        (
+            {"strut_tower": [0, 0.56, 0.185]},
+            "left.parameters.strut_tower: found (0, 0.56, 0.185) m, in the place of strut_seat",
+        ),
         ({"lower_bal": [0, 0, 0]}, "(did you mean 'lower_ball'?)"),
     ],
 )
@@ -40,5 +52,7 @@ def test_hard_points_that_are_no_car_are_refused(parameters, message):
 
 def test_points_near_the_middle_and_far_below_the_limit_are_read():
     corner({"lower_front_y": -0.3, "lower_rear_z": 5.1})
+    corner({"strut_seat": [0, 0.70, 0.17]})  # at the lower ball joint
+    corner({"lower_front_outer": [-0.02, 0.68, 0.17]}, "multi_link")  # two links that meet
     corner({"wheel_centre": [0, "0.8 m", "0.3 m"]}, "twist_beam")
     corner({}, mirror="y")

@@ -9,8 +9,19 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs.commands.main import main
-from stiffmbs.studies.handling.parameters import SPEED, StepSteer, StraightBraking, names_of, with_changes
-from stiffmbs.studies.handling.standards import TESTS, SineWithDwell, dwell_formula, highest
+from stiffmbs.studies.handling import study
+from stiffmbs.studies.handling.known import Known
+from stiffmbs.studies.handling.lane_changes import highest
+from stiffmbs.studies.handling.parameters import (
+    SPEED,
+    SineWithDwell,
+    StepSteer,
+    StraightBraking,
+    names_of,
+    with_changes,
+)
+from stiffmbs.studies.handling.standards import TESTS
+from stiffmbs.studies.handling.steering_inputs import dwell_formula
 
 EXAMPLES = Path(stiffmbs.__file__).parents[1] / "examples"
 CAR = EXAMPLES / "car.yaml"
@@ -134,3 +145,26 @@ def test_a_sine_with_dwell_has_the_frequency_and_dwell_of_its_parameters():
     for t, exact in ((0.5, 0), (1.5, 2), (2, 0), (2.5, -2), (3.4, -2), (3.5, -2), (4, 0), (5, 0)):
         value = eval(formula, {"t": t, "min": min, "max": max, "sin": np.sin, "pi": np.pi})
         assert value == pytest.approx(exact, abs=1e-9), t
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"width": -1.0}, {"width": float("nan")}, {"width": "2 s"}, {"width": True}, {"workers": 0}, {"workers": "2"},
+        {"workers": True}, {"workers": 1.5}, {"tests": "ride"},
+    ],
+)  # fmt: skip
+def test_a_width_and_a_number_of_processes_are_checked(examples, given):
+    with pytest.raises(stiffmbs.InputError, match=f"{next(iter(given))}: found"):
+        stiffmbs.handling(examples / "car.yaml", **{"tests": [], **given})
+
+
+def test_a_width_may_have_a_unit(examples, monkeypatch):
+    widths = []
+    monkeypatch.setattr(
+        study, "_preliminary", lambda scene, car, width: widths.append(width) or Known(car, 1, 0, width, {})
+    )
+    monkeypatch.setattr(study, "_solved", lambda *arguments: {})
+    for width in ("1900 mm", 1.9):
+        stiffmbs.handling(examples / "car.yaml", [], width=width, workers=1)
+    assert widths == pytest.approx([1.9, 1.9])

@@ -4,10 +4,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.signal import lsim
+from scipy.signal import butter, lsim, sosfilt
 
 import stiffmbs
-from stiffmbs.studies.handling import metrics, standards, vibration
+from stiffmbs.studies.handling import metrics, steady_state_cornering, steering_inputs, vibration
+from stiffmbs.studies.handling.known import Known
+from stiffmbs.studies.handling.parameters import SineWithDwell
 
 MASS, YAW_INERTIA, TO_FRONT, TO_REAR, FRONT, REAR, SPEED = 1500.0, 2600.0, 1.2, 1.5, 9e4, 1.2e5, 22.0
 WHEELBASE = TO_FRONT + TO_REAR
@@ -104,9 +106,9 @@ def test_sine_with_dwell_of_a_yaw_rate_that_decays():
 
 @pytest.mark.parametrize("direction", [1, -1])
 def test_the_verdict_does_not_depend_on_the_direction_in_which_a_rack_steers(direction):
-    test = standards.SineWithDwell(factors=(5.0,))
+    test = SineWithDwell(factors=(5.0,))
     time = np.arange(0, 6, 0.001)
-    end = standards.dwell_end(test)
+    end = steering_inputs.dwell_end(test)
     left = np.select([time < 1, time < 1.714, time < end], [0.0, 1.0, -1.0], 0.0)
     yaw_rate = 0.5 * left - np.where(time >= end, 0.5 * np.exp(-(time - end) / 0.5), 0.0)
     run = {
@@ -115,8 +117,8 @@ def test_the_verdict_does_not_depend_on_the_direction_in_which_a_rack_steers(dir
         "vehicle.yaw_rate": yaw_rate,
         "vehicle.y": 2 * (time - 1),
     }
-    known = standards.Known(SimpleNamespace(wheelbase=2.5), direction * 0.3, 0.0, 1.8, {})
-    found = standards.of_dwell(known, test, [run])
+    known = Known(SimpleNamespace(wheelbase=2.5), direction * 0.3, 0.0, 1.8, {})
+    found = steering_inputs.of_dwell(known, test, [run])
     assert found["yaw rate ratio after 1 s, 5 A"][0] == pytest.approx(100 * np.exp(-2), rel=1e-2)
     assert found["lateral displacement, 5 A and more"][0] == pytest.approx(2 * 1.07)
     assert found["stable (1 yes, 0 no)"][0] == 1
@@ -126,9 +128,9 @@ def test_a_ramp_ends_before_the_car_spins():
     time = np.arange(0, 30, 0.05)
     ay = np.where(time < 20, 0.4 * time, 14.0)
     run = {"time": time, "vehicle.ay": ay, "vehicle.sideslip": np.where(time < 20, 0.0, 1.5), "vehicle.roll": 0.01 * ay}
-    assert standards.up_to_the_limit(run)["vehicle.ay"].max() == pytest.approx(8, abs=0.05)
+    assert steady_state_cornering.up_to_the_limit(run)["vehicle.ay"].max() == pytest.approx(8, abs=0.05)
     slid = {**run, "vehicle.ay": np.where(time < 20, 0.4 * time, 0.0), "vehicle.sideslip": 0 * time}
-    assert len(standards.up_to_the_limit(slid)["time"]) == 400
+    assert len(steady_state_cornering.up_to_the_limit(slid)["time"]) == 400
 
 
 def test_braking_at_constant_deceleration():
@@ -181,3 +183,58 @@ def test_spectra_keep_the_power_and_transmissibility_is_that_of_a_mass_on_a_spri
 def test_an_unknown_weighting_is_refused():
     with pytest.raises(stiffmbs.InputError, match="did you mean 'Wk'"):
         vibration.weighted(np.ones(9), 0.1, "WK")
+
+
+def test_times_that_a_metric_lacks_are_named():
+    """A run that ends early was continued at its last value, and unequal steps were taken for equal ones."""
+    time = np.arange(0, 4, 0.01)
+    steer = np.where((time > 1) & (time < 2), 1.0, np.where((time >= 2) & (time < 2.5), -1.0, 0.0))
+    with pytest.raises(stiffmbs.InputError, match=r"found times from 0 to 3.99 s, expected values at 4.25 s"):
+        metrics.sine_with_dwell(time, steer, steer, time, 1.0, 2.5)
+    with pytest.raises(stiffmbs.InputError, match=r"expected values at 4.5 s"):
+        metrics.yaw_rate_ratio(time, time, time, 3.5)
+    with pytest.raises(stiffmbs.InputError, match=r"found time steps from .* expected equal ones"):
+        metrics.frequency_response(time**1.1, steer, steer)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_step_response_of_any_stable_car(seed):
+    """Times, gain and overshoot of a bicycle model at random, against the samples of its exact response; to either side."""
+    rng = np.random.default_rng(seed)
+    mass, inertia, front, rear, c_front, c_rear, v = rng.uniform(
+        (900, 1200, 1, 1.2, 6e4, 9e4, 12), (2500, 4000, 1.2, 1.6, 9e4, 1.6e5, 28)
+    )
+    lever = front * c_front - rear * c_rear
+    a = [
+        [-(c_front + c_rear) / (mass * v), -v - lever / (mass * v)],
+        [-lever / (inertia * v), -(front**2 * c_front + rear**2 * c_rear) / (inertia * v)],
+    ]
+    b, time = [[c_front / mass], [front * c_front / inertia]], np.arange(0, 12, 0.001)
+    steer = (-1) ** seed * 0.02 * np.clip((time - 1) / 0.15, 0, 1)
+    yaw_rate = lsim((a, b, [[0, 1]], [[0]]), steer, time)[1]
+    gain = v / (front + rear + mass / (front + rear) * (rear / c_front - front / c_rear) * v**2)
+    part, begun = yaw_rate / (gain * steer[-1]), time[np.argmax(np.abs(steer) >= 0.01)]
+    found = metrics.step_response(time, steer, yaw_rate)
+    assert found.gain == pytest.approx(gain, rel=1e-4)
+    assert found.response_time == pytest.approx(time[np.argmax(part >= 0.9)] - begun, abs=2e-3)
+    assert found.overshoot == pytest.approx(part.max() - 1, abs=2e-4)
+    if part.max() > 1.01:
+        assert found.peak_time == pytest.approx(time[np.argmax(part)] - begun, abs=2e-3)
+
+
+@pytest.mark.parametrize("name", vibration.WEIGHTINGS)
+def test_weightings_are_the_analogue_filters_of_iso_2631_in_the_time_domain(name):
+    """A random vibration through the transfer functions of its annex A, integrated over time."""
+    f3, f4, f5, f6 = {"Wk": (12.5, 12.5, 2.37, 3.35), "Wd": (2, 2, 0, 0), "Wc": (8, 8, 0, 0), "We": (1, 1, 0, 0), "Wj": (0, 0, 3.75, 5.32)}[name]  # fmt: skip
+    w, step = lambda f: 2 * np.pi * f, 5e-4
+    second = lambda f, q: [1 / w(f) ** 2, 1 / (q * w(f)), 1]  # noqa: E731
+    up = np.array([1 / w(0.4) ** 2, 0, 0])
+    down = np.polymul(second(0.4, np.sqrt(0.5)), second(100, np.sqrt(0.5)))
+    if f3:
+        up, down = np.polymul(up, [1 / w(f3), 1]), np.polymul(down, second(f4, 0.63))
+    if f5:
+        up, down = np.polymul(up, second(f5, 0.91)) * (f5 / f6) ** 2, np.polymul(down, second(f6, 0.91))
+    time, noise = np.arange(0, 60, step), np.random.default_rng(1).normal(size=120000)
+    source = sosfilt(butter(4, [1, 60], "band", fs=1 / step, output="sos"), noise)
+    expected = np.sqrt(np.mean(lsim((up, down), source, time)[1] ** 2))
+    assert vibration.weighted_rms(source, step, name) == pytest.approx(expected, rel=5e-3)

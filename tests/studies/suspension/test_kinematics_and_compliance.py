@@ -125,6 +125,9 @@ def test_the_rack_steers_and_the_bar_adds_to_roll(examples):
     ("arguments", "sentence"),
     [
         ({"points": 4}, "points: found 4, expected an odd number"),
+        ({"points": 5.0}, "points: found 5.0, expected an odd number"),
+        ({"bump": "20 mm"}, "bump: found '20 mm', expected a number, zero or more"),
+        ({"wheels": "front.left.wheel"}, "wheels: found 'front.left.wheel', expected a list of bodies"),
         ({"axle": "rear"}, r"found no body 'rear\.left\.upright', expected a suspension with one: front\.left, front\.right"),
         ({"swim": 3}, "swim=3: found no such case"),
         ({"body": "hull"}, "found no body 'hull' to clamp"),

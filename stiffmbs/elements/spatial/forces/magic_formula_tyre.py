@@ -43,9 +43,9 @@ class MagicFormulaTyre(Tyre):
 
     kind = "magic_formula_tyre"
     forms = (
-        {"properties": TyreProperties(coefficients=SAMPLE)},
-        {"properties": TyreProperties(coefficients={**SAMPLE, "PTX1": 1.0, "PTY1": 1.0})},
-        {"properties": TyreProperties(coefficients=SAMPLE_6, version="6.2")},
+        {"properties": TyreProperties.model_construct(coefficients=SAMPLE)},
+        {"properties": TyreProperties.model_construct(coefficients={**SAMPLE, "PTX1": 1.0, "PTY1": 1.0})},
+        {"properties": TyreProperties.model_construct(coefficients=SAMPLE_6, version="6.2")},
     )
     reflected = {"j": "z", "hand": "angle"}
 

@@ -46,7 +46,8 @@ class RoadContact(PressedSurfaces):
         None, description="whose axes the road's x, y and z are, on a body that carries it; ground by default"
     )
     road: AnyRoad = Field(
-        FlatRoad(), description="the name of a road of the scene, or a road; level at z = 0 by default"
+        FlatRoad.model_construct(type=FlatRoad.kind),
+        description="the name of a road of the scene, or a road; level at z = 0 by default",
     )
     radius: si.LengthOrZero = Field(0.0, description="of the sphere about i, m; 0 for a point")
 

@@ -1,0 +1,102 @@
+"""Responses to steering: step and sweep, ISO 7401, and sine with dwell, ISO 19365."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .car import Manoeuvre
+from .known import SEEN, Known, Metrics, Run
+from .metrics import frequency_response, sine_with_dwell, step_response
+from .parameters import FrequencySweep, SineWithDwell, StepSteer
+
+STEER_BEGIN = 1.0
+
+
+def step_steer(known: Known, test: StepSteer) -> list[Manoeuvre]:
+    """Return a step of steering to a lateral acceleration."""
+    steer, end = known.steer_for(test.lateral_acceleration), STEER_BEGIN + test.rise
+    return [Manoeuvre(test.speed, end + 4.85, f"step5(t, {STEER_BEGIN}, 0, {end!r}, {steer!r})", output=0.005)]
+
+
+def of_step_steer(known: Known, test: StepSteer, runs: list[Run]) -> Metrics:
+    """Return response times, overshoot and gains of yaw rate and lateral acceleration."""
+    run, found = runs[0], Metrics()
+    for label, channel, unit in (("yaw rate", "yaw_rate", "1/s"), ("lateral acceleration", "ay", "m/s^2")):
+        one = step_response(run["time"], run[SEEN] * known.ratio, run[f"vehicle.{channel}"])
+        found |= {
+            f"{label}, steady": (one.steady, "rad/s" if channel == "yaw_rate" else unit),
+            f"{label}, gain per steer angle of the wheels": (one.gain, unit),
+            f"{label}, response time": (one.response_time, "s"),
+            f"{label}, peak response time": (one.peak_time, "s"),
+            f"{label}, overshoot": (100 * one.overshoot, "%"),
+        }
+        if channel == "yaw_rate":
+            sideslip = float(np.mean(run["vehicle.sideslip"][-100:]))
+            found["TB factor"] = one.peak_time * abs(np.degrees(sideslip)), "s deg"
+    return found
+
+
+def frequency(known: Known, test: FrequencySweep) -> list[Manoeuvre]:
+    """Return a sweep of steering with an amplitude of a lateral acceleration of the quasi-steady turn."""
+    steer, rate = known.steer_for(test.lateral_acceleration), (test.last - test.first) / test.duration
+    phase = f"2*pi*({test.first!r}*(t - 1) + {rate!r}*(t - 1)^2/2)"
+    return [Manoeuvre(test.speed, test.duration + 1, f"step5(t, 1, 0, 2, {steer!r})*sin({phase})", output=0.01)]
+
+
+def of_frequency(known: Known, test: FrequencySweep, runs: list[Run]) -> Metrics:
+    """Return gain, resonance and delay of the yaw rate, and delay of the lateral acceleration."""
+    run = runs[0]
+    yaw, lateral = (
+        frequency_response(run["time"], run[SEEN] * known.ratio, run[f"vehicle.{channel}"])
+        for channel in ("yaw_rate", "ay")
+    )
+    band = (yaw.frequency >= 1.5 * test.first) & (yaw.frequency <= test.last / 1.2)
+    peak = int(np.argmax(np.where(band, yaw.gain, 0)))
+    low, at_1 = (1.0 if test.first <= each <= test.last else np.nan for each in (0.4, 1.0))  # not outside of the sweep
+    return {
+        "yaw rate, gain at 0.4 Hz": (low * yaw.at(0.4)[0], "1/s"),
+        "yaw rate, largest gain over that": (low * yaw.gain[peak] / yaw.at(0.4)[0], ""),
+        "yaw rate, frequency of the largest gain": (float(yaw.frequency[peak]) if band.any() else np.nan, "Hz"),
+        "yaw rate, phase at 1 Hz": (at_1 * float(np.degrees(yaw.at(1.0)[1])), "deg"),
+        "lateral acceleration, phase at 1 Hz": (at_1 * float(np.degrees(lateral.at(1.0)[1])), "deg"),
+    }
+
+
+def dwell_end(test: SineWithDwell) -> float:
+    """Return the end of steering, s."""
+    return STEER_BEGIN + 1 / test.frequency + test.dwell
+
+
+def dwell_formula(amplitude: float, test: SineWithDwell) -> str:
+    """Return the steering of ISO 19365: a sine with a dwell at its second peak."""
+    first, third = 0.75 / test.frequency, 0.75 / test.frequency + test.dwell
+    time = f"min(t - {STEER_BEGIN}, {first!r}) + max(t - {STEER_BEGIN + third!r}, 0)"
+    return f"({amplitude!r})*sin(2*pi*{test.frequency!r}*min(max({time}, 0), {1 / test.frequency!r}))"
+
+
+def dwell(known: Known, test: SineWithDwell) -> list[Manoeuvre]:
+    """Return the series of amplitudes with the throttle released."""
+    unit, lifted = known.steer_for(test.lateral_acceleration), {"releases": STEER_BEGIN}
+    formulas = [dwell_formula(factor * unit, test) for factor in test.factors]
+    return [Manoeuvre(test.speed, dwell_end(test) + 2.2, formula, lifted) for formula in formulas]
+
+
+def of_dwell(known: Known, test: SineWithDwell, runs: list[Run]) -> Metrics:
+    """Return the yaw-rate ratios of all amplitudes, the least displacement from 5 times on, and the verdict."""
+    found, stable = Metrics(), True
+    displacements = []
+    for factor, run in zip(test.factors, runs, strict=True):
+        one = sine_with_dwell(
+            run["time"],
+            run[SEEN] * known.ratio,
+            run["vehicle.yaw_rate"],
+            run["vehicle.y"],
+            STEER_BEGIN,
+            dwell_end(test),
+        )
+        found[f"yaw rate ratio after 1 s, {factor:g} A"] = 100 * one.ratio_1, "%"
+        found[f"yaw rate ratio after 1.75 s, {factor:g} A"] = 100 * one.ratio_1_75, "%"
+        stable = stable and one.stable
+        displacements += [one.displacement] if factor >= 5 else []
+    found["lateral displacement, 5 A and more"] = min(displacements, default=np.nan), "m"
+    return found | {"stable (1 yes, 0 no)": (float(stable), "")}
