@@ -23,14 +23,19 @@ class AutoParameters:
     steps_per_radian : float
         Implicit steps per radian of a vibration that the start excites, until it has decayed to the tolerances.
     trial_margin : float
-        Saving that justifies a later trial of implicit steps, in costs of their start and of their small steps.
+        Saving that justifies a later trial of implicit steps, in costs of their start and of their small steps, and radau in
+        place of bdf for overdamped motions.
     check_interval : float
         Least number of steps up to the next check of implicit steps, relative to those of the segment so far.
+    loose : float
+        Relative tolerance from which on bdf is taken for overdamped motions; the higher orders of radau save more steps at tighter
+        ones than its iterations cost.
     """
 
     steps_per_radian: float = 0.5
     trial_margin: float = 3.0
     check_interval: float = 0.25
+    loose: float = 1e-4
 
 
 AUTO = tuned("auto", AutoParameters())
@@ -103,12 +108,14 @@ class Thresholds:
         return replace(self, loss=0.0, penalty=max(cost, 2.0 * self.penalty))
 
 
-def implicit_solver(damping_ratio: float) -> str:
+def implicit_solver(parameters: AutoParameters, damping_ratio: float, rtol: float, long: float) -> str:
     """Return the name of the implicit integrator, ``bdf`` or ``radau``.
 
-    `damping_ratio`: damping ratio of the stiffest vibration; BDF is taken for overdamped motions.
+    BDF is taken for overdamped motions at loose tolerances, or if small steps after starts are a large part of the run.
+    `damping_ratio`: that of the stiffest vibration. `long`: number of explicit steps, relative to the small steps of radau.
     """
-    return "radau" if damping_ratio < 1.0 else "bdf"
+    pays = rtol < parameters.loose and long > parameters.trial_margin
+    return "radau" if damping_ratio < 1.0 or pays else "bdf"
 
 
 def steps_of_decay(parameters: AutoParameters, excitation: float, fastest: float, damping: float) -> float:

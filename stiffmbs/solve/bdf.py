@@ -88,7 +88,7 @@ def integrated(
                 raise SolverError(f"stopped at t = {reached.t:.9g} s: {failure}")
             if pays and not pays(reached):
                 break
-            if reached.t < grid.end and integrator.steps() >= RELAXATION.followed_steps:
+            if reached.t < grid.end and integrator.steps() >= RELAXATION.check_interval:
                 state = integrator.split(reached.y)
                 refuse_drift(integrator.dynamics, reached.t, *state, integrator.settings)
                 if integrator.steps() >= DIVERGENCE.followed_steps:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -13,8 +14,6 @@ from ..dynamics.dynamics import Dynamics
 from .events.native.parameters import EPSILON, SEARCH
 
 TERM_SETS = ("motion", "acceleration")
-FARTHEST = 1e-6
-"""Largest time after a state at which undefined values are searched, relative to the time."""
 
 
 def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
@@ -36,10 +35,10 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
 
 
 def _ahead() -> Iterator[float]:
-    """Yield times after a state, relative to the time: zero, then growing from its rounding."""
+    """Yield times after a state, relative to the time: zero, then growing from its rounding to half of its digits."""
     yield 0.0
     ahead = EPSILON
-    while ahead < FARTHEST:
+    while ahead < math.sqrt(EPSILON):
         yield ahead
         ahead *= SEARCH.longer
 

@@ -36,3 +36,17 @@ forces: {f: {type: force, i: b, force: ["-1e6*max(0, b.x)", 0]}}
     solution = stiffmbs.run(scene, duration=1.0, points=2, **SOLVERS[solver])
     assert solution.solver.get("events", 0) == 0
     np.testing.assert_allclose(solution["b.x"], 0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-6])
+def test_a_table_that_rises_from_the_start_is_felt_from_there(solver, rtol):
+    """The forces at the start and beyond the roof are zero: the first steps must see what lies between."""
+    width, rate = 2e-6, 0.014
+    scene = {
+        "gravity": [0, 0], "bodies": {"b": {"mass": 1, "inertia": 1}}, "states": {"p": {"rate": str(rate), "start": 0.1}},
+        "tables": {"roof": {"table": [[-1e6, 0], [0, 0], [0.25, 1], [1, 0], [1e6, 0]], "lines": True}},
+        "forces": {"f": {"type": "force", "i": "b", "force": [f"{2 * rate / width!r}*roof((p - 0.1)/{width!r})", 0]}},
+    }  # fmt: skip
+    solution = stiffmbs.run(stiffmbs.read_scene(str(scene)), duration=0.4, points=2, rtol=rtol, **SOLVERS[solver])
+    assert solution["b.vx"][-1] == pytest.approx(1.0, abs=10 * rtol)

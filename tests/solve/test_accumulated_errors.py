@@ -10,8 +10,13 @@ import stiffmbs
 from stiffmbs.analyses.job import prepare
 from stiffmbs.run_checks.growth import accumulated_errors_sentence
 from stiffmbs.show.summary import as_json
+from stiffmbs.solve.bdf import integrated
+from stiffmbs.solve.error_control.native.layouts import ACCUMULATED_ERRORS
+from stiffmbs.solve.integrator import Integrator
+from stiffmbs.solve.radau.radau import radau_integrator
 from stiffmbs.solve.segments import Segment, joined
 from stiffmbs.solve.solver import Traits
+from stiffmbs.solve.trajectory import unwatched
 
 from ..conftest import EXAMPLE_SCENES, EXAMPLES
 
@@ -175,6 +180,17 @@ def test_estimates_go_on_over_events_and_breakpoints(solver):
     assert solution.solver["breakpoints"] + solution.solver["events"] > 50
     error = solution["w.angle"][-1] - 200 * np.pi
     assert_near(estimated(scene, **SOLVERS[solver], max_step=1e-3)[2], error)
+
+
+@pytest.mark.parametrize("make", [Integrator, radau_integrator])
+def test_a_step_that_an_event_ends_counts_up_to_the_event(make):
+    """A ball bounces within the steps; their parts after the events are no part of the motion."""
+    job = prepare(EXAMPLES / "bouncing_ball.yaml", rtol=1e-6)
+    integrator = make(job.dynamics, job.settings)
+    found = integrated(integrator, job.start, job.grid, unwatched)
+    assert found.statistics["events"] > 5
+    sums = integrator.engine._ida.error_sums.table.view(ACCUMULATED_ERRORS.cells)[0]
+    np.testing.assert_allclose(sums["time"] + sums["span"], found.t[-1], rtol=1e-9)
 
 
 def test_estimates_of_what_the_presolve_takes_apart():

@@ -16,8 +16,8 @@ from stiffmbs import tuning
 from stiffmbs.analyses.job import prepare
 from stiffmbs.errors import SolverError
 from stiffmbs.model.settings import RunSettings
-from stiffmbs.solve import kinematic
-from stiffmbs.solve.error_control.precision import too_fine
+from stiffmbs.solve import cost, kinematic
+from stiffmbs.solve.error_control.precision import governed_by_rounding, too_fine
 from stiffmbs.solve.error_control.relaxation import creep_of_positions, creep_of_velocities, refuse_drift
 from stiffmbs.solve.error_control.stability_limit import (
     STABILITY_LIMIT,
@@ -27,6 +27,7 @@ from stiffmbs.solve.error_control.stability_limit import (
 )
 from stiffmbs.solve.events.chattering import Chattering, MaskedEvents
 from stiffmbs.solve.events.discontinuity import VelocityJumps
+from stiffmbs.solve.events.narrow_inputs import hidden_peak
 from stiffmbs.solve.events.refusals import exponential, refuse_beyond_sense
 from stiffmbs.solve.events.restart import straight_on
 from stiffmbs.solve.ida.choice import COSTS, _supplied, block_cost, sparse_cost
@@ -253,6 +254,34 @@ def kinematic_steps():
     return kinematic.solve(job.dynamics, job.start, job.grid, job.settings, unwatched).statistics["steps"]
 
 
+def explicit_cost():
+    return cost.of_explicit_step(job_of("andrews").dynamics)
+
+
+def implicit_cost(part):
+    return getattr(cost.ImplicitCost.of(job_of("andrews").dynamics), part)
+
+
+def rejections_by_rounding():
+    """Return the rejected steps of 100 000, in hundreds, up to which rounding does not govern a run."""
+    return count_while(
+        lambda hundreds: not governed_by_rounding({"steps": 100_000, "rejected": 100 * hundreds}), range(1000)
+    )
+
+
+def highest_hidden_peak():
+    """Return the height of a peak between output times, in thousandths of the change of the input, up to which it is left out."""
+    times = np.linspace(0.0, 1.0, 11)
+    features = SimpleNamespace(breakpoints=np.array([0.55]), instants=lambda *_: np.empty(0))
+
+    def is_left_out(thousandths):
+        height = 1.0 / (1.0 - 1e-3 * thousandths)
+        pulse = SimpleNamespace(text="f", at=lambda t: np.where(t == 0.55, height, np.clip(2.0 * t, 0.0, 1.0)))
+        return not hidden_peak([pulse], features, times)
+
+    return count_while(is_left_out, range(1, 500))
+
+
 TABLE = {
     "linear_solver": {
         **dict.fromkeys(["fixed", "blocks", "cached_nodes", "far_node"], longest_chain_in_blocks),
@@ -274,6 +303,18 @@ TABLE = {
     "precision": {
         "noise_of_positions": lambda: finest_rtol(0, 1e6),
         "noise_of_angles": lambda: finest_rtol(2, 1e4),
+        "failed": rejections_by_rounding,
+    },
+    "narrow_inputs": {"hidden": highest_hidden_peak},
+    "cost": {
+        **dict.fromkeys(["explicit_step", "explicit_operation", "explicit_equation"], explicit_cost),
+        "multiplication": lambda: cost._of_elimination(5_000),
+        **dict.fromkeys(["large_blocks", "large_block_multiplication"], lambda: cost._of_elimination(20_000)),
+        **dict.fromkeys(["residual", "residual_unknown"], lambda: implicit_cost("residual")),
+        **dict.fromkeys(["matrix_operation", "matrix_solver", "least_solver"], lambda: implicit_cost("matrix")),
+        **dict.fromkeys(["step_residuals", "step_matrices"], lambda: implicit_cost("step")),
+        **dict.fromkeys(["start", "start_unknown"], lambda: implicit_cost("memory")),
+        "start_steps": lambda: implicit_cost("start_steps"),
     },
     "velocity_jumps": {"least": smallest_velocity_jump},
     "divergence": {"fraction": highest_power, "faster": highest_power, "unbounded": largest_growth},
@@ -313,7 +354,11 @@ EXPECTED = {
     "linear_solver.worth_compiling": 2, "linear_solver.with_zeros": 112, "sundae.dense_up_to": 90,
     "stability_limit.least_distance": 18, "stability_limit.negligible": 16, "stability_limit.gain": 105, "stability_limit.gain_if_faint": 117,
     "stability_limit.step_error": 105, "stability_limit.faint": 8, "stability_limit.interval": 2000, "stability_limit.growth": 5000, "stability_limit.damping_steps": 100,
-    "precision.noise_of_positions": 119, "precision.noise_of_angles": 121, "velocity_jumps.least": 27,
+    "precision.noise_of_positions": 119, "precision.noise_of_angles": 121, "precision.failed": 201, "narrow_inputs.hidden": 50, "velocity_jumps.least": 27,
+    "cost.explicit_step": 7.058, "cost.explicit_operation": 7.058, "cost.explicit_equation": 7.058, "cost.multiplication": 35,
+    "cost.large_blocks": 94, "cost.large_block_multiplication": 94, "cost.residual": 1.4142, "cost.residual_unknown": 1.4142,
+    "cost.matrix_operation": 7.27106, "cost.matrix_solver": 7.27106, "cost.least_solver": 7.27106,
+    "cost.step_residuals": 3.575512, "cost.step_matrices": 3.575512, "cost.start": 537, "cost.start_unknown": 537, "cost.start_steps": 10,
     "divergence.fraction": 50, "divergence.faster": 50, "divergence.unbounded": 54,
     "relaxation.short_chain": 100, "relaxation.largest_factor": 1000, "relaxation.refused": 80,
     "chattering.window": 749, "chattering.too_many": 40, "chattering.at_least": 54, "chattering.least_power": 7, "chattering.largest_power": 10,

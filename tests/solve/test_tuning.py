@@ -140,7 +140,7 @@ def test_the_command_prints_the_parameters_of_the_run():
     assert found.exit_code == 0
     lines = dict(re.findall(r"^parameters (\w+): (.*)$", found.output, re.MULTILINE))
     assert [*lines] == [*tuning.SUBSYSTEMS]
-    assert lines["newton"].startswith("loosest = 0.01 (default 0.03), tightest = 1e-06, ")
+    assert lines["newton"].startswith("loosest = 0.01 (default 0.03), negligible = 1e-06, ")
     assert "default" not in lines["radau"]
     names = {name for name in lines for field in fields(tuning.defaults_of(name)) if field.name in lines[name]}
     assert names == set(lines)

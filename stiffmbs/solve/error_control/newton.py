@@ -72,7 +72,7 @@ def _row_sums(system: System) -> tuple[RowSums, RowSums]:
 
 def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
     """Return the part of the error tolerance that Newton's iteration may leave."""
-    return max(min(NEWTON.loosest, stiffness.allowed_residual), NEWTON.tightest, NEWTON.precision / settings.rtol)
+    return max(min(NEWTON.loosest, stiffness.allowed_residual), NEWTON.negligible, NEWTON.precision / settings.rtol)
 
 
 class RowSums(NamedTuple):

@@ -35,8 +35,8 @@ class RelaxationParameters:
     chains."""
     largest_factor: float = 1e3
     """Largest factor by which a tolerance other than 1e-8 scales the relaxations, or its inverse."""
-    followed_steps: int = 1000
-    """Steps before the drift is checked during a run, and between checks of the elimination in explicit ones."""
+    check_interval: int = 1000
+    """Steps before the constraint drift is checked during a run, and between checks of the elimination in explicit ones."""
     refused: float = 1e6
     """Drift, in tolerances, at which a run ends: its motion no longer is that of the mechanism."""
 

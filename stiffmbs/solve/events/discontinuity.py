@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
@@ -32,6 +33,7 @@ JUMP = tuned("jumps", JumpParameters())
 
 SWITCHES, CROSSED, BY_VELOCITIES, SIDE = together(
     "stiffmbs.solve.events.native.sides",
+    SHORT,
     switches="void(float64, float64, float64*, float64*, float64*, float64*, int64, float64*, int64*)",
     crossed="int64(float64, float64, float64*, float64*, float64*, float64*, int64, int64*, int64*)",
     by_velocities="void(float64, float64, float64*, float64*, float64*, int64, float64*, int64*)",
@@ -85,7 +87,7 @@ class _Beside:
     def crossed(self, reach: float | None = None) -> np.ndarray:
         """Return the event functions that differ in sign between the two sides of a move."""
         found = np.empty(self._count, dtype=np.int64)
-        reach = SEARCH.noise if reach is None else reach
+        reach = SEARCH.precision if reach is None else reach
         count = CROSSED.short_call(self.t, reach, *self._at, self._count, address(found), self._table)
         return found.nonzero()[0] if count else found[:0]
 
@@ -126,9 +128,9 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
             return crossed
         far, near = (
             float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-            for a, b in (beside.sides(size) for size in (JUMP.larger_move, SEARCH.noise))
+            for a, b in (beside.sides(size) for size in (JUMP.larger_move, SEARCH.precision))
         )
-    return crossed if near > max(JUMP.jumps * far, SEARCH.noise) else crossed[:0]
+    return crossed if near > max(JUMP.jumps * far, SEARCH.precision) else crossed[:0]
 
 
 def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> np.ndarray:
@@ -175,14 +177,14 @@ def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
     """
     at_zero = beside.at_zero(reach, event_function)
     values, rates = [], []
-    for size in (JUMP.larger_move, SEARCH.noise):
+    for size in (JUMP.larger_move, SEARCH.precision):
         sides = at_zero.sides(size)
         if not _driven_back(sides, np.array([event_function]))[0]:
             return False
         values.append(abs(sides[0].values[event_function] - sides[1].values[event_function]))
         rates.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
     continuous = values[1] <= JUMP.jumps * values[0]
-    return bool(continuous and rates[1] > max(JUMP.jumps * rates[0], SEARCH.noise))
+    return bool(continuous and rates[1] > max(JUMP.jumps * rates[0], SEARCH.precision))
 
 
 def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:

@@ -50,7 +50,7 @@ class EventSearch:
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "zone_low", "zone_high", "apart")  # fmt: skip
         self._arrays = {
-            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(zones.turns), "turn": zones.turns, "radians": zones.radians, "lands": self._lands, "n_zoned": zones.zoned,
+            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(zones.turns), "turn": zones.turns, "radians": zones.radians, "lands": self._lands, "kinked": zones.kinks, "n_zoned": zones.zoned,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_edge": zones.first, "edges": zones.edges, "overlap": self._overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": WHOLE, "weight": weight,

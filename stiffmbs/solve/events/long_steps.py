@@ -26,11 +26,10 @@ class LongStepParameters:
 
     from_middle: float = 1e-4
     """Distance from the middle of a step, relative to the step, of two stored states."""
-    for_others: tuple[float, float] = (4.0, 8.0)
-    for_functions: tuple[float, float] = (2.0, 64.0)
-    """Ratio of a long step to the usual one, and number of steps over which the usual one is averaged."""
-    most_steps: int = 1000
-    """Largest number of steps stored of one run."""
+    ratio: float = 4.0
+    """Ratio of a long step to the usual one."""
+    remembered: float = 8.0
+    """Number of steps over which the usual one is averaged."""
 
 
 LONG_STEP = tuned("long_steps", LongStepParameters())
@@ -107,12 +106,13 @@ class LongStepLog:
 
     def __init__(self, system: System, width: int) -> None:
         places = WHOLE if system.has_functions else np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
-        ratio, remembered = LONG_STEP.for_functions if system.has_functions else LONG_STEP.for_others
         row = 2 + len(places) * width
-        room = min(LONG_STEP.most_steps, LOOP.most_kept // row) if system.has_laws else 0
+        room = LOOP.most_items // row if system.has_laws else 0
         self._rows, self._shape = np.empty((room, row)), (len(places), width)
         self._arrays = {"n_nodes": len(places), "node": places, "width": width, "row": self._rows}
-        self.table = packed(LONG_STEPS, {**self._arrays, "ratio": ratio, "remembered": remembered, "room": room})
+        self.table = packed(
+            LONG_STEPS, {**self._arrays, "ratio": LONG_STEP.ratio, "remembered": LONG_STEP.remembered, "room": room}
+        )
         self._cells = self.table.view(LONG_STEPS.cells)[0]
 
     def forget(self) -> None:

@@ -56,7 +56,7 @@ def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndar
         change, size = max(high, np.max(values)) - min(low, np.min(values)), np.max(np.abs(values))
         beyond = np.maximum(values - high, low - values)
         k = int(np.argmax(beyond))
-        if beyond[k] > NARROW_INPUTS.hidden * change and change > SEARCH.noise * size:
+        if beyond[k] > NARROW_INPUTS.hidden * change and change > SEARCH.precision * size:
             return (
                 f"'{given.text}' has a peak of {values[k]:.3g} at t = {between[k]:.6g} s, between output points, which show "
                 f"it from {low:.3g} to {high:.3g}: shorter output spacing or --verify shows it"

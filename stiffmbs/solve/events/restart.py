@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import addresses
 from ...compile.machine.routines import Routine
 from ...compile.state import LEFT_OPEN
@@ -36,6 +37,7 @@ GONE_PAST = Routine(
     "stiffmbs.solve.events.native.sides",
     "gone_past",
     "float64(float64, float64, int64, float64*, float64*, int64*)",
+    level=SHORT,
 )
 
 

@@ -33,8 +33,6 @@ from .stable_step import StableStep
 class CheckParameters:
     """Parameters of the checks between compiled calls."""
 
-    most_apart: int = 16
-    """Largest interval between two decisions to leave a run, in first intervals."""
     now_and_then: int = 8
     """Events of which one is always checked, and part of the steps that stability must limit for an early decision."""
 
@@ -147,7 +145,7 @@ class AdaptiveRun:
                     stable_step.look(work, self._grid.end)
                     if work.count("steps") < look_at and work.count("stiff_steps") < held_at and leaving:
                         continue
-            most = min(2 * most, CHECKS.most_apart * leaving.first, work.capacity) if leaving else most
+            most = min(2 * most, work.capacity) if leaving else most
             if bounds:
                 look_at, held_at = self._looks(most, leaving)
             if status == PAUSED and leaving and leaving.pays(work):

@@ -52,7 +52,7 @@ class Rounding:
 
     def __init__(self, dynamics: Dynamics, rtol: float, start: float, end: float) -> None:
         self._dynamics, self._rtol, self._end = dynamics, rtol, end
-        self._soon, self._later = _Stretch(start, RELAXATION.followed_steps), _Stretch(start, CONTROL.enough_steps)
+        self._soon, self._later = _Stretch(start, RELAXATION.check_interval), _Stretch(start, CONTROL.enough_steps)
 
     def look(self, work: Integration) -> str:
         """Check the current state if a check is due; return why the run ends there, or an empty string.

@@ -122,7 +122,7 @@ class StepMemory:
     def __init__(self, scheme: Scheme, dynamics: Dynamics, n_times: int) -> None:
         system, eliminated = dynamics.system, dynamics.eliminated
         n, events = system.n_q + system.n_u, system.n_event_functions
-        self.capacity = capacity = max(1, min(LOOP.most_steps, LOOP.most_kept // max(n, 1)))
+        self.capacity = capacity = max(1, min(LOOP.most_steps, LOOP.most_items // max(n, 1)))
         self.y, self.lam, self.atol, self.times = np.zeros(n), np.zeros(system.n_c), np.zeros(n), np.zeros(n_times)
         self.row_t, self.row_y, self.ends = np.empty(capacity), np.empty((capacity, n)), np.empty(capacity)
         stages = np.zeros((scheme.extended, n))

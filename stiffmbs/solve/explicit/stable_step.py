@@ -36,9 +36,6 @@ class StabilityBoundParameters:
     """Smallest number of remaining steps that justifies the cost of the rate."""
     held_back: int = 16
     """Steps limited by stability since the last computation, at which the bound is computed."""
-    contradicted: float = 0.4
-    """Bound, relative to a step limited by stability, that contradicts it: asymmetric force derivatives give no
-    bound."""
     steep: int = 8
     """Lowest order at which too long a step amplifies rounding considerably."""
 
@@ -85,7 +82,7 @@ class StableStep:
         """Update the bound if due: after limited steps, or if steps have grown to the last bound."""
         if work.stable == NOT_ASKED:
             if self._left(work) <= 0:
-                self._ask_as_held(work, end)
+                self.ask(work, end)
         elif work.count("steps") < self._next:
             return
         elif work.stable == UNBOUNDED:
@@ -94,12 +91,6 @@ class StableStep:
             self.ask(work, end)
         else:
             self._wait(work)
-
-    def _ask_as_held(self, work: Integration, end: float) -> None:
-        """Compute the bound after limited steps, which are near the limit and must not contradict it."""
-        self.ask(work, end)
-        if work.stable < STABILITY_BOUND.contradicted * work.h:
-            work.stable, self._next = UNBOUNDED, work.count("steps") + STABILITY_BOUND.most_apart
 
     def ask(self, work: Integration, end: float) -> None:
         """Compute the bound at the current state, unless few steps remain.

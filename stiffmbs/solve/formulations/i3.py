@@ -1,7 +1,5 @@
 """Index 3 (I3)."""
 
-from __future__ import annotations
-
 from ...compile.formulation import Block, Formulation, Product
 
 I3 = Formulation(

@@ -1,7 +1,5 @@
 """Stabilised index 1 (SI1)."""
 
-from __future__ import annotations
-
 from ...compile.formulation import Block, Formulation, Product
 
 SI1 = Formulation(

@@ -4,8 +4,6 @@ Gear, Gupta, Leimkuhler, Automatic integration of Euler-Lagrange equations with 
 12-13 (1985) 77-90. Position and velocity constraints hold; the multipliers mu correct positions.
 """
 
-from __future__ import annotations
-
 from ...compile.formulation import Block, Formulation, Product
 
 _RESIDUAL = (

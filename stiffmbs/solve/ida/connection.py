@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...compile.equations import Equations
+from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import packed
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
@@ -31,15 +32,17 @@ JACOBIAN = Routine(
 )
 LOOK_AT_START, LOOK_WITHIN = together(
     "stiffmbs.solve.ida.native.ida_events",
+    SHORT,
     look_at_start="int32(float64, float64, int64*)",
     look_within="int32(int64*)",
 )
 SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, float64*, int64*)")
+PLACES = Routine(MODULE, "event_functions_and_places", "int32(float64, int64, int64, float64*, int64*)")
 
 FUNCTIONS = {
     "array_of": "N_VGetArrayPointer", "solve": "IDASolve", "interpolate": "IDAGetDky", "time_of": "IDAGetCurrentTime",
     "order_of": "IDAGetLastOrder", "step_of": "IDAGetLastStep", "stop_at": "IDASetStopTime", "next_step_of": "IDAGetCurrentStep",
-    "errors_of": "IDAGetEstLocalErrors", "weights": "IDAGetErrWeights",
+    "errors_of": "IDAGetEstLocalErrors",
 }  # fmt: skip
 """SUNDIALS functions called by compiled code, by their names in the table."""
 
@@ -141,7 +144,7 @@ class Connection:
         n = equations.n
         self._session, self._state, self._equations, self._formula = session, state, equations, formula
         self.reported = np.ascontiguousarray(reported, dtype=np.int64)
-        self.y, self.yp, self.output, self._probe = (np.zeros(n) for _ in range(4))
+        self.y, self.yp, self.output, self._probe, self._atol = (np.zeros(n) for _ in range(5))
         self._residual = np.zeros(2 * n)
         self.history = StepLog()
         self.long_steps = LongStepLog(equations.system, len(self.reported)) if equations.system.has_laws else None
@@ -184,7 +187,7 @@ class Connection:
                 "step_bound": self.step_bound.table, "history": history, "samples": self._samples,
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
-                "probe": self._probe, "residual": self._residual, "long_steps": self._long_steps,
+                "probe": self._probe, "residual": self._residual, "atol": self._atol, "long_steps": self._long_steps,
                 "accumulated": self.error_sums.table, "error_norm": self.error_norm.table,
             },
         )  # fmt: skip
@@ -193,6 +196,11 @@ class Connection:
     def event_functions(self) -> int:
         """Return the address of the event functions with IDA's signature (IDARootFn)."""
         return SWITCHES.address
+
+    @property
+    def event_functions_and_places(self) -> int:
+        """Return the address of the event functions, and of the places among breakpoints of tables with a kink."""
+        return PLACES.address
 
     @property
     def _polished(self) -> bool:
@@ -233,7 +241,8 @@ class Connection:
     def _set_tolerances(self, rtol: float, atol: np.ndarray) -> None:
         if np.shape(atol) != self.y.shape:
             raise ValueError(f"atol: found shape {np.shape(atol)}, expected {self.y.shape}")
-        self._atol = np.array(atol, dtype=float)
+        self._atol[:] = atol
+        self.cells["rtol"] = rtol
         self.ask("IDASVtolerances", rtol, self._session.vector(self._atol))
 
     def _forget_step(self, t: float) -> None:
@@ -244,7 +253,6 @@ class Connection:
         self.signs[:] = 0.0
         self.watch.begin()
         self.iteration.begin()
-        self.output_correction.begin()
         self.history.begin(t)
 
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
+from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import address, addresses
 from ...compile.machine.native.statuses import ROOT_RETURN, STOP_RETURN
 from ...compile.machine.routines import Routine
@@ -26,11 +27,12 @@ if TYPE_CHECKING:
     from .starting.after_event import StartsAnew
     from .starting.starts import Starts
 
-ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
+ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)", level=SHORT)
 ADVANCE_PAST = Routine(
     "stiffmbs.solve.ida.starting.native.breakpoints",
     "advance_past",
     "int32(int64, float64*, int64, float64*, int64, int64, float64*, int64*, int64*)",
+    level=SHORT,
 )
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
@@ -112,7 +114,7 @@ class NativeIda(Connection):
         super().__init__(equations, state, matrix, np.arange(n) if reported is None else reported, session, formula)
         self._statistics = Statistics(session.libraries, self.memory)
         self._flag, self.begun = 0, False
-        self._pace = min(max(LOOP.most_kept // n, 1), LOOP.most_steps)
+        self._pace = min(max(LOOP.most_items // n, 1), LOOP.most_steps)
         self._look = self._usual_pace = self._pace
         self._trace = np.empty((0, 2 + 2 * n))
         self._set_tolerances(rtol, atol)

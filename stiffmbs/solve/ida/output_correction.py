@@ -78,10 +78,6 @@ class OutputCorrection:
         """
         self._cells["long"], self._cells["enough"], self._cells["balanced"] = long_step, part, balanced
 
-    def begin(self) -> None:
-        """Check the first state after a start."""
-        self._cells["unseen"] = self._cells["next_look"] = self._cells["judged"] = 0
-
     def forget(self) -> None:
         """Discard the factors and their pivots."""
         self._cells["factored"] = 0.0

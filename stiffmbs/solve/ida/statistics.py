@@ -155,7 +155,7 @@ class StepLog:
     def add(self, steps: int) -> None:
         """Store the first rows."""
         self.count += steps
-        kept = min(steps, LOOP.most_kept - self._kept)
+        kept = min(steps, LOOP.most_items - self._kept)
         if kept > 0:
             self._chunks.append(self._rows[:kept].copy())
             self._kept += kept

@@ -58,12 +58,12 @@ class Callbacks:
         state.load("event_function")
         rows, columns = equations.pattern
         slots = rows * equations.n + columns if dense else None
-        self._ends = np.zeros(LOOP.most_kept)
+        self._ends = np.zeros(LOOP.most_items)
         n_event_functions = state.system.n_event_functions
         self._signs, self.masked = np.zeros(n_event_functions), np.zeros(n_event_functions, dtype=np.int64)
         self._equations_table, slot_of_entry = equations.table(slots)
         fields = {
-            "state": state.table, "equations": self._equations_table, "n_ends": LOOP.most_kept, "ends": self._ends,
+            "state": state.table, "equations": self._equations_table, "n_ends": LOOP.most_items, "ends": self._ends,
             "array_header": object.__basicsize__, "n_event_functions": n_event_functions, "signs": self._signs, "masked": self.masked,
         }  # fmt: skip
         table = packed(IDA, fields)

@@ -15,7 +15,7 @@ from ...sparse.block_updates import updates
 from ...sparse.blocks import QUAD, Blocks, at_a_line, filled
 from ...sparse.elimination_order import EliminationOrder, nodes_in_order
 from ..ida.session import WhenNeeded
-from .fixed_order import FixedOrder, Memory, PairedColumns
+from .fixed_order import FixedOrder, Memory, Pivoted
 from .native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER, VELOCITY
 
 _MODULE = "stiffmbs.solve.linear_solvers.native.block_lu"
@@ -27,7 +27,7 @@ SEED = 14
 
 @dataclass(frozen=True)
 class BlockLU(FixedOrder):
-    """Block LU in a fixed order, checked by its residual; `PairedColumns` with pivoting if the residual is too large.
+    """Block LU in a fixed order, checked by its residual; `Pivoted` if the residual is too large.
 
     `nodes`: unknowns of each supernode, in the order of elimination. `kinds` of shape (n,): kind of each unknown.
     `parts`: 2 for a complex matrix, given as a real one of twice the size. Its unknowns 2 k and 2 k + 1 are the parts of
@@ -81,7 +81,7 @@ class BlockLU(FixedOrder):
 
     def memory(self, array_of: int) -> Memory:
         """Return the memory of the compiled routines, given the address of N_VGetArrayPointer."""
-        with_pivots = PairedColumns(self.n, self.rows, self.columns, self.order).memory(array_of)
+        with_pivots = Pivoted(self.n, self.rows, self.columns, self.order).memory(array_of)
         blocks = self.blocks
         beside = [self.parts * right + own for right, own in zip(blocks.right_width, blocks.widths, strict=True)]
         scratch = max([*beside, *blocks.down_width, *(2 * QUAD * size for size in blocks.sizes)])
@@ -95,6 +95,6 @@ class BlockLU(FixedOrder):
         }  # fmt: skip
         content = packed_with_memory(BLOCK_LU, arrays)
         cells = content.view(BLOCK_LU.cells)[0]
-        needed = WhenNeeded(cells, {"setup_pivots": PairedColumns.setup, "solve_pivots": PairedColumns.solve})
+        needed = WhenNeeded(cells, {"setup_pivots": Pivoted.setup, "solve_pivots": Pivoted.solve})
         cells["compile_pivots"] = needed.address
         return Memory(content, arrays, with_pivots.factors, needed)

@@ -1,4 +1,4 @@
-"""Linear solvers of IDA: sparse LU with a fixed order of pivots, by entries or two-column supernodes."""
+"""Linear solvers of IDA: sparse LU with a fixed order of pivots, and with pivots searched in every matrix."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from ..ida.libraries import Libraries, ida_libraries
 from ..ida.matrices import Assembled
 from ..ida.operations import take_place
 from ..ida.session import Session, WhenNeeded
-from .native.layouts import FIXED_ORDER, PAIRED_COLUMNS
+from .native.layouts import FIXED_ORDER, PIVOTED
 
 _MODULE = "stiffmbs.solve.linear_solvers.native.fixed_order"
 SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
 SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
-_PAIRED = "stiffmbs.solve.linear_solvers.native.paired_columns"
-SETUP_PAIRED = Routine(_PAIRED, "setup", "int32(int64*, int64)")
-SOLVE_PAIRED = Routine(_PAIRED, "solve", "int32(int64*, int64, int64, int64, float64)")
+_PIVOTED = "stiffmbs.solve.linear_solvers.native.pivoted"
+SETUP_PIVOTED = Routine(_PIVOTED, "setup", "int32(int64*, int64)")
+SOLVE_PIVOTED = Routine(_PIVOTED, "solve", "int32(int64*, int64, int64, int64, float64)")
 
 
 class Memory(NamedTuple):
@@ -72,38 +72,39 @@ class FixedOrder:
         if memory.needed:
             session.may_need(memory.needed)
         take_place(session, solver, self.n, functions, memory.content)
-        return Assembled(
-            matrix, solver, memory.factors["a"].ctypes.data, None, np.zeros(6, dtype=np.int64), (memory,), memory.content.view(self.layout.cells)[0]
-        )  # fmt: skip
+        pivots = memory.content.view(self.layout.cells)[0] if "ready" in self.layout else None
+        values = memory.factors["a"].ctypes.data
+        return Assembled(matrix, solver, values, None, np.zeros(6, dtype=np.int64), (memory,), pivots)
 
     def memory(self, array_of: int) -> Memory:
         """Return the memory of the compiled routines, given the address of N_VGetArrayPointer."""
         factors, lists = factors_of(self.n, self.rows, self.columns, self.order), self._lists()
-        table = packed_with_memory(FACTORS, factors)
         arrays = {
-            "n": self.n, "pivots": 0, "last_flag": 0, "array_of": array_of, "factors": table,
-            "slot": np.zeros(len(self.rows), dtype=np.int32),
-            "weight": np.zeros(len(self.rows)), "update_start": np.zeros(self.n + 1, dtype=np.int64),
-            "mark": np.zeros(self.n, dtype=np.int64), "x": np.zeros(self.n + 1), **lists,
+            "n": self.n, "pivots": 0, "last_flag": 0, "array_of": array_of, "factors": packed_with_memory(FACTORS, factors),
+            "weight": np.zeros(len(self.rows)), **lists,
         }  # fmt: skip
         return Memory(packed_with_memory(self.layout, arrays), arrays, factors)
 
     def _lists(self) -> dict[str, np.ndarray]:
-        """Return additional arrays of the layout."""
-        return {}
+        """Return the arrays of the list of updates."""
+        n = self.n
+        return {
+            "slot": np.zeros(len(self.rows), dtype=np.int32), "update_start": np.zeros(n + 1, dtype=np.int64),
+            "mark": np.zeros(n, dtype=np.int64), "x": np.zeros(n),
+        }  # fmt: skip
 
 
 @dataclass(frozen=True)
-class PairedColumns(FixedOrder):
-    """Sparse LU for long columns, with pivots searched only once (`stiffmbs.solve.linear_solvers.native.paired_columns`)."""
+class Pivoted(FixedOrder):
+    """Sparse LU with pivots searched in every matrix (`stiffmbs.solve.linear_solvers.native.pivoted`)."""
 
-    setup: ClassVar[Routine] = SETUP_PAIRED
-    solve: ClassVar[Routine] = SOLVE_PAIRED
-    layout: ClassVar[Layout] = PAIRED_COLUMNS
+    setup: ClassVar[Routine] = SETUP_PIVOTED
+    solve: ClassVar[Routine] = SOLVE_PIVOTED
+    layout: ClassVar[Layout] = PIVOTED
 
     def sentence(self) -> str:
         """Return a description for the summary."""
-        return f"fixed order, columns in pairs, {self.n} unknowns, {len(self.rows)} entries"
+        return f"pivots searched in every matrix, {self.n} unknowns, {len(self.rows)} entries"
 
     def _lists(self) -> dict[str, np.ndarray]:
-        return {name: np.zeros(self.n, dtype=np.int64) for name in ("item_start", "item_end", "side")}
+        return {}

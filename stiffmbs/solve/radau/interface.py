@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...compile.machine.compiler import FULL
 from ...compile.machine.routines import together
 from ..ida.libraries import Libraries
 
@@ -42,7 +43,9 @@ _ROUTINES = dict(
     zip(
         (name for name, _ in _SIGNATURES.values()),
         together(
-            "stiffmbs.solve.radau.native.interface", **{name: signature for name, (_, signature) in _SIGNATURES.items()}
+            "stiffmbs.solve.radau.native.interface",
+            FULL,
+            **{name: signature for name, (_, signature) in _SIGNATURES.items()},
         ),
         strict=True,
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ...compile.equations import Equations
+from ...compile.law_zones import zones_of
 from ...compile.machine.layout import fill, packed
 from ...compile.state import State
 from ...sparse.elimination_order import EliminationOrder
@@ -143,7 +144,10 @@ class Radau:
             session.libraries.SUNLinSolInitialize(each.solver)
         number = np.full(len(equations.pattern[0]), -1)
         number[imaginary] = np.arange(len(imaginary))
-        functions = system.n_event_functions
+        events = functions = system.n_event_functions
+        compute = connection.event_functions
+        if zones_of(system).kinks.any():
+            functions, compute = connection.watch.n, connection.event_functions_and_places
         efforts = condensed_efforts(equations)
         n_efforts, n_all = efforts["n_efforts"], n + efforts["n_efforts"]
         values = {
@@ -164,8 +168,8 @@ class Radau:
             "corrections": np.zeros((self._most - 1 + MOST_BETWEEN) * n_all),
             **{name: np.zeros(n_all) for name in ("y", "y_stage", "y_past")},
             **{name: np.zeros(self._most * n_all) for name in ("z", "d", "past")},
-            "n_functions": functions, "functions": connection.event_functions if functions else 0, "ida": connection.words,
-            **{name: np.zeros(functions) for name in ("before", "after", "within")}, "fired": np.zeros(functions, dtype=np.int64),
+            "n_events": events, "n_functions": functions, "functions": compute if functions else 0, "ida": connection.words,
+            **{name: np.zeros(functions) for name in ("before", "after", "within")}, "fired": np.zeros(events, dtype=np.int64),
             **asdict(parameters_of(self._parameters)),
         }  # fmt: skip
         fill(self._words, RADAU, values)

@@ -23,7 +23,7 @@ from stiffmbs.solve.ida.matrices import Dense, Sparse
 from stiffmbs.solve.ida.statistics import Status
 from stiffmbs.solve.ida.sundae import FALLBACK, SundaeEngine
 from stiffmbs.solve.linear_solvers.block_lu import BlockLU
-from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, PairedColumns
+from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, Pivoted
 from stiffmbs.sparse.elimination_order import EliminationOrder, elimination_order
 from stiffmbs.tuning import parameters_of
 
@@ -124,7 +124,7 @@ def in_fixed_order(equations, kind=FixedOrder):
     return BlockLU.of(equations, order) if kind is BlockLU else kind(equations.n, *equations.pattern, order)
 
 
-KINDS = ["SuperLU_MT", "fixed order", "fixed order, columns in pairs", "blocks in a fixed order"]
+KINDS = ["SuperLU_MT", "fixed order", "pivots searched in every matrix", "blocks in a fixed order"]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -134,7 +134,7 @@ def test_all_matrices_give_the_same_motion(chain, kind):
     matrix = {
         "SuperLU_MT": Sparse(n, *pattern),
         "fixed order": in_fixed_order(equations),
-        "fixed order, columns in pairs": in_fixed_order(equations, PairedColumns),
+        "pivots searched in every matrix": in_fixed_order(equations, Pivoted),
         "blocks in a fixed order": in_fixed_order(equations, BlockLU),
     }
     assert matrix[kind].sentence().startswith(kind)
@@ -180,7 +180,7 @@ def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):
     assert isinstance(chosen(chain.equations)[1], Dense)
 
 
-@pytest.mark.parametrize("kind", [FixedOrder, PairedColumns, BlockLU])
+@pytest.mark.parametrize("kind", [FixedOrder, Pivoted, BlockLU])
 def test_pivots_are_sought_anew_where_they_have_become_small(chain, kind):
     """The order found far from the start, where the matrix is another one, serves all the same."""
     ida = chain.native(matrix=in_fixed_order(chain.equations, kind))

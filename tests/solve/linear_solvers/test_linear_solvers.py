@@ -1,4 +1,4 @@
-"""Elimination along a fixed order, by entries, by pairs of columns and by blocks, against numpy's dense solution."""
+"""Elimination along a fixed order, by entries, with pivots of every matrix and by blocks, against numpy's dense solution."""
 
 import ctypes
 
@@ -8,8 +8,8 @@ import pytest
 import stiffmbs
 from stiffmbs.compile.machine.routines import Routine
 from stiffmbs.solve.linear_solvers.block_lu import BlockLU
-from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, PairedColumns
-from stiffmbs.solve.linear_solvers.native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER, PAIRED_COLUMNS
+from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, Pivoted
+from stiffmbs.solve.linear_solvers.native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER
 from stiffmbs.sparse.elimination_order import EliminationOrder
 
 SAME_ADDRESS = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p)(lambda vector: vector)
@@ -57,7 +57,7 @@ def in_blocks(rng, n_blocks, size):
 
 
 def scattered(rng, n):
-    """Few entries anywhere: hardly any columns that are worth a pair, and much fill."""
+    """Few entries anywhere: much fill."""
     return (rng.uniform(size=(n, n)) < 0.08) | np.eye(n, dtype=bool)
 
 
@@ -70,7 +70,7 @@ PATTERNS = {
 }
 
 
-@pytest.mark.parametrize("kind", [FixedOrder, PairedColumns, BlockLU])
+@pytest.mark.parametrize("kind", [FixedOrder, Pivoted, BlockLU])
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("pattern", PATTERNS)
 def test_solutions_are_those_of_numpy(kind, pattern, seed):
@@ -117,15 +117,6 @@ def test_a_complex_block_without_a_regular_pivot_is_left_to_pivots():
 def as_real(matrix):
     """The complex matrix as a real one, whose unknowns are pairs of real and imaginary part."""
     return np.kron(matrix.real, np.eye(2)) + np.kron(matrix.imag, np.array([[0.0, -1.0], [1.0, 0.0]]))
-
-
-def test_most_columns_of_blocks_are_paired():
-    pattern = np.kron(np.eye(4, dtype=bool) | np.eye(4, k=1, dtype=bool) | np.eye(4, k=-1, dtype=bool), np.ones((6, 6)))
-    solver = Solver(PairedColumns, pattern > 0)
-    n = len(pattern)
-    solver.solved(np.where(pattern > 0, 0.1, 0.0) + np.eye(n), np.ones(n))
-    entries = solver.factors["l_start"][n] + solver.factors["u_start"][n] - 2 * n
-    assert solver.memory.content.view(PAIRED_COLUMNS.cells)[0]["n_items"] < 0.6 * entries
 
 
 def test_blocks_serve_where_pivots_are_good():

@@ -73,3 +73,20 @@ def test_the_response_to_an_input():
 def test_faults_are_told_in_a_sentence(inputs, message):
     with pytest.raises(InputError, match=message):
         stiffmbs.run(stiffmbs.read_scene(SCENE), inputs=inputs)
+
+
+@pytest.mark.parametrize(
+    ("law", "push"),
+    [
+        ("step(t, push, 0, push + 1e-4, 1) - step(t, push + 2e-4, 0, push + 3e-4, 1)", 0.5),
+        ("step(push, 0.5, 0, 0.5001, 1) - step(push, 0.5002, 0, 0.5003, 1)", ([0, 1], [0, 1])),
+        ("step(push, 0.5, 0, 0.5001, 1) - step(push, 0.5002, 0, 0.5003, 1)", lambda t: t),
+    ],
+    ids=["time as a number", "table of time", "function of time"],
+)
+@pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
+def test_a_pulse_that_an_input_determines_is_not_missed(solver, law, push):
+    """A force of 2e4 N for 2e-4 s in the mean changes the velocity of 2 kg by 2 m/s."""
+    text = SCENE.replace("push: 2 N", "push: 0").replace("force: [push, 0]", f'force: ["2e4*({law})", 0]')
+    solution = stiffmbs.run(stiffmbs.read_scene(text), inputs={"push": push}, solver=solver)
+    assert solution["cart.vx"][-1] == pytest.approx(2.0, abs=1e-6)

@@ -6,8 +6,6 @@ reduces the speed error P, at the rate -u^T (df/du) u / |u|^2; P displaces posit
 bounded below by its mean so far, because the direction of a mechanism at rest is rounding.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, view_of

@@ -1,7 +1,5 @@
 """Distance of the states after some steps from a cubic, and the third derivative of the cubic."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, shifted

@@ -1,7 +1,5 @@
 """Memory layout of accumulated errors."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
 ACCUMULATED_ERRORS = Layout({

@@ -16,9 +16,9 @@ class NewtonParameters:
 
     loosest: float = 0.03
     """Largest part of the error tolerance that the iteration may leave; IDA's own is 0.33."""
-    tightest: float = 1e-6
-    """Least part of it; a tighter tolerance fails where the constraints are nearly dependent. It is the part left by a
-    correction that ends the iteration of radau without a rate of convergence too."""
+    negligible: float = 1e-6
+    """Negligible part of the error tolerance: bdf requires no smaller corrections, as these fail where the constraints are nearly
+    dependent, and such a correction ends the iteration of radau without a rate of convergence."""
     soft: float = 1.5e4
     """Squared fastest rate, 1/s^2, times the part of the tolerance that may be left. A position error makes a force,
     and thereby a velocity error that has to stay below the tolerance too."""
@@ -31,8 +31,7 @@ class NewtonParameters:
     slowest: float = 0.1
     """Rate above which a matrix is replaced."""
     trusted: int = 20
-    """Number of nonlinear solves, or of corrected states, after which a rate, or the effect of closing joints, is measured
-    again."""
+    """Number of nonlinear solves after which a rate is measured again."""
     least: float = 0.1
     """Least fraction of a measured rate that is attributed to the age of the matrix."""
     last: int = 3
@@ -61,18 +60,10 @@ class PolishingParameters:
     """Ratio of forces by an error between steps to forces by its rates in a step, above which states are corrected."""
     unbalanced: float = 0.3
     """Allowed imbalance of the forces on a body between steps, relative to the largest force and to rtol."""
-    apart: float = 2.0
-    """Ratio between cj of the factors and IDA's above which factors are replaced."""
     most_corrections: int = 8
     """Largest number of corrections of a state, of radau too."""
     slowest: float = 0.3
     """Ratio of successive corrections above which factors are replaced, or the iteration fails."""
-    far_below: float = 0.2
-    """Fraction of the allowed imbalance in mid-step below which states are skipped."""
-    most_unseen: int = 7
-    """Largest number of skipped states."""
-    worse: float = 3.0
-    """Safety factor of measured values: they depend on the direction of the residual."""
 
 
 POLISHING = tuned("polishing", PolishingParameters())

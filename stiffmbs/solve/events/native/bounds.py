@@ -4,8 +4,6 @@ The bounds hold for a cubic and for a convex function.  The breakpoints of an ar
 which overlap if the law continues smoothly from one into the next.
 """
 
-from __future__ import annotations
-
 from math import floor, isfinite, sqrt, tau
 
 from stiffmbs.compile.machine.native.access import compiled, view_of
@@ -51,6 +49,13 @@ def edge(w, k, number):
         turns = number // count
         return w.edges[first + number - turns * count] + turns * w.period[k]
     return w.edges[first + min(max(number, 0), count - 1)]
+
+
+@compiled
+def place(w, k, value):
+    """Return an even number in an interval of function k, and the odd one between two of them on a breakpoint."""
+    number = zone(w, k, value)
+    return 2 * number + (1 if value == edge(w, k, number) else 0)
 
 
 @compiled

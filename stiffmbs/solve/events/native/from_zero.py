@@ -1,7 +1,5 @@
 """Signs of event functions that are exactly zero at the start of a step: those that the motion gives them first."""
 
-from __future__ import annotations
-
 from sys import float_info
 
 from stiffmbs.compile.machine.native.access import compiled

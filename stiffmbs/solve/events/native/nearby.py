@@ -1,7 +1,5 @@
 """Selection of kernels with event functions that may reach a breakpoint within a step; others are not searched."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled
 from stiffmbs.solve.events.native.bounds import edge, turned, zone
 from stiffmbs.solve.events.native.parameters import SEARCH

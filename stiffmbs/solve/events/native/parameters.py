@@ -40,14 +40,16 @@ class EventSearchParameters:
     """Largest rotation of a body in such a step, rad: values at the ends do not show whole revolutions."""
     fits: float = 0.02
     """Allowed deviation from the cubic, relative to the range of values there."""
-    noise: float = 1e-9
-    """Rounding of values and rates, relative to the largest number in the state."""
+    precision: float = 1e-9
+    """Precision of values and rates, relative to the largest number in the state: smaller differences are rounding. Both sides
+    of a state are as far from it."""
     shallow: float = 1e-5
     """Depth below zero, relative to that rounding, that is no event: rounding changes the sign of a closed contact."""
     well: float = 0.03
     """Relative deviation from the cubic below which the next part is doubled (it has order four)."""
-    least_part: float = 1e-4
-    """Shortest part of a step that is searched, and least distance to a predicted event, relative to its distance."""
+    finest: float = 1e-4
+    """Finest resolution of times: shortest part of a step that is searched, and distance to a predicted event up to which a
+    step goes, relative to that from its start."""
     few_parts: int = 100
     """Largest number of parts if arguments of sines cannot be followed."""
     difference: float = 1e-6
@@ -79,15 +81,15 @@ class NextStepParameters:
 
     short_of: float = 1e-8
     """Distance from the end of a step to a predicted event, relative to the longest step; that relative to the distance of
-    the event is `EventSearchParameters.least_part`."""
+    the event is `EventSearchParameters.finest`."""
     growth: float = 2.0
     """Largest ratio of successive steps of IDA."""
     of_an_interval: float = 0.35
     """Fraction of an interval of a law that may be passed on each side of a place within a step: two or three steps
     resolve an interval. Larger fractions save steps, and miss more narrow features."""
-    first_step: float = 1e-3
-    """Largest first step of IDA, relative to the time to the next stop. The motion is extrapolated over at most this fraction
-    of an explicit step to find the sign of a function that is zero."""
+    just_after: float = 1e-3
+    """Part of an explicit step, or of the time to the next stop, that is just after a start, as IDA's longest first step. The
+    motion is extrapolated over no more, to find the sign of a function that is zero."""
     soon: float = 1e-2
     """Passage relative to the time to the next stop above which IDA's first steps are short enough."""
     passage_steps: float = 16.0

@@ -1,7 +1,5 @@
 """Event functions near a state: their sign changes on both sides and ahead, accelerations there, and rates."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, factors_view, state_view
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied

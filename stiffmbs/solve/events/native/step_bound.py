@@ -1,7 +1,5 @@
 """Bound of the step size that resolves the features of inputs, and storage of long steps to be checked after the run."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
 from stiffmbs.solve.events.native.layouts import LONG_STEPS, STEP_BOUND
 

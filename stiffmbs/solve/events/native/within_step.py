@@ -10,8 +10,6 @@ intervals.  Error control covers a transition from one interval into the next.  
 step has passed, or has visited between its ends, by more than the overlap of the intervals.
 """
 
-from __future__ import annotations
-
 from math import isfinite, sqrt, tau
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
@@ -236,7 +234,7 @@ def _longest_part(w):
     turned = 0.0
     for k in range(w.n_angles):
         turned = max(turned, abs(last[w.angle[k]] - w.row[w.angle[k]]))
-    return max(min(0.5, SEARCH.turned / max(turned, SEARCH.turned)), SEARCH.least_part)
+    return max(min(0.5, SEARCH.turned / max(turned, SEARCH.turned)), SEARCH.finest)
 
 
 @compiled
@@ -248,14 +246,14 @@ def first_event(w, s, begun, h):
         w.left_high[k] = -1.0
     low = 0.0
     longest = _longest_part(w)
-    part = max(min(longest, SEARCH.turned / max(fastest_turn(w, w.a_rate), SEARCH.turned)), SEARCH.least_part)
+    part = max(min(longest, SEARCH.turned / max(fastest_turn(w, w.a_rate), SEARCH.turned)), SEARCH.finest)
     parts = 0
-    most_parts = 1.0 / SEARCH.least_part
+    most_parts = 1.0 / SEARCH.finest
     if turned_arguments(w, w.value_before, w.value_after) > most_parts * SEARCH.turned:
         most_parts = SEARCH.few_parts
     noise = 0.0
     for i in range(w.n_state):
-        noise = max(noise, SEARCH.noise * abs(w.row[i]))
+        noise = max(noise, SEARCH.precision * abs(w.row[i]))
     w.depth = SEARCH.shallow * noise
     while low < 1.0:
         end = min(low + part, 1.0)
@@ -274,7 +272,7 @@ def first_event(w, s, begun, h):
             _note_noise(w, s, begun, h, end, part)
             missed = _mismatch(w, part, noise)
         turns = _turned_in_part(w, part)
-        if (missed > 1.0 or turns > SEARCH.turned) and part > SEARCH.least_part and parts < most_parts:
+        if (missed > 1.0 or turns > SEARCH.turned) and part > SEARCH.finest and parts < most_parts:
             part *= 0.5
             continue
         if turns > tau:

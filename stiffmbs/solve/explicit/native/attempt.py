@@ -1,7 +1,5 @@
 """Step of given length: stages, and projection of its end onto the constraints."""
 
-from __future__ import annotations
-
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted

@@ -1,7 +1,5 @@
 """Error estimate of a Runge-Kutta step by embedded schemes, with detection of invalid estimates."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view

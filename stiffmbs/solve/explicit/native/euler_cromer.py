@@ -1,7 +1,5 @@
 """Semi-implicit Euler steps with projection."""
 
-from __future__ import annotations
-
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, state_view

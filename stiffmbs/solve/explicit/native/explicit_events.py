@@ -1,7 +1,5 @@
 """Event location of explicit integrators: steps end at sign changes of event functions."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.calls import int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
@@ -103,7 +101,7 @@ def _note_sides_at_start(x, s):
     begin_sides(w.m, w.m2, count)
     ahead = max(EPSILON * x.span, INDISTINCT * abs(x.t))
     while (
-        ahead <= NEXT_STEP.first_step * x.span and note_sides(x.signs, _values_ahead(x, s, ahead), w.m, w.m2, count) > 0
+        ahead <= NEXT_STEP.just_after * x.span and note_sides(x.signs, _values_ahead(x, s, ahead), w.m, w.m2, count) > 0
     ):
         ahead *= SEARCH.longer
 

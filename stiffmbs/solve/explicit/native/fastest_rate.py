@@ -3,8 +3,6 @@
 Apart from the steps and linked by addresses: runs of implicit solvers need the rate, too, and compile little for it.
 """
 
-from __future__ import annotations
-
 from math import sin, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view

@@ -5,8 +5,6 @@ polynomials follow from states and rates at both ends (Hermite), the others are 
 Wanner, Solving Ordinary Differential Equations I (1993), eq. II.6.15 and the codes DOPRI5 and DOP853.
 """
 
-from __future__ import annotations
-
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted

@@ -1,7 +1,5 @@
 """Memory layouts of a Runge-Kutta scheme and of explicit integration."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
 SCHEME = Layout({

@@ -90,8 +90,6 @@ class UncertainEndParameters:
     harmful: float = 0.03
     """Velocity change by errors of accelerations in a step, in tolerances, above which they shorten steps: a step should
     not end there, the LU replaces the elimination, or rounding governs the run."""
-    most_moved: int = 3
-    """Number of times that the end of a step is moved back."""
     shorter: float = 0.55
     """Factor of the step: the stages of the next step then avoid the pose, because those of dopri5 and dop853 are at up
     to 0.33 and from 0.6 of a step on."""

@@ -1,7 +1,5 @@
 """Explicit Runge-Kutta steps with projection, of fixed size or with error control."""
 
-from __future__ import annotations
-
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
@@ -121,9 +119,9 @@ def _step(x, c, s, m, end):
             t_new = end if h == end - t else t + h
             status = arrive(x, c, s, m, t_new)
             uncertain = status == 0 and uncertain_end(x, c, h)
-            if uncertain and not x.uncertain and t_new < end and moved <= ENDS.most_moved:
+            if uncertain and not x.uncertain and t_new < end and moved < 2:
+                h = h / ENDS.shorter if moved else h * ENDS.shorter  # back to the whole step if that does not help
                 moved += 1
-                h = h * ENDS.shorter if moved <= ENDS.most_moved else h / ENDS.shorter**ENDS.most_moved
                 continue
             if status == 0:
                 x.uncertain = 1 if uncertain or moved else 0  # two in succession would approach a locking pose

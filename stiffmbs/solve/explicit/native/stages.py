@@ -1,7 +1,5 @@
 """Stages of an explicit Runge-Kutta step: rates at weighted sums of earlier ones."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted, view_of
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 from stiffmbs.compile.machine.native.memory import copied

@@ -1,7 +1,5 @@
 """Start of explicit steps from consistent values: rates and event functions there, and the first step size."""
 
-from __future__ import annotations
-
 from math import isfinite, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, shifted

@@ -17,8 +17,6 @@ L. F. Shampine, L. S. Baca, Error estimators for stiff differential equations, J
 E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996, ch. IV.8, eq. (8.19).
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import (
     address_of,
     compiled,

@@ -1,7 +1,5 @@
 """Residual and Jacobian callbacks of scikit-sundae, with a history of IDA's steps inferred from the calls."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, state_view, view_of
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.solve.ida.native.ida_memory import watched

@@ -1,7 +1,5 @@
 """Events within a step of IDA; compiled only for scenes with event functions."""
 
-from __future__ import annotations
-
 from math import pi
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
@@ -42,7 +40,7 @@ def _note_sides(c, w, s, toward):
     for k in range(count):
         w.a[k] = float(w.value_before[k] > 0.0) - float(w.value_before[k] < 0.0)
     begin_sides(w.m, w.m2, count)
-    most = SEARCH.least_difference / NEXT_STEP.first_step * (toward - c.returned)
+    most = SEARCH.least_difference / NEXT_STEP.just_after * (toward - c.returned)
     ahead = max(EPSILON * (toward - c.returned), INDISTINCT * abs(c.returned))
     while ahead <= most:
         go_ahead(c, s, ahead)
@@ -183,7 +181,7 @@ def _aim(c, w, s, ahead):
         w.found[k] = 0
     least = max(NEXT_STEP.short_of * w.longest, 10.0 * INDISTINCT * abs(t))
     if 3.0 * least < ahead * place < ahead:
-        w.target = t + ahead * place - max(least, SEARCH.least_part * ahead * place)
+        w.target = t + ahead * place - max(least, SEARCH.finest * ahead * place)
 
 
 @compiled

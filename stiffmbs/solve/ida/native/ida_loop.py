@@ -1,13 +1,12 @@
 """IDA's callbacks with their C signatures, and the loop over its steps without Python."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int, copy_bytes, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
+from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
-from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, repeats
+from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, place, repeats
 from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
 from stiffmbs.solve.events.native.step_bound import (
     STRETCHED,
@@ -81,6 +80,17 @@ def event_functions(t, yy, yp, g, user_data):
     c.seen = t
     watched(values, c.signs, c.masked, g, c.n_event_functions)
     return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)
+
+
+def event_functions_and_places(t, yy, yp, g, user_data):
+    """Compute the event functions, and the places of other functions among the breakpoints of tables with a kink."""
+    flag = event_functions(t, yy, yp, g, user_data)
+    c = native_ida_view(user_data)
+    w = event_search_view(c.watch)
+    values = floats(state_view(c.state).values[SWITCH])
+    for k in range(c.n_event_functions, w.n):
+        g[k] = float(place(w, k, values[k])) if w.kinked[k] else 0.0
+    return flag
 
 
 @compiled
@@ -166,7 +176,7 @@ def stepped(c, ida, toward, stop):
         row[0], row[1], row[2] = c.internal, float(c.order), c.size
         c.recorded += 1
         _sample(c)
-        _accumulate(c)
+        _accumulate(c, begun)
     if flag >= 0 and _stalled(c):
         return STALLED
     if seen != NO_EVENT:
@@ -235,12 +245,21 @@ def _sample(c):
 
 
 @compiled
-def _accumulate(c):
-    """Accumulate local errors, read only every few steps to save time."""
+def _accumulate(c, begun):
+    """Accumulate local errors, read only every few steps to save time.
+
+    They are the errors at the end of IDA's step, which is not the returned state if an event has been found before it.
+    """
     a = accumulated_errors_view(c.accumulated)
-    if is_due(a, c.size) and call_int(c.errors_of, (c.memory, c.at_output)) == OK:
-        values = floats(state_view(c.state).values[equations_view(c.equations).matrix_set])
-        displace_by(a, array_of(c, c.y), c.output, values)
+    if is_due(a, c.returned - begun) and call_int(c.errors_of, (c.memory, c.at_output)) == OK:
+        e = equations_view(c.equations)
+        values = floats(state_view(c.state).values[e.matrix_set])
+        y = array_of(c, c.y)
+        copied(c.probe, y, e.n)
+        if c.returned < c.internal:
+            call_int(c.interpolate, (c.memory, c.internal, int32(0), c.y))
+        displace_by(a, y, c.output, values)
+        copied(y, c.probe, e.n)
 
 
 @compiled
@@ -256,11 +275,7 @@ def _report_at(c, t, derivative, current, row):
         _report(c, array_of(c, current), row)
         return int32(OK)
     b = output_correction_view(c.output_correction)
-    if (
-        b.interpolate != 0
-        and c.size > b.long
-        and corrected(c.output_correction, c.state, c.equations, t, (c.returned - t) / c.size)
-    ):
+    if b.interpolate != 0 and c.size > b.long and corrected(c.output_correction, c.state, c.equations, t):
         _report(c, b.yp if derivative else b.y, row)
         return int32(OK)
     flag = call_int(c.interpolate, (c.memory, t, int32(derivative), c.at_output))

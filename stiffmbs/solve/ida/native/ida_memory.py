@@ -1,7 +1,5 @@
 """Memory of the loop over IDA's steps, and event functions for its root search, each positive at first."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, floats, view_of
 from stiffmbs.compile.machine.native.calls import call_address
 from stiffmbs.solve.ida.native.layouts import NATIVE_IDA

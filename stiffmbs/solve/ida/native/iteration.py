@@ -16,8 +16,6 @@ For long steps, the tolerance follows from the stiffness of the scene (`stiffmbs
 position error causes a velocity error within the step, so shorter steps may leave more, in proportion to cj.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import address_of, compiled, floats, view_of
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.solve.error_control.native.parameters import NEWTON

@@ -1,7 +1,5 @@
 """Memory layouts of IDA's callbacks, loop, starts and norms."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
 NO_EVENT, EVENT, PASSED_INTERVAL = range(3)
@@ -23,13 +21,13 @@ NATIVE_IDA = Layout({
     "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
     "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
-    "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "weights": INT,
+    "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "atol": FLOATS, "rtol": FLOAT_CELL,
     "long_steps": INTS, "accumulated": INTS, "errors_of": INT, "error_norm": INTS,
     "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL, "seen": FLOAT_CELL,
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
 functions and objects, values and pattern of the matrix, and reported unknowns; function by which a one-step method
-repeats its last step with another length, 0 for a multistep method.
+repeats its last step with another length, 0 for a multistep method; absolute and relative tolerances.
 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
 size of the next attempt; last stop time; output times served, tiny steps in succession, 1 if the last event was found
@@ -80,9 +78,8 @@ equal times; number of breakpoints passed, and steps before the last."""
 
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
-    "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
-    "balanced": FLOAT_CELL, "unseen": INT_CELL, "next_look": INT_CELL, "force_end": INTS, "force_row": INTS,
-    "local": FLOAT_CELL, "judged": INT_CELL, "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
+    "balanced": FLOAT_CELL, "force_end": INTS, "force_row": INTS,
+    "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
     "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
     "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
@@ -91,11 +88,8 @@ OUTPUT_CORRECTION = Layout({
 """Newton's iteration on interpolated states (`stiffmbs.solve.ida.native.output_correction`).
 
 Cells: cj of the factors (0 for none), cj of IDA, part of the tolerance that may remain, step, s, above which states
-within it are corrected; time of the factors, growth of the convergence rate per second from there (negative if
-unknown), states corrected since its measurement; allowed imbalance relative to the largest force, number of states not
-checked after a balanced one, and the remaining number.  Then rows of the equations of motion, forces before moments,
-and their ends; effect of closing joints by 1 m on the imbalance, in units of the allowed one, and the number of states
-for which it is used; rows of position constraints; system that closes joints; memory for a pose."""
+within it are corrected; allowed imbalance relative to the largest force.  Then rows of the equations of motion, forces
+before moments, and their ends; rows of position constraints; system that closes joints; memory for a pose."""
 
 ITERATION = Layout({
     "n": INT, "by_reactions": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,

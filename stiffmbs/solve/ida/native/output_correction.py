@@ -7,8 +7,6 @@ restores the equilibrium of stiff forces.  Small rotations since IDA's last setu
 iteration has its own factors, used as long as they converge.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
 from stiffmbs.compile.machine.native.calls import call_int, copy_bytes, int32
 from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, add_sizes, evaluate, load
@@ -17,7 +15,7 @@ from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.dynamics.native.block_systems import to_position_constraints
 from stiffmbs.dynamics.native.layouts import MOST_MOVES, POSITION_TOLERANCE
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.error_control.native.parameters import NEWTON, POLISHING
+from stiffmbs.solve.error_control.native.parameters import POLISHING
 from stiffmbs.solve.ida.native.layouts import OUTPUT_CORRECTION
 
 INFINITE = float("inf")
@@ -44,8 +42,6 @@ def _factored(b, s, e, t):
     if call_int(b.setup, (b.solver, b.matrix)) != OK:
         return False
     b.factored = cj
-    b.made = t
-    b.growth = -1.0
     return True
 
 
@@ -74,51 +70,25 @@ def _unbalanced(b, defect):
 
 
 @compiled
-def _by_closing(b, s, e, t, opening):
-    """Return the imbalance with joints closed by a projection; note its change for a unit opening."""
+def _by_closing(b, s, e, t):
+    """Return the imbalance with joints closed by a projection."""
     copied(b.pose, s.q, s.n_q)
     if to_position_constraints(s, dynamics_view(b.dynamics), t, POSITION_TOLERANCE, MOST_MOVES) < 0:
         copied(s.q, b.pose, s.n_q)
         return INFINITE
     add_products(e, evaluate(s, e.residual_set, t), b.y, b.yp, b.correction)
     copied(s.q, b.pose, s.n_q)
-    part = _unbalanced(b, b.correction)
-    for k in range(e.n):
-        b.correction[k] -= b.defect[k]
-    b.local = _unbalanced(b, b.correction) / opening
-    b.judged = NEWTON.trusted
-    return part
+    return _unbalanced(b, b.correction)
 
 
 @compiled
 def _left(b, s, e, t):
-    """Return the largest relative imbalance of the equations of motion, as interpolated and with joints closed.
-
-    The effect of closing joints is computed if its last value is old or close to the limit.
-    """
+    """Return the largest relative imbalance of the equations of motion, as interpolated and with joints closed."""
     part = _unbalanced(b, b.defect)
     opening = 0.0
     for k in range(b.n_joint_rows):
         opening = max(opening, abs(b.defect[b.joint_row[k]]))
-    if part > 1.0 or opening <= POSITION_TOLERANCE:
-        return part
-    if b.judged > 0 and POLISHING.worse * b.local * opening <= 1.0:
-        b.judged -= 1
-        return max(part, POLISHING.worse * b.local * opening)
-    return max(part, _by_closing(b, s, e, t, opening))
-
-
-@compiled
-def _is_balanced(b, s, e, t, ahead):
-    """Return True if the forces of the interpolated state balance; set the number of states not to be checked.
-
-    Interpolants are exact at both ends of a step, so states near them do not represent others.
-    """
-    middle = 4.0 * ahead * (1.0 - ahead)
-    part = _left(b, s, e, t)
-    b.unseen = min(2 * b.unseen + 1, POLISHING.most_unseen) if part < POLISHING.far_below * middle else 0
-    b.next_look = b.unseen
-    return part <= 1.0
+    return part if part > 1.0 or opening <= POSITION_TOLERANCE else max(part, _by_closing(b, s, e, t))
 
 
 @compiled
@@ -136,25 +106,9 @@ def _corrected(b, e):
 
 
 @compiled
-def _predicted(b, t):
-    """Return the rate for the first correction, in proportion to the age of the factors; 1 if not measured."""
-    b.since += 1
-    known = b.growth >= 0.0 and b.since <= NEWTON.trusted
-    return POLISHING.worse * b.growth * (t - b.made) if known else 1.0
-
-
-@compiled
-def _note_rate(b, t, rate):
-    """Note the rate, unless factors are new: the iteration then converges quadratically, unlike for later states."""
-    if t > b.made:
-        b.growth = rate / (t - b.made)
-        b.since = 0
-
-
-@compiled
 def _settled(b, s, e, t):
     """Correct until the error is negligible, by the convergence rate, or forces balance; return False on failure."""
-    rate = _predicted(b, t)
+    rate = 1.0
     before = 0.0
     for k in range(POLISHING.most_corrections):
         size = _corrected(b, e)
@@ -162,7 +116,6 @@ def _settled(b, s, e, t):
             rate = size / before
             if not rate < POLISHING.slowest:
                 return size <= b.enough
-            _note_rate(b, t, rate)
         if rate * size <= b.enough:
             return True
         before = size
@@ -173,25 +126,19 @@ def _settled(b, s, e, t):
 
 
 @compiled
-def corrected(output_correction, state, equations, t, ahead):
-    """Interpolate and correct the state in the table's y and y'; return False if the interpolant is to be used.
-
-    `ahead` is the fraction of the step after t.
-    """
+def corrected(output_correction, state, equations, t):
+    """Interpolate and correct the state in the table's y and y'; return False if the interpolant is to be used."""
     b = output_correction_view(output_correction)
-    if b.next_look > 0:
-        b.next_look -= 1
-        return False
     s = state_view(state)
     e = equations_view(equations)
     if not _interpolated(b, t):
         return False
     _look(b, s, e, t)
-    if _is_balanced(b, s, e, t, ahead):
+    if _left(b, s, e, t) <= 1.0:
         return True
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
-    if b.current / POLISHING.apart < b.factored < b.current * POLISHING.apart:
+    if b.factored > 0.0:
         if _settled(b, s, e, t):
             return True
         _interpolated(b, t)

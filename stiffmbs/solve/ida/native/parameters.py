@@ -23,9 +23,9 @@ class LoopParameters:
     most_passed: int = 64
     """Largest number of breakpoints, of samples that change nothing that acts, or of output times of scikit-sundae, in a
     call."""
-    most_kept: int = 1_000_000
-    """Largest number of stored steps, which are only counted afterwards, of numbers in stored states, or of unknowns in
-    the steps of a call. These take about 0.1 s, for progress and interruption. A clock would make results depend on the
+    most_items: int = 1_000_000
+    """Largest number of items that are stored (steps, which are only counted afterwards, or numbers in states) or computed
+    in a call (steps times unknowns). A call takes about 0.1 s, for progress and interruption. A clock would make results depend on the
     load of the machine, because calls affect Newton's iteration."""
 
 

@@ -5,8 +5,6 @@ interval of another law, the step is accepted without the forces in between.  A 
 whose stages may all be after such an interval.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, shifted
 from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate, load
@@ -29,10 +27,14 @@ def bound_passage(c, w, s, toward, stop):
     if c.returned < w.begins:
         w.begins = c.returned
     w.passage, w.first = float("inf"), float("inf")
-    ahead = _passage(c, w, s, toward, stop)
+    of_every_law = w.n_turns > 0 or c.repeat
+    ahead = _passage(c, w, s, toward, stop, w.n if of_every_law else w.n_event_functions)
+    each_step = ahead > 0.0 and (w.n_turns > 0 or not w.under_way)
+    if ahead == 0.0 and not of_every_law:
+        ahead = _passage(c, w, s, toward, stop, w.n)
     if ahead > 0.0:
         w.passed = c.returned + ahead
-        if w.n_turns > 0 or not w.under_way:  # stages of a step resolve a part of the passage each
+        if each_step:  # stages of a step resolve a part of the passage each
             w.passage = NEXT_STEP.inside * ahead if c.repeat else ahead / NEXT_STEP.passage_steps
             w.first = NEXT_STEP.first_part * w.passage
         elif _matters(c, w, s, ahead):
@@ -42,20 +44,20 @@ def bound_passage(c, w, s, toward, stop):
 
 
 @compiled
-def _passage(c, w, s, toward, stop):
-    """Return the time after which the motion leaves a law; 0 if it does not soon."""
+def _passage(c, w, s, toward, stop, count):
+    """Return the time after which the motion leaves a law of the first `count` functions; 0 if it does not soon."""
     ahead = SEARCH.least_difference * (toward - c.returned)
     most = stop - c.returned if w.n_turns > 0 else NEXT_STEP.soon * (toward - c.returned)
     if c.repeat:
         most = min(max(most, c.next_size), stop - c.returned)
-    while ahead < most and not _another_side(c, w, s, ahead):
+    while ahead < most and not _another_side(c, w, s, ahead, count):
         ahead *= 2.0
     if not ahead < most:
         return 0.0
     low = 0.5 * ahead
     while ahead - low > NEXT_STEP.first_part / NEXT_STEP.passage_steps * ahead:  # the first step
         middle = 0.5 * (low + ahead)
-        if _another_side(c, w, s, middle):
+        if _another_side(c, w, s, middle, count):
             ahead = middle
         else:
             low = middle
@@ -63,12 +65,12 @@ def _passage(c, w, s, toward, stop):
 
 
 @compiled
-def _another_side(c, w, s, ahead):
-    """Return True if an event function changes its sign in a time, or a law its interval."""
+def _another_side(c, w, s, ahead, count):
+    """Return True if one of the first `count` functions changes its sign in a time, or its law the interval."""
     go_ahead(c, s, ahead)
     values = evaluate(s, SWITCH, c.returned + ahead)
     others = 0
-    for k in range(w.n if w.n_turns > 0 or c.repeat else w.n_event_functions):
+    for k in range(count):
         others += zone(w, k, values[k]) != zone(w, k, w.value_before[k])
     return others > 0
 
@@ -79,9 +81,8 @@ def _matters(c, w, s, ahead):
 
     The residual with the initial rates is the change of force; the mass is the coefficient of an unknown's own rate.
     """
-    if call_int(c.weights, (c.memory, c.at_output)) < 0:
-        return True
-    e, rates, inside = equations_view(c.equations), array_of(c, c.yp), c.returned + NEXT_STEP.inside * ahead
+    e, y, rates = equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp)
+    inside = c.returned + NEXT_STEP.inside * ahead
     go_ahead(c, s, NEXT_STEP.inside * ahead)
     values, residual, own = evaluate(s, e.residual_set, inside), c.residual, shifted(c.residual, e.n)
     add_products(e, values, c.probe, rates, residual)
@@ -92,7 +93,7 @@ def _matters(c, w, s, ahead):
             own[e.r_row[k]] += e.r_factor[k] * values[e.r_source[k]]
     largest = 0.0
     for i in range(e.n):
-        change = ahead * c.output[i] * abs(residual[i])
+        change = ahead * abs(residual[i]) / (c.rtol * abs(y[i]) + c.atol[i])
         if change > largest * abs(own[i]) and own[i] != 0.0:
             largest = change / abs(own[i])
     return largest > 1.0

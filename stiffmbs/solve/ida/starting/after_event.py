@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ....compile.machine.compiler import SHORT
 from ....compile.machine.layout import packed
 from ....compile.machine.routines import Routine
 from ....compile.system import System
@@ -18,7 +19,10 @@ from ..native.layouts import ANEW, RESTART
 from .starts import Starts, integers
 
 _ANEW = Routine(
-    "stiffmbs.solve.ida.starting.native.breakpoints", "anew", "int32(float64, float64, int64, int64, int64*)"
+    "stiffmbs.solve.ida.starting.native.breakpoints",
+    "anew",
+    "int32(float64, float64, int64, int64, int64*)",
+    level=SHORT,
 )
 
 

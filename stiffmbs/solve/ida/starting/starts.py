@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....compile.equations import ABSENT, Equations
+from ....compile.machine.compiler import SHORT
 from ....compile.machine.layout import packed
 from ....compile.machine.routines import Routine
 from ....compile.state import SETS
@@ -23,7 +24,9 @@ from ..statistics import Statistics
 if TYPE_CHECKING:
     from ....dynamics.initial import InitialValues
 
-_START = Routine("stiffmbs.solve.ida.starting.native.start", "start", "int32(float64, int64, int64, int64*)")
+_START = Routine(
+    "stiffmbs.solve.ida.starting.native.start", "start", "int32(float64, int64, int64, int64*)", level=SHORT
+)
 FUNCTIONS = {
     "set_newton": "IDASetNonlinConvCoef", "start_anew": "IDAReInit", "set_first_step": "IDASetInitStep",
     "set_growth": "IDASetEtaFixedStepBounds", "set_highest_order": "IDASetMaxOrd",
@@ -51,7 +54,7 @@ class Starts:
             "rate": np.zeros(system.n_q), "sums": np.zeros(system.n_u),
             **_places(equations), **_creeping(dynamics, settings), **_stiff(dynamics), **statistics.arrays,
             "soft": NEWTON.soft, "loosest": control.newton or NEWTON.loosest,
-            "tightest": control.newton or max(NEWTON.tightest, NEWTON.precision / settings.rtol), "growth": control.growth,
+            "tightest": control.newton or max(NEWTON.negligible, NEWTON.precision / settings.rtol), "growth": control.growth,
             **{name: connection.address(function) for name, function in FUNCTIONS.items()},
         }  # fmt: skip
         self._kept = values, connection

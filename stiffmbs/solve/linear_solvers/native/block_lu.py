@@ -4,15 +4,13 @@ Each supernode is factored with pivots from its own rows (`stiffmbs.solve.linear
 later blocks are lists of small dense products (`stiffmbs.sparse.block_updates`).  Only the order avoids singular
 blocks (`stiffmbs.sparse.elimination_order`), so a trial solution checks the factors by its residual.  If that is
 too large, solutions are refined once, or pivoting over all rows replaces these factors
-(`stiffmbs.solve.linear_solvers.native.paired_columns`).  No new trial is made while all pivots stay close to those of the last one.
+(`stiffmbs.solve.linear_solvers.native.pivoted`).  No new trial is made while all pivots stay close to those of the last one.
 
 References
 ----------
 Duff and Reid, The multifrontal solution of unsymmetric sets of linear equations, SIAM J. Sci. Stat. Comput. 5 (1984)
 633-641.
 """
-
-from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
@@ -27,8 +25,8 @@ from stiffmbs.solve.linear_solvers.native.pair_factors import (
     add_two_quads_of_pairs,
     factor_pair_node,
 )
-from stiffmbs.solve.linear_solvers.native.paired_columns import paired_view
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
+from stiffmbs.solve.linear_solvers.native.pivoted import pivoted_view
 from stiffmbs.sparse import block_updates
 from stiffmbs.sparse.blocks import CACHE_LINE
 
@@ -90,7 +88,6 @@ def _forget(s):
     s.refused = 0
     s.refined = 0
     s.ready = 1
-    paired_view(ints(s.with_pivots[CONTENT])).ready = 0
 
 
 @compiled
@@ -128,7 +125,7 @@ def setup(solver, matrix):
         s.last_flag = NOT_COMPILED
         return int32(FAILED)
     outcome = call_int(s.setup_pivots, (s.with_pivots, matrix))
-    s.last_flag = paired_view(ints(s.with_pivots[CONTENT])).last_flag
+    s.last_flag = pivoted_view(ints(s.with_pivots[CONTENT])).last_flag
     return int32(outcome)
 
 

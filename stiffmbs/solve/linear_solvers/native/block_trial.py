@@ -5,8 +5,6 @@ References
 Oettli and Prager, Compatibility of approximate solution of linear equations, Numer. Math. 6 (1964) 405-409: residual.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted
 from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, set_quad, spread, sum_of
 from stiffmbs.solve.linear_solvers.native.layouts import COORDINATE, MULTIPLIER

@@ -5,8 +5,6 @@ list of updates, `lu[target] -= lu[left] * lu[right]`, for later factorisations.
 loops, whose ends a processor cannot predict.  A pivot that becomes too small causes a new order.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
 from stiffmbs.compile.machine.native.calls import call_address, int32
 from stiffmbs.compile.machine.native.factors import DONE, FULL, equilibrate, factor, scale

@@ -1,7 +1,5 @@
 """Memory layouts of the linear solvers of IDA."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.layout import FLOATS, INDICES, INT, INT_CELL, INTS, OWN_FLOATS, OWN_INDICES, Layout
 
 FIXED_ORDER = Layout({
@@ -13,13 +11,10 @@ FIXED_ORDER = Layout({
 SUNDIALS solver that it replaces: number of unknowns, pivots, last flag.  `ready` is 1 if pivots are known; `n_lower`
 and `n_upper` count the entries off the diagonal.  Long lists have 32-bit numbers to save memory access."""
 
-PAIRED_COLUMNS = Layout({
-    "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "slot": INDICES, "weight": FLOATS,
-    "ready": INT_CELL, "n_lower": INT_CELL, "n_items": INT_CELL,
-    "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "place": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES,
-    "item_start": INTS, "item_end": INTS, "side": INTS, "mark": INTS, "x": FLOATS,
+PIVOTED = Layout({
+    "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "weight": FLOATS,
 })  # fmt: skip
-"""Linear solver with two-column supernodes, `n_items` in all (`stiffmbs.solve.linear_solvers.native.paired_columns`)."""
+"""Linear solver with pivots searched in every matrix (`stiffmbs.solve.linear_solvers.native.pivoted`)."""
 
 MULTIPLIER, COORDINATE, VELOCITY = range(3)
 """Kinds of unknowns in `BLOCK_LU`."""
@@ -35,7 +30,7 @@ BLOCK_LU = Layout({
     "pivot": FLOATS, "tried": FLOATS, "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
 })  # fmt: skip
 """Linear solver by dense blocks (`stiffmbs.solve.linear_solvers.native.block_lu`).  `with_pivots` holds the address of the
-table of `PAIRED_COLUMNS` that replaces inaccurate blocks; `compile_pivots` is the C function that stores the addresses
+table of `PIVOTED` that replaces inaccurate blocks; `compile_pivots` is the C function that stores the addresses
 of its routines in the next two cells.  `ready` is 1 if the counts are of this run.  `pivoted` is 1 for current factors
 with pivoting, `waits` the number of further ones, `serves` that of factorisations covered by the last trial, `refused`
 that of failed trials.  `refined` is 1 if solutions are refined; `panels` is the start of the factors.  `order` holds

@@ -9,8 +9,6 @@ References
 Du Croz and Higham, Stability of methods for matrix inversion, IMA J. Numer. Anal. 12 (1992) 1-19.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.quads import (
     add_products,

@@ -4,8 +4,6 @@ Numbers are pairs of real and imaginary part, at 2 r and 2 r + 1 of a line. A pa
 the supernode.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.quads import (
     add_pair_products,

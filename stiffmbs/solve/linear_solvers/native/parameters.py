@@ -16,8 +16,6 @@ class PivotParameters:
 
     largest: float = 1e3
     """Ratio of an entry to the pivot of its column above which the pivot is rejected."""
-    worth_a_pair: float = 0.8
-    """Ratio of the items of a supernode to its entries above which columns are stored separately."""
     largest_residual: float = 1e-9
     """Allowed residual of a trial solution by blocks, relative to the terms of a row."""
     refinable: float = 1e-5

@@ -5,8 +5,6 @@ therefore moved by Newton corrections with the factors of the step. Joints are t
 polynomial of the efforts. Many outputs of a step share a few such corrections, which are interpolated (Newton's form).
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, equations_view, ints, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import EFFORT, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
@@ -43,8 +41,9 @@ def _defects(x, t):
 def closed(x, t, most):
     """Close the state in `x.y_stage`.
 
-    Returns AGREED if its forces had agreed with the efforts before, or OPEN if they do not after the corrections, or if
-    these exceed a number of tolerances.
+    Returns AGREED if its forces had agreed with the efforts before, and its joints were closed to the part of the tolerance
+    that Newton's iteration may leave; or OPEN if forces do not agree after the corrections, or if these exceed a number of
+    tolerances.
     """
     allowed = 0.0
     for k in range(x.n, x.n_all):
@@ -77,12 +76,15 @@ def closed(x, t, most):
             x.y_stage[k] += x.d[k]
         size = size_in_tolerances(x, x.d)
         moved += size
+        if count == 0 and x.n_tested < x.n:  # forces change as joints close
+            for k in range(x.n, x.n_all):
+                first = max(first, abs(x.d[k]))
         if x.closing * apart <= allowed:
             enough = True
             break
     if moved > most or not (enough or x.rtol * size <= ROUNDING):
         return OPEN
-    return AGREED if first <= allowed else CLOSED
+    return AGREED if first <= allowed and (x.n_tested == x.n or moved <= x.newton) else CLOSED
 
 
 @compiled
@@ -129,6 +131,8 @@ def _find_corrections(x, c):
     for j in range(c.n_between):
         place = c.between[j]
         factor = _corrected(x, c, place, j)
+        if x.n_tested < x.n:
+            polynomial_rates(x, place, x.yp_stage)
         correction = shifted(x.corrections, j * x.n_all)
         copied(correction, x.y_stage, x.n_all)
         x.n_corrections = j + 1
@@ -150,7 +154,7 @@ def dense_output(x, t, place, target):
         return
     c = collocation_view(ints(x.methods[x.method_past]))
     x.outputs += 1
-    if x.outputs == FEW + 1 and x.n_tested == x.n:
+    if x.outputs == FEW + 1:
         _find_corrections(x, c)
     if x.outputs > FEW and x.suffice:
         _corrected(x, c, place, x.n_corrections)

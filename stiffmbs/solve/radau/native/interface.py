@@ -1,7 +1,5 @@
 """Functions of Radau methods with the interface of IDA, so that one loop drives both."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, floats, ints
@@ -9,7 +7,7 @@ from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
-from stiffmbs.solve.events.native.parameters import BISECTIONS, INDISTINCT
+from stiffmbs.solve.events.native.parameters import BISECTIONS, INDISTINCT, SEARCH
 from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.radau.native.between_steps import dense_output
@@ -37,14 +35,29 @@ def _event_functions(x, t, y, yp, target):
 def _changed(x, before, after):
     """Return the number of event functions whose sign differs, or that have become zero."""
     count = 0
-    for k in range(x.n_functions):
+    for k in range(x.n_events):
         count += before[k] != 0.0 and (after[k] == 0.0 or (before[k] > 0.0) != (after[k] > 0.0))
     return count
 
 
 @compiled
-def _root(x, begin):
-    """Return the first time of a sign change in the last step, just after it; the end if there is none."""
+def _bent(x, before, after):
+    """Return the number of functions that have left an interval of a table with a kink, or a breakpoint and an interval."""
+    count = 0
+    for k in range(x.n_events, x.n_functions):
+        count += abs(after[k] - before[k]) > float(int(before[k]) % 2)
+    return count
+
+
+@compiled
+def _passed(x, before, after, kinks):
+    """Return the number of kinks passed, or of sign changes."""
+    return _bent(x, before, after) if kinks else _changed(x, before, after)
+
+
+@compiled
+def _root(x, begin, kinks):
+    """Return the place of a sign change or kink in the last step, just after it; the end if there is none."""
     low = 0.0
     high = 1.0
     for _ in range(BISECTIONS):
@@ -53,7 +66,7 @@ def _root(x, begin):
             break
         polynomial(x, middle, x.n, x.y_stage)
         _event_functions(x, begin + middle * x.h_past, x.y_stage, x.yp, x.within)
-        if _changed(x, x.before, x.within) > 0:
+        if _passed(x, x.before, x.within, kinks) > 0:
             high = middle
             copied(x.after, x.within, x.n_functions)
         else:
@@ -74,10 +87,10 @@ def _step_back(x, begin, h):
 
 @compiled
 def _stepped(x):
-    """Take a step, up to shortly before an event if the change of law makes its error estimate invalid.
+    """Take a step, up to shortly before an event, or just beyond a kink, if the law makes its error estimate invalid.
 
-    The tolerance of the estimate, of order s, is that of smooth solutions. A step over a jump has to stay within the part
-    of the requested tolerance that the iteration may leave. Its estimate does not bound its error.
+    The tolerance of the estimate, of order s, is that of smooth solutions. A step over a jump or kink has to stay within
+    the part of the requested tolerance that the iteration may leave. Its estimate does not bound its error.
     """
     for _ in range(LOCATION.most_retaken):
         begin = x.t
@@ -86,9 +99,17 @@ def _stepped(x):
             return flag
         _event_functions(x, x.t, x.y, x.yp, x.after)
         relaxed = collocation_view(ints(x.methods[x.method_past])).relaxed
-        if x.error_size * relaxed <= x.newton or _changed(x, x.before, x.after) == 0:
+        if x.error_size * relaxed <= x.newton:
             return flag
-        h = _root(x, begin) * x.h_past / STRETCHED
+        if _changed(x, x.before, x.after) > 0:
+            h = _root(x, begin, False) * x.h_past / STRETCHED
+        elif _bent(x, x.before, x.after) > 0:
+            part = _root(x, begin, True) * (1.0 + SEARCH.difference)
+            if part <= SEARCH.finest or part >= 1.0:
+                return flag
+            h = part * x.h_past
+        else:
+            return flag
         if not h > SMALLEST * abs(begin):
             return flag
         _step_back(x, begin, h)
@@ -116,12 +137,12 @@ def solve(memory, toward, returned, y, yp, task):
     copied(_data(x, yp), x.yp, x.n)
     if x.n_functions > 0:
         if _changed(x, x.before, x.after) > 0:
-            place = _root(x, begin)
+            place = _root(x, begin, False)
             if place < 1.0:
                 returned[0] = begin + place * x.h_past
                 polynomial(x, place, x.n, _data(x, y))
                 polynomial_rates(x, place, _data(x, yp))
-            for k in range(x.n_functions):
+            for k in range(x.n_events):
                 sign = -1 if x.before[k] > 0.0 else 1
                 crossed = x.before[k] != 0.0 and (x.after[k] == 0.0 or (x.before[k] > 0.0) != (x.after[k] > 0.0))
                 x.fired[k] = sign if crossed else 0
@@ -370,6 +391,6 @@ def order_of(memory, result):
 def roots_of(memory, result):
     """Store the directions of the sign changes at the last root (IDAGetRootInfo)."""
     x = radau_view(ints(memory))
-    for k in range(x.n_functions):
+    for k in range(x.n_events):
         result[k] = x.fired[k]
     return int32(OK)

@@ -1,7 +1,5 @@
 """Views of the memory of a Radau integration, and its polynomial."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, ints, shifted, view_of
 from stiffmbs.solve.radau.native.layouts import COLLOCATION, RADAU
 

@@ -5,8 +5,6 @@ With D = T Lambda T^-1, the corrections delta = T^-1 dZ solve one real system (g
 complex ones with (alpha + i beta)/h.
 """
 
-from __future__ import annotations
-
 from math import isfinite, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view
@@ -311,7 +309,7 @@ def most_iterations(c):
 def iterated(x, c, t, h):
     """Solve the stages of a step; CONVERGED, or a reason with the suggested factor of the step in `x.suggested`."""
     most = most_iterations(c)
-    negligible = min(x.newton, max(NEWTON.tightest, NEWTON.precision / x.rtol))
+    negligible = min(x.newton, max(NEWTON.negligible, NEWTON.precision / x.rtol))
     before = 0.0
     ratio_before = 0.0
     x.suggested = x.after_failure

@@ -1,7 +1,5 @@
 """Steps of Radau methods with error control; predictive control of Gustafsson."""
 
-from __future__ import annotations
-
 from math import isfinite, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, ints, shifted
@@ -30,8 +28,8 @@ from stiffmbs.solve.radau.native.newton import (
     store_efforts,
 )
 
-ERROR_TEST_FAILED, NO_CONVERGENCE, NO_FACTORS = -3, -4, -6
-"""Flags of IDA: IDA_ERR_FAIL, IDA_CONV_FAIL, IDA_LSETUP_FAIL."""
+ERROR_TEST_FAILED, NO_CONVERGENCE = -3, -4
+"""Flags of IDA: IDA_ERR_FAIL, IDA_CONV_FAIL."""
 SMALLEST = 4 * INDISTINCT
 """Least step, relative to the time."""
 ROUNDING = 1e-10

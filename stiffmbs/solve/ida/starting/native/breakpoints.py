@@ -1,7 +1,5 @@
 """Integration over breakpoints in one call: IDA restarts at each that requires only consistent values."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, ints, state_view, view_of

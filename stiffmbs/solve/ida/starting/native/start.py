@@ -1,7 +1,5 @@
 """Start of IDA from consistent values in one call: unknowns, relaxations, Newton tolerance and IDA itself."""
 
-from __future__ import annotations
-
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import (
@@ -29,7 +27,6 @@ from stiffmbs.solve.ida.native.ida_loop import clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import RESTART, START
-from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
 
 UNFINISHED = -1
@@ -120,10 +117,6 @@ def begun(w, c, t):
     iteration = iteration_view(c.iteration)
     iteration.cj = float("inf")
     iteration.growth = -1.0
-    correction = output_correction_view(c.output_correction)
-    correction.unseen = 0
-    correction.next_look = 0
-    correction.judged = 0
     search = event_search_view(c.watch)
     search.ready = 0
     for k in range(w.n_watched):

@@ -1,0 +1,81 @@
+"""Checks of the steps of a segment: they go on, or are left to the other integrator of `stiffmbs.solve.auto`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .auto_choice import Choice, Switch
+from .auto_decisions import ExplicitSteps, loss_of_trial, since, tolerable_loss
+from .explicit import DOP853
+from .explicit.integration import Integration
+from .explicit.stable_step import NOT_ASKED
+from .ida.engine import Reached
+
+
+class ExplicitCheck:
+    """Check of the explicit steps of a segment: they may be left to the implicit integrator.
+
+    Attributes
+    ----------
+    switch : Switch or None
+        Switch that the last check decided on.
+    """
+
+    def __init__(self, choice: Choice, t: float) -> None:
+        self._choice, self._before = choice, choice.evaluations
+        self._counted = ExplicitSteps(t, 0, 0, 0.0)
+        self.switch: Switch | None = None
+
+    def __call__(self, work: Integration) -> bool:
+        """Compare the steps since the last check with the implicit integrator; return True if that is to follow."""
+        accepted = work.count("steps")
+        if accepted == self._counted.accepted:  # a return at output points only
+            return False
+        spent = self._choice.explicit_step * (self._choice.evaluations - self._before) / DOP853.stages
+        counted = ExplicitSteps(work.t, accepted, work.count("stiff_steps"), spent)
+        steps, self._counted = since(self._counted, counted), counted
+        if NOT_ASKED < work.stable < work.h:  # the bound holds the steps below what the integrator counts as limited
+            steps = steps._replace(limited=steps.accepted)
+        self.switch = self._choice.returned(steps, work.t) or self._choice.later_trial(steps, counted, work)
+        return self.switch is not None
+
+
+class ImplicitCheck:
+    """Check of the implicit steps of a segment: they are kept while their loss is tolerable.
+
+    Attributes
+    ----------
+    rate : float
+        Cost of implicit steps per second of the motion in the last interval.
+    loss : float
+        Cost in excess of explicit steps, since it was last lower.
+    """
+
+    def __init__(self, choice: Choice, t: float) -> None:
+        self._choice, self._implicit = choice, choice.implicit
+        self._counted, self._begun = self._implicit.steps(t), self._implicit.integrator.steps()
+        self.rate, self.loss = np.inf, 0.0
+        self._wait(t)
+
+    def __call__(self, reached: Reached) -> bool:
+        """Add the loss since the last check; return True if the implicit integrator is kept."""
+        if self._implicit.integrator.steps() < self._next or self._choice.is_breakpoint(reached.t):
+            return True  # an event between two checks
+        counted = self._implicit.steps(reached.t)
+        taken, self._counted = since(self._counted, counted), counted
+        self.rate = taken.cost / taken.time if taken.time else np.inf
+        self.loss = loss_of_trial(
+            self.loss, taken.cost, self._choice.explicit_cost(taken.time, taken.restarts, taken.long)
+        )
+        return self._wait(reached.t) > 0.0
+
+    def _wait(self, t: float) -> float:
+        """Set the next check, before which average steps do not exceed the tolerable loss; return what is left of that."""
+        following = self._choice.explicit_cost(self._choice.remaining(t), 0)
+        left = tolerable_loss(self._implicit.start, self._choice.thresholds.loss, following) - self.loss
+        integrator = self._implicit.integrator
+        taken = integrator.steps() - self._begun
+        every = max(int(left / self._implicit.cost.step), int(self._choice.parameters.check_interval * taken), 1)
+        self._next = integrator.steps() + every
+        integrator.engine.pause_after(every)
+        return left

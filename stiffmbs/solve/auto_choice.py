@@ -1,0 +1,196 @@
+"""Choice of the integrator of `stiffmbs.solve.auto` by the costs of explicit and implicit steps.
+
+The criteria are in `stiffmbs.solve.auto_decisions`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
+from ..model.settings import RunSettings
+from . import cost
+from .auto_decisions import AUTO, AutoParameters, ExplicitSteps, Thresholds, saving_by_return, steps_of_decay
+from .auto_implicit import Implicit
+from .error_control.newton import Stiffness, stiffness_at
+from .error_control.tolerances import absolute_tolerances
+from .events.restart import just_after, just_before
+from .explicit import DOP853
+from .explicit.integration import Integration
+from .explicit.stable_step import fastest_rate
+from .trajectory import Grid
+
+
+class Switch(NamedTuple):
+    """Switch to the implicit integrator.
+
+    Attributes
+    ----------
+    reason : str
+    explicit_rate : float
+        Cost of explicit steps per second of the motion, with which the implicit one is compared.
+    thresholds : Thresholds
+        Thresholds from then on.
+    """
+
+    reason: str
+    explicit_rate: float
+    thresholds: Thresholds
+
+
+class Choice:
+    """Choice of the integrator in a run.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    grid : Grid
+    settings : RunSettings
+    parameters : AutoParameters
+
+    Attributes
+    ----------
+    implicit : Implicit
+    thresholds : Thresholds
+        Current ones.
+    explicit_step : float
+        Cost of an explicit step.
+    """
+
+    def __init__(
+        self, dynamics: Dynamics, grid: Grid, settings: RunSettings, parameters: AutoParameters = AUTO
+    ) -> None:
+        self._dynamics, self._grid, self._settings, self.parameters = dynamics, grid, settings, parameters
+        self.implicit = Implicit(dynamics, settings)
+        self._breakpoints = dynamics.input_features(grid.start, grid.end).breakpoints
+        self.explicit_step = cost.of_explicit_step(dynamics)
+        self._explicit_rate = np.inf  # cost per second of the motion
+        self._implicit_rate = np.inf  # the same of implicit steps, before they were left
+        self.thresholds = Thresholds()
+
+    def follow(self, switch: Switch) -> None:
+        """Note a switch to the implicit integrator."""
+        self._explicit_rate, self.thresholds = switch.explicit_rate, switch.thresholds
+
+    def leave_implicit(self, rate: float, loss: float) -> None:
+        """Note that implicit steps were left: their cost per second of the motion, and their cost in excess of explicit ones."""
+        self._implicit_rate = rate
+        self.thresholds = self.thresholds.after_failed_trial(self.implicit.start + loss)
+
+    def first_trial(self, start: InitialValues) -> Switch | None:
+        """Return the decision to begin with the implicit integrator, because stability would limit explicit steps; None to begin explicit."""
+        t = self._grid.start
+        fastest = fastest_rate(self._dynamics, t, start.q, start.u)
+        rate = self._stable_rate(fastest)
+        pieces = 1 + self._breakpoints_after(t)
+        explicit_cost = self.remaining(t) * rate + (pieces - 1) * cost.COSTS.restart_steps * self.explicit_step
+        if not explicit_cost > self._least_cost(pieces):
+            return None
+        stiffness = self._stiffness(t, start.q, start.u)
+        self.implicit.choose(stiffness, self.remaining(t) * rate / self.explicit_step, pieces)
+        decay = steps_of_decay(self.parameters, self._excitation(start, fastest), fastest, stiffness.of_velocities)
+        if not explicit_cost > self._least_cost(pieces, decay):
+            return None
+        self.implicit.create()
+        saving = explicit_cost - self._least_cost(pieces, decay)
+        if not saving > 0.0:
+            return None
+        reason = f"{self.implicit.name}, as the fastest rate is {fastest:.3g} 1/s"
+        return Switch(reason, rate, self.thresholds.of_trial(saving / explicit_cost))
+
+    def _least_cost(self, pieces: int, decay: float = 0.0) -> float:
+        """Return the least cost of implicit steps from the start: small ones, those of a decay, or a start, which a failed trial costs."""
+        return max(pieces * self.implicit.growth + decay * self.implicit.cost.step, self.implicit.start)
+
+    def later_trial(self, steps: ExplicitSteps, segment: ExplicitSteps, work: Integration) -> Switch | None:
+        """Return the decision to try the implicit integrator, because stability limits explicit steps; None to go on with these.
+
+        Parameters
+        ----------
+        steps : ExplicitSteps
+            Steps since the last check.
+        segment : ExplicitSteps
+            Steps of the whole segment.
+        work : Integration
+        """
+        if not steps.limited or segment.cost < self.thresholds.penalty:
+            return None
+        share = steps.limited / steps.accepted
+        saving = share * steps.cost * self.remaining(work.t) / steps.time
+        if not saving > self._justifying(work.t):
+            return None
+        pieces = 1 + self._breakpoints_after(work.t)
+        self.implicit.choose(self._stiffness(work.t, work.q, work.u), saving / self.explicit_step, pieces)
+        if not saving > self._justifying(work.t):
+            return None
+        fastest = fastest_rate(self._dynamics, work.t, work.q, work.u)
+        rate = self._stable_rate(fastest)
+        self.implicit.create()
+        if not min(saving, self.remaining(work.t) * rate) > self._justifying(work.t):
+            return None
+        reason = (
+            f"{self.implicit.name} from t = {work.t:.4g} s on, as stability held back {100 * share:.0f} % of the "
+            f"steps (fastest rate {fastest:.3g} 1/s)"
+        )
+        return Switch(reason, rate, self.thresholds.of_trial(share))
+
+    def returned(self, steps: ExplicitSteps, t: float) -> Switch | None:
+        """Return the decision to resume the implicit integrator, because explicit steps cost more than its own did; None to go on with these."""
+        rate = steps.cost / steps.time
+        saving = saving_by_return(rate, self._implicit_rate, self.thresholds.return_ratio, self._grid.end - t)
+        if not saving > self.implicit.start:
+            return None
+        reason = f"{self.implicit.name} from t = {t:.4g} s on, as explicit steps cost more than its own had"
+        return Switch(reason, rate, self.thresholds.after_return())
+
+    def _stable_rate(self, fastest: float) -> float:
+        """Return the cost of explicit steps per second if stability limits them, for a fastest rate in 1/s."""
+        return self.explicit_step * fastest / DOP853.stability
+
+    def _excitation(self, start: InitialValues, fastest: float) -> float:
+        """Return the largest change of a velocity in a step limited by stability, in tolerances."""
+        if not fastest:
+            return np.inf
+        system, settings = self._dynamics.system, self._settings
+        tolerances = self._dynamics.kept("tolerances", settings, lambda: absolute_tolerances(system, settings))
+        change = np.abs(start.acceleration) * (DOP853.stability / fastest)
+        return float((change / (tolerances[system.n_q :] + settings.rtol * np.abs(start.u))).max(initial=0.0))
+
+    def _stiffness(self, t: float, q: np.ndarray, u: np.ndarray) -> Stiffness:
+        """Return the stiffness of a state."""
+        self._dynamics.state.q[:], self._dynamics.state.u[:] = q, u
+        return stiffness_at(self._dynamics, t)
+
+    def _breakpoints_after(self, t: float) -> int:
+        """Return the number of input breakpoints after a time."""
+        return int(np.sum(self._breakpoints > t))
+
+    def _justifying(self, t: float) -> float:
+        """Return the saving that justifies a switch to implicit steps, with small steps after each breakpoint."""
+        small = self.implicit.start + self._breakpoints_after(t) * self.implicit.growth
+        return self.parameters.trial_margin * small
+
+    @property
+    def evaluations(self) -> int:
+        """Return the number of evaluations of the equations so far, including those of event functions."""
+        return self._dynamics.state.evaluations
+
+    def remaining(self, t: float) -> float:
+        """Return the time of the motion after t, s."""
+        return self._grid.end - t
+
+    def explicit_cost(self, duration: float, restarts: int, fewest: int = 0) -> float:
+        """Return the cost of explicit steps over a time of the motion, s, with restarts: `fewest` steps, or as stability requires."""
+        of_steps = max(duration * self._explicit_rate, fewest * self.explicit_step)
+        return of_steps + restarts * cost.COSTS.restart_steps * self.explicit_step
+
+    def is_breakpoint(self, t: float) -> bool:
+        """Return True if t is within rounding of an input breakpoint, where no integrator can start."""
+        return bool(np.any((self._breakpoints >= just_before(t)) & (self._breakpoints <= just_after(t))))
+
+    def first_check(self) -> int:
+        """Return the explicit steps of a segment that cost as much as a switch."""
+        return max(int(self.implicit.start / self.explicit_step), 1)
