@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..compile.group import Group
+from ..compile.inputs.of_time import in_formulas_of_time
 from ..compile.kind import sorted_out
 from ..compile.system import System
 from ..elements.element import Element
@@ -21,6 +22,7 @@ from ..presolve.presolve import may_be_apart
 from ..reading.did_you_mean import did_you_mean
 from ..reading.formula.formula import Formula
 from ..reading.formula.nodes import TIME
+from ..reading.formula.text import FormulaError
 from ..reading.marker import GROUND
 from ..reading.table import Table
 from .job import Job, prepare, start_of_job
@@ -53,6 +55,7 @@ def write_numbers(job: Job, data: ModelData) -> bool:
     of_inputs = any(change.of_inputs for change in changes)
     for change in changes:
         change.write()
+    job.dynamics.system.outputs.update(data.state_outputs())
     if of_inputs:
         job.dynamics.forget_inputs()
     return True
@@ -75,11 +78,16 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
 
 
 def renumberable(job: Job) -> bool:
-    """Return True if other numbers may be written into a job: presolve separates no mechanism, with any numbers."""
+    """Return True if other numbers may be written into a job.
+
+    Presolve must separate no mechanism, with any numbers, and leave out no modes, which other numbers may excite.
+    """
     system = job.dynamics.system
     if not job.settings.presolve:
         return True
-    return not job.subsystems and not job.dynamics.kept("apart", None, lambda: may_be_apart(system))
+    if job.subsystems or job.dynamics.coordinates.at_rest:
+        return False
+    return not job.dynamics.kept("apart", None, lambda: may_be_apart(system))
 
 
 def _same_structure(before: ModelData, after: ModelData) -> bool:
@@ -146,23 +154,22 @@ def may_be_input(element: Element) -> bool:
 
 @dataclass(frozen=True)
 class Change:
-    """Replacement of an element of a group by one with other numbers."""
+    """Replacement of an element of a group by one with other numbers.
+
+    `of_inputs`: whether the old or the new element may have a formula or a table of time, or is an input in such formulas.
+    """
 
     group: Group
     number: int
     element: Element
     first: int
     values: np.ndarray
+    of_inputs: bool
 
     @property
     def name(self) -> str:
         """Name of the element."""
         return self.group.names[self.number]
-
-    @property
-    def of_inputs(self) -> bool:
-        """Return True if the old or the new element may have a formula or a table of time."""
-        return may_be_input(self.element) or may_be_input(self.group.elements[self.number])
 
     def write(self) -> None:
         """Write the numbers of the element into its group."""
@@ -172,7 +179,10 @@ class Change:
 
 def _change(system: System, name: str, force: Element, data: ModelData) -> Change | None:
     """Return the change of a force, or None if its equations, bodies or table lengths differ."""
-    kind, found = sorted_out(name, force, data)
+    try:
+        kind, found = sorted_out(name, force, data)
+    except FormulaError as error:
+        raise InputError(f"{name}: {error}") from None
     group = next((group for group in system.groups if name in group.names), None)
     if group is None or kind != group.kind:
         return None
@@ -187,7 +197,9 @@ def _change(system: System, name: str, force: Element, data: ModelData) -> Chang
     states = [system.states[k - system.first_state] for k in group.states[element]]
     if len(values) != end - first or bodies != found.bodies or joints != found.joints or states != found.states:
         return None
-    return Change(group, element, force, first, values)
+    of_inputs = may_be_input(force) or may_be_input(group.elements[element])
+    of_inputs |= name in data.inputs and in_formulas_of_time(system, name)
+    return Change(group, element, force, first, values, of_inputs)
 
 
 def with_numbers(job: Job, name: str, **numbers: Any) -> Job:

@@ -80,7 +80,9 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     farthest = np.max(np.abs(state.q[system.straight[0]]), initial=system.size)
     rounding = EQUILIBRIA.rounding * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
     roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which does not increase rounding
-    passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), EQUILIBRIA.passed_on * largest)
+    unloaded = largest <= np.max(rounding, initial=0.0)  # as stiff bushings in zero gravity: all forces are rounding
+    most_passed_on = np.inf if unloaded else EQUILIBRIA.passed_on * largest
+    passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), most_passed_on)
     negligible = system.mass * system.per_velocity(system.size, 1.0) * EQUILIBRIA.slowest**2
     left = system.mass * _beside_the_constraints(dynamics, acceleration - steady, jacobian)
     found = Balance(

@@ -90,6 +90,8 @@ class Transfer:
     ----------
     at : ndarray, shape (outputs,)
         Outputs at the state itself.
+    notes : tuple of str
+        Notes on the outputs, one sentence each.
     """
 
     a: np.ndarray
@@ -99,6 +101,7 @@ class Transfer:
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     at: np.ndarray
+    notes: tuple[str, ...] = ()
 
     def state_space(self) -> StateSpace:
         """Return the system as `scipy.signal.StateSpace`."""
@@ -117,8 +120,10 @@ class Transfer:
         Raises
         ------
         InputError
-            At the frequency of an undamped motion, such as 0 Hz of a free body.
+            At the frequency of an undamped motion, such as 0 Hz of a free body, and for a frequency that is not finite.
         """
+        if not np.isfinite(frequencies).all():
+            raise InputError("frequencies: found one that is not finite, expected numbers in Hz")
         values, vectors = np.linalg.eig(self.a)
         if not len(values):
             return np.broadcast_to(self.d, (len(frequencies), *self.d.shape)).astype(complex)

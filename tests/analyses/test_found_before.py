@@ -8,21 +8,14 @@ import pytest
 import stiffmbs
 from stiffmbs.analyses import found_before, job
 
-TEXT = """
-gravity: [0, -10]
-bodies: {load: {mass: 2, inertia: 1, velocity: [0, 0.3]}}
-joints: {rail: {type: prismatic, i: load, j: {body: ground, angle: 90 deg}}}
-forces: {spring: {type: spring_damper, i: load, j: {body: ground, point: [0, 1]}, stiffness: 200, free_length: 1}}
-start: settled
-run: {duration: 0.2 s}
-"""
+from .test_settled_start import SCENE
 
 
 @pytest.fixture
 def scene(tmp_path, monkeypatch):
     monkeypatch.setattr(found_before, "START", f"start-{tmp_path.name}")
     path = tmp_path / "scene.yaml"
-    path.write_text(TEXT)
+    path.write_text(SCENE)
     return path
 
 

@@ -17,6 +17,14 @@ def test_a_damper_of_one_direction_has_both_sides():
         transfer(slider("-20*max(b.vx, 0)"), ["b.fx"], ["b.vx"])
 
 
+def test_the_note_lists_the_eigenvalues_that_differ():
+    """Bodies without forces have six eigenvalues of zero on both sides."""
+    idle = ", ".join(f"idle_{k}: {{mass: 1, inertia: 1}}" for k in range(2))
+    text = f'bodies: {{b: {{mass: 2, inertia: 1}}, {idle}}}\nforces: {{pull: {{type: force, i: b, force: ["-20*max(b.vx, 0)", 0]}}}}\n'
+    (note,) = (each for each in stiffmbs.modes(stiffmbs.read_scene(text)).notes if "breakpoint" in each)
+    assert "eigenvalues are -10" in note or "on one side and -10" in note
+
+
 @pytest.mark.long
 def test_a_ball_that_just_touches_has_both_sides():
     found = stiffmbs.modes(ball(0.1))
@@ -39,7 +47,45 @@ def test_a_jump_is_refused(law):
 
 
 @pytest.mark.parametrize(
-    "law", ["-b.x*abs(b.x) - b.x", "-5*tanh(b.vx/0.001)", "-50*max(b.x - 1e-3, 0)", "0", "-1e9*b.x"]
+    "law",
+    [
+        "-b.x*abs(b.x) - b.x",
+        "-1e3*(b.x - 3e-7)*abs(b.x - 3e-7) - b.x",
+        "-5*tanh(b.vx/0.001)",
+        "-50*max(b.x - 1e-3, 0)",
+        "0",
+        "-1e9*b.x",
+    ],
 )
 def test_smooth_laws_have_no_note(law):
     assert not stiffmbs.modes(slider(law)).sides
+
+
+HANGING = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies:
+  b:
+    mass: 2.4
+    inertia: [[0.46, 0.04, -0.02], [0.04, 0.44, 0.01], [-0.02, 0.01, 0.47]]
+    center_of_mass: [0.01, 0.2, -0.06]
+    position: [0.3, 0.1, 1]
+forces:
+  spring:
+    type: spring_damper
+    i: {body: b, point: [-0.2, -0.3, -0.2]}
+    j: {body: ground, point: [0.3, 0.5, 0.1]}
+    stiffness: 15
+    damping: 0.8
+    free_length: 0.9
+"""
+
+
+def test_a_body_hanging_on_a_spring_is_at_no_breakpoint():
+    """No stiffness acts on the rotation about the spring's line, only rounding of that on the other rotations."""
+    scene = stiffmbs.read_scene(HANGING)
+    rest = stiffmbs.equilibrium(scene).solution
+    assert not stiffmbs.modes(scene, start_from=rest).sides
+    response = transfer(scene, ["b.fz"], ["b.z"], start_from=rest).response(np.array([0.05]))
+    s = 2j * np.pi * 0.05
+    assert response[0, 0, 0] == pytest.approx(1 / (2.4 * s**2 + 0.8 * s + 15), rel=1e-6)

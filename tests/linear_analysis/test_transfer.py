@@ -261,3 +261,52 @@ def test_feedthrough_of_forces_beside_large_reactions():
     model.add("pull", AppliedForce(i="bar", force=(3e6, 0)))
     found = transfer(model, ["bar.fx", "bar.fy"], ["pin.fx", "pin.fy"])
     np.testing.assert_allclose(found.d, [[-1, 0], [0, -0.5]], atol=1e-9)
+
+
+GUIDED_TWICE = """
+parameters: {F: 3}
+gravity: [0, -9.81]
+bodies: {a: {mass: 2, inertia: 1}}
+joints:
+  left: {type: prismatic, i: {body: a, point: [-0.5, 0]}, j: {body: ground, point: [-0.5, 0]}}
+  right: {type: prismatic, i: {body: a, point: [0.5, 0]}, j: {body: ground, point: [0.5, 0]}}
+forces: {push: {type: force, i: a, force: [-50*a.x, -F]}}
+run: {duration: 0.1}
+"""
+
+
+def test_a_derivative_of_a_reaction_without_a_unique_value_is_noted():
+    """Two guides carry a load together: only the sum of their reactions is unique."""
+    scene = stiffmbs.read_scene(GUIDED_TWICE)
+    found = transfer(scene, ["a.fy"], ["left.fy", "right.fy", "a.x"])
+    assert found.d[:2].sum() == pytest.approx(-1)
+    note = "rigid bodies do not determine left.fy and right.fy: one of many possible values is differentiated"
+    assert found.notes == (note,)
+    assert transfer(scene, ["a.fy"], ["a.x"]).notes == ()
+    slopes = stiffmbs.sensitivities(scene, "F", "final(left.fy + right.fy)")
+    assert (slopes.to["F"], slopes.notes) == (pytest.approx(1), (note,))
+    assert stiffmbs.sensitivities(scene, "F", "final(a.x)").notes == ()
+
+
+def test_modes_of_a_motion_that_is_not_unique_have_a_note():
+    friction = "rub: {type: joint_friction, joint: left, friction: 0.3, stiction_velocity: 0.1}"
+    scene = stiffmbs.read_scene(GUIDED_TWICE.replace("forces: {", f"forces: {{{friction}, "))
+    assert any(note.endswith("the motion is not unique either") for note in stiffmbs.modes(scene).notes)
+
+
+@pytest.mark.parametrize("frequency", [np.nan, np.inf])
+def test_a_frequency_that_is_not_finite_is_refused(frequency):
+    found = transfer(stiffmbs.read_scene(OSCILLATOR), ["a.fx"], ["a.x"])
+    with pytest.raises(InputError, match="frequencies: found one that is not finite"):
+        found.response(np.array([1.0, frequency]))
+
+
+def test_a_transfer_function_without_outputs_is_refused():
+    with pytest.raises(InputError, match="outputs: found none"):
+        transfer(stiffmbs.read_scene(OSCILLATOR), ["a.fx"], [])
+
+
+@pytest.mark.parametrize(("inputs", "outputs", "name"), [("a.fx", ["a.x"], "inputs"), (["a.fx"], "a.x", "outputs")])
+def test_one_name_instead_of_a_list_is_refused(inputs, outputs, name):
+    with pytest.raises(InputError, match=f"{name}: found 'a.f?x', expected a list of"):
+        transfer(stiffmbs.read_scene(OSCILLATOR), inputs, outputs)

@@ -16,11 +16,13 @@ from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...linear_analysis.tangent_space import linearised
 from ...model.settings import RunSettings, Settings, takes_settings
 from ...reading.files.quoted import MOST_LISTED
+from ...redundancy.messages.redundancy import derivative_sentences
 from ...results.energy_balance import energy_balance
 from ...results.solution import Solution
 from ...solve.sampling import held
 from ..equilibrium import solution_of_rows
 from ..job import Runnable
+from ..settled import GROWING
 from ..start_from import StartFrom
 from .sides import AtState, Kink, at_state, kink_at
 
@@ -145,8 +147,11 @@ def modes(
 
 
 def _kink_sentence(kink: Kink, sides: list[list[Mode]]) -> str:
-    """Return a sentence with the eigenvalues of both sides of a breakpoint."""
-    listed = [", ".join(f"{mode.eigenvalues[0]:.4g}" for mode in side[:MOST_LISTED]) for side in sides]
+    """Return a sentence with the eigenvalues of both sides of a breakpoint, those that differ most."""
+    pairs = [(a.eigenvalues[0], b.eigenvalues[0]) for a, b in zip(*sides, strict=False)]
+    none = GROWING * max((abs(each) for pair in pairs for each in pair), default=0.0) or 1.0
+    pairs.sort(key=lambda pair: -abs(pair[0] - pair[1]) / (abs(pair[0]) + abs(pair[1]) + none))
+    listed = [", ".join(f"{pair[k]:.4g}" for pair in pairs[:MOST_LISTED]) for k in (0, 1)]
     return (
         f"the state lies on a breakpoint of a force on {kink.where}, or within a millionth of the mechanism's size of one: the modes "
         f"are those of one side; the eigenvalues are {listed[0]} on one side and {listed[1]} on the other"
@@ -169,6 +174,7 @@ def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
     extra = state.degrees_of_freedom - found.redundancy.degrees_of_freedom
     if extra > 0:
         yield f"the state is a singular pose: {extra} degrees of freedom more than in general"
+    yield from derivative_sentences(found.redundancy, ())
     yield from held(system)
 
 

@@ -71,12 +71,12 @@ class Moves:
         Sizes, relative to the mechanism's size, rad, or these per second.  A breakpoint within the wide one is near the state.
     steep : float
         Ratio of the change of a force to the change expected from its derivatives on both sides, above which the force is
-        discontinuous.
+        discontinuous; and of the relative change of a derivative to the size of a perturbation, below which it is smooth.
     curved : float
         Relative deviation from proportionality between the changes over both perturbations that a smooth law may have.
     rounding : float
-        Size that counts as zero, relative to the sum of all terms of an entry or to the largest force. Entries that are
-        rounding of the largest one in their row are zero, too: the damping of an undamped bushing.
+        Size that counts as zero, relative to the largest force. Entries that are rounding of the largest one of their kind
+        are zero, too.
     """
 
     wide: float = 1e-6
@@ -126,14 +126,31 @@ def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves
             "no linearisation exists; expected a state away from the discontinuity, or a continuous law, such as step()"
         )
     changes = [after.matrix - before.matrix for before, after in (wide, narrow)]
+    middle = _side(found, state, linear, 0 * move).matrix
+    to_a_side = [np.maximum(*(abs(side.matrix - middle) for side in pair)) for pair in (wide, narrow)]
     parts = wide[0].parts
-    zero = np.maximum(moves.rounding * parts, np.finfo(float).eps * parts.max(axis=1, keepdims=True))
-    bends = moves.break_between(*changes) & (np.abs(changes[0]) > zero)
+    summed = len(scale) * np.finfo(float).eps  # an entry is a sum over all velocities: Higham (2002), eq. 3.5
+    curved = moves.steep * moves.wide  # relative change of a derivative over a move that a curved law may have
+    zero = np.maximum(curved * parts, summed * _largest(parts, state))
+    # A derivative that bends next to the state has changes across it in no proportion, but those to one side in proportion.
+    bends = moves.break_between(*changes) & moves.break_between(*to_a_side) & (np.abs(changes[0]) > zero)
     if not bends.any():
         return None
     share = np.where(bends, np.abs(changes[0]) / np.where(bends, parts + np.abs(changes[0]), 1.0), 0.0)
     where = rows[int(np.argmax(share.max(axis=1)))]
     return Kink(where, (wide[0].linear, wide[1].linear))
+
+
+def _largest(parts: np.ndarray, state: StateMatrix) -> np.ndarray:
+    """Return the largest term of each entry's kind: of all free motions by poses, by velocities, by states; of each state's rate.
+
+    Rounding of the largest terms appears in motions without any: the rotation of a hanging body about its spring.
+    """
+    found = np.repeat(parts.max(axis=1, keepdims=True), parts.shape[1], axis=1)
+    free, end = state.degrees_of_freedom, state.n_poses + state.degrees_of_freedom
+    for columns in (slice(0, state.n_poses), slice(state.n_poses, end), slice(end, None)):
+        found[:free, columns] = np.max(parts[:free, columns], initial=0.0)
+    return found
 
 
 def _moving(state: StateMatrix, scale: np.ndarray, names: list[str]) -> list[str]:

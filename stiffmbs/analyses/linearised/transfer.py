@@ -11,13 +11,14 @@ import numpy as np
 from ...dynamics.dynamics import Dynamics
 from ...elements.requests.order import reading
 from ...elements.requests.output import Term
-from ...errors import InputError, SolverError
+from ...errors import InputError, SolverError, refuse_text
 from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...linear_analysis.tangent_space import Linearised, linearised
 from ...linear_analysis.transfer import Input, Transfer, effect
 from ...model.model_data import ModelData
 from ...model.settings import RunSettings, Settings, takes_settings
 from ...reading.did_you_mean import did_you_mean
+from ...redundancy.messages.redundancy import derivative_sentences
 from ...results.channels import channels_of
 from ..job import Runnable, prepare
 from ..start_from import StartFrom
@@ -72,10 +73,14 @@ def transfer(
     Raises
     ------
     InputError
-        If an input or output is unknown, or an output depends on the rate of an input that moves a constraint.
+        If an input or output is unknown, there is no output, or an output depends on the rate of an input that moves a constraint.
     SolverError, AssemblyError
         As for `stiffmbs.analyses.linearised.modes.modes`.
     """
+    refuse_text("inputs", inputs, "forces on bodies")
+    refuse_text("outputs", outputs, "channels")
+    if not outputs:
+        raise InputError("outputs: found none, expected one channel or more")
     found = at_state(model, settings, at, start_from, **changes)
     system = found.dynamics.system
     scale = system.per_velocity(system.size, 1.0)
@@ -101,6 +106,7 @@ def transfer(
         inputs=tuple(inputs),
         outputs=tuple(outputs),
         at=at_zero,
+        notes=tuple(derivative_sentences(found.redundancy, outputs)),
     )
 
 
