@@ -55,6 +55,7 @@ def _text(found: Sensitivity) -> str:
     lines = [f"{found.of} = {found.value:.8g}"]
     width = max(map(len, found.to))
     lines += [f"  d/d {name:{width}s}  {slope: .8g}" for name, slope in found.to.items()]
+    lines += [f"note: {note}" for note in found.notes]
     return "\n".join(lines)
 
 

@@ -70,9 +70,11 @@ class CollocationVariations(VariationalEquations):
             right[:, i] = -self.defects(row, self._s).T
             entries[i] = D[i][:, None] * arrays["rate"]
             entries[i, i] += arrays["constant"]
-        size = n * STAGES
+        size, values = n * STAGES, entries.ravel()
+        kept = np.flatnonzero(values)  # stages are coupled by r_y' alone, which has few of the entries
+        at = self._rows[kept], self._columns[kept]
         try:
-            solution = splu(csc_array((entries.ravel(), (self._rows, self._columns)), shape=(size, size)))
+            solution = splu(csc_array((values[kept], at), shape=(size, size)))
         except RuntimeError:
             raise singular(step[-1, 0]) from None
         change: np.ndarray = solution.solve(right.reshape(size, -1)).reshape(n, STAGES, -1).transpose(1, 2, 0)

@@ -26,6 +26,7 @@ from ..results.channels import channels_of
 from ..results.solution import Solution
 from ..solve.settings import changed
 from ..solve.trajectory import Outcome
+from .affine import is_affine
 from .outputs import Output
 
 MOST_STRUCTURES = 8
@@ -105,6 +106,11 @@ class CaseSolver:
         if self._other_forces is None:
             self._other_forces = OtherForces(written, names, self._unchanged)
         return scene
+
+    def is_affine(self, number: int) -> bool:
+        """Return True if all numbers of the scene are affine functions of a varied value, by its number among the names."""
+        written = self._task.scene
+        return is_affine({**written.content, "": [value for _, value in written.changes]}, self._task.names[number])
 
     def _check_files(self, files: Mapping[str, str]) -> None:
         """Reject a file that has changed since the scene or another case was read."""

@@ -8,10 +8,12 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExec
 from contextlib import contextmanager
 from functools import lru_cache
 from itertools import islice
+from numbers import Integral
 from queue import Empty, LifoQueue
 from typing import Any
 
-from ..errors import SolverError, StiffmbsError
+from ..errors import InputError, SolverError, StiffmbsError
+from ..reading.files.quoted import written
 from .case_solver import CaseSolver, Row, Task
 
 Chunk = Sequence[tuple[int, tuple[Any, ...]]]
@@ -22,6 +24,12 @@ AHEAD = 3
 """Number of chunks for each worker that are running or waiting, so that no worker is idle."""
 TRIES = 3
 """Number of attempts for a chunk whose worker ended."""
+
+
+def refuse_workers(workers: object) -> None:
+    """Raise an InputError if a number of workers is given that is not a whole number above zero."""
+    if workers is not None and (isinstance(workers, bool) or not isinstance(workers, Integral) or workers < 1):
+        raise InputError(f"workers: found {written(workers)}, expected a whole number, 1 or more")
 
 
 @contextmanager

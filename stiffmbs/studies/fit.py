@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ..analyses.job import Runnable
 from ..analyses.run import solved
 from ..errors import InputError, SolverError, StiffmbsError
+from ..reading.files.quoted import written as as_written
 from ..results.solution import Solution
 from ..solve.settings import changed
 from ..solve.trajectory import Grid, Outcome
@@ -135,10 +137,13 @@ def fit(
 def _weights(found: Measured, sigma: Mapping[str, float] | None) -> dict[str, float]:
     if sigma is None:
         return {name: 1 / (float(np.nanstd(values)) or 1.0) for name, values in found.channels.items()}
+    if not isinstance(sigma, Mapping):
+        raise InputError(f"sigma: found {as_written(sigma)}, expected a number for each channel by name")
     for name in found.channels:
-        if not sigma.get(name, 0) > 0:
+        given = sigma.get(name)
+        if isinstance(given, bool) or not isinstance(given, Real) or not 0 < given < np.inf:
             raise InputError(
-                f"sigma: found {sigma.get(name)} for '{name}', expected a number greater than 0 for each channel"
+                f"sigma: found {as_written(given)} for '{name}', expected a number greater than 0 for each channel"
             )
     return {name: 1 / sigma[name] for name in found.channels}
 

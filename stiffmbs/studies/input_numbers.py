@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -89,7 +90,8 @@ class InputNumbers:
     def set(self, values: Mapping[str, float]) -> bool:
         """Change inputs; return True if any of them has a new value.
 
-        Raises InputError if there is no such input, or its value is invalid.
+        Raises InputError, with nothing changed, if there is no such input, or its value is invalid or changes more
+        than numbers of forces and states.
         """
         changed = {name: value for name, value in values.items() if self.values.get(name) != value}
         if not changed:
@@ -102,17 +104,33 @@ class InputNumbers:
                 )
             if not math.isfinite(value):
                 raise InputError(f"input '{name}': found {value}, expected a finite number")
-        self.values.update(changed)
         if self._quick is None:
-            write_numbers(self._job, self._scene(self.values))
-            return True
-        for name in changed:
-            for numbers, place, offset, slope in self._quick[name]:  # few: a loop is faster than numpy
-                numbers[place] = offset + slope * self.values[name]
+            self._write(changed)
+        else:
+            for name, value in changed.items():
+                for numbers, place, offset, slope in self._quick[name]:  # few: a loop is faster than numpy
+                    numbers[place] = offset + slope * value
+        self.values.update(changed)
         return True
 
+    def _write(self, changed: Mapping[str, float]) -> None:
+        """Write the numbers of the scene with changed inputs; later changes are found against this scene."""
+        scene = self._scene({**self.values, **changed})
+        if not write_numbers(self._job, scene):
+            found = ", ".join(f"input '{name}': found {value:g}" for name, value in changed.items())
+            raise InputError(
+                f"{found}, which changes more than numbers of forces and states, such as the form of a force, expected a value "
+                "that changes these alone"
+            )
+        self._job = replace(self._job, data=scene)
+
     def _linear(self) -> dict[str, Linear] | None:
-        """Return the numbers that depend on each input alone and linearly, or None if forces must be read again."""
+        """Return the numbers that depend on each input alone and linearly, or None if forces must be read again.
+
+        The formulas of the scene must show that all are affine; values at some points find the numbers.
+        """
+        if not all(self._solver.is_affine(k) for k in range(len(self._names))):
+            return None
         found: dict[str, Linear] = {}
         taken: set[tuple[int, int]] = set()
         for name in self._names:

@@ -46,10 +46,14 @@ def measured(data: Any) -> Measured:
     arrays = {}
     for name, values in channels.items():
         array = np.asarray(values, dtype=float)
-        if array.shape != time.shape or not np.isfinite(array).any():
+        if array.shape != time.shape:
             raise InputError(
                 f"data: found {array.shape} values of '{name}', expected one for each of {len(time)} times"
             )
+        if np.isinf(array).any():
+            raise InputError(f"data: found an infinite value of '{name}', expected finite ones, or nan for a gap")
+        if np.isnan(array).all():
+            raise InputError(f"data: found no value of '{name}' that is a number, expected one or more")
         arrays[str(name)] = array
     return Measured(time, arrays)
 

@@ -82,13 +82,18 @@ class Output:
 
     def refuse_unknown(self, known: Collection[str]) -> None:
         """Reject a channel that is not among the known ones."""
-        for name in _channels(parsed(self.text).body):
+        for name in self.channels:
             if name != TIME and name not in known:
                 near = [channel for channel in known if owner_of(channel) == owner_of(name)] or list(known)[:12]
                 raise InputError(
                     f"output '{self.text}': found no channel '{name}'{did_you_mean(name, known)}, expected one such as "
                     f"{', '.join(near)}"
                 )
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Return the channels that the formula names."""
+        return tuple(_channels(parsed(self.text).body))
 
     @property
     def is_series(self) -> bool:

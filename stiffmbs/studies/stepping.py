@@ -118,7 +118,7 @@ class ImplicitSteps:
         self._job, self._dynamics, self._integrator = job, job.dynamics, integrator
         engine = integrator.engine
         assert isinstance(engine, NativeEngine)
-        self._engine, self._end = engine, t
+        self._engine, self._first, self._end, self._changes = engine, t, t, self._dynamics.input_changes
         self._look_through(t)
         self._begin(start, t)
         self._present, self.q, self.u = t, start.q.copy(), start.u.copy()
@@ -128,10 +128,13 @@ class ImplicitSteps:
         return StartedSteps(self._job, self.q, self.u)
 
     def _look_through(self, t: float) -> None:
-        """Determine the features of the inputs once for all following steps."""
-        if t >= self._end:
-            self._end = t + self._job.settings.duration
-            self._features = self._dynamics.input_features(t, self._end)
+        """Determine the features of the inputs once for all following steps, and again if formulas of time change."""
+        if not self._first <= t < self._end:
+            self._first, self._end = t, t + self._job.settings.duration
+        elif self._changes == self._dynamics.input_changes:
+            return
+        self._changes = self._dynamics.input_changes
+        self._features = self._dynamics.input_features(self._first, self._end)
 
     def _begin(self, start: InitialValues, t: float) -> None:
         self._t, self._jumped, self._ended = t, False, False

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..analyses.job import Runnable
-from ..errors import InputError, StiffmbsError
+from ..errors import InputError, StiffmbsError, refuse_text
 from ..model.scene import Scene
 from ..model.settings import RunSettings
 from ..reading.files.quoted import quoted
@@ -24,7 +24,7 @@ from ..solve.settings import changed, output_grid
 from .case_solver import CaseSolver, Row, Task, refuse_units, written_scene
 from .cases import Cases, cases_of
 from .data_set import data_set
-from .executors import Chunk, executor_of, rows_of
+from .executors import Chunk, executor_of, refuse_workers, rows_of
 from .outputs import Output, outputs_of
 from .store import Store
 
@@ -63,8 +63,7 @@ class Study:
         watch: StudyProgress | None = None,
     ) -> xarray.Dataset:  # fmt: skip
         """Solve the cases that the store lacks; parameters and errors as for `sweep`."""
-        if workers is not None and workers < 1:
-            raise InputError(f"workers: found {workers}, expected 1 or more")
+        refuse_workers(workers)
         task = pickle.dumps(self.task)
         with (
             closing(Store(Path(store) if store else None, self.parts)) as rows,
@@ -176,6 +175,7 @@ def study_of(
     parameters: Mapping[str, Any],
 ) -> Study:
     """Return a study after a check that one of its cases can be prepared; parameters and errors as for `sweep`."""
+    refuse_text("vary", vary, "variations, or values by parameter")
     written = written_scene(scene)
     known = CaseSolver(Task(written, (), {}, ())).scene(())
     settings = {

@@ -94,6 +94,21 @@ def test_channels_of_other_noise_are_weighted_by_it():
     assert both.values["k"] == pytest.approx(alone.values["k"], rel=2e-3)
 
 
+@pytest.mark.parametrize(
+    ("sigma", "sentence"),
+    [
+        (0.01, "found 0.01, expected a number for each channel"),
+        ({"sled.x": 0}, "found 0 for"),
+        ({}, "found None for"),
+        ({"sled.x": "a"}, "found 'a' for"),
+        ({"sled.x": True}, "found True for"),
+    ],
+)
+def test_noise_is_given_for_each_channel(sigma, sentence):
+    with pytest.raises(InputError, match=sentence):
+        fit(stiffmbs.read_scene(SLED), noisy(0), PARAMETERS, sigma=sigma)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("data", "parameters", "error", "sentence"),
@@ -104,6 +119,9 @@ def test_channels_of_other_noise_are_weighted_by_it():
         ({"time": [0, 1, 2], "sled.z": [1, 2, 3]}, PARAMETERS, InputError, "found no channel 'sled.z'"),
         ({"time": [0, 1], "sled.x": [1, 2]}, PARAMETERS, InputError, "expected more than the 2 parameters"),
         ({"time": [0, 1, 2], "sled.y": [0, 0, 1]}, PARAMETERS, InputError, "do not determine"),
+        ({"time": [0, 1, 2], "sled.x": [1, 2]}, PARAMETERS, InputError, "expected one for each of 3 times"),
+        ({"time": [0, 1, 2], "sled.x": [1, np.inf, 3]}, PARAMETERS, InputError, "found an infinite value of 'sled.x'"),
+        ({"time": [0, 1, 2], "sled.x": [np.nan] * 3}, PARAMETERS, InputError, "no value of 'sled.x' that is a number"),
         ({"time": [0, 1, 2], "sled.x": [1, 2, 3]}, {}, InputError, "parameters: found none"),
         ({"time": [0, 1, 2], "sled.x": [1, 2, 3]}, {"k": 3}, InputError, "k: found 3, expected a range"),
         ({"time": [0, 1, 2], "sled.x": [1, 2, 3]}, {"k": (3, 1)}, InputError, "k: range: found 3 to 1"),

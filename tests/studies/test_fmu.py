@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import zipfile
 
 import numpy as np
 import pytest
@@ -85,6 +86,7 @@ def test_the_command_names_the_outputs(scene, tmp_path):
     [
         ("a.zip", (), "found the ending '.zip', expected .fmu"),
         ("a.fmu", ("sled.q",), "found no channel 'sled.q'"),
+        ("a.fmu", "sled.x", "outputs: found 'sled.x', expected a list of channels"),
         ("a.fmu", ("push",), "which is an input or parameter"),
     ],
 )
@@ -196,3 +198,156 @@ def test_a_scene_may_have_any_name(tmp_path):
     done = subprocess.run([sys.executable, "-c", STARTS, *map(str, paths)], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr[-2000:]
     np.testing.assert_allclose(json.loads(done.stdout.splitlines()[-1]), range(len(NAMES)), atol=1e-12)
+
+
+STATES = """
+import json, sys
+from fmpy import extract, read_model_description
+from fmpy.fmi2 import FMU2Slave
+
+path = sys.argv[1]
+about, folder = read_model_description(path), extract(path)
+refs = {v.name: v.valueReference for v in about.modelVariables}
+
+def instance(**values):
+    made = FMU2Slave(guid=about.guid, unzipDirectory=folder, modelIdentifier=about.coSimulation.modelIdentifier, instanceName="a")
+    made.instantiate(loggingOn=True)
+    made.setupExperiment(startTime=0.0)
+    made.enterInitializationMode()
+    for name, value in values.items():
+        made.setReal([refs[name]], [value])
+    made.exitInitializationMode()
+    return made
+
+def where(made):
+    return made.getReal([refs["where"], refs["speed"], refs["push"]])
+
+def refused(call, *values):
+    try:
+        call(*values)
+    except Exception:
+        return True
+    return False
+
+one = instance(k=90.0)
+one.setReal([refs["push"]], [5.0])
+one.doStep(0.0, 0.25)
+kept = one.getFMUstate()
+as_bytes = one.serializeFMUstate(kept)
+at = where(one)
+one.setReal([refs["push"]], [-50.0])
+one.doStep(0.25, 0.25)
+one.setFMUstate(kept)
+back = where(one)
+one.doStep(0.25, 0.25)
+first = where(one)
+other = instance()
+other.setFMUstate(other.deSerializeFMUstate(as_bytes))
+other.doStep(0.25, 0.25)
+faults = [refused(other.setReal, [refs["k"]], [40.0]), refused(other.doStep, 3.0, 0.1), refused(other.doStep, 0.25, 0.1)]
+again = where(other)
+other.reset()
+other.setupExperiment(startTime=0.0)
+other.enterInitializationMode()
+other.setReal([refs["k"], refs["push"]], [90.0, 5.0])
+other.exitInitializationMode()
+other.doStep(0.0, 0.25)
+print(json.dumps([at, back, first, again, faults, where(other)]))
+"""
+
+
+def test_states_are_kept_and_late_parameters_and_wrong_times_are_refused(scene, tmp_path):
+    stiffmbs.build_fmu(scene, tmp_path / "pushed.fmu")
+    done = subprocess.run(
+        [sys.executable, "-c", STATES, str(tmp_path / "pushed.fmu")], capture_output=True, text=True, timeout=300
+    )
+    at, back, first, again, faults, reset = json.loads(done.stdout.splitlines()[-1])
+    omega = np.sqrt(90 / 2)
+
+    def exact(t):
+        moved = np.sin(omega * t) / omega + 5 / 90 * (1 - np.cos(omega * t))
+        return [moved, np.cos(omega * t) + 5 / 90 * omega * np.sin(omega * t), 5.0]
+
+    for found, t in ((at, 0.25), (back, 0.25), (first, 0.5), (again, 0.5), (reset, 0.25)):
+        assert found == pytest.approx(exact(t), abs=1e-6)
+    assert faults == [True, True, True]
+    assert "parameter 'k': found 40 after the start" in done.stdout + done.stderr
+    assert "found a step from 3 s, expected one from 0.5 s" in done.stdout + done.stderr
+
+
+@pytest.fixture
+def slave(scene, tmp_path, monkeypatch):
+    """Return a function that makes an FMU of changed text, and its slave without the simulating program."""
+    from stiffmbs.studies.fmu import slave as module
+
+    made = []
+    monkeypatch.setattr(module, "simulation", lambda model: made.append(stiffmbs.simulation(model)) or made[-1])
+
+    def slave_of(text, outputs):
+        scene.write_text(text, encoding="utf-8")
+        stiffmbs.build_fmu(scene, tmp_path / "a.fmu", outputs)
+        with zipfile.ZipFile(tmp_path / "a.fmu") as archive:
+            archive.extractall(tmp_path / "fmu")
+        return module.SceneSlave(instance_name="one", resources=str(tmp_path / "fmu/resources"))
+
+    slave_of.made = made
+    return slave_of
+
+
+def put(slave, **values):
+    for name, value in values.items():
+        next(v for v in slave.vars.values() if v.name == name).setter(value)
+
+
+def value_of(slave, name):
+    return next(v for v in slave.vars.values() if v.name == name).getter()
+
+
+def test_an_input_of_an_fmu_returns_to_its_first_value(slave):
+    one = slave(SCENE.replace("force: [push, 0]", "force: [push*cos(t), 0]"), ["sled.ax"])
+    one.setup_experiment(0.0, None, None)
+    one.exit_initialization_mode()
+    for push in (0.0, 5.0, 0.0, 3.0, 0.0):
+        put(one, push=push)
+        assert value_of(one, "sled.ax") == pytest.approx(push / 2, abs=1e-9)
+
+
+def test_a_restored_state_needs_no_other_start(slave):
+    """No equilibrium of a sled on a rail exists with a push: a state is restored without one, in the same simulation."""
+    unsprung = SCENE.replace(SCENE[SCENE.index("  spring") : SCENE.index("  pusher")], "")
+    one = slave(unsprung.replace(", velocity: [1, 0]}}", "}}\nstart: equilibrium"), ["sled.x"])
+    one.setup_experiment(0.0, None, None)
+    one.exit_initialization_mode()
+    put(one, push=5.0)
+    assert one.do_step(0.0, 0.5)
+    kept, at = one._get_fmu_state(), value_of(one, "sled.x")
+    ends = []
+    for t in (0.5, 1.0):
+        put(one, push=-3.0)
+        assert one.do_step(t, 0.5)
+        one._set_fmu_state(kept)
+        assert value_of(one, "push") == 5.0 and value_of(one, "sled.x") == at
+        assert one.do_step(0.5, 0.5)
+        ends.append(value_of(one, "sled.x"))
+    assert ends[0] == ends[1] == pytest.approx(5 / 2 / 2, rel=1e-6)
+    assert len(slave.made) == 1
+    put(one, push=0.0)
+    one.setup_experiment(0.0, None, 1e-10)
+    one.exit_initialization_mode()
+    one._set_fmu_state(kept)  # with another tolerance: in another simulation
+    assert value_of(one, "sled.x") == pytest.approx(at, rel=1e-9) and len(slave.made) == 3
+
+
+def test_steps_from_a_restored_state_do_not_depend_on_those_before(slave):
+    """To the last bit, in the same simulation and in a new one."""
+    one = slave(SCENE, ["sled.x"])
+    one.setup_experiment(0.0, None, None)
+    one.exit_initialization_mode()
+    assert one.do_step(0.0, 0.1)
+    kept, ends = one._get_fmu_state(), []
+    for other in (one, one, type(one)(instance_name="other", resources=one.resources)):
+        other._set_fmu_state(kept)
+        for k in range(30):
+            assert other.do_step(0.1 + 0.01 * k, 0.01)
+        ends.append(value_of(other, "sled.x"))
+    assert ends[0] == ends[1] == ends[2] and len(slave.made) == 2

@@ -10,6 +10,7 @@ import stiffmbs
 from stiffmbs import InputError, SolverError, sensitivities
 from stiffmbs.sensitivity_equations.recorded import Recorder, Segment
 from stiffmbs.studies.sensitivities.formulas import Formula
+from stiffmbs.studies.sensitivities.sensitivities import Sensitivity, _agree
 from tests.studies.oscillator import SLED, oscillation, slope
 
 
@@ -288,3 +289,43 @@ def test_an_output_that_is_no_text_is_refused(of):
 def test_the_field_formula_of_a_tyre_is_no_formula():
     set_up = import_module("stiffmbs.studies.sensitivities.set_up")
     assert not set_up._has_table((("formula", ("choice", "5.2")), ("LMUX", ("number",))))
+
+
+STRETCHED_PENDULUM = """
+gravity: [0, 0]
+parameters: {k: 88.7 N/m, l: 0.37}
+bodies:
+  a: {mass: 0.37, inertia: 0.1, position: [l*cos(0.7), l*sin(0.7)], angle: 0.7, markers: {p: {point: [-l, 0]}, e: {point: [l, 0]}}}
+  b: {mass: 0.37, inertia: 0.1, position: [3*l*cos(0.7), 3*l*sin(0.7)], angle: 0.7, markers: {p: {point: [-l, 0]}, e: {point: [l, 0]}}}
+joints:
+  p: {type: revolute, i: a.p, j: ground}
+  q: {type: revolute, i: b.p, j: a.e}
+forces:
+  along: {type: spring_damper, i: b.e, j: {body: ground, point: [6*l*cos(0.7), 6*l*sin(0.7)]}, stiffness: k, damping: 0.2, free_length: 0.3}
+run: {duration: 0.001, points: 6}
+"""
+
+
+def test_steps_are_not_refined_for_the_rounding_of_a_derivative_of_zero(monkeypatch):
+    """A force along the stretched links does not rotate them: outputs and derivatives are rounding, which never agrees."""
+    module, numbers = import_module("stiffmbs.studies.sensitivities.sensitivities"), []
+    solved = module.differentiated
+    monkeypatch.setattr(module, "differentiated", lambda *given: numbers.append(given[-1]) or solved(*given))
+    for of in ("final(a.omega)", "final(b.omega)"):
+        found = sensitivities(stiffmbs.read_scene(STRETCHED_PENDULUM), ["k"], of, solver="radau")
+        assert found.to["k"] == pytest.approx(0.0, abs=1e-15)
+    assert max(numbers) <= 400
+
+
+@pytest.mark.parametrize(
+    ("value", "size", "coarse", "fine", "same"),
+    [
+        (1e-22, 0.02, 1e-21, 6e-21, True), (0.0, 2e11, 4e-15, 5e-15, False), (0.0, 1.0, 1.0, 1.1, False),
+        (1e-3, 1.0, 1.0, 1.1, False), (0.0, 0.0, 1e-21, 6e-21, False),
+    ],
+)  # fmt: skip
+def test_derivatives_of_zero_agree_if_the_whole_parameter_changes_the_output_by_rounding(
+    value, size, coarse, fine, same
+):
+    one, other = (Sensitivity("final(a.x)", value, {"k": slope}, np.zeros(1)) for slope in (coarse, fine))
+    assert _agree(1e-4, {"k": size}, one, other) is same

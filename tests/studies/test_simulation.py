@@ -154,3 +154,108 @@ def test_a_parameter_that_a_change_adds_is_an_input(examples):
     sim = simulation(stiffmbs.load_scene(examples / "cart_pendulum.yaml", added), inputs={"u": 0.0})
     sim.step(0.01, inputs={"u": 1000.0})
     assert sim["cart.vx"] > 0.1
+
+
+PULSE = "1e4*(step(t, {at}, 0, {at} + 1e-4, 1) - step(t, {at} + 2e-4, 0, {at} + 3e-4, 1))"
+"""Force of 1e4 N over 2e-4 s in the mean, which changes the velocity of the sled of 2 kg by 1 m/s."""
+
+
+@pytest.mark.parametrize("at", ["F", "at"])
+@pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
+def test_a_pulse_whose_time_is_an_input_is_not_missed(solver, at):
+    text = SLED.replace("F: 0 N", "F: 0").replace("force: [F, 0]", f'force: ["{PULSE.format(at=at)}", 0]')
+    text = text.replace("-k*sled.x", "0*k*sled.x")
+    scene = stiffmbs.read_scene("inputs: {at: 0}\n" + text)
+    sim = simulation(scene, inputs={"F": 0.0} if at == "F" else None, solver=solver, duration=5.0)
+    sim.step(0.3, inputs={at: 1.9})
+    sim.step(0.7, inputs={at: 0.5})
+    assert sim["sled.vx"] == pytest.approx(1.0, abs=1e-6)
+    sim.step(0.5, inputs={at: 0.0})
+    assert sim["sled.vx"] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_breakpoints_before_the_end_of_a_simulation_are_found_again_after_a_return(tmp_path):
+    text = SLED.replace("force: [F, 0]", f'force: ["{PULSE.format(at="0.7")}", 0]').replace("-k*sled.x", "0*k*sled.x")
+    sim = simulation(stiffmbs.read_scene(text), solver="bdf", duration=1.0)
+    sim.step(0.4)
+    sim.save(tmp_path / "early.npz")
+    for _ in range(6):
+        sim.step(0.3)  # beyond the duration
+    assert sim["sled.vx"] == pytest.approx(1.0, abs=1e-6)
+    sim.load(tmp_path / "early.npz")
+    sim.step(0.5)
+    assert sim["sled.vx"] == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("law", "value"),
+    [
+        ("max(F, 2000)", lambda F: max(F, 2000)),
+        ("abs(F - 5000)", lambda F: abs(F - 5000)),
+        ("2*min(F, 1500)", lambda F: 2 * min(F, 1500)),
+        ("F + step(F, 2000, 0, 3000, 1000)", lambda F: F + 1000 * (F > 3000)),
+        ("F + max(0, 1 - abs(F - 5))", lambda F: F + max(0, 1 - abs(F - 5))),
+        ("F/2 + k", lambda F: F / 2 + 100),
+        ("max(F, limit)", lambda F: max(F, 2000)),
+        ("max(F, 1000*pi)", lambda F: max(F, 1000 * np.pi)),
+        ("abs(F/1000)^pi", lambda F: abs(F / 1000) ** np.pi),
+        ("atan2(F, pi)", lambda F: np.arctan2(F, np.pi)),
+        ("(F + 1)*max(limit, 1000*pi)/pi", lambda F: 1000 * (F + 1)),
+    ],
+)
+def test_an_input_in_a_function_is_not_taken_as_linear(law, value):
+    text = SLED.replace("force: [F, 0]", f'force: ["{law}", 0]').replace(
+        "parameters: {F: 0 N", "variables: {limit: 2000}\nparameters: {F: 0"
+    )
+    sim = simulation(stiffmbs.read_scene(text.replace("100 N/m", "100")), inputs={"F": 0.0})
+    for F in (0.0, 6000.0, 5.0, -3.0):
+        sim.step(1e-9, inputs={"F": F})
+        assert 2 * sim["sled.ax"] == pytest.approx(value(F), rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("law", ["F*cos(t)", "F*abs(F)", "F*dx(sled)*cos(t)"])
+@pytest.mark.parametrize("own", [True, False])
+def test_an_input_returns_to_its_first_value(own, law):
+    """As a parameter and as an input of the model, set to and fro, and by a reset."""
+    text = SLED.replace("F: 0 N, k: 100 N/m", "F: 10" if not own else "other: 0").replace("-k*sled.x", "0*sled.x")
+    text = text.replace("force: [F, 0]", f'force: ["{law}", 0]')
+    text = text.replace("inertia: 1}", "inertia: 1, position: [1, 0]}") + ("inputs: {F: 10}\n" if own else "")
+    sim = simulation(stiffmbs.read_scene(text), inputs=None if own else {"F": 10.0})
+    start = sim["sled.ax"]
+    for F in (10.0, 20.0, 10.0, 3.0, 10.0):
+        sim.set_inputs({"F": F})
+        assert 2 * sim["sled.ax"] == pytest.approx(F * abs(F) if "abs" in law else F, rel=1e-9)
+    sim.step(0.1)
+    first = sim["sled.vx"]
+    sim.set_inputs({"F": 20.0})
+    sim.reset()
+    assert sim.inputs == {"F": 10.0} and sim["sled.ax"] == start
+    sim.step(0.1)
+    assert sim["sled.vx"] == pytest.approx(first, rel=1e-8)
+
+
+BUSHING = """
+dimensions: 3
+parameters: {k: 10 N/m}
+bodies: {sled: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}}
+forces:
+  bush: {type: bushing, i: {body: sled, point: [0, 0, 0]}, j: {body: ground, point: [0, 0, 0]}, stiffness: [k, 5, 5, 1, 1, 1]}
+"""
+
+
+def test_a_value_that_changes_the_equations_is_refused():
+    sim = simulation(stiffmbs.read_scene(BUSHING), inputs={"k": 10.0})
+    sim.set_inputs({"k": 3.0})
+    with pytest.raises(InputError, match="input 'k': found 0, which changes more than numbers of forces"):
+        sim.set_inputs({"k": 0.0})
+    assert sim.inputs == {"k": 3.0} and sim["sled.ax"] == pytest.approx(-3.0)
+    sim.set_inputs({"k": 1.0})
+    assert sim["sled.ax"] == pytest.approx(-1.0)
+
+
+def test_an_invalid_value_leaves_the_inputs_as_they_were():
+    text = SLED.replace("F: 0 N", "F: 4").replace("force: [F, 0]", "force: [sqrt(F), 0]")
+    sim = simulation(stiffmbs.read_scene(text), inputs={"F": 4.0})
+    with pytest.raises(InputError, match=r"push: found 'sqrt\(F\)'"):
+        sim.set_inputs({"F": -1.0})
+    assert sim.inputs == {"F": 4.0} and sim["sled.ax"] == pytest.approx(1.0)

@@ -165,6 +165,8 @@ def test_progress_counts_to_the_end_and_tells_the_time_left(examples):
     ("given", "sentence"),
     [
         ({"vary": {}}, "found nothing to vary"),
+        ({"vary": "L"}, "vary: found 'L', expected a list of variations"),
+        ({"vary": {"L": [0.5]}, "workers": "2"}, "workers: found '2', expected a whole number"),
         ({"vary": {"LL": [1.0]}}, "LL: found no such parameter .*, expected one of L, start"),
         ({"vary": {"L": [0.5]}, "outputs": "peak(rial.fy)"}, "found no channel 'rial.fy'"),
         ({"vary": {"L": [0.5]}, "outputs": "peak(rail.fy"}, "found no formula"),
@@ -180,3 +182,11 @@ def test_progress_counts_to_the_end_and_tells_the_time_left(examples):
 def test_what_cannot_be_studied_is_refused(examples, given, sentence):
     with pytest.raises(InputError, match=sentence.replace("(", r"\(")):
         sweep(examples / "cart_pendulum.yaml", duration=0.1, **given)
+
+
+def test_a_case_whose_formula_has_no_value_is_a_row_with_its_message():
+    text = "parameters: {F: 4}\nbodies: {sled: {mass: 2, inertia: 1}}\nforces: {push: {type: force, i: sled, force: [sqrt(F), 0]}}"
+    found = sweep(stiffmbs.read_scene(text), {"F": [4.0, -1.0]}, outputs="final(sled.vx)", duration=1.0)
+    assert found.status.values.tolist() == ["done", "error"]
+    assert found["final(sled.vx)"].values[0] == pytest.approx(1.0)
+    assert str(found.message.values[1]).startswith("push: found 'sqrt(F)' in 'sqrt(F)', which has")

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ...analyses.load_scene import load_scene
-from ...errors import InputError, needs
+from ...errors import InputError, needs, refuse_text
 from ...model.scene import Scene
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.yaml_text import scene_text
@@ -70,6 +70,7 @@ def build_fmu(
     InputError
         If the scene is invalid, has stages or needs other files, there is no such channel, or PythonFMU is missing.
     """
+    refuse_text("outputs", outputs, "channels")
     target = Path(output)
     if target.suffix != ENDING:
         raise InputError(f"-o {output}: found the ending '{target.suffix}', expected {ENDING}")
@@ -87,7 +88,9 @@ def build_fmu(
         script.write_text(SCRIPT.format(name=name), encoding="utf-8")
         before = list(sys.path)
         try:
-            built = FmuBuilder.build_FMU(script, folder / BUILT, project_files=[folder / SCENE, folder / ABOUT])
+            built = FmuBuilder.build_FMU(
+                script, folder / BUILT, project_files=[folder / SCENE, folder / ABOUT], canGetAndSetFMUstate=True, canSerializeFMUstate=True
+            )  # fmt: skip
             written_whole(target, lambda part: shutil.copyfile(built, part))
         finally:
             sys.path[:] = before

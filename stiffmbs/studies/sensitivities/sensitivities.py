@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
@@ -13,6 +13,7 @@ from ...analyses.job import Job, Runnable, prepare
 from ...dynamics.dynamics import OutputRows
 from ...errors import InputError, SolverError
 from ...model.settings import RunSettings
+from ...redundancy.messages.redundancy import derivative_sentences
 from ...results.channels import channels_of
 from ...sensitivity_equations.along_run import AlongRun, Instant, Side
 from ...sensitivity_equations.jumps import NO_JUMP
@@ -25,7 +26,7 @@ from ...tuning import in_use
 from ..outputs import outputs_of
 from ..stepping import FINEST
 from .channels import changed_channels, changed_requests
-from .formulas import Formula
+from .formulas import ZERO, Formula
 from .parameters import Parameter, Scenes, with_weights
 from .set_up import SetUp, breakpoint_rates
 
@@ -65,17 +66,22 @@ class Sensitivity:
         Derivative by each parameter, SI units.
     time : ndarray, shape (n,)
         Output instants, s.
+    notes : tuple of str
+        Notes on the output, one sentence each.
     """
 
     of: str
     value: Any
     to: dict[str, Any]
     time: np.ndarray
+    notes: tuple[str, ...] = ()
 
     def as_dict(self, scene: str) -> dict[str, Any]:
-        """Return the content of ``stiffmbs sensitivities --json``."""
+        """Return the content of ``stiffmbs sensitivities --json``, with notes if there are any."""
         to = {name: np.asarray(slope).tolist() for name, slope in self.to.items()}
-        return {"scene": scene, "of": self.of, "value": np.asarray(self.value).tolist(), "to": to}
+        value = np.asarray(self.value).tolist()
+        notes = {"notes": list(self.notes)} if self.notes else {}
+        return {"scene": scene, "of": self.of, "value": value, "to": to, **notes}
 
 
 def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings: Any) -> Sensitivity:
@@ -137,7 +143,8 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
     asked = changed(scenes.known.run, settings)
     found: list[Sensitivity] = []
     solver = _solver(asked)
-    numbers, agreed = NUMBERS_OF_STEPS[solver], partial(_agree, AGREED[solver])
+    sizes = {name: abs(Parameter(scenes, name).value) for name in names}
+    numbers, agreed = NUMBERS_OF_STEPS[solver], partial(_agree, AGREED[solver], sizes)
     for steps in numbers:
         run = differentiated(scenes, names, asked, steps)
         found += run.sensitivities([output.text])
@@ -155,14 +162,20 @@ def _solver(settings: RunSettings) -> str:
     return "radau" if settings.solver == "radau" else "bdf"
 
 
-def _agree(agreed: float, coarse: Sensitivity, fine: Sensitivity) -> bool:
-    """Return True if derivatives along longer and along shorter steps are equal within the accepted error."""
-    noise = NOISE * float(np.max(np.abs(fine.value), initial=0.0))
-    return all(
-        float(np.max(np.abs(coarse.to[name] - slope), initial=0.0))
-        <= agreed * float(np.max(np.abs(slope), initial=0.0)) + noise
-        for name, slope in fine.to.items()
-    )
+def _agree(agreed: float, sizes: Mapping[str, float], coarse: Sensitivity, fine: Sensitivity) -> bool:
+    """Return True if derivatives along longer and along shorter steps are equal within the accepted error.
+
+    `sizes`: magnitudes of the parameters. The derivative of an output that is zero up to rounding may be rounding itself:
+    then changes of the output by the whole parameter below `ZERO` are equal.
+    """
+    size = float(np.max(np.abs(fine.value), initial=0.0))
+    for name, slope in fine.to.items():
+        apart = float(np.max(np.abs(coarse.to[name] - slope), initial=0.0))
+        if size <= ZERO and apart * sizes[name] <= ZERO and sizes[name] > 0:
+            continue
+        if apart > agreed * float(np.max(np.abs(slope), initial=0.0)) + NOISE * size:
+            return False
+    return True
 
 
 def differentiated(scenes: Scenes, names: Sequence[str], asked: RunSettings, fewest: int = FEWEST) -> DifferentiatedRun:
@@ -242,9 +255,11 @@ class DifferentiatedRun:
             output.refuse_unknown(channels)
         formulas = [Formula(output.text, rows.t, channels) for output in outputs]
         slopes = self._slopes(channels, np.unique(np.concatenate([formula.instants() for formula in formulas])))
-        return [self._of_formula(formula, slopes) for formula in formulas]
+        redundancy = self._job.redundancy
+        notes = [tuple(derivative_sentences(redundancy, output.channels)) for output in outputs]
+        return [self._of_formula(formula, slopes, own) for formula, own in zip(formulas, notes, strict=True)]
 
-    def _of_formula(self, formula: Formula, slopes: dict[str, np.ndarray]) -> Sensitivity:
+    def _of_formula(self, formula: Formula, slopes: dict[str, np.ndarray], notes: tuple[str, ...]) -> Sensitivity:
         dual = formula.dual(slopes)
         by = np.broadcast_to(dual.slope, (*np.shape(dual.value), len(self._set_ups)))
         if np.ndim(dual.value) == 0:
@@ -254,7 +269,7 @@ class DifferentiatedRun:
                 f"sensitivities: found a derivative of '{formula.text}' that is no number, expected finite ones"
             )
         to = {set_up.parameter.name: _plain(by[..., k]) for k, set_up in enumerate(self._set_ups)}
-        return Sensitivity(formula.text, _plain(dual.value), to, self._rows.t)
+        return Sensitivity(formula.text, _plain(dual.value), to, self._rows.t, notes)
 
     def _refuse_jumps(self, formula: Formula, slopes: dict[str, np.ndarray]) -> None:
         """Reject a number that evaluates a channel at a discontinuity; a series has the value of the right side."""
