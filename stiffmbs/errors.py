@@ -66,3 +66,9 @@ def refuse_missing(package: str, source: str, where: str = "") -> None:
     """
     if find_spec(package) is None:
         raise InputError(f"{where}found no {package}, expected it installed: pip install {source}")
+
+
+def refuse_text(name: str, found: object, entries: str) -> None:
+    """Raise an InputError if a text is given for a list of texts, as it would be a list of letters."""
+    if isinstance(found, str):
+        raise InputError(f"{name}: found '{found}', expected a list of {entries}")

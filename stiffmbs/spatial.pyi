@@ -337,6 +337,7 @@ class ExactBeam(_ExactBeam):
         stiffness: given.Matrix,
         unloaded: given.Numbers = ...,
         shear_centre: given.Numbers | None = ...,
+        wagner: given.Numbers | None = ...,
         type: Literal["exact_beam"] = ...,
     ) -> None: ...
 

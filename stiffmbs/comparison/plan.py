@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import InputError, refuse_text
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings
@@ -155,10 +156,12 @@ def plan_of(
     repeats: int, longest: float,
 ) -> Plan:  # fmt: skip
     """Return a plan after a check of its numbers."""
+    refuse_text("solvers", solvers, "solvers")
+    refuse_text("formulations", formulations, "formulations")
     measure_of(measure)
     for name, value in (("repeats", repeats), ("longest", longest)):
-        if not value > 0:
-            raise InputError(f"{name}: found {value}, expected more than 0")
+        if not (isinstance(value, Real) and value > 0):
+            raise InputError(f"{name}: found {value!r}, expected a number, more than 0")
     loose_first = numbers_of(variation("tolerances", tolerances), PER_DECADE)[::-1]
     steps_first = numbers_of(variation("steps", steps), PER_DECADE)[::-1] if steps is not None else ()
     return Plan(

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..elements.body import body_numbers
 from ..elements.element import Element
+from ..elements.states.equation import Reported
 from ..errors import InputError
 from ..model.model_builder import ModelBuilder
 from ..reading.formula.text import FormulaError
@@ -73,6 +74,12 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
         holonomic=np.array(holonomic, dtype=bool),
         active=np.ones(len(equations), dtype=bool),
         size=size,
+        outputs={
+            name: element.formula
+            for members in sorted_elements.values()
+            for name, element, _ in members
+            if isinstance(element, Reported)
+        },
     )
     if system.sampled.any():
         _refuse_jumps_of_positions(system)

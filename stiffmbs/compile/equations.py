@@ -159,7 +159,7 @@ class Equations:
     @property
     def slots_with_rates(self) -> np.ndarray:
         """Slots of the matrix with an entry of dr/dy', in the order of the pattern."""
-        return np.unique(self._slot[self._cj != 0.0])
+        return np.flatnonzero(np.bincount(self._slot[self._cj != 0.0]))
 
     def used(self) -> dict[str, np.ndarray]:
         """Return the groups whose values are used, for the term sets of the residual and of the matrix."""

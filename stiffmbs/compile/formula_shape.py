@@ -199,6 +199,6 @@ class FormulaShape(ast.NodeVisitor):
             self.reactions.append((node.attr, node.value.id))
             return ast.Name(f"{REACTION}{len(self.reactions) - 1}")
         if self.model.dimensions == 3 and node.attr[0] in "qw":
-            self.measures.append((OWN + node.attr, (MarkerReference(body=node.value.id),)))
+            self.measures.append((OWN + node.attr, (MarkerReference.model_construct(body=node.value.id),)))
             return ast.Name(f"measure{len(self.measures) - 1}")
         return ast.Attribute(ast.Name(f"b{self.data.slot(node.value.id)}"), node.attr)

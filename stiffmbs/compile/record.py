@@ -24,7 +24,7 @@ from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
 from .machine import cache as store
-from .machine.compiler import FULL, GEOMETRY, LOW, Compiled, Description, compiled_source
+from .machine.compiler import CALLS_WITH_LOOPS, FULL, SHORT, Compiled, Description, compiled_source
 from .terms import KERNEL_SIGNATURE, TERM_SETS
 
 if TYPE_CHECKING:
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 
 RARE = ("effort", "effort_tangent", "all_levels", "all_levels_tangent")
 """Term sets of Radau methods and of the formulation index1 only; derived on first use, as they are expensive."""
-
-LONG = ("tangent", "output", "effort_tangent", "all_levels_tangent")
-"""Term sets with long kernels without loops, which LLVM's higher levels of optimisation do not make faster."""
 
 _INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
 
@@ -139,8 +136,8 @@ def kernel_of(kind: Kind, term_set: str, place: str = "") -> Compiled | None:
     source = source_of(kind, term_set)
     if source is None:
         return None
-    straight = term_set in LONG and GEOMETRY not in source and not hasattr(kind.element, "compiled_terms")
-    return compiled_source(source, "kernel", KERNEL_SIGNATURE, with_place(kind, place), LOW if straight else FULL)
+    has_loops = hasattr(kind.element, "compiled_terms") or any(call in source for call in CALLS_WITH_LOOPS)
+    return compiled_source(source, "kernel", KERNEL_SIGNATURE, with_place(kind, place), FULL if has_loops else SHORT)
 
 
 def compile_usual(kind: Kind) -> None:

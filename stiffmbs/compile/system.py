@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..elements.element import Element
+from ..reading.formula.formula import Formula
 from .bodies import BodyKind
 from .group import Group
 from .machine.compiler import Compiled
@@ -78,6 +79,8 @@ class System:
     start_angles : dict of str to float
         Continuous angles of joints at a start from a saved state or with joints that hold at the start alone, rad, by
         channel; may be changed in place.
+    outputs : dict of str to Formula
+        Formulas for which names in other formulas stand, such as the values of inputs; may be changed in place.
     n_q, n_u, n_c : int
         Numbers of coordinates, velocities and constraint equations.
     n_pose, n_counters : int
@@ -112,6 +115,7 @@ class System:
     active: np.ndarray
     size: float
     start_angles: dict[str, float] = field(default_factory=dict)
+    outputs: dict[str, Formula] = field(default_factory=dict)
     n_q: int = field(init=False)
     n_u: int = field(init=False)
     n_c: int = field(init=False)

@@ -12,6 +12,7 @@ import numpy as np
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
 from ..compile.inputs.features import NO_FEATURES, InputFeatures, input_features
+from ..compile.machine.compiler import SHORT
 from ..compile.machine.layout import address, addresses, packed
 from ..compile.machine.routines import together
 from ..compile.state import State
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, CONTRADICTING, OUTPUT_POINTS, ENERGIES = together(
     "stiffmbs.dynamics.native.dynamics",
+    SHORT,
     assemble="int64(float64, float64, int64, int64*)",
     correct_velocities="int64(float64, int64*)",
     accelerate="int64(float64, float64*, int64*)",
@@ -128,6 +130,7 @@ class Dynamics:
         self._potential = np.array(system.term("output", "potential").source, dtype=np.int64)
         self._power = np.array(system.term("output", "power").source, dtype=np.int64)
         self._kinetic = np.array(system.term("output", "kinetic").source, dtype=np.int64)
+        self.input_changes = 0
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         for_output = system.turned("output")
@@ -174,6 +177,7 @@ class Dynamics:
 
     def forget_inputs(self) -> None:
         """Discard the cached features of inputs after formulas of time were changed in place."""
+        self.input_changes += 1
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end = np.nan, np.nan, None
 

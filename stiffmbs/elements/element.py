@@ -55,7 +55,7 @@ def _reserved(element: type[Described], base: type[Described]) -> str:
 
     `element`: a subclass of joints or forces. `base`: the base whose attributes its fields must not hide.
     """
-    names = IN_EQUATIONS | {name for name in dir(base) if not hasattr(Described, name)}
+    names = IN_EQUATIONS | {name for name in dir(base) if not (name.startswith("__") or hasattr(Described, name))}
     added = {*element.model_fields, *element.__private_attributes__} - {*base.model_fields}
     if not (found := sorted(added & names)):
         return ""
@@ -116,6 +116,11 @@ class Element(Described):
         torque), ``matrix``, ``angle`` (about the last axis), ``pitch`` (along z for each turn), ``x``, ``about x``.
         Names of fields that name joints: as the product of their coordinates. For a marker: the axis whose direction
         matters, such as ``z``.
+    symmetric_with : mapping of str to str, optional
+        Conditions on its markers, by field, under which the element is its own mirror image about a plane
+        (`stiffmbs.presolve.modes_at_rest`). ``point``: its point is in the plane. ``z``: also its z axis is in the plane or normal
+        to it; ``axes``: all three are. ``along z``: the axis alone. ``body``: none. Fields of `reflected` must have no components
+        out of the plane. None: the element is not symmetric about any plane.
     symbol : str
         Kind whose symbol drawings show; by default its own, or a diamond or a dashed line if there is none.
     """
@@ -124,6 +129,7 @@ class Element(Described):
     dimensions: ClassVar[tuple[int, ...]] = ()
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
     reflected: ClassVar[dict[str, str] | None] = None
+    symmetric_with: ClassVar[dict[str, str] | None] = None
     symbol: ClassVar[str] = ""
 
     type: str = ""

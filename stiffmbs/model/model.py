@@ -27,7 +27,7 @@ from .model_data import ModelData
 class PlanarData(ModelData):
     """Content of a planar model."""
 
-    origin = Placement()
+    origin = Placement.model_construct()
     output_names = OF_PLANE
 
     dimensions: Literal[2] = Field(2, description="of the model: the plane")

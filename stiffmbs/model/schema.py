@@ -8,6 +8,7 @@ from ..elements.body import Body as PlanarBody
 from ..elements.planar_kinds import FORCES, JOINTS
 from .parts.definitions import KEYS
 from .parts.options import CHOOSE, OPTIONS
+from .parts.parameters import LIMITS
 from .parts.planar_frame import PlanarUse
 from .scene import PlanarScene
 
@@ -98,6 +99,11 @@ def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str
             "mounts": {
                 **words,
                 "description": "further bodies that the part connects to, and what they are by default",
+            },
+            "limits": {
+                "type": "object",
+                "additionalProperties": {"enum": [*LIMITS]},
+                "description": "limits of parameters, by name",
             },
             OPTIONS: options,
             **own,

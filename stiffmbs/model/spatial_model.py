@@ -45,7 +45,7 @@ class OrFlexible:
 class SpatialData(ModelData):
     """Content of a spatial model."""
 
-    origin = Placement()
+    origin = Placement.model_construct()
     output_names = OF_SPACE
 
     dimensions: Literal[3] = Field(3, description="of the model: space")

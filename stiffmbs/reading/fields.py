@@ -86,6 +86,15 @@ else:
     class _Base(BaseModel, metaclass=_OneSentence):
         """Model whose construction errors are single sentences."""
 
+        model_config = ConfigDict(defer_build=True)
+
+        @classmethod
+        def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
+            """Build the class on first use: not a generic one whose type is chosen, since no object of it exists."""
+            if options.get("_types_namespace") is not None and cls.__pydantic_fields_complete__:
+                return None
+            return super().model_rebuild(_parent_namespace_depth=_parent_namespace_depth + 1, **options)
+
 
 class Described(_Base):
     """Base of all descriptions: immutable, without unknown keys, with errors of one sentence.

@@ -37,7 +37,7 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
         "requested": dict(solution.requested),
         "solver": solution.solver,
         "errors": {channel: astuple(bar) for channel, bar in solution.errors.items()},
-        "figure": solution.figure and solution.figure.model_dump(),
+        "figure": solution.figure and dict(solution.figure),
     }
     return {
         ABOUT: np.array(json.dumps(about, default=lambda number: number.item())),

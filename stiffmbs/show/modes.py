@@ -109,11 +109,11 @@ def response_text(scene: str, found: Transfer, frequencies: np.ndarray, values: 
             for k in (0, *inner.tolist(), len(gain) - 1):
                 mark = "peak" if k in inner else ""
                 lines.append(f"  {frequencies[k]:>10.5g} Hz  {gain[k]:>12.5g}  {phase[k]:>8.2f} deg  {mark}".rstrip())
-    return "\n".join(lines)
+    return "\n".join([*lines, *(f"note: {note}" for note in found.notes)])
 
 
 def response_as_json(scene: str, found: Transfer, frequencies: np.ndarray, values: np.ndarray) -> str:
-    """Return frequencies, and real and imaginary part by input and output, as JSON; arguments as of `response_text`."""
+    """Return frequencies, and real and imaginary part by input and output, as JSON, and notes if any; arguments as of `response_text`."""
     parts = {
         name: {
             output: [[value.real, value.imag] for value in values[:, o, i].tolist()]
@@ -121,7 +121,8 @@ def response_as_json(scene: str, found: Transfer, frequencies: np.ndarray, value
         }
         for i, name in enumerate(found.inputs)
     }
-    return json.dumps({"scene": scene, "frequencies": frequencies.tolist(), "response": parts})
+    notes = {"notes": list(found.notes)} if found.notes else {}
+    return json.dumps({"scene": scene, "frequencies": frequencies.tolist(), "response": parts, **notes})
 
 
 def response_csv(found: Transfer, frequencies: np.ndarray, values: np.ndarray) -> str:

@@ -180,7 +180,7 @@ def _touching(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray
     for k, own in enumerate(nodes):
         node[own] = k
     below, right = [0] * len(nodes), [0] * len(nodes)
-    for both in np.unique(node[rows] * len(nodes) + node[columns]).tolist():
+    for both in {*(node[rows] * len(nodes) + node[columns]).tolist()}:
         a, b = divmod(both, len(nodes))
         if a > b:
             below[b] |= 1 << a

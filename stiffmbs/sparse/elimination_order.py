@@ -79,9 +79,9 @@ def order_by_blocks(system: System) -> EliminationOrder:
     neighbours: list[set[int]] = [set() for _ in sizes]
     for name in COUPLING:
         term, axes = system.term("tangent", name), TERM_AXES[name]
-        pairs = np.unique(np.stack([blocks[axes[0]][term.row], blocks[axes[1]][term.column]]), axis=1)
-        for a, b in pairs[:, pairs.min(axis=0) >= 0].T.tolist():
-            if a != b:
+        pairs = zip(blocks[axes[0]][term.row].tolist(), blocks[axes[1]][term.column].tolist(), strict=True)
+        for a, b in sorted({*pairs}):
+            if a != b and min(a, b) >= 0:
                 neighbours[a].add(b)
                 neighbours[b].add(a)
     starts = np.cumsum([0, *sizes]).tolist()

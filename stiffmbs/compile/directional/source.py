@@ -26,12 +26,13 @@ def directional_source(source: str, name: str, along: Collection[str]) -> str:
     module = ast.parse(source)
     imports = [part for part in module.body if isinstance(part, ast.ImportFrom)]
     kernel = next(part for part in module.body if isinstance(part, ast.FunctionDef))
-    (loop,) = kernel.body
+    *places, loop = kernel.body
     assert isinstance(loop, ast.For)
     statements = _Forward(along).statements(loop.body)
     return "\n".join([
         *map(ast.unparse, imports), "", "",
         f"def {name}({KERNEL_ARGUMENTS}, {DIRECTION}):",
+        *(f"    {ast.unparse(place)}" for place in places),
         "    for e in range(count):",
         *(f"        {line}" for line in statements),
         "",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache, partial
 from math import factorial
 from typing import Any
 
@@ -178,14 +179,14 @@ def acos(x: Enclosure) -> Enclosure:
 
 def _by_derivative(function: FormulaFunction) -> Callable[[Enclosure], Enclosure]:
     """Return the enclosure of a function from the enclosure of its derivative."""
-    tree = parse(function.derivative)
+    tree = cache(partial(parse, function.derivative))
 
     def of(x: Enclosure) -> Enclosure:
         """Return the enclosure of the function at an enclosed argument."""
         low, high = x.value
         own = Enclosure.of_time(low, high, max(x.order - 1, 0))  # x as an independent variable
         names = {"x": own, "pi": np.pi}
-        slope = evaluate(tree, names.__getitem__, FUNCTIONS, np.float64)
+        slope = evaluate(tree(), names.__getitem__, FUNCTIONS, np.float64)
 
         def outer(k: int) -> Range:
             return _mean_value(function.array, x.value, slope.value) if k == 0 else slope[k - 1] / k

@@ -120,7 +120,7 @@ def _together(
     bounds: Sequence[Bounds], breakpoints: np.ndarray, start: float, end: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the smallest of all step limits; empty if none is shorter than the time between breakpoints."""
-    starts = np.unique(np.concatenate([[start], breakpoints, *(each.starts for each in bounds)]))
+    starts = np.array(sorted({start, *breakpoints.tolist(), *(t for each in bounds for t in each.starts.tolist())}))
     longest = np.full(len(starts), np.inf)
     for each in bounds:
         k = np.searchsorted(each.starts, starts, side="right") - 1

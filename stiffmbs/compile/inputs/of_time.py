@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Callable, Hashable, Iterator, Mapping, Set
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Set
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, get_args
 
@@ -132,9 +132,41 @@ def _number(value: object) -> Any:
     return np.float64(value) if isinstance(value, float) else value
 
 
+@dataclass(frozen=True)
+class Given:
+    """Values of the model's inputs, by name: constants, and tables of time. Other names of states depend on the motion."""
+
+    constants: Mapping[str, float] = field(default_factory=dict)
+    tables: Mapping[str, Table] = field(default_factory=dict)
+
+
+NONE_GIVEN = Given()
+
+
+def given_to(system: System) -> Given:
+    """Return the values of the inputs of a system's model."""
+    constants: dict[str, float] = {}
+    tables: dict[str, Table] = {}
+    for name, formula in system.outputs.items():
+        match formula.tree:
+            case ast.Constant(float() as number):
+                constants[name] = number
+            case ast.Call(ast.Name(table), [ast.Name(argument)]) if table in formula.tables and argument == TIME:
+                tables[name] = formula.tables[table]
+    return Given(constants, tables)
+
+
+def in_formulas_of_time(system: System, name: str) -> bool:
+    """Return True if breakpoints or step limits of time inputs may depend on a constant input of the model."""
+    given = given_to(system)
+    elements = (element for group in system.groups if group.has_inputs for element in group.elements)
+    return any(name in values for element in elements for _, _, values, _ in expressions_of(element, given))
+
+
 def inputs_of(system: System) -> list[Input]:
     """Return the distinct time inputs of all elements."""
     found: dict[Input, None] = {}
+    given = given_to(system)
     known: dict[int, TableRanges] = {}
 
     def ranges_of(table: Table) -> TableRanges:
@@ -142,7 +174,7 @@ def inputs_of(system: System) -> list[Input]:
 
     for group in system.groups:
         for element in group.elements if group.has_inputs else ():
-            for expression, text, values, tables in expressions_of(element):
+            for expression, text, values, tables in expressions_of(element, given):
                 ranges = {name: ranges_of(table) for name, table in tables.items()}
                 found.setdefault(Input(expression, text, values, ranges))
     return list(found)
@@ -185,12 +217,19 @@ def _squared(node: ast.expr) -> ast.expr | None:
     return None
 
 
-def expressions_of(element: Element) -> Iterator[tuple[ast.expr, str, Mapping[str, float], Mapping[str, Table]]]:
-    """Yield the expressions of time of an element with their text, values and tables."""
+def expressions_of(
+    element: Element, given: Given = NONE_GIVEN
+) -> Iterator[tuple[ast.expr, str, Mapping[str, float], Mapping[str, Table]]]:
+    """Yield the expressions of time of an element with their text, values and tables; `given` values of inputs are constants."""
     for _, formula in element.parts(Formula):
-        for part, names in _of_time_alone(formula) if formula.uses_time else ():
-            used = {name: formula.tables[name] for name in names if name in formula.tables}
-            yield part, formula.text, formula.values, used
+        of_time = [name for name in formula.states if name in given.tables]
+        if not (formula.uses_time or of_time):
+            continue
+        tables = {**formula.tables, **{_OF_TIME.format(name): given.tables[name] for name in of_time}}
+        for part, names in _of_time_alone(formula, given, of_time):
+            constants = {name: given.constants[name] for name in names if name in given.constants}
+            used = {name: tables[name] for name in names if name in tables}
+            yield part, formula.text, {**formula.values, **constants}, used
     for name, table in element.parts(Table):
         if _is_of_time(element, name):
             called = ast.Call(ast.Name(TABLE, ast.Load()), [ast.Name(TIME, ast.Load())], [])
@@ -211,21 +250,56 @@ def _marks(metadata: list[object], annotation: object) -> Iterator[object]:
         yield from _marks([], part)
 
 
-def _of_time_alone(formula: Formula) -> list[tuple[ast.expr, list[str]]]:
-    """Return the largest parts of a formula that use time and no state, and the functions that they call.
+_OF_TIME = "{}(t)"
+"""Function name of an input that is a table of time; no name in a scene has parentheses."""
 
-    They are kept in the tree: every run needs them.
+
+def _of_time_alone(formula: Formula, given: Given, called: Collection[str]) -> list[tuple[ast.expr, list[str]]]:
+    """Return the largest parts of a formula that use time and no state, and the names in them.
+
+    `called`: inputs that are tables of time. The parts are kept in the tree: every run needs them.
     """
-    of_state = frozenset((*formula.variables, *formula.states))
-    known: dict[frozenset[str], list[tuple[ast.expr, list[str]]]] = vars(formula.tree).setdefault(OF_TIME, {})
-    if of_state not in known:
-        parts = _largest_parts(formula.tree, of_state)[2]
-        known[of_state] = [(_without_roots(part), _called(part)) for part in parts]
-    return known[of_state]
+    constants = frozenset(name for name in formula.states if name in given.constants)
+    of_state = frozenset((*formula.variables, *formula.states)) - constants - frozenset(called)
+    known: dict[Hashable, list[tuple[ast.expr, list[str]]]] = vars(formula.tree).setdefault(OF_TIME, {})
+    key = of_state, constants, frozenset(called)
+    if key not in known:
+        tree = _CallsOfTime(called).visit(copy.deepcopy(formula.tree)) if called else formula.tree
+        parts = (_without_factors(part, constants) for part in _largest_parts(tree, of_state)[2])
+        known[key] = [(_without_roots(part), _names(part)) for part in parts]
+    return known[key]
 
 
-def _called(tree: ast.expr) -> list[str]:
-    return [node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call)]  # type: ignore[attr-defined]
+class _CallsOfTime(ast.NodeTransformer):
+    """Replace names of inputs by calls of their tables."""
+
+    def __init__(self, names: Collection[str]) -> None:
+        self._called = names
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        if node.id not in self._called:
+            return node
+        return ast.Call(ast.Name(_OF_TIME.format(node.id), ast.Load()), [ast.Name(TIME, ast.Load())], [])
+
+
+def _without_factors(part: ast.expr, constants: frozenset[str]) -> ast.expr:
+    """Return an expression without factors and terms of constant inputs, which move no breakpoint of it."""
+    match part:
+        case ast.BinOp(left, ast.Add() | ast.Sub() | ast.Mult(), right):
+            sides = [(left, right), (right, left)]
+        case ast.BinOp(left, ast.Div(), right):
+            sides = [(right, left)]
+        case _:
+            return part
+    for side, other in sides:
+        names = _names(side)
+        if TIME not in names and not constants.isdisjoint(names):
+            return _without_factors(other, constants)
+    return part
+
+
+def _names(tree: ast.expr) -> list[str]:
+    return [node.id for node in ast.walk(tree) if isinstance(node, ast.Name)]
 
 
 def _largest_parts(node: ast.expr, of_state: Set[str]) -> tuple[bool, bool, list[ast.expr]]:

@@ -25,8 +25,14 @@ GEOMETRY = f"{__package__}.geometry"
 """Modules called by the sources of contacts between solids."""
 SERIES = "rotation_vector("
 """Call in generated sources with a short loop that should be unrolled to a polynomial (bushings)."""
-FULL, LOW = 3, 1
-"""LLVM's levels of optimisation."""
+CALLS_WITH_LOOPS = (SERIES, GEOMETRY)
+"""Parts of generated sources whose functions have loops; all others are straight code."""
+FULL, SHORT = 3, 1
+"""LLVM's levels of code generation: with its usual passes of optimisation, or with those of `_SHORT` alone."""
+_SHORT = ("always_inliner", "dead_arg_elimination", "sroa", "simplify_cfg", "instruction_combine")
+"""Passes for straight code, and for routines that spend their time in kernels; none works on loops or makes vectors."""
+_INLINED = 40
+"""Instructions of functions that these passes inline: about as many as LLVM's usual ones do."""
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 
@@ -73,7 +79,7 @@ def compiled_source(source: str, name: str, signature: str, of: str = "", level:
 
     `source`: Python text in the language of `stiffmbs.compile.machine.translate`; defines `name`. `name`: the
     function's name. `signature`: such as ``void(int64, float64*)``. `of`: description, logged while it is compiled.
-    `level`: LLVM's level of optimisation. It does not change results, as no level may reorder floating-point operations.
+    `level`: `FULL` or `SHORT`. It does not change results, as no pass may reorder floating-point operations.
     """
     return _compiled_source(source, name, signature, Description(of), level)
 
@@ -104,17 +110,22 @@ def _called(with_geometry: bool) -> str:
 
 
 @cache
-def compiled_routines(module: str, signatures: Signatures, unrolled: bool, changed: str) -> dict[str, Compiled]:
+def compiled_routines(
+    module: str, signatures: Signatures, unrolled: bool, level: int, changed: str
+) -> dict[str, Compiled]:
     """Compile functions of a ``native`` module together, or load them from the cache.
 
-    Unrolled loops take LLVM longer; they speed up solutions with dense blocks only.  `changed` names the parameters in
-    use that differ from the defaults (`stiffmbs.tuning.values_in`).
+    Unrolled loops take LLVM longer; they speed up solutions with dense blocks only.  `level`: as for `compiled_source`.
+    `changed` names the parameters in use that differ from the defaults (`stiffmbs.tuning.values_in`).
     """
-    entry = store.name_of(
-        store.ROUTINE, _language(), _native(module.partition(".")[0]), module, repr((signatures, unrolled)), changed
-    )
+    settings = repr((signatures, unrolled, level))
+    entry = store.name_of(store.ROUTINE, _language(), _native(module.partition(".")[0]), module, settings, changed)
     words = f"the routines {module.rpartition('.')[2]}"
-    return _loaded(entry, _Source(signatures, lambda: vars(importlib.import_module(module)), words, unrolled=unrolled))
+
+    def namespace() -> Mapping[str, Any]:
+        return vars(importlib.import_module(module))
+
+    return _loaded(entry, _Source(signatures, namespace, words, unrolled=unrolled, level=level))
 
 
 @cache
@@ -199,13 +210,20 @@ def _object_code(source: _Source, prefix: str) -> bytes:
 
     namespace = source.namespace()
     entries = [Entry(namespace[name], prefix + name, *_c_types(signature)) for name, signature in source.signatures]
-    module = llvm.parse_assembly(assembly(entries, source.text))
+    inlined = 0 if source.level == FULL else _INLINED
+    module = llvm.parse_assembly(assembly(entries, source.text, inlined))
     module.triple = llvm.get_process_triple()
     options = llvm.create_pipeline_tuning_options(speed_level=source.level)
     options.loop_unrolling = source.unrolled
     emitter = _emitter(source.level)
     builder = llvm.create_pass_builder(emitter, options)
-    builder.getModulePassManager().run(module, builder)
+    if source.level == FULL:
+        passes = builder.getModulePassManager()
+    else:
+        passes = llvm.create_new_module_pass_manager()
+        for name in _SHORT:
+            getattr(passes, f"add_{name}_pass")()
+    passes.run(module, builder)
     return emitter.emit_object(module)
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from ...tuning import parameters_are_changed, values_in
-from .compiler import Compiled, compiled_routines
+from .compiler import FULL, Compiled, compiled_routines
 
 Signatures = tuple[tuple[str, str], ...]
 
@@ -18,7 +18,8 @@ class Routine:
     """Function of a ``native`` module, compiled or loaded from the cache on first use.
 
     `others`: functions of the module compiled with it, because they share most of their code. `unrolled`: true if its
-    loops are unrolled, which pays for solutions with dense blocks.
+    loops are unrolled, which pays for solutions with dense blocks. `level`: `SHORT` if calls are too rare, or too
+    short next to the kernels they call, for LLVM's usual passes.
     """
 
     module: str
@@ -26,6 +27,7 @@ class Routine:
     signature: str
     others: Signatures = ()
     unrolled: bool = False
+    level: int = FULL
 
     @property
     def call(self) -> Callable[..., Any]:
@@ -53,13 +55,13 @@ class Routine:
     def _with(self, changed: str) -> Compiled:
         """Return the function compiled with the parameters in use; `changed` are those that are not the default."""
         together = tuple(sorted(((self.name, self.signature), *self.others)))
-        return compiled_routines(self.module, together, self.unrolled, changed)[self.name]
+        return compiled_routines(self.module, together, self.unrolled, self.level, changed)[self.name]
 
 
-def together(module: str, **signatures: str) -> tuple[Routine, ...]:
+def together(module: str, level: int = FULL, **signatures: str) -> tuple[Routine, ...]:
     """Return functions of one native module that are compiled together."""
     return tuple(
-        Routine(module, name, signature, tuple(other for other in signatures.items() if other[0] != name))
+        Routine(module, name, signature, tuple(other for other in signatures.items() if other[0] != name), level=level)
         for name, signature in signatures.items()
     )
 

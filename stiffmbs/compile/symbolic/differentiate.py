@@ -27,7 +27,8 @@ class Derivatives:
         self._known: dict[tuple[sp.Expr, sp.Symbol], sp.Expr] = {}
         self._symbols: dict[sp.Expr, frozenset[sp.Symbol]] = {}
         self._variables: dict[sp.Symbol, frozenset[sp.Symbol]] = {}
-        self._names: dict[sp.Expr, sp.Symbol] = {}
+        self._variables_of: dict[sp.Expr, frozenset[sp.Symbol]] = {}
+        self._names: dict[sp.Expr, sp.Expr] = {}
         self._functions: dict[sp.Expr, sp.Symbol] = {}
         self.meanings: dict[sp.Symbol, sp.Expr] = {}
 
@@ -49,10 +50,8 @@ class Derivatives:
         """
         if not x.args:
             return x
-        if x.could_extract_minus_sign():
-            return -self.named(-x)
         if x not in self._names:
-            self._names[x] = self._new("named", x)
+            self._names[x] = -self.named(-x) if x.could_extract_minus_sign() else self._new("named", x)
         return self._names[x]
 
     def variable(self, x: sp.Expr, state: Iterable[sp.Symbol]) -> sp.Symbol:
@@ -122,9 +121,11 @@ class Derivatives:
         """Return the derivative of x with respect to v."""
         if not x.args:
             return sp.Integer(1) if x == v else self._of_symbol(x, v)
-        if (x, v) not in self._known:
-            self._known[x, v] = self._by_rule(x, v) if self._depends(x, v) else sp.Integer(0)
-        return self._known[x, v]
+        pair = x, v
+        known = self._known.get(pair)
+        if known is None:
+            known = self._known[pair] = self._by_rule(x, v) if self._depends(x, v) else sp.Integer(0)
+        return known
 
     def _of_symbol(self, x: sp.Symbol, v: sp.Symbol) -> sp.Expr:
         if x in self._chain:
@@ -154,15 +155,20 @@ class Derivatives:
                 return self._by_all(x, rates)
 
     def _by_all(self, x: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-        return sp.Add(*(rate * self.partial(x, symbol) for symbol, rate in rates.items()))
+        parts = ((rate, self.partial(x, symbol)) for symbol, rate in rates.items())
+        return sp.Add(*(rate * part for rate, part in parts if part is not sp.S.Zero))
 
     def _depends(self, x: sp.Expr, v: sp.Symbol) -> bool:
         """Return True if x depends on v."""
-        return any(v in self._of_one(symbol) for symbol in self.symbols_in(x))
+        return v in self.variables(x)
 
     def variables(self, x: sp.Expr) -> frozenset[sp.Symbol]:
-        """Return the symbols of x, and those that they depend on."""
-        return frozenset().union(*(self._of_one(symbol) for symbol in self.symbols_in(x)))
+        """Return the symbols of x, and those that they depend on, cached."""
+        known = self._variables_of.get(x)
+        if known is None:
+            known = frozenset().union(*map(self._of_one, self.symbols_in(x)))
+            self._variables_of[x] = known
+        return known
 
     def _of_one(self, symbol: sp.Symbol) -> frozenset[sp.Symbol]:
         if symbol not in self._variables:
@@ -171,10 +177,11 @@ class Derivatives:
 
     def symbols_in(self, x: sp.Basic) -> frozenset[sp.Symbol]:
         """Return the symbols in an expression, cached."""
-        if x not in self._symbols:
+        known = self._symbols.get(x)
+        if known is None:
             within = frozenset((x,)) if isinstance(x, sp.Symbol) else frozenset()
-            self._symbols[x] = within.union(*map(self.symbols_in, x.args))
-        return self._symbols[x]
+            known = self._symbols[x] = within.union(*map(self.symbols_in, x.args))
+        return known
 
     def _by_rule(self, x: sp.Expr, v: sp.Symbol) -> sp.Expr:
         match x:

@@ -61,9 +61,16 @@ class Variables:
         """Return the sum of efforts times derivatives by one variable; shared parts are named."""
         partial, changes = self.element.derivatives.partial, []
         for symbol, much in way:
-            whole = sp.Add(*(effort * partial(x, symbol) for effort, x in pairs))
-            changes.append(whole if much == 1 else self.element.named(whole) * much)
+            parts = ((effort, partial(x, symbol)) for effort, x in pairs)
+            whole = sp.Add(*(_product(effort, part) for effort, part in parts if part is not sp.S.Zero))
+            if whole is not sp.S.Zero:
+                changes.append(whole if much == 1 else self.element.named(whole) * much)
         return sp.Add(*changes)
+
+
+def _product(effort: sp.Expr, part: sp.Expr) -> sp.Expr:
+    """Return a product; SymPy takes as long for a factor 1 as for any other."""
+    return part if effort is sp.S.One else effort * part
 
 
 class SymbolicElement:
@@ -142,9 +149,10 @@ class SymbolicElement:
         partial = self.derivatives.partial
         own = (rate * partial(x, symbol) for symbol, rate in zip(self.states, self.state_rates, strict=False))
         moving = (
-            rate * (partial(x, symbol) if symbol in frame.q else self.named(partial(x, symbol)))
+            rate * (part if symbol in frame.q else self.named(part))
             for frame in self.frames
             for symbol, rate in frame.motion
+            if (part := partial(x, symbol)) is not sp.S.Zero
         )
         return sp.Add(*moving, *own) + partial(x, self.t)
 

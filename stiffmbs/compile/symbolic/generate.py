@@ -122,7 +122,7 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
             body.append(f"{symbol.name} = {value}")
     for vector in ("lam", "mu"):
         body += [
-            f"{vector}{k} = {vector}[place[0] + {equations}*e + {k}]"
+            f"{vector}{k} = {vector}[row + {equations}*e + {k}]"
             for k in range(equations)
             if sp.Symbol(f"{vector}{k}", real=True) in needed
         ]
@@ -141,9 +141,11 @@ def kernel_source(term_set: str, derived: Derived, name: str) -> str:
     ]
     body += [f"{name} = {part}" for name, part in code.assignments]
     entries_of = {k: entries for k, entries, *_ in outputs}
-    body += [f"to{k} = place[{1 + k}] + {entries}*e" for k, entries in entries_of.items()]
+    body += [f"to{k} = first{k} + {entries}*e" for k, entries in entries_of.items()]
     body += [f"value[to{k} + {n}] = {result}" for (k, _, n, _), result in zip(outputs, code.results, strict=True)]
-    lines = [f"def {name}({KERNEL_ARGUMENTS}):", "    for e in range(count):", *(f"        {line}" for line in body)]
+    before = ["row = place[0]", *(f"first{k} = place[{1 + k}]" for k in entries_of)]  # no pass moves them there
+    lines = [f"def {name}({KERNEL_ARGUMENTS}):", *(f"    {line}" for line in before), "    for e in range(count):"]
+    lines += [f"        {line}" for line in body]
     wanted = {PYTHON: "python_call(", GEOMETRY: "common_normal("}
     imports = [text for text, call in wanted.items() if any(call in line for line in body)]
     return "".join([*imports, HEADER]) + "\n".join(lines) + "\n"

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
+from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import arrays_of, fill, packed
 from ...compile.machine.routines import together
 from ...compile.state import State
@@ -21,6 +22,7 @@ from .native.layouts import BLOCK_ELIMINATION, PIN_ELIMINATION, Pin, PinProduct
 
 ATTEMPT, MOVE = together(
     "stiffmbs.dynamics.elimination.native.eliminated",
+    SHORT,
     attempt="int32(float64, float64*, int64*)",
     move="int32(float64*, int64*)",
 )

@@ -110,7 +110,7 @@ def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, A
     }
     numbers = {
         "n_gamma": len(solved),
-        "n_first": len(np.unique(j.at)),
+        "n_first": len({*np.asarray(j.at).tolist()}),
         "n_j": len(j.at),
         "n_full": len(j.full),
         "n_diagonal": len(j.diagonal),

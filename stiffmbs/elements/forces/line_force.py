@@ -20,6 +20,7 @@ class ForceAlongLine(Force, Generic[M]):
 
     kind = "line_force"
     reflected = {}
+    symmetric_with = {"i": "point", "j": "point"}
 
     i: M = Field(description="marker of the first body, on which the force is reported")
     j: M = Field(description="marker of the second body")

@@ -46,6 +46,7 @@ class LineSpring(Spring, Generic[M]):
 
     kind = "spring_damper"
     reflected = {}
+    symmetric_with = {"i": "point", "j": "point"}
     forms = (
         {"stiffness": ..., "damping": ..., "free_length": ...},
         {"spring_law": {"table": [[0, 0], [1, 1]]}, "damping": ...},

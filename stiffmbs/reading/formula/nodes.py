@@ -82,4 +82,4 @@ def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
 @lru_cache(10_000)
 def _reference(body: str, marker: str | None = None) -> MarkerReference:
     """Return a marker by name, cached because long formulas repeat names."""
-    return MarkerReference(body=body, marker=marker)
+    return MarkerReference.model_construct(body=body, marker=marker)

@@ -60,7 +60,10 @@ def _of_bodies(whole: System, subsystem: Subsystem) -> Iterator[str]:
 
 def _left_out(dynamics: Dynamics) -> Iterator[str]:
     system, coordinates = dynamics.system, dynamics.coordinates
-    still = np.flatnonzero(coordinates.independent_of == FIXED).tolist()
+    if coordinates.at_rest:
+        names = listed(_names(system, coordinates.at_rest))
+        yield f"modes out of the plane of the motion, which no load excites, are left out: {names}"
+    still = [k for k in np.flatnonzero(coordinates.independent_of == FIXED).tolist() if k not in coordinates.at_rest]
     if still:
         yield f"held still by constant equations: {listed(list(dict.fromkeys(_names(system, still))))}"
     tied = np.flatnonzero((coordinates.independent_of != FIXED) & ~coordinates.independent).tolist()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from ...compile.system import System
 from ...errors import AssemblyError
@@ -13,6 +13,7 @@ from ..parameters import REDUNDANCY
 from ..redundancy import Redundancy
 from ..uniqueness import Direction, Indeterminate, unproven
 
+MOTION_NOT_UNIQUE = "the motion is not unique either"
 STOPS_WHERE = "stops where formulas or tables no longer hold the same"
 
 
@@ -92,6 +93,13 @@ def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
     )
 
 
+def derivative_sentences(redundancy: Redundancy, channels: Collection[str]) -> Iterator[str]:
+    """Yield the sentences on derivatives of channels: those of reactions without a unique value, and of a motion without."""
+    if found := [name for name in redundancy.not_unique if name in channels]:
+        yield f"rigid bodies do not determine {listed(found)}: one of many possible values is differentiated"
+    yield from (sentence for sentence in pose_sentences(redundancy) if sentence.endswith(MOTION_NOT_UNIQUE))
+
+
 def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
     """Yield sentences on nearly dependent equations and on friction with indeterminate loads."""
     for rank_result in redundancy.rank_results:
@@ -107,7 +115,7 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
                 "so much"
             )
         if not rank_result.motion_unique:
-            yield f"a force (of friction, or by a formula) or a rate depends on reactions of {listed(joints)} that are not unique, so the motion is not unique either"
+            yield f"a force (of friction, or by a formula) or a rate depends on reactions of {listed(joints)} that are not unique, so {MOTION_NOT_UNIQUE}"
 
 
 def note_sentences(redundancy: Redundancy) -> Iterator[str]:

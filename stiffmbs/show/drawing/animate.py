@@ -10,7 +10,7 @@ import numpy as np
 
 from ...analyses.job import data_of
 from ...analyses.run import run
-from ...errors import InputError, refuse_missing
+from ...errors import InputError, refuse_missing, refuse_text
 from ...model.model_data import ModelData
 from ...reading.marker import MarkerReference
 from ...results.files import refuse_path, write_text, written_whole
@@ -48,6 +48,7 @@ def check_pace(pace: Pace) -> None:
 
 def traced(data: ModelData, names: Sequence[str]) -> list[Anchor]:
     """Return the points of named markers, such as ``coupler.tip``, or of bodies."""
+    refuse_text("traces", names, "bodies or markers")
     found = []
     for name in names:
         body, _, marker = (name, "", "") if name in data.bodies else name.rpartition(".")

@@ -42,13 +42,14 @@ class Entry:
     result: str
 
 
-def assembly(entries: Sequence[Entry], text: str = "") -> str:
+def assembly(entries: Sequence[Entry], text: str = "", inlined: int = 0) -> str:
     """Translate functions and those they call into a module of LLVM assembly.
 
-    `text`: source of the functions; the files of their code by default. Raises Untranslatable if a construct is not in
-    the language; names function and line.
+    `text`: source of the functions; the files of their code by default. `inlined`: number of instructions up to which
+    called functions are marked for LLVM's pass ``always-inline``. Raises Untranslatable if a construct is not in the
+    language; names function and line.
     """
-    unit = Unit()
+    unit = Unit(inlined)
     for entry in entries:
         tree = _functions(text)[entry.function.__name__] if text else _tree(entry.function)
         values = [Value(KINDS[kind], "") for kind in entry.arguments]
@@ -60,7 +61,8 @@ def assembly(entries: Sequence[Entry], text: str = "") -> str:
 class Unit:
     """Translated functions, one for each combination of argument kinds."""
 
-    def __init__(self) -> None:
+    def __init__(self, inlined: int = 0) -> None:
+        self._inlined = inlined
         self._texts: list[str] = []
         self._declared: set[str] = set()
         self._known: dict[tuple[Any, ...], tuple[str, str | None]] = {}
@@ -119,8 +121,10 @@ class Unit:
                 wider[found.name] = found.kind
             except Untranslatable as error:
                 raise Untranslatable(f"{tree.name}: {error}") from None
-        head = f'define {linkage}{LLVM_TYPES[kind] if kind else "void"} @"{symbol}"({", ".join(declared)}) nounwind'
-        self._texts.append("\n".join([f"{head} {{", *code.lines(), "}"]))
+        lines = list(code.lines())
+        inline = " alwaysinline" if linkage and len(lines) <= self._inlined else ""
+        head = f'define {linkage}{LLVM_TYPES[kind] if kind else "void"} @"{symbol}"({", ".join(declared)})'
+        self._texts.append("\n".join([f"{head} nounwind{inline} {{", *lines, "}"]))
         return kind
 
 

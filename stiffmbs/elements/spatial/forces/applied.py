@@ -53,6 +53,7 @@ class AppliedForce(Applied):
     """
 
     kind = "force"
+    symmetric_with = {"i": "point", "j": "body", "frame": "body"}
     forms = ({}, {"axes": "body"}, {"j": "b"})
     reflected = {"force": "vector"}
 
@@ -87,6 +88,7 @@ class AppliedTorque(Applied):
     """
 
     kind = "torque"
+    symmetric_with = {"i": "body", "j": "body", "frame": "body"}
     forms = ({}, {"j": "b"})
     reflected = {"torque": "rotations"}
 

@@ -35,6 +35,7 @@ class Bushing(Connection):
     """
 
     kind = "bushing"
+    symmetric_with = {"i": "axes", "j": "axes"}
     forms = ({"stiffness": ..., "damping": ...}, {"stiffness": ..., "damping": ..., "axes": "ground"})
     reflected = {
         "stiffness": "matrix",

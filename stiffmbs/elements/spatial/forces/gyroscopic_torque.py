@@ -41,4 +41,5 @@ class GyroscopicTorque(Force):
 def turnings(bodies: Mapping[str, Body]) -> Iterator[tuple[str, GyroscopicTorque]]:
     """Yield the gyroscopic torques of bodies by the bodies' names."""
     for name, body in bodies.items():
-        yield name, GyroscopicTorque(i=MarkerReference(body=name), moments=body.principal_moments())
+        at = MarkerReference.model_construct(body=name)
+        yield name, GyroscopicTorque.model_construct(type=GyroscopicTorque.kind, i=at, moments=body.principal_moments())

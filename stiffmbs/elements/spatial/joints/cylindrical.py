@@ -23,6 +23,7 @@ class Cylindrical(SpatialJoint):
     """
 
     kind = "cylindrical"
+    symmetric_with = {"i": "z", "j": "z"}
     equations = (*ON_AXIS, *ALIGN)
     coordinates = ("displacement", "angle")
     transmits = ("fx", "fy", "tx", "ty")

@@ -20,6 +20,7 @@ class Fixed(SpatialJoint):
     """
 
     kind = "fixed"
+    symmetric_with = {"i": "body", "j": "body"}
     equations = (*COINCIDE, *ORIENT)
     transmits = ("fx", "fy", "fz", "tx", "ty", "tz")
     elastic = "bushing"

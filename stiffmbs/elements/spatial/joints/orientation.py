@@ -22,6 +22,7 @@ class Orientation(SpatialJoint):
     """
 
     kind = "orientation"
+    symmetric_with = {"i": "body", "j": "body"}
     equations = ORIENT
     further_coordinates = ("displacement_x", "displacement_y", "displacement_z")
     transmits = ("tx", "ty", "tz")

@@ -18,6 +18,7 @@ class PointOnLine(SpatialJoint):
     """
 
     kind = "point_on_line"
+    symmetric_with = {"i": "point", "j": "z"}
     equations = ON_AXIS
     coordinates = ("displacement",)
     transmits = ("fx", "fy")

@@ -18,6 +18,7 @@ class PointOnPlane(SpatialJoint):
     """
 
     kind = "point_on_plane"
+    symmetric_with = {"i": "point", "j": "z"}
     equations = IN_PLANE
     further_coordinates = ("displacement_x", "displacement_y")
     transmits = ("fz",)

@@ -22,6 +22,7 @@ class Prismatic(SpatialJoint):
     """
 
     kind = "prismatic"
+    symmetric_with = {"i": "along z", "j": "along z"}
     equations = (*ON_AXIS, *ORIENT)
     coordinates = ("displacement",)
     transmits = ("fx", "fy", "tx", "ty", "tz")

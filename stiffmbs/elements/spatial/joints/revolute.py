@@ -19,6 +19,7 @@ class Revolute(SpatialJoint):
     """
 
     kind = "revolute"
+    symmetric_with = {"i": "z", "j": "z"}
     equations = (*COINCIDE, *ALIGN)
     coordinates = ("angle",)
     transmits = ("fx", "fy", "fz", "tx", "ty")

@@ -18,6 +18,7 @@ class Spherical(SpatialJoint):
     """
 
     kind = "spherical"
+    symmetric_with = {"i": "point", "j": "point"}
     equations = COINCIDE
     transmits = ("fx", "fy", "fz")
     elastic = "bushing"
