@@ -1,4 +1,4 @@
-"""`bdf` with the linear solver that it chooses and with columns in pairs and pivots, beside what its kernels take alone."""
+"""`bdf` with the linear solver that it chooses and with pivots searched in every matrix, beside what its kernels take alone."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from stiffmbs.solve.formulations import FORMULATIONS
 from stiffmbs.solve.ida.choice import COSTS, sparse_cost
 from stiffmbs.solve.ida.native_engine import NativeEngine
 from stiffmbs.solve.integrator import Integrator
-from stiffmbs.solve.linear_solvers.fixed_order import PairedColumns
+from stiffmbs.solve.linear_solvers.fixed_order import Pivoted
 from stiffmbs.solve.trajectory import Trajectory
 from stiffmbs.sparse.elimination_order import elimination_order
 
@@ -34,11 +34,11 @@ EVALUATIONS = 200
 
 
 def with_pivots(job: Job) -> Job:
-    """The job, to be integrated by `bdf` with columns in pairs and threshold pivoting."""
+    """The job, to be integrated by `bdf` with threshold pivoting in every matrix."""
     dynamics, control = job.dynamics, CHOSEN[job.dynamics.system.of_body.dimensions]
     equations = Equations(FORMULATIONS[job.settings.formulation](job.settings), dynamics.system, dynamics.coordinates)
     order = elimination_order(equations)
-    matrix = PairedColumns(equations.n, *equations.pattern, order)
+    matrix = Pivoted(equations.n, *equations.pattern, order)
     cost = sparse_cost(equations.n, order, COSTS.fixed)
     engine = NativeEngine(equations, dynamics, matrix, job.settings, control)
     dynamics.kept("bdf", (job.settings, control), lambda: (equations, engine, cost))

@@ -1,10 +1,14 @@
-"""Measure the time of auto over that of the best of bdf, dop853 and radau at an equal error, on the half car, the reference car or any scene.
+"""Measure the time of auto over that of the best of bdf, dop853 and radau at an equal error, on cars, on all examples or on any scene.
 
-    python -m tests.bench.solvers.choice half_car|car|SCENE [--stiffness 1e6 1e8] [--damping 0.02] [--duration 1 10] [--rtol 1e-3 1e-5]
+    python -m tests.bench.solvers.choice half_car|car|examples|published|SCENE [--stiffness 1e6 1e8] [--damping 0.02] [--duration 1 10] [--rtol 1e-3 1e-5]
 
-Errors are the largest of the bodies' coordinates, m or rad, against radau at rtol 1e-10. A motion is left out as chaotic if radau
-at 1e-9 differs from that by more than a tenth of the error of auto. Times are the least processor times of several integrations,
-alternating between the solvers, without the set-up of a run.
+`examples` are the scenes in the folder of examples, `published` the problems of `tests.bench.solvers.stiff_and_light`.
+Errors are the largest of the bodies' coordinates, m or rad, against dop853 at rtol 1e-10, or radau if that takes too long.
+A motion is left out as chaotic if the same at 1e-9 differs from that by more than a tenth of the error of auto. Times are
+the least processor times of several integrations, alternating between the solvers, without the set-up of a run.
+
+The last lines are the ratios beyond the limit of the target, the largest first. An excess of less than 0.3 ms is within it:
+it does not grow with the motion, and the set-up of a run takes tens of ms.
 """
 
 from __future__ import annotations
@@ -13,24 +17,54 @@ import argparse
 import math
 from collections.abc import Iterator
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import stiffmbs
-from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.at_error import value_at_error
 
 from ..drives import CARS
-from .stiff_and_light import EXAMPLES, SOLVERS, measured
+from .stiff_and_light import EXAMPLES, PROBLEMS, SOLVERS, measured
 
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 EXACT, CHECK, RESOLVED = 1e-10, 1e-9, 0.1
 """Relative tolerances of the reference and of its check, and their largest difference, in errors of auto."""
 DURATIONS = (1.0, 3.0, 10.0)
 """Times of the motion of the cars, s."""
-ROUNDS, LONGEST = 5, 4.0
-"""Timings of each solver, and longest run, in the least time of the solvers before it."""
+ROUNDS, LONGEST, PATIENCE = 5, 4.0, 20.0
+"""Timings of each solver; longest run, in the least time of the solvers before it; longest run of the reference, s."""
+POINTS = 1001
+"""Output times of scenes that store the steps of the solver."""
+OF_CARS, OF_SCENES, NEGLIGIBLE = 1.2, 1.5, 3e-4
+"""Limits of the ratio on cars and on other scenes, and the excess, s, below which there is none."""
+
+
+class Choice(NamedTuple):
+    """Comparison of auto with the best of the others at the error of auto.
+
+    `seconds`, `best`: processor times, s. `name`: the best solver; empty if the motion is chaotic or no other is as accurate.
+    """
+
+    rtol: float
+    error: float
+    seconds: float
+    best: float
+    name: str
+
+    def __str__(self) -> str:
+        """Return the comparison as a line."""
+        ratio = f"{self.ratio:.2f} of {self.name}" if self.name else "not comparable"
+        return f"rtol {self.rtol:.0e}: {1e3 * self.seconds:.2f} ms, error {self.error:.1e}, {ratio}"
+
+    @property
+    def ratio(self) -> float:
+        """Return the ratio of the times."""
+        return self.seconds / self.best
+
+    def exceeds(self, limit: float) -> bool:
+        """Return True if the ratio exceeds a limit by a time that matters."""
+        return bool(self.name) and self.ratio > limit and self.seconds - self.best > NEGLIGIBLE
 
 
 def model_of(name: str, stiffness: str, damping: str) -> Any:
@@ -40,11 +74,43 @@ def model_of(name: str, stiffness: str, damping: str) -> Any:
     return CARS[0].model("sweep", **{CARS[0].stiffness: stiffness, "zeta": damping})
 
 
-def compared(model: Any, duration: float | None, rtols: list[float]) -> Iterator[str]:
-    """Yield a line for each tolerance of auto: time, error, and the ratio to the best of the others at this error."""
-    settings: dict[str, Any] = {} if duration is None else {"duration": duration}
-    exact, check = (prepare(model, rtol=rtol, **settings, solver="radau").integrate().q for rtol in (EXACT, CHECK))
-    noise = float(np.abs(exact - check).max())
+def targets(
+    name: str, stiffness: list[str], damping: list[str], durations: list[float] | None
+) -> Iterator[tuple[str, Any, dict[str, Any]]]:
+    """Yield name, model and changed settings of each motion of a target."""
+    if name == "examples":
+        for path in sorted(EXAMPLES.rglob("*.yaml")):
+            if "parts" not in path.parts:
+                model = stiffmbs.load_scene(path)
+                by_steps = {"points": POINTS} if model.run.points == "steps" else {}
+                yield str(path.relative_to(EXAMPLES)), model, by_steps
+    elif name == "published":
+        for title, (make, settings) in PROBLEMS.items():
+            yield title, make(), settings
+    elif name in ("half_car", "car"):
+        for duration, k, zeta in product(durations or DURATIONS, stiffness, damping):
+            yield f"{name}, {k} N/m, damping {zeta}, {duration:g} s", model_of(name, k, zeta), {"duration": duration}
+    else:
+        for one in durations or [None]:
+            yield name, stiffmbs.load_scene(name), {} if one is None else {"duration": one}
+
+
+def reference(model: Any, settings: dict[str, Any]) -> tuple[np.ndarray, float] | None:
+    """Return the coordinates of the reference and their largest difference from its check; None if they take too long."""
+    for solver in ("dop853", "radau"):
+        how = {**SOLVERS[solver], **settings}
+        found = [measured(model, rtol, how, PATIENCE, 1)[1] for rtol in (CHECK, EXACT)]
+        if all(found):
+            return found[1].q, float(np.abs(found[1].q - found[0].q).max())
+    return None
+
+
+def compared(model: Any, settings: dict[str, Any], rtols: list[float]) -> Iterator[Choice]:
+    """Yield the comparison at each tolerance of auto."""
+    known = reference(model, settings)
+    if known is None:
+        return
+    exact, noise = known
     seconds: dict[tuple[str, float], float] = {}
     errors: dict[tuple[str, float], float] = {}
     tolerances = {name: rtols if name == "auto" else sorted({*TOLERANCES, *rtols}) for name in SOLVERS}
@@ -58,34 +124,37 @@ def compared(model: Any, duration: float | None, rtols: list[float]) -> Iterator
             if found is not None:
                 errors[name, rtol] = float(np.abs(found.q - exact).max())
     for rtol in rtols:
-        error = errors["auto", rtol]
-        best = {
-            name: value_at_error([(errors[key], seconds[key]) for key in errors if key[0] == name], error)
+        error = errors.get(("auto", rtol), 0.0)
+        best = [
+            (value_at_error([(errors[key], seconds[key]) for key in errors if key[0] == name], error), name)
             for name in SOLVERS
             if name != "auto"
-        }
-        least, name = min((value, name) for name, value in best.items() if value is not None)
-        ratio = f"{seconds['auto', rtol] / least:.2f} of {name}" if noise < RESOLVED * error else "chaotic"
-        yield f"rtol {rtol:.0e}: {1e3 * seconds['auto', rtol]:.2f} ms, error {error:.1e}, {ratio}"
+        ]
+        least, name = min([(value, name) for value, name in best if value is not None], default=(math.inf, ""))
+        yield Choice(rtol, error, seconds["auto", rtol], least, name if noise < RESOLVED * error else "")
 
 
 def main() -> None:
-    """Print the ratios."""
+    """Print the comparisons, and those beyond the limit."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("model", help="half_car, car, or the file of a scene, which has its own stiffness and damping")
-    parser.add_argument("--stiffness", nargs="+", default=["1e5", "1e6", "1e7", "1e8", "1e9", "1e10"], help="N/m")
-    parser.add_argument("--damping", nargs="+", default=["0.01", "0.05", "0.2"])
+    parser.add_argument("target", help="half_car, car, examples, published, or the file of a scene")
+    parser.add_argument(
+        "--stiffness", nargs="+", default=["1e5", "1e6", "1e7", "1e8", "1e9", "1e10"], help="of cars, N/m"
+    )
+    parser.add_argument("--damping", nargs="+", default=["0.01", "0.05", "0.2"], help="of cars")
     parser.add_argument("--duration", nargs="+", type=float, help="s; by default 1, 3 and 10, or that of the scene")
     parser.add_argument("--rtol", nargs="+", type=float, default=list(TOLERANCES[1:]))
     given = parser.parse_args()
-    if given.model not in ("half_car", "car"):
-        for duration in given.duration or [None]:
-            for line in compared(stiffmbs.load_scene(given.model), duration, given.rtol):
-                print(f"{given.model}, {line}", flush=True)
-        return
-    for duration, stiffness, damping in product(given.duration or DURATIONS, given.stiffness, given.damping):
-        for line in compared(model_of(given.model, stiffness, damping), duration, given.rtol):
-            print(f"{given.model}, {stiffness} N/m, damping {damping}, {duration:g} s, {line}", flush=True)
+    limit = OF_CARS if given.target in ("half_car", "car") else OF_SCENES
+    beyond = []
+    for name, model, settings in targets(given.target, given.stiffness, given.damping, given.duration):
+        for choice in compared(model, settings, given.rtol):
+            print(f"{name}, {choice}", flush=True)
+            if choice.exceeds(limit):
+                beyond.append((choice.ratio, f"{name}, {choice}"))
+    print(f"beyond {limit:g}: {len(beyond)}")
+    for _, line in sorted(beyond, reverse=True):
+        print(line)
 
 
 if __name__ == "__main__":

@@ -105,6 +105,11 @@ def test_a_trace_is_the_path_of_its_marker():
     assert poses.path(anchor)[:, :2] == pytest.approx(np.column_stack([solution["tip_x"], solution["tip_y"]]), abs=1e-9)
 
 
+def test_one_trace_instead_of_a_list_is_refused():
+    with pytest.raises(stiffmbs.InputError, match=r"traces: found 'coupler.tip', expected a list of"):
+        traced(stiffmbs.load_scene(EXAMPLES / "four_bar.yaml"), "coupler.tip")
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
