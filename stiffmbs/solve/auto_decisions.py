@@ -112,7 +112,8 @@ def implicit_solver(parameters: AutoParameters, damping_ratio: float, rtol: floa
     """Return the name of the implicit integrator, ``bdf`` or ``radau``.
 
     BDF is taken for overdamped motions at loose tolerances, or if small steps after starts are a large part of the run.
-    `damping_ratio`: that of the stiffest vibration. `long`: number of explicit steps, relative to the small steps of radau.
+    `damping_ratio`: that of the stiffest vibration. `long`: cost of as many steps of bdf as explicit ones are needed, relative to
+    that of the small steps of radau.
     """
     pays = rtol < parameters.loose and long > parameters.trial_margin
     return "radau" if damping_ratio < 1.0 or pays else "bdf"

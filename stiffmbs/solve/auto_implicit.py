@@ -38,7 +38,7 @@ class Implicit:
         """
         if not self._created:
             self._be("radau")
-            long = explicit_steps / (pieces * self.small_steps)
+            long = explicit_steps * self._of_bdf.step / (pieces * self.growth)
             self._be(implicit_solver(AUTO, stiffness.damping_ratio, self._settings.rtol, long))
 
     def _be(self, name: str) -> None:
@@ -55,18 +55,13 @@ class Implicit:
             self._estimate(self.integrator.factors)
 
     def _estimate(self, factors: float | None) -> None:
-        of_bdf = cost.ImplicitCost.of(self._dynamics, factors)
-        self.cost = radau.of_radau(of_bdf) if self.name == "radau" else of_bdf
-
-    @property
-    def small_steps(self) -> float:
-        """Number of small steps after a start or a breakpoint."""
-        return -math.log10(self._settings.rtol) * self.cost.start_steps
+        self._of_bdf = cost.ImplicitCost.of(self._dynamics, factors)
+        self.cost = radau.of_radau(self._of_bdf) if self.name == "radau" else self._of_bdf
 
     @property
     def growth(self) -> float:
         """Cost of the small steps after a start or a breakpoint."""
-        return self.small_steps * self.cost.step
+        return -math.log10(self._settings.rtol) * self.cost.start_steps * self.cost.step
 
     @property
     def start(self) -> float:

@@ -1,7 +1,8 @@
 """Each parameter of a table changes a counter of a short run if it is halved or doubled.
 
-The quick test compares the counters of the default parameters with those of the table. A parameter that is halved or doubled moves
-them beyond the margin, which the long test shows: it compiles the routines that read the parameter.
+The quick test compares the counters of the default parameters with those of the table, unless rounding, which depends on the
+processor, may change them as much. A parameter that is halved or doubled moves them beyond the margin, which the long test shows: it
+compiles the routines that read the parameter.
 """
 
 from __future__ import annotations
@@ -25,7 +26,6 @@ TABLE = [
     ("error_test_in_space.margin", "dzhanibekov", "steps", 1203, 1077, 966),
     ("error_test_in_space.renewal", "spatial_chain", "newton_failures", 3, 7, 11),
     ("error_test_of_radau.margin", "bouncing_ball radau", "jacobians", 15, 12, 14),
-    ("event_search.longer", "bouncing_ball radau", "residuals", 675, 670, None),
     ("explicit_events.most_retaken", "sliding projected", "accelerations", 1303, 1879, 3031),
     ("explicit_first_step.part", "cart_pendulum radau", "factorizations", None, 56, 59),
     ("explicit_first_step.part", "cart_pendulum radau", "residuals", 512, 468, None),
@@ -49,7 +49,6 @@ TABLE = [
     ("newton.slowest", "cart_pendulum", "jacobians", 42, 38, None),
     ("newton.slowest", "cart_pendulum", "residuals", None, 251, 279),
     ("newton.soft", "half_car radau", "factorizations", 170, 182, 179),
-    ("newton.negligible", "bouncing_ball radau", "residuals", 675, 670, None),
     ("newton.trusted", "cart_pendulum 1e-10", "newton_failures", 24, 20, None),
     ("newton.trusted", "cart_pendulum 1e-10", "steps", None, 669, 705),
     ("newton.unknown", "sliding", "residuals", 110, 113, 116),
@@ -76,6 +75,8 @@ TABLE = [
 """Parameter, run, counter, and its values with the parameter halved, as it is, and doubled; None without a clear change."""
 RUNS = {case.name: case for case in CASES}
 ROWS = [pytest.param(*row, id=" ".join(row[:3])) for row in TABLE]
+ROUNDING = 0.01
+"""Relative change of a counter that a processor with other rounding may cause."""
 
 
 @cache
@@ -88,7 +89,10 @@ def margin(halved, expected, doubled):
     return 0.5 * min(abs(value - expected) for value in (halved, doubled) if value is not None)
 
 
-@pytest.mark.parametrize(("parameter", "run", "counter", "halved", "expected", "doubled"), ROWS)
+BEYOND_ROUNDING = [row for row in ROWS if margin(*row.values[3:]) > ROUNDING * row.values[4]]
+
+
+@pytest.mark.parametrize(("parameter", "run", "counter", "halved", "expected", "doubled"), BEYOND_ROUNDING)
 def test_the_counters_are_those_of_the_default_parameters(parameter, run, counter, halved, expected, doubled):
     assert abs(usual(run)[counter] - expected) < margin(halved, expected, doubled)
 
@@ -100,6 +104,6 @@ def test_a_parameter_halved_or_doubled_moves_its_counter(parameter, run, counter
     default = getattr(tuning.defaults_of(name), field)
     for factor, value in ((0.5, halved), (2.0, doubled)):
         if value is not None:
-            found = RUNS[run].counts({name: {field: changed(default, factor)}})[counter]
-            assert (found - expected) * (value - expected) > 0
-            assert abs(found - expected) > margin(halved, expected, doubled)
+            moved = RUNS[run].counts({name: {field: changed(default, factor)}})[counter] - usual(run)[counter]
+            assert moved * (value - expected) > 0
+            assert abs(moved) > margin(halved, expected, doubled)

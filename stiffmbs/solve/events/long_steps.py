@@ -26,15 +26,13 @@ class LongStepParameters:
 
     from_middle: float = 1e-4
     """Distance from the middle of a step, relative to the step, of two stored states."""
-    ratio: float = 4.0
-    """Ratio of a long step to the usual one."""
-    remembered: float = 8.0
-    """Number of steps over which the usual one is averaged."""
+    for_others: tuple[float, float] = (4.0, 8.0)
+    for_functions: tuple[float, float] = (2.0, 64.0)
+    """Ratio of a long step to the usual one, and number of steps over which the usual one is averaged."""
 
 
 LONG_STEP = tuned("long_steps", LongStepParameters())
 
-"""Nodes of a step that give the state at its middle and its rate."""
 WHOLE = 0.5 - 0.5 * np.cos(np.arange(8) * np.pi / 7)
 """Nodes that represent a whole step: the interpolant of DOP853 has degree 7, that of BDF at most 5."""
 
@@ -106,13 +104,12 @@ class LongStepLog:
 
     def __init__(self, system: System, width: int) -> None:
         places = WHOLE if system.has_functions else np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
+        ratio, remembered = LONG_STEP.for_functions if system.has_functions else LONG_STEP.for_others
         row = 2 + len(places) * width
         room = LOOP.most_items // row if system.has_laws else 0
         self._rows, self._shape = np.empty((room, row)), (len(places), width)
         self._arrays = {"n_nodes": len(places), "node": places, "width": width, "row": self._rows}
-        self.table = packed(
-            LONG_STEPS, {**self._arrays, "ratio": LONG_STEP.ratio, "remembered": LONG_STEP.remembered, "room": room}
-        )
+        self.table = packed(LONG_STEPS, {**self._arrays, "ratio": ratio, "remembered": remembered, "room": room})
         self._cells = self.table.view(LONG_STEPS.cells)[0]
 
     def forget(self) -> None:
