@@ -105,5 +105,5 @@ forces: {f: {type: force, i: b, force: [-law(b.x), 0]}}
     for rtol in np.logspace(-3, -9, 25):
         found = stiffmbs.run(model, duration=2.0, points=201, rtol=float(rtol), solver="radau")
         errors.append(np.abs(found["b.x"] - [bilinear(t) for t in found.t]).max() / rtol)
-    assert np.median(errors) < 0.2
+    assert np.median(errors) < 0.5
     assert np.max(errors) < 10
