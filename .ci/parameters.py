@@ -4,10 +4,11 @@
 
 CHECKOUT is the folder of another version; this one by default.  ``--list`` prints the names of one package.
 
-A parameter is a number, or a tuple of numbers, that a person chose.  Two kinds of numbers are counted in columns of their own,
-and are not among the parameters: tables, which are mappings, and collections of collections (coefficients and units of a
-standard, vertices of elements, layouts of memory, values of examples), and neutral defaults of fields, 0 or 1, of data that
-have no such part (a mass of zero, a factor of one).
+A parameter is a number, or a tuple of numbers, that a person chose.  Three kinds of numbers are counted in columns of their
+own, and are not among the parameters: tables, which are mappings, and collections of collections (coefficients and units of a
+standard, vertices of elements, layouts of memory, values of examples); neutral defaults of fields, 0 or 1, of data that
+have no such part (a mass of zero, a factor of one); and given numbers, which are annotated as ``Final``.  No value of these
+would be better: codes, constants of nature, of mathematics or of another program, sizes of a format, seeds.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Parameter(NamedTuple):
     numbers: int
 
 
-COLUMNS = ("of modules", "of classes", "of tables", "neutral")
+COLUMNS = ("of modules", "of classes", "of tables", "neutral", "given")
 
 
 def numbers_in(value: ast.expr | None) -> int:
@@ -59,6 +60,8 @@ def parameters(file: Path) -> Iterator[Parameter]:
     for owner, body in bodies:
         for statement in body:
             match statement:
+                case ast.AnnAssign(target=target, annotation=ast.Name(id="Final"), value=value):
+                    yield from (found._replace(column="given") for found in _of_assignment(file, owner, target, value))
                 case ast.Assign(targets=[target], value=value) | ast.AnnAssign(target=target, value=value):
                     yield from _of_assignment(file, owner, target, value)
 

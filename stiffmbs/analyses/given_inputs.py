@@ -11,11 +11,11 @@ import numpy as np
 from ..elements.states.amount import Amount
 from ..errors import InputError
 from ..model.model_data import ModelData
-from ..model.settings import RunSettings
+from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..reading.did_you_mean import did_you_mean
 from ..reading.files.quoted import written
 from ..reading.table import Table
-from ..solve.settings import DEFAULT_POINTS, output_grid
+from ..solve.settings import output_grid
 
 Given: TypeAlias = float | Callable[[float], float] | tuple[Any, Any] | Table
 """Constant, function of t in s, or times and values with linear interpolation."""

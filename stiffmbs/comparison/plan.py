@@ -12,13 +12,13 @@ import numpy as np
 from ..errors import InputError, refuse_text
 from ..model.model_data import ModelData
 from ..model.scene import Scene
-from ..model.settings import RunSettings
+from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..reading.did_you_mean import did_you_mean
 from ..reading.variation import FORMS, Range, Variation, variation
 from ..solve import SOLVERS
 from ..solve.explicit.projected import TRAITS as SCHEMES
 from ..solve.formulations import FORMULATIONS
-from ..solve.settings import DEFAULT_POINTS, changed, traits_of
+from ..solve.settings import changed, traits_of
 from .measures import measure_of
 
 BDF, PROJECTED, DEFAULT_SCHEME = "bdf", "projected", "dop853"

@@ -13,7 +13,7 @@ from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import InputError, SolverError
-from ..model.settings import RunSettings
+from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..tuning import parameters_of
 from .driven_states import KINEMATIC, Instant, IntegratedMotion, states_after
 from .events.narrow_inputs import hidden_peak, narrower_than_output
@@ -21,7 +21,7 @@ from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
 from .explicit.native.parameters import CONTROL
 from .solver import Traits
-from .trajectory import DEFAULT_POINTS, Ending, Grid, ProgressCallback, Rows, Trajectory
+from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
 
 def _length(vector: np.ndarray) -> float:

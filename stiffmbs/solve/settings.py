@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..compile.system import System
-from ..model.settings import RunSettings
+from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..tuning import changes_in_use
 from . import SOLVERS
 from .solver import Traits
-from .trajectory import DEFAULT_POINTS, Grid
+from .trajectory import Grid
 
 
 def traits_of(settings: RunSettings) -> Traits:

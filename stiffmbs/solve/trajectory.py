@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from .events.long_steps import LongSteps
 
 ProgressCallback = Callable[[float], None]
-DEFAULT_POINTS = 1001
-"""Output times of a run without settings for them, and largest number of its states from which growth is estimated."""
 SAME_TIME = 1e-9
 """Largest difference of equal times, relative to a sampling period or to a fixed step."""
 

@@ -13,11 +13,11 @@ from ..analyses.start_from import StartFrom
 from ..elements.requests.order import units
 from ..errors import InputError
 from ..model.scene import Scene
-from ..model.settings import RunSettings, Settings, takes_settings
+from ..model.settings import DEFAULT_POINTS, RunSettings, Settings, takes_settings
 from ..results.channels import channels_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..solve.settings import DEFAULT_POINTS, changed
+from ..solve.settings import changed
 from ..solve.trajectory import Ending, History, Outcome
 from .stepping import stepper_of
 

@@ -76,11 +76,6 @@ def shortest_chain_in_blocks():
     return count_while(lambda rods: saved_by_blocks(rods) <= 0.0, range(5000))
 
 
-def blocks_of_32_bit_indices():
-    orders = [EliminationOrder(np.arange(4), fill=int(fill), updates=1) for fill in DOUBLES[:140]]
-    return count_while(lambda order: np.isfinite(block_cost(4, order, 1)), orders)
-
-
 def dense_unknowns():
     return count_while(lambda n: isinstance(_supplied(n, (np.arange(n), np.arange(n))), Dense), range(1, 400))
 
@@ -286,7 +281,6 @@ TABLE = {
     "linear_solver": {
         **dict.fromkeys(["fixed", "blocks", "cached_nodes", "far_node"], longest_chain_in_blocks),
         "worth_compiling": shortest_chain_in_blocks,
-        "with_zeros": blocks_of_32_bit_indices,
     },
     "sundae": {"dense_up_to": dense_unknowns},
     "stability_limit": {
@@ -351,7 +345,7 @@ TABLE = {
 
 EXPECTED = {
     "linear_solver.fixed": 1119, "linear_solver.blocks": 1119, "linear_solver.cached_nodes": 1119, "linear_solver.far_node": 1119,
-    "linear_solver.worth_compiling": 2, "linear_solver.with_zeros": 112, "sundae.dense_up_to": 90,
+    "linear_solver.worth_compiling": 2, "sundae.dense_up_to": 90,
     "stability_limit.least_distance": 18, "stability_limit.negligible": 16, "stability_limit.gain": 105, "stability_limit.gain_if_faint": 117,
     "stability_limit.step_error": 105, "stability_limit.faint": 8, "stability_limit.interval": 2000, "stability_limit.growth": 5000, "stability_limit.damping_steps": 100,
     "precision.noise_of_positions": 119, "precision.noise_of_angles": 121, "precision.failed": 201, "narrow_inputs.hidden": 50, "velocity_jumps.least": 27,

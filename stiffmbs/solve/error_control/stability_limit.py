@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -31,8 +32,8 @@ CUBIC = Routine(
     "cubic",
     "void(int64, int64, float64*, float64, float64*, float64*, float64*)",
 )
-HIGHEST_ORDER = 5
-"""Highest order of BDF."""
+HIGHEST_ORDER: Final = 5
+"""Highest order of BDF in IDA: higher ones are unstable or nearly so."""
 ERROR_CONSTANT = 1 / ((A_STABLE_ORDER + 1) * sum(1 / k for k in range(1, A_STABLE_ORDER + 1)))
 """Error constant of BDF of order 2."""
 

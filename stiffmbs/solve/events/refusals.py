@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -10,9 +11,10 @@ from ...compile.system import System
 from ...compile.written_values import beyond
 from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
+from ...model.settings import DEFAULT_POINTS
 from ...tuning import tuned
 from ..suspect import suspect
-from ..trajectory import DEFAULT_POINTS, Rows
+from ..trajectory import Rows
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,7 @@ class DivergenceParameters:
 
 DIVERGENCE = tuned("divergence", DivergenceParameters())
 
-SPEED_OF_LIGHT = 299_792_458.0
+SPEED_OF_LIGHT: Final = 299_792_458.0
 """Speed of light, m/s."""
 
 

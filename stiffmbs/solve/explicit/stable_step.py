@@ -9,6 +9,7 @@ at a step's end indicate that the limit is far exceeded, or that it has limited 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -45,7 +46,10 @@ STABILITY_BOUND = tuned("stability_bound", StabilityBoundParameters())
 FASTEST_RATE = Routine(
     "stiffmbs.solve.explicit.native.fastest_rate", "fastest_rate", "float64(float64, float64*, float64*, int64*, int64)"
 )
-NOT_ASKED, UNBOUNDED = 0.0, float("inf")
+NOT_ASKED: Final = 0.0
+"""Bound that has not been computed."""
+UNBOUNDED: Final = float("inf")
+"""No bound."""
 
 
 class StableStep:

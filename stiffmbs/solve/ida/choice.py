@@ -10,6 +10,7 @@ import numpy as np
 from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
+from ...sparse.blocks import QUAD
 from ...sparse.elimination_order import EliminationOrder, elimination_order
 from ...tuning import tuned
 from ..error_control.error_test import ErrorControl
@@ -41,12 +42,13 @@ class LinearSolverCosts:
     """Additional time for each further node."""
     worth_compiling: float = 200.0
     """Time that blocks must save to be worth compiling on a machine's first run."""
-    with_zeros: int = 8
-    """Upper bound of the numbers stored in the blocks, relative to the entries of a triangle of full blocks."""
 
 
 COSTS = tuned("linear_solver", LinearSolverCosts())
 """Costs of every run."""
+MOST_STORED = 2 * QUAD
+"""Upper bound of the numbers stored in the blocks, relative to the entries of a triangle of full blocks: in both panels,
+a line of one unknown takes a whole quad."""
 
 
 def dense_cost(n: int) -> float:
@@ -62,7 +64,7 @@ def sparse_cost(n: int, order: EliminationOrder, costs: tuple[float, float, floa
 
 def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
     """Return the estimated cost of an elimination by blocks; infinite if they are too many for 32-bit indices."""
-    if COSTS.with_zeros * order.fill > np.iinfo(np.int32).max:
+    if MOST_STORED * order.fill > np.iinfo(np.int32).max:
         return np.inf
     *costs, node = COSTS.blocks
     far = COSTS.far_node * max(n_nodes - COSTS.cached_nodes, 0)

@@ -12,15 +12,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
-VERSION = 7
+VERSION: Final = 7
 """Major version of SUNDIALS that the declarations and the loop are written for."""
 IDA_LIBRARIES = ("core", "ida")
 SPARSE_LIBRARIES = ("core", "sunmatrixsparse", "sunlinsolsuperlumt")
-COMPRESSED_COLUMNS = 0
+COMPRESSED_COLUMNS: Final = 0
 """CSC_MAT of sunmatrix_sparse.h."""
 
 

@@ -6,6 +6,7 @@ import ctypes
 from collections.abc import Iterator, Mapping
 from functools import cache
 from itertools import takewhile
+from typing import Final
 
 import numpy as np
 
@@ -13,8 +14,8 @@ from ...compile.machine.native.statuses import CONTENT, NORM_TABLE, OPERATIONS
 from .libraries import Libraries, Unavailable
 from .session import Session
 
-MOST_WORDS = 16
-"""Number of words searched in a solver or in its table of operations."""
+MOST_WORDS: Final = 16
+"""Number of words searched in a solver or in its table of operations, both of which are shorter in SUNDIALS."""
 
 
 def take_place(session: Session, solver: int, size: int, functions: Mapping[str, int], content: np.ndarray) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -41,7 +41,7 @@ RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int6
 JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, int64, float64, int64, int64*)")
 SWITCHES = Routine(_MODULE, "event_functions", "void(float64, int64, int64, int64, int64*)")
 
-TOO_MUCH_WORK = -1
+TOO_MUCH_WORK: Final = -1
 """Status of IDA after the largest number of steps in a call; the next call continues."""
 
 

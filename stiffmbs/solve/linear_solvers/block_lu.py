@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from .native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER, VELOCITY
 _MODULE = "stiffmbs.solve.linear_solvers.native.block_lu"
 SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
 SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)", unrolled=True)
-SEED = 14
+SEED: Final = 14
 """Seed of the state for the trial of the factors; its entries between 0.5 and 1 expose rounding errors."""
 
 

@@ -7,9 +7,11 @@ import pytest
 
 import stiffmbs
 from stiffmbs.compile.machine.routines import Routine
+from stiffmbs.solve.ida.choice import MOST_STORED
 from stiffmbs.solve.linear_solvers.block_lu import BlockLU
 from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, Pivoted
 from stiffmbs.solve.linear_solvers.native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER
+from stiffmbs.sparse.blocks import filled
 from stiffmbs.sparse.elimination_order import EliminationOrder
 
 SAME_ADDRESS = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p)(lambda vector: vector)
@@ -128,6 +130,18 @@ def test_blocks_serve_where_pivots_are_good():
         x = solver.solved(dense, np.ones(30))
         np.testing.assert_allclose(dense @ x, np.ones(30), rtol=1e-13)
     assert solver.counted("refused") == 0 and solver.counted("setup_pivots") == 0  # and nothing is compiled for pivots
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 4, 5, 8])
+def test_blocks_store_at_most_a_multiple_of_the_entries_of_a_triangle(size):
+    """The bound, which decides about 32-bit indices, is reached by supernodes of one unknown."""
+    nodes = 6
+    rows, columns = np.nonzero(np.ones((nodes * size, nodes * size)))
+    stored = int(filled(np.split(np.arange(nodes * size), nodes), rows, columns).starts[-1])
+    triangle = sum(size * size * (nodes - k) for k in range(nodes))
+    assert stored <= MOST_STORED * triangle
+    if size == 1:
+        assert stored == MOST_STORED * triangle
 
 
 def test_blocks_that_share_nothing():

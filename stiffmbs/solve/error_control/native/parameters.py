@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from ....tuning import tuned
 
@@ -69,10 +70,12 @@ class PolishingParameters:
 POLISHING = tuned("polishing", PolishingParameters())
 
 
-EXCLUDED = 1e15
-"""Absolute tolerance that excludes an unknown from error tests."""
-A_STABLE_ORDER = 2
-"""Highest A-stable order of BDF."""
+EXCLUDED: Final = 1e15
+"""Absolute tolerance that marks an unknown as excluded from error tests."""
+A_STABLE_ORDER: Final = 2
+"""Highest A-stable order of BDF (Dahlquist's second barrier)."""
+EQUAL_STEPS: Final = 3
+"""Equal steps at order 1 before IDA may raise it: at order k, IDA requires k + 2 steps of equal size and order."""
 
 
 @dataclass(frozen=True)
@@ -90,8 +93,6 @@ class ErrorFilterParameters:
     """Failure count above which estimates are filtered."""
     lasts: int = 1000
     """Number of steps for which they are."""
-    before_a_rise: int = 3
-    """Equal steps at order 1 before IDA may raise it."""
     no_estimate: float = 1e12
     """Filtered norm above which a vector is not an error estimate: IDA also uses the norm for a rounding test."""
 

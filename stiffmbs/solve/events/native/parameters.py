@@ -82,8 +82,6 @@ class NextStepParameters:
     short_of: float = 1e-8
     """Distance from the end of a step to a predicted event, relative to the longest step; that relative to the distance of
     the event is `EventSearchParameters.finest`."""
-    growth: float = 2.0
-    """Largest ratio of successive steps of IDA."""
     of_an_interval: float = 0.35
     """Fraction of an interval of a law that may be passed on each side of a place within a step: two or three steps
     resolve an interval. Larger fractions save steps, and miss more narrow features."""

@@ -28,7 +28,7 @@ from stiffmbs.compile.machine.native.access import (
 )
 from stiffmbs.compile.machine.native.calls import call_address, call_float, call_int
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OK, OPERATIONS
-from stiffmbs.solve.error_control.native.parameters import A_STABLE_ORDER, FILTER
+from stiffmbs.solve.error_control.native.parameters import A_STABLE_ORDER, EQUAL_STEPS, FILTER
 from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import ERROR_NORM
 
@@ -72,7 +72,7 @@ def _look(c):
     if c.trouble > FILTER.troubled:
         c.until = c.steps + FILTER.lasts
         if failures > 0 and c.order == 1:
-            c.equal_until = c.steps + FILTER.before_a_rise
+            c.equal_until = c.steps + EQUAL_STEPS
             call_int(c.set_growth, (c.memory, 1.0, float("inf")))
 
 

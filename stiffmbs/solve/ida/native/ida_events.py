@@ -1,6 +1,7 @@
 """Events within a step of IDA; compiled only for scenes with event functions."""
 
 from math import pi
+from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
@@ -31,6 +32,8 @@ from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straig
 
 UNSEEN = float("inf")
 """Placeholder for no time at which event functions are known."""
+LARGEST_GROWTH: Final = 2.0
+"""Largest ratio of successive steps of IDA (IDASetEtaMax, which is not called)."""
 
 
 @compiled
@@ -95,7 +98,7 @@ def _look_ahead(c, w, s):
     """Make the next step resolve the intervals of laws, and end before an event, if breakpoints are near."""
     if w.n_turns == 0 or w.n_zoned == 0 or w.longest == float("inf"):
         return
-    ahead = min(w.longest, NEXT_STEP.growth * c.size)
+    ahead = min(w.longest, LARGEST_GROWTH * c.size)
     go_ahead(c, s, ahead)
     copied(w.value_after, evaluate(s, SWITCH, c.returned + ahead), w.n)
     if note_near(w, ahead, w.row, s.q):

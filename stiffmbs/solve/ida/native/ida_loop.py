@@ -1,5 +1,7 @@
 """IDA's callbacks with their C signatures, and the loop over its steps without Python."""
 
+from typing import Final
+
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int, copy_bytes, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
@@ -24,7 +26,8 @@ from stiffmbs.solve.ida.native.layouts import NO_EVENT, PASSED_INTERVAL, STEP_WI
 from stiffmbs.solve.ida.native.output_correction import corrected, output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
 
-STALLED = -101
+STALLED: Final = -101
+"""Flag for steps that have shrunk to the rounding of the time; none of ida.h."""
 
 
 @compiled

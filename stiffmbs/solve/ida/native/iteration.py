@@ -16,15 +16,19 @@ For long steps, the tolerance follows from the stiffness of the scene (`stiffmbs
 position error causes a velocity error within the step, so shorter steps may leave more, in proportion to cj.
 """
 
+from typing import Final
+
 from stiffmbs.compile.machine.native.access import address_of, compiled, floats, view_of
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.solve.error_control.native.parameters import NEWTON
 from stiffmbs.solve.ida.native.layouts import ITERATION
 
-SETTLED, GO_ON, GIVE_UP = 0, 901, 902
+SETTLED: Final = 0
+GO_ON: Final = 901
+GIVE_UP: Final = 902
 """SUN_SUCCESS, SUN_NLS_CONTINUE and SUN_NLS_CONV_RECVR of sundials_nonlinearsolver.h.  After the last, the solver
 replaces an old matrix, or IDA tries a smaller step."""
-MADE = -1
+MADE: Final = -1
 """Age of a new matrix; the first correction of the step makes it 0."""
 
 iteration_view = view_of("Iteration", ITERATION)

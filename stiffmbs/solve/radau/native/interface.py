@@ -1,6 +1,7 @@
 """Functions of Radau methods with the interface of IDA, so that one loop drives both."""
 
 from math import sqrt
+from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, floats, ints
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
@@ -14,7 +15,8 @@ from stiffmbs.solve.radau.native.between_steps import dense_output
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates, radau_view
 from stiffmbs.solve.radau.native.steps import SMALLEST, first_step, set_weights, step
 
-BAD_ORDER, BAD_TIME = -25, -26
+BAD_ORDER: Final = -25
+BAD_TIME: Final = -26
 """IDA_BAD_K and IDA_BAD_T."""
 
 

@@ -1,6 +1,7 @@
 """Steps of Radau methods with error control; predictive control of Gustafsson."""
 
 from math import isfinite, sqrt
+from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, ints, shifted
 from stiffmbs.compile.machine.native.memory import copied
@@ -28,7 +29,8 @@ from stiffmbs.solve.radau.native.newton import (
     store_efforts,
 )
 
-ERROR_TEST_FAILED, NO_CONVERGENCE = -3, -4
+ERROR_TEST_FAILED: Final = -3
+NO_CONVERGENCE: Final = -4
 """Flags of IDA: IDA_ERR_FAIL, IDA_CONV_FAIL."""
 SMALLEST = 4 * INDISTINCT
 """Least step, relative to the time."""

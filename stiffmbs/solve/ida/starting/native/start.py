@@ -1,6 +1,7 @@
 """Start of IDA from consistent values in one call: unknowns, relaxations, Newton tolerance and IDA itself."""
 
 from math import isfinite
+from typing import Final
 
 from stiffmbs.compile.machine.native.access import (
     compiled,
@@ -29,7 +30,8 @@ from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import RESTART, START
 from stiffmbs.solve.ida.native.parameters import LOOP
 
-UNFINISHED = -1
+UNFINISHED: Final = -1
+"""Result of a start or restart that is left to Python."""
 NAN = float("nan")
 
 start_view = view_of("Start", START)
