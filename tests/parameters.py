@@ -1,17 +1,23 @@
 """Halve and double each parameter of the solvers, and report those that change no result of a set of short runs.
 
     python -m tests.parameters [SUBSYSTEM...] [--json] [--all]
+    python -m tests.parameters --untested PACKAGE
 
 A value outside of its range is replaced by the middle between the default and the bound.  A result is every channel, counter,
 note and message of a run; elapsed times are left out.  Runs with changed parameters compile the routines that read them, so that a
 scan of all subsystems takes hours; set STIFFMBS_CACHE to a folder of its own.
+
+``--untested`` runs nothing: it prints the parameters of a package that `.ci/parameters.py` counts, but no test halves and doubles. These
+tests are tables in `tests.solve`: decisions, thresholds, and counters of short runs.
 """
 
 from __future__ import annotations
 
 import argparse
 import hashlib
+import importlib.util
 import json
+import sys
 import time
 from collections.abc import Iterator
 from functools import cache
@@ -23,7 +29,8 @@ from stiffmbs import tuning
 from stiffmbs.errors import StiffmbsError
 from stiffmbs.model.tuning import bounds
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+ROOT = Path(__file__).parents[1]
+EXAMPLES = ROOT / "examples"
 SCENES = {
     "narrow": """
 {bodies: {a: {mass: 1, inertia: 1}}, forces: {push: {type: force, i: a, force: ["1000*exp(-((t - 3.3)/0.004)^2)", 0]}}, run: {duration: 5 s}}
@@ -137,6 +144,58 @@ def variations(name: str) -> Iterator[tuple[str, str, Any]]:
                 yield field, field, changed(value, factor)
 
 
+def tested() -> dict[str, set[float]]:
+    """Return the factors, 0.5 and 2, by which tests change each parameter: ``subsystem.field``, or ``module:NAME``."""
+    from tests.solve import test_parameter_counts, test_parameter_thresholds
+    from tests.solve.decisions import test_decisions
+
+    found = {name: {0.5, 2.0} for name in test_decisions.TABLE}
+    found |= {f"{name}.{field}": {0.5, 2.0} for name, field in test_parameter_thresholds.PARAMETERS}
+    for name, _, _, halved, _, doubled in test_parameter_counts.TABLE:
+        found.setdefault(name, set()).update({0.5} if halved is not None else (), {2.0} if doubled is not None else ())
+    return found
+
+
+def factors_of_tests(package: str) -> dict[str, tuple[set[float], int]]:
+    """Return the factors of tests, and how many numbers it has, for each parameter of a package.
+
+    A field of a class may have the names of several subsystems, of which one needs a test.
+    """
+    script = importlib.util.spec_from_file_location("parameters", ROOT / ".ci" / "parameters.py")
+    assert script and script.loader
+    counting = sys.modules[script.name] = importlib.util.module_from_spec(script)
+    script.loader.exec_module(counting)
+    subsystems: dict[str, list[str]] = {}
+    for name in tuning.SUBSYSTEMS:
+        subsystems.setdefault(type(tuning.defaults_of(name)).__name__, []).append(name)
+    factors = tested()
+    found = {}
+    for file in sorted((ROOT / "stiffmbs" / package).glob("**/*.py")):
+        module = ".".join(file.relative_to(ROOT / "stiffmbs").with_suffix("").parts)
+        for parameter in counting.parameters(file):
+            if parameter.column not in counting.COLUMNS[:2]:
+                continue
+            owner, _, field = parameter.name.rpartition(".")
+            each = field.strip("()").split(", ")
+            names = [f"{name}.{field}" for name in subsystems.get(owner, ())] or [f"{module}:{one}" for one in each]
+            of_tests = [factors.get(name, set()) for name in names]
+            both = set.intersection(*of_tests) if len(each) > 1 else set.union(*of_tests)
+            found[f"{module}: {parameter.name}"] = both, parameter.numbers
+    return found
+
+
+def print_untested(package: str) -> None:
+    """Print the parameters of a package that no test halves and doubles."""
+    found = factors_of_tests(package)
+    for name, (factors, _) in found.items():
+        if len(factors) < 2:
+            print(f"{name}: {'no test' if not factors else 'not halved' if 2.0 in factors else 'not doubled'}")
+    count = sum(numbers for factors, numbers in found.values() if len(factors) == 2)
+    print(
+        f"{package}: {count} of {sum(numbers for _, numbers in found.values())} numbers are halved and doubled by tests"
+    )
+
+
 def first_changed(name: str, field: str, value: Any) -> str:
     """Return the first case with another result if a parameter is changed; empty if none."""
     for number, case in enumerate(CASES):
@@ -151,7 +210,11 @@ def main() -> None:
     parser.add_argument("subsystems", nargs="*", choices=[*tuning.SUBSYSTEMS, []], default=[])
     parser.add_argument("--json", action="store_true", help="print one object a line")
     parser.add_argument("--all", action="store_true", help="print parameters that change a result, too")
+    parser.add_argument("--untested", metavar="PACKAGE", help="print the parameters of a package without a test")
     asked = parser.parse_args()
+    if asked.untested:
+        print_untested(asked.untested)
+        return
     for name in asked.subsystems or tuning.SUBSYSTEMS:
         found: dict[str, list[str]] = {}
         begun = time.monotonic()

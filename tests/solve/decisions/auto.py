@@ -1,0 +1,95 @@
+"""Decisions of auto, and of its cost model."""
+
+from __future__ import annotations
+
+from unittest.mock import patch
+
+import numpy as np
+
+from stiffmbs.solve import (
+    auto,
+    auto_checks,
+    auto_choice,
+    auto_decisions,
+    subsystems,
+)
+from stiffmbs.solve.cost import ImplicitCost
+from stiffmbs.solve.radau.radau import of_radau
+from stiffmbs.solve.trajectory import Outcome, Trajectory
+from tests.solve.decisions.common import Record, nothing, parameters
+from tests.solve.test_parameter_thresholds import HALVES, count_while
+
+
+def check_after_steps():
+    """Return the steps up to the next check of implicit steps after 1000."""
+    waits, counts = [], [0, 0, 1000, 1000]
+    engine = Record(pause_after=waits.append)
+    integrator = Record(steps=lambda: counts.pop(0) if len(counts) > 1 else counts[0], engine=engine)
+    implicit = Record(integrator=integrator, steps=nothing, start=0.0, cost=Record(step=1.0))
+    choice = Record(
+        implicit=implicit, parameters=parameters("auto"), thresholds=Record(loss=0.0), explicit_cost=lambda *_: 0.0,
+        remaining=lambda t: 0.0,
+    )  # fmt: skip
+    check = auto_checks.ImplicitCheck(choice, 0.0)
+    check._begun = 0
+    counts[:] = [1000]
+    check._wait(0.0)
+    return waits[-1]
+
+
+def switches_in_a_note():
+    trajectory = Trajectory(np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1)), Outcome.DONE, "", {})
+    run = Record(
+        _messages=["switch"] * 20, _segments=[Record(traits=Record(implicit=True), trajectory=trajectory)],
+    )  # fmt: skip
+    return auto._AutoRun._joined(run).note.count("switch")
+
+
+def of_five_stages(name):
+    return getattr(of_radau(ImplicitCost(1.0, 1.0, 1.0, 1.0, 1.0, 1.0)), name)
+
+
+def slowest_mechanism_with_a_fast_one(implicit):
+    """Return the rate of a mechanism, in hundredths of 1/s, up to which it is solved apart from one of 10 1/s."""
+    system = Record(n_u=6, of_body=Record(n_u=3))
+    dynamics = Record(system=system)
+
+    def apart(rate):
+        replaced = {
+            "_with_laws": lambda system: np.zeros(2, dtype=bool),
+            "_rates": lambda *_: np.array([10.0, 0.01 * rate]),
+            "of_explicit_step": lambda dynamics: 10.0,
+        }
+        of_bdf = patch.object(subsystems.ImplicitCost, "of", lambda dynamics: Record(step=10.0))
+        with patch.multiple(subsystems, **replaced), of_bdf:
+            sets = subsystems.alike(
+                dynamics, None, (0.0, 1.0 if implicit else 10.0), implicit, [np.array([0]), np.array([1])]
+            )
+        return len(sets) == 2
+
+    return count_while(apart, range(1, 1000, 10))
+
+
+DECISIONS = {
+    "auto.steps_per_radian": lambda: auto_decisions.steps_of_decay(parameters("auto"), np.e, 1.0, 2.0),
+    "auto.loose": lambda: count_while(lambda rtol: auto_decisions.implicit_solver(parameters("auto"), 2.0, rtol, 10.0) == "bdf", HALVES),
+    "auto.trial_margin": lambda: count_while(
+        lambda k: auto_decisions.implicit_solver(parameters("auto"), 2.0, 1e-9, 0.1 * k) == "bdf", range(100)
+    ),
+    "auto.check_interval": check_after_steps,
+    "cost.restart_steps": lambda: auto_choice.Choice.explicit_cost(Record(_explicit_rate=0.0, explicit_step=1.0), 0.0, 1),
+    "solve.auto:MOST_MESSAGES": switches_in_a_note,
+    "solve.radau.radau:ITERATIONS": lambda: of_five_stages("step_residuals"),
+    "solve.radau.radau:START_STEPS": lambda: of_five_stages("start_steps"),
+    "solve.radau.radau:RESIDUAL": lambda: of_five_stages("residual"),
+    "solve.radau.radau:MATRIX": lambda: of_five_stages("matrix"),
+    "solve.subsystems:IMPLICIT_STEPS": lambda: slowest_mechanism_with_a_fast_one(True),
+    "solve.subsystems:EXPLICIT_STEPS": lambda: slowest_mechanism_with_a_fast_one(False),
+}  # fmt: skip
+"""Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
+EXPECTED = {
+    "auto.steps_per_radian": 0.5, "auto.loose": 54, "auto.trial_margin": 31, "auto.check_interval": 250, "cost.restart_steps": 27,
+    "solve.auto:MOST_MESSAGES": 3, "solve.radau.radau:ITERATIONS": 15, "solve.radau.radau:START_STEPS": 4, "solve.radau.radau:RESIDUAL": 1.4,
+    "solve.radau.radau:MATRIX": 0.35, "solve.subsystems:IMPLICIT_STEPS": 75, "solve.subsystems:EXPLICIT_STEPS": 45,
+}  # fmt: skip
+"""The decisions of the default parameters."""

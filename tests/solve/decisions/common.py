@@ -1,0 +1,80 @@
+"""Records and replacements for functions of solvers that make decisions."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from stiffmbs import tuning
+from stiffmbs.solve.events.native import bounds
+
+
+class Record(SimpleNamespace):
+    """Fields of a table or of an object."""
+
+
+class Reached(Exception):
+    """The decision has been made; the rest of the function is not needed."""
+
+
+def nothing(*_):
+    """Return 0, the status of success."""
+    return 0
+
+
+def always(*_):
+    return True
+
+
+def never(*_):
+    return False
+
+
+def parameters(name):
+    return tuning.parameters_of(tuning._registered(name))
+
+
+def searched(**fields):
+    """Return the record of a search for one event function, from 1 to -1 along a line."""
+    line = {
+        "value_before": 1.0,
+        "value_after": -1.0,
+        "rate_before": -2.0,
+        "rate_after": -2.0,
+        "a": 1.0,
+        "b": -1.0,
+        "a_rate": -2.0,
+        "b_rate": -2.0,
+    }
+    cells = {
+        "m": 1.0 - 2.0 * bounds.LOOKED_AT,
+        "m2": 1.0 - 2.0 * bounds.ALSO_AT,
+        "noise": 0.0,
+        "left_low": 0.0,
+        "left_high": -1.0,
+        "edges": 0.0,
+        "overlap": 0.0,
+    }
+    arrays = {
+        name: np.array([value])
+        for name, value in {**line, **cells, "period": 0.0, "apart": 0.0, "radians": 1.0}.items()
+    }
+    integers = {
+        "first_edge": [0, 1],
+        "lands": [0],
+        "masked": [0],
+        "near": [1],
+        "call": [0],
+        "found": [0],
+        "turn": [0],
+        "angle": [0],
+    }
+    usual = {
+        **arrays, **{name: np.array(value) for name, value in integers.items()},
+        "zone_low": np.array([0.0]), "zone_high": np.array([np.inf]), "n": 1, "n_event_functions": 1, "n_zoned": 1, "n_angles": 0, "n_turns": 0,
+        "n_calls": 1, "n_nodes": 1, "n_state": 1, "row": np.ones(2), "depth": 0.0, "least": 0.0, "duration": 1.0, "narrow": 0, "begins": 0.0,
+        "longest": 1.0, "unresolved": 0, "under_way": 0, "begun": 0.0, "target": np.inf, "passed": 0.0, "passage": 0.0, "first": 0.0,
+        "usual": 1.0, "count": 0, "room": 10,
+    }  # fmt: skip
+    return Record(**{**usual, **fields})
