@@ -20,8 +20,6 @@ DEFAULT_RTOL = 1e-6
 """Relative tolerance of a run without settings."""
 DEFAULT_POINTS = 1001
 """Output times of a run without settings for them, and largest number of its states from which growth is estimated."""
-Stages = Literal[3, 5, 7]
-"""Numbers of stages of radau."""
 MOST_OUTPUTS = MOST_VALUES
 """Largest number of output times of a run."""
 FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
@@ -47,7 +45,7 @@ class Settings(TypedDict, total=False):
     projection: bool
     max_step: Number
     max_order: int | None
-    stages: Literal[Stages, "auto"]
+    stages: Literal[3, 5, 7, "auto"]
     presolve: bool
     drop_first: Sequence[str]
     tuning: Mapping[str, Mapping[str, Any]]
@@ -94,7 +92,7 @@ class RunSettings(Described):
         None,
         description="highest order of bdf, 1 to 5, which is never reduced; by default 5, and 2 for a while if orders 3 to 5 require very small steps for a stiff, lightly damped vibration",
     )
-    stages: Literal[Stages, "auto"] = Field(
+    stages: Literal[3, 5, 7, "auto"] = Field(
         "auto",
         description="of radau, whose order is 2 stages - 1; by default chosen by the convergence of Newton's iteration",
     )

@@ -11,7 +11,7 @@ from ...compile.equations import Equations
 from ...compile.law_zones import zones_of
 from ...compile.machine.layout import fill, packed
 from ...compile.state import State
-from ...model.settings import Stages
+from ...model.settings import RunSettings
 from ...sparse.elimination_order import EliminationOrder
 from ...tuning import parameters_of
 from ..cost import ImplicitCost
@@ -29,7 +29,7 @@ from .parameters import RadauParameters
 if TYPE_CHECKING:
     from ..ida.connection import Connection
 
-CHOSEN_FROM: tuple[int, ...] = get_args(Stages)
+CHOSEN_FROM = tuple(count for count in get_args(RunSettings.model_fields["stages"].annotation) if count != "auto")
 """Numbers of stages among which a run chooses."""
 VECTORS = {"b": 1, "x": 1, "pair_b": 2, "pair_x": 2}
 """Vectors of the linear systems, and their size in numbers of unknowns."""
