@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.spatial import cKDTree
 
 from ..errors import InputError, needs
 from .finite_elements import PRECISION, FiniteElements
@@ -51,6 +50,8 @@ def from_mesh(
         )
     (kind,) = solid
     connected = np.vstack([block.data for block in mesh.cells if block.type == kind]).astype(np.int64)
+    if "gmsh:physical" in mesh.cell_data:  # Gmsh repeats elements of several physical groups (format 2)
+        connected = connected[np.sort(np.unique(connected, axis=0, return_index=True)[1])]
     used, inverse = np.unique(connected, return_inverse=True)
     cells = inverse.reshape(connected.shape)
     nodes = np.asarray(mesh.points, dtype=float)[used] * length
@@ -60,6 +61,7 @@ def from_mesh(
         raise InputError("nodes: found a position that is not finite, expected numbers")
     nodes = placed(nodes)
     _check_volumes(nodes, cells, kind)
+    _check_repeated(cells, kind)
     stiffness, mass, shapes = _assembled(nodes, cells, kind, modulus, poisson, density)
     numbers = np.full(len(mesh.points), -1)
     numbers[used] = np.arange(len(used))
@@ -101,6 +103,18 @@ def _check_volumes(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:
             )
 
 
+def _check_repeated(cells: np.ndarray, kind: str) -> None:
+    """Refuse elements between the same nodes as others: their mass and stiffness would count twice."""
+    corners = np.sort(cells[:, : CORNERS[kind]], axis=1)
+    _, first = np.unique(corners, axis=0, return_index=True)
+    repeated = np.setdiff1d(np.arange(len(cells)), first)
+    if len(repeated):
+        raise InputError(
+            f"found {len(repeated)} elements between the same nodes as others, the first with nodes "
+            f"{', '.join(map(str, cells[repeated[0], : CORNERS[kind]]))}, expected each element once"
+        )
+
+
 def _check_jacobians(mesh: Any, element: Any, order: int, cells: np.ndarray) -> None:
     """Refuse elements with curved edges that are inverted in parts: at a node or a point of the quadrature."""
     from skfem.quadrature import get_quadrature
@@ -137,18 +151,19 @@ def _assembled(
         number[corners] = np.arange(len(corners))
         mesh = meshio.Mesh(nodes[corners], [(geometry, number[cells[:, : CORNERS[kind]]])])
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        of_skfem, scalar = from_meshio(mesh), getattr(skfem, element)()
+        try:
+            of_skfem, scalar = from_meshio(mesh), getattr(skfem, element)()
+        except IndexError:  # it numbers edges by their corners
+            raise InputError(
+                "found elements that share nodes on edges or faces but not their corners, expected both or neither"
+            ) from None
         _check_jacobians(of_skfem, scalar, order, cells)
         basis = skfem.Basis(of_skfem, skfem.ElementVector(scalar), intorder=order)
-    distance, node = cKDTree(nodes).query(basis.doflocs.T)
-    if distance.max() > PRECISION * np.ptp(nodes, axis=0).max():
-        raise InputError(
-            f"found a node {distance.max():.3g} m off the straight edge of its element, expected elements of type "
-            f"{kind} with straight edges, or hexahedron27"
-        )
-    component = np.empty(basis.N, dtype=np.int64)
-    component[basis.element_dofs] = (np.arange(len(basis.element_dofs)) % 3)[:, None]
-    place = 3 * node + component
+    of_shapes = _nodes_of_shapes(nodes, cells, basis.doflocs.T[basis.element_dofs[::3]], kind)
+    place = np.empty(basis.N, dtype=np.int64)
+    for component in range(3):
+        place[basis.element_dofs[component::3]] = 3 * of_shapes + component
+    _check_edges(place[basis.element_dofs[::3]] // 3, of_shapes)
 
     @skfem.BilinearForm
     def inertia(u: Any, v: Any, _: Any) -> Any:
@@ -158,7 +173,36 @@ def _assembled(
     for form in (linear_elasticity(*lame_parameters(modulus, poisson)), inertia):
         matrix = form.assemble(basis).tocoo()
         found.append(csr_array((matrix.data, (place[matrix.row], place[matrix.col])), shape=(3 * len(nodes),) * 2))
-    return found[0], found[1], Solid(of_skfem, scalar, order, node[basis.element_dofs[::3]], modulus, poisson)
+    return found[0], found[1], Solid(of_skfem, scalar, order, of_shapes, modulus, poisson)
+
+
+def _nodes_of_shapes(nodes: np.ndarray, cells: np.ndarray, places: np.ndarray, kind: str) -> np.ndarray:
+    """Return the nodes of the shape functions, shape (functions, elements), by place among those of each element.
+
+    Nodes of different elements may coincide, as at a slit. `places`: of the functions, shape (functions, elements, 3), m.
+    """
+    found, own = np.empty(places.shape[:2], dtype=np.int64), nodes[cells]
+    for k, place in enumerate(places):
+        distance = np.linalg.norm(own - place[:, None], axis=2)
+        nearest = distance.argmin(axis=1)
+        off = distance.min(axis=1).max()
+        if off > PRECISION * np.ptp(nodes, axis=0).max():
+            raise InputError(
+                f"found a node {off:.3g} m off the straight edge of its element, expected elements of type "
+                f"{kind} with straight edges, or hexahedron27"
+            )
+        found[k] = np.take_along_axis(cells, nearest[:, None], axis=1)[:, 0]
+    return found
+
+
+def _check_edges(of_dofs: np.ndarray, of_shapes: np.ndarray) -> None:
+    """Refuse elements that share an edge or face but not the nodes on it."""
+    bad = np.argwhere(of_dofs != of_shapes)
+    if len(bad):
+        one, other = sorted((int(of_dofs[tuple(bad[0])]), int(of_shapes[tuple(bad[0])])))
+        raise InputError(
+            f"found the nodes {one} and {other} at one place of an edge or face that elements share, expected one node"
+        )
 
 
 def _groups(mesh: Any, numbers: np.ndarray, within: Mapping[str, Sequence[str]]) -> dict[str, np.ndarray]:

@@ -5,6 +5,7 @@ import pytest
 
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.mesh import from_mesh
+from tests.flexible_bodies.bars import mesh_of_bar
 
 POINTS = [(x, y, z) for x in (0, 1, 2) for y in (0, 1) for z in (0, 1)]
 ELEMENTS = [(1, 5, 7, 3, 2, 6, 8, 4), (5, 9, 11, 7, 6, 10, 12, 8)]
@@ -58,3 +59,54 @@ def test_statements_that_would_be_ignored_are_refused(tmp_path, name, text, mess
 def test_an_instance_in_place_is_read(tmp_path):
     text = ABAQUS + "*Instance, name=i, part=p\n0., 0.0E+00, 0.\n*End Instance\n"
     assert np.ptp(read(tmp_path / "a.inp", text).nodes, axis=0).tolist() == [2, 1, 1]
+
+
+def test_repeated_elements_are_refused_but_for_groups_of_gmsh(tmp_path):
+    repeated = [*ELEMENTS, ELEMENTS[1]]
+    elements = "".join(f"{k + 1}, {', '.join(map(str, nodes))}\n" for k, nodes in enumerate(repeated))
+    with pytest.raises(InputError, match=r"1 elements between the same nodes as others, the first with nodes 4, 8, 10"):
+        read(tmp_path / "a.inp", f"*Node\n{NODES}*Element, type=C3D8, elset=body\n{elements}")
+    nodes = NODES.replace(",", "")
+    cells = "".join(
+        f"{k + 1} 5 2 {tag} 1 {' '.join(map(str, nodes))}\n"
+        for k, (nodes, tag) in enumerate(zip(repeated, (1, 1, 2), strict=True))
+    )
+    found = read(
+        tmp_path / "a.msh",
+        '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 "body"\n3 2 "end"\n$EndPhysicalNames\n'
+        f"$Nodes\n12\n{nodes}$EndNodes\n$Elements\n3\n{cells}$EndElements\n",
+    )
+    assert found.mass.sum() / 3 == pytest.approx(2 * 7850)
+    assert found.groups["end"].tolist() == list(range(4, 12))
+
+
+@pytest.mark.parametrize("kind", ["hexahedron", "hexahedron20", "tetra10", "hexahedron27"])
+def test_nodes_at_one_place_stay_apart_at_a_slit(tmp_path, kind):
+    def stiffness(opening, end=199):
+        mesh = mesh_of_bar(kind, along=4)
+        points, (block,) = mesh.points, mesh.cells
+        above = points[block.data].mean(axis=1)[:, 1] > 15
+        slit = np.flatnonzero((np.abs(points[:, 1] - 15) < 1e-9) & (points[:, 0] < end))
+        other = np.arange(len(points))
+        other[slit] = len(points) + np.arange(len(slit))
+        mesh.points = np.vstack([points, points[slit] + [0, opening, 0]])
+        block.data[above] = other[block.data[above]]
+        mesh.write(tmp_path / "slit.vtu")
+        found = from_mesh(tmp_path / "slit.vtu", 1e-3, 2.1e11, 0.3, 7850.0)
+        found.check()
+        return found.stiffness
+
+    closed, open_ = stiffness(0.0), stiffness(1e-5)
+    assert np.abs((closed - open_).data).max() < 1e-4 * np.abs(closed.data).max()
+    if kind in ("tetra10", "hexahedron27"):
+        with pytest.raises(InputError, match="share nodes on edges or faces but not their corners"):
+            stiffness(0.0, end=149)
+
+
+def test_elements_that_share_an_edge_share_the_node_on_it(tmp_path):
+    mesh = mesh_of_bar("tetra10", along=4)
+    mesh.points = np.vstack([mesh.points, mesh.points[mesh.cells[0].data[0, 4]]])
+    mesh.cells[0].data[0, 4] = len(mesh.points) - 1
+    mesh.write(tmp_path / "a.vtu")
+    with pytest.raises(InputError, match="found the nodes [0-9]+ and [0-9]+ at one place"):
+        from_mesh(tmp_path / "a.vtu", 1e-3, 2.1e11, 0.3, 7850.0)
