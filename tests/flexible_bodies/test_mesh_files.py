@@ -108,5 +108,5 @@ def test_elements_that_share_an_edge_share_the_node_on_it(tmp_path):
     mesh.points = np.vstack([mesh.points, mesh.points[mesh.cells[0].data[0, 4]]])
     mesh.cells[0].data[0, 4] = len(mesh.points) - 1
     mesh.write(tmp_path / "a.vtu")
-    with pytest.raises(InputError, match="found the nodes [0-9]+ and [0-9]+ at one place"):
+    with pytest.raises(InputError, match=r"found the nodes [0-9]+ and [0-9]+ at one place"):
         from_mesh(tmp_path / "a.vtu", 1e-3, 2.1e11, 0.3, 7850.0)
