@@ -159,6 +159,21 @@ def test_whirl_of_the_rotor_of_the_examples(spin, expected):
     assert found == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_a_thick_cantilever_has_the_frequencies_of_timoshenko(dimensions):
+    """The rotary inertia of a section belongs to its height; values by Ritz' method with 14 polynomials."""
+    start, end = ("[0, 0]", "[1.2, 0]") if dimensions == 2 else ("[0, 0, 0]", "[1.2, 0, 0]")
+    scene = stiffmbs.read_scene(f"""dimensions: {dimensions}
+bodies:
+  rod: {{type: beam, start: {start}, end: {end}, elements: 16, interpolation: spectral,
+    section: {{type: rectangle, width: 0.03, height: 0.05}}, material: {{E: 7e10, nu: 0.33, density: 2700}}}}
+joints: {{clamp: {{type: fixed, i: rod.start, j: ground}}}}
+""")
+    found = np.array([mode.frequency for mode in stiffmbs.modes(scene).modes])
+    for expected in (28.51963219, 177.24878958, 489.858282):
+        assert np.abs(found / expected - 1).min() < 2e-5
+
+
 def test_damping_is_that_of_the_stiffness():
     """The damping ratio of a mode is half its angular frequency times the damping time."""
     undamped = cantilever(6, stiffness="[1e6, 1e6, 1]")

@@ -271,7 +271,7 @@ class _Interval:
         own = self.nodes[-len(where) :]
         for node, s, (_, axes), weight in zip(own, where, poses, group.weights, strict=True):
             of = self.constants(float(s))
-            node.lump(float(weight) * (end - start), of.mass, of.inertia, axes)
+            node.lump(float(weight) * (end - start), of.mass, self._inertia(of), axes)
         turned = own[0].axes.T @ poses[0][1]
         ends = [self.constants(s) for s in (start, end)]
         if group.sections and any(any((*of.shear_centre, *of.wagner)) for of in ends):
@@ -330,6 +330,10 @@ class _Interval:
     def _stiffness(self, s: float) -> np.ndarray:
         K = self.constants(s).stiffness
         return K[np.ix_(HEIGHT_IN_PLANE, HEIGHT_IN_PLANE)] if self.planar else K
+
+    def _inertia(self, of: Constants) -> np.ndarray:
+        axes = HEIGHT_IN_PLANE[:3]
+        return of.inertia[np.ix_(axes, axes)] if self.planar else of.inertia
 
 
 def _screw(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
