@@ -63,6 +63,15 @@ def _reserved(element: type[Described], base: type[Described]) -> str:
     return f"found the field '{found[0]}', expected names other than {listed}"
 
 
+def _extends(element: type[Described]) -> bool:
+    """Return True if a class adds fields, functions or properties to its first base."""
+    base = element.__mro__[1]
+    added = (value for name, value in vars(element).items() if not name.startswith(("__", "model_")))
+    return element.model_fields.keys() != getattr(base, "model_fields", {}).keys() or any(
+        isinstance(value, property | staticmethod | classmethod) or callable(value) for value in added
+    )
+
+
 @dataclass(frozen=True)
 class CompiledTerms:
     """Terms of an element whose kernels are loops over arrays, written by hand instead of derived.
@@ -120,7 +129,8 @@ class Element(Described):
         Conditions on its markers, by field, under which the element is its own mirror image about a plane
         (`stiffmbs.presolve.modes_at_rest`). ``point``: its point is in the plane. ``z``: also its z axis is in the plane or normal
         to it; ``axes``: all three are. ``along z``: the axis alone. ``body``: none. Fields of `reflected` must have no components
-        out of the plane. None: the element is not symmetric about any plane.
+        out of the plane. None: the element is not symmetric about any plane. A subclass with fields or functions of its
+        own does not inherit it.
     symbol : str
         Kind whose symbol drawings show; by default its own, or a diamond or a dashed line if there is none.
     """
@@ -141,6 +151,8 @@ class Element(Described):
         base = next(base for base in cls.__mro__ if base.__module__ == __name__)
         if reason := _reserved(cls, base):
             raise InputError(f"{cls.__name__}: {reason}")
+        if "symmetric_with" not in vars(cls) and _extends(cls):
+            cls.symmetric_with = None
 
     @model_validator(mode="before")
     @classmethod

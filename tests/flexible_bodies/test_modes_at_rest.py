@@ -5,7 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy as sp
 
+from stiffmbs import register, spatial
 from stiffmbs.analyses.check import check
 from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.renumber import renumberable
@@ -83,6 +85,24 @@ def test_a_rod_bends_in_the_plane_of_its_mechanism_only():
 )  # fmt: skip
 def test_anything_out_of_the_plane_keeps_all_modes(change):
     assert not left_out(slider_crank(change))
+
+
+class Sideways(spatial.AppliedForce):
+    """Force with a component along z that its fields do not show."""
+
+    kind = "sideways_force"
+
+    @classmethod
+    def vector(cls, e, components):
+        return super().vector(e, components) + sp.Matrix([0, 0, 1])
+
+
+def test_an_own_kind_of_force_keeps_all_modes():
+    register(Sideways)
+    scene = slider_crank(
+        ("requests:", "forces: {side: {type: sideways_force, i: rod.slider_end, force: [0, 0, 0]}}\nrequests:")
+    )
+    assert not left_out(scene)
 
 
 def test_a_force_on_a_mode_out_of_the_plane_moves_it():
