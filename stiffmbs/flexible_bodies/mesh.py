@@ -24,6 +24,7 @@ SOLIDS = {
     "hexahedron27": ("hexahedron27", "ElementHex2", 5),
 }
 """Geometry, element of scikit-fem and order of quadrature by element type of meshio."""
+NODES = {"tetra": 4, "tetra10": 10, "hexahedron": 8, "hexahedron20": 20, "hexahedron27": 27}
 CORNERS = {"tetra": 4, "tetra10": 4, "hexahedron": 8, "hexahedron20": 8, "hexahedron27": 8}
 FLAT = 1e-9
 """Smallest volume of an element, relative to the product of its edges, and smallest density of volume relative to the largest."""
@@ -50,6 +51,14 @@ def from_mesh(
         )
     (kind,) = solid
     connected = np.vstack([block.data for block in mesh.cells if block.type == kind]).astype(np.int64)
+    if not connected.size or connected.shape[1] != NODES[kind]:
+        raise InputError(
+            f"found {len(connected)} elements of {connected.shape[1]} nodes of the type {kind}, expected some of {NODES[kind]}"
+        )
+    if connected.min() < 0 or connected.max() >= len(mesh.points):
+        raise InputError(
+            f"found an element with a node that is none of the {len(mesh.points)} nodes, expected known ones"
+        )
     if "gmsh:physical" in mesh.cell_data:  # Gmsh repeats elements of several physical groups (format 2)
         connected = connected[np.sort(np.unique(connected, axis=0, return_index=True)[1])]
     used, inverse = np.unique(connected, return_inverse=True)

@@ -1,5 +1,7 @@
 """Statements of Nastran and Abaqus files besides nodes and elements: sets, supports, coordinate systems, instances."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -110,3 +112,20 @@ def test_elements_that_share_an_edge_share_the_node_on_it(tmp_path):
     mesh.write(tmp_path / "a.vtu")
     with pytest.raises(InputError, match=r"found the nodes [0-9]+ and [0-9]+ at one place"):
         from_mesh(tmp_path / "a.vtu", 1e-3, 2.1e11, 0.3, 7850.0)
+
+
+@pytest.mark.parametrize(
+    ("cells", "message"),
+    [
+        (np.empty((3, 0), dtype=int), "found 3 elements of 0 nodes of the type tetra, expected some of 4"),
+        ([[0, 1, 2, 40]], "found an element with a node that is none of the 4 nodes"),
+        ([[0, 1, 2, -1]], "found an element with a node that is none of the 4 nodes"),
+    ],
+)
+def test_elements_without_their_nodes_are_refused(monkeypatch, tmp_path, cells, message):
+    mesh = SimpleNamespace(
+        points=np.vstack([np.zeros(3), np.eye(3)]), cells=[SimpleNamespace(type="tetra", data=np.array(cells))]
+    )
+    monkeypatch.setattr("stiffmbs.flexible_bodies.mesh._read", lambda _: mesh)
+    with pytest.raises(InputError, match=message):
+        from_mesh(tmp_path / "a.vtk", 1.0, 2.1e11, 0.3, 7850.0)
