@@ -6,13 +6,13 @@ import os
 import tempfile
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
-from zipfile import ZipFile
 
 import numpy as np
 
 from ..dynamics.storage import blocks, release
 from ..errors import InputError, refuse_missing
 from ..reading.files.quoted import quoted
+from .archive import write_archive
 from .saved import record
 from .solution import Solution
 
@@ -35,13 +35,8 @@ def _write_csv(path: Path, solution: Solution) -> None:
 
 
 def _write_npz(path: Path, solution: Solution) -> None:
-    """Write an archive as `numpy.savez` does, one array after the other to save memory."""
     marked = {"not_unique": np.array(solution.not_unique)} if solution.not_unique else {}
-    with ZipFile(path, "w") as archive:
-        for name, values in {"time": solution.time, **solution.channels, **marked, **record(solution)}.items():
-            with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
-                np.lib.format.write_array(file, values, allow_pickle=False)
-            release(values)
+    write_archive(path, {"time": solution.time, **solution.channels, **marked, **record(solution)})
 
 
 def _write_netcdf(path: Path, solution: Solution) -> None:
