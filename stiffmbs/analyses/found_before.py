@@ -11,12 +11,12 @@ import pickle
 from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
+from ..cache.installed import installed_version
 from ..cache.source_files import files_within
 from ..compile.machine.cache import own_directory
 from ..model.files.scenes_read_before import ScenePickler
@@ -87,5 +87,5 @@ def _solver() -> bytes:
     files = [
         (str(file), found.st_size, found.st_mtime_ns) for file in files_within(PACKAGE) for found in (file.stat(),)
     ]
-    libraries = np.__version__, version("scipy"), version("sympy")
+    libraries = np.__version__, installed_version("scipy"), installed_version("sympy")
     return repr((files, threads, libraries, own_directory().name)).encode()

@@ -17,6 +17,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..cache.installed import installed_version
 from ..cache.source_files import digest_of, python_files
 from ..elements.element import CompiledTerms, Component, Element
 from ..errors import InputError
@@ -288,8 +289,6 @@ def _imported_later(module: str) -> set[Path]:
 @cache
 def _own_files() -> str:
     """Return a digest of the modules for derivation and element description."""
-    from importlib.metadata import version
-
     here, package = Path(__file__).parent, Path(__file__).parent.parent
     folders = (
         here,
@@ -298,4 +297,4 @@ def _own_files() -> str:
         *(package / "reading" / name for name in ("", "formula", "units")),
         *(package / "elements" / name for name in ("", "spatial")),
     )
-    return f"{version('sympy')} {digest_of(path for folder in folders for path in python_files(folder))}"
+    return f"{installed_version('sympy')} {digest_of(path for folder in folders for path in python_files(folder))}"

@@ -11,6 +11,7 @@ import builtins
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from pydantic import GetJsonSchemaHandler, model_validator
@@ -55,7 +56,7 @@ def _reserved(element: type[Described], base: type[Described]) -> str:
 
     `element`: a subclass of joints or forces. `base`: the base whose attributes its fields must not hide.
     """
-    names = IN_EQUATIONS | {name for name in dir(base) if not (name.startswith("__") or hasattr(Described, name))}
+    names = _names_of(base)
     added = {*element.model_fields, *element.__private_attributes__} - {*base.model_fields}
     if not (found := sorted(added & names)):
         return ""
@@ -70,6 +71,12 @@ def _extends(element: type[Described]) -> bool:
     return element.model_fields.keys() != getattr(base, "model_fields", {}).keys() or any(
         isinstance(value, property | staticmethod | classmethod) or callable(value) for value in added
     )
+
+
+@cache
+def _names_of(base: type[Described]) -> frozenset[str]:
+    """Return the names that fields of subclasses must not have."""
+    return IN_EQUATIONS.union(name for name in dir(base) if not (name.startswith("__") or hasattr(Described, name)))
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,6 @@ from ...reading.table import Table
 from ...reading.units.quantity import refuse_cycles
 from ...reading.units.units import named_unit
 from ..element import Expr, Joint, Matrix, Symbolic
-from .point_on_curve import SLOT
 from .relation import unfit_joints
 
 SORTS = {"angle": "angle", "displacement": "length", None: "value"}
@@ -54,7 +53,7 @@ class Drive(Joint):
     channels = ("effort",)
     forms = (
         *({"joint": "pin", "position": law} for law in ("2*t", "0.1 + 2*t", "0.1 - 2*t", "0.1*sin(2*t)", "0.1")),
-        {"joint": "pin", "position": SLOT},
+        {"joint": "pin", "position": {"table": [[0, 0], [1, 0.1], [2, 0]]}},
         {"joint": "pin", "velocity": "2"},
         *({"joint": "slider", "position": law} for law in ("0.1*sin(2*t)", "2*t")),
         {"joint": "slider", "velocity": "0.1"},

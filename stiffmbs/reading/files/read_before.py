@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ...cache.entries import Folder, digest, tag_of
+from ...cache.installed import installed_version
 from .yaml_text import read_yaml
 
 FORMAT = "1"
@@ -25,11 +26,9 @@ FILE = "file"
 @cache
 def folder_of_files() -> Folder:
     """Return the folder for this version of the package and of the YAML reader."""
-    from importlib.metadata import version
-
     from ... import __version__
 
-    return Folder("files", tag_of(FORMAT, __version__, version("ruamel.yaml")))
+    return Folder("files", tag_of(FORMAT, __version__, installed_version("ruamel.yaml")))
 
 
 def keep(name: str, content: bytes) -> None:
