@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.linalg import matrix_balance, schur
 
 from ..errors import InputError
 from .eigenvalues import CLOSE, is_singular
@@ -124,17 +125,19 @@ class Transfer:
         """
         if not np.isfinite(frequencies).all():
             raise InputError("frequencies: found one that is not finite, expected numbers in Hz")
-        values, vectors = np.linalg.eig(self.a)
-        if not len(values):
+        if not len(self.a):
             return np.broadcast_to(self.d, (len(frequencies), *self.d.shape)).astype(complex)
+        balanced, (scale, _) = matrix_balance(self.a, permute=False, separate=True)
+        # eigenvectors of multiple eigenvalues, such as those of rigid body motions, lose half of the digits
+        triangular, basis = schur(balanced, output="complex")
         rates = 2j * np.pi * np.asarray(frequencies)
-        self._refuse_poles(rates, values)
-        if np.linalg.cond(vectors) > 1e8:  # double eigenvalues, such as those of rigid body motions
-            unit = np.eye(len(values))
-            solved = np.array([np.linalg.solve(rate * unit - self.a, self.b) for rate in rates])
-            return np.asarray(self.c @ solved + self.d)
-        into = np.linalg.solve(vectors, self.b.astype(complex))
-        return np.asarray(np.einsum("ok,fk,ki->foi", self.c @ vectors, 1 / (rates[:, None] - values), into) + self.d)
+        self._refuse_poles(rates, np.diagonal(triangular))
+        driven = basis.conj().T @ (self.b / scale[:, None])
+        solved = np.zeros((len(driven), len(rates), driven.shape[1]), dtype=complex)
+        for row in reversed(range(len(driven))):
+            later = np.tensordot(triangular[row, row + 1 :], solved[row + 1 :], 1)
+            solved[row] = (driven[row] + later) / (rates - triangular[row, row])[:, None]
+        return np.asarray(np.einsum("ok,kfi->foi", (self.c * scale) @ basis, solved) + self.d)
 
     def _refuse_poles(self, rates: np.ndarray, values: np.ndarray) -> None:
         """Refuse frequencies at which i w - A is numerically singular."""

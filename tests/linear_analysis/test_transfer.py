@@ -12,6 +12,7 @@ from stiffmbs.analyses.linearised.transfer import transfer
 from stiffmbs.commands.main import main
 from stiffmbs.elements.spatial.orientation import matrix
 from stiffmbs.errors import InputError
+from stiffmbs.linear_analysis.transfer import Transfer
 
 from ..conftest import EXAMPLES
 
@@ -241,6 +242,22 @@ def test_the_response_of_a_free_body(held, gain):
     np.testing.assert_allclose(found.response(frequencies)[:, :, 0], expected, rtol=1e-7, atol=1e-12)
     with pytest.raises(InputError, match="found 0 Hz, the frequency of an unconstrained motion"):
         found.response(np.array([0.0, 1.0]))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_response_of_free_bodies_in_any_coordinates(seed):
+    """A free mass and an oscillator: rounding splits the double zero eigenvalue, whose eigenvectors are nearly parallel."""
+    rng = np.random.default_rng(seed)
+    basis = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    stiffness = basis @ np.diag([0.0, 90.0, 400.0]) @ basis.T
+    a = np.block([[np.zeros((3, 3)), np.eye(3)], [-stiffness, -0.01 * stiffness]])
+    b = np.vstack([np.zeros((3, 2)), basis[:, :2]])
+    found = Transfer(
+        a, b, np.hstack([basis[:, :2].T, np.zeros((2, 3))]), np.zeros((2, 2)), ("f", "g"), ("x", "y"), np.zeros(2)
+    )
+    w = 2 * np.pi * np.array([0.02, 0.3, 4.0])
+    moved = np.array([np.diag([-1 / w_k**2, 1 / (90 + 0.9j * w_k - w_k**2)]) for w_k in w])
+    assert found.response(w / (2 * np.pi)) == pytest.approx(moved, rel=1e-11, abs=1e-11)
 
 
 def test_a_held_body_has_a_response_at_zero_hertz_but_none_at_its_own_frequency():
