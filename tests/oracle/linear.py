@@ -24,10 +24,15 @@ class Linear:
 
     def response(self, frequencies):
         """Return C (i w - A)^-1 B + D, shape (frequencies, outputs, inputs)."""
+        return self.c @ self._states(frequencies) + self.d
+
+    def terms(self, frequencies):
+        """Return the sums of the magnitudes of the terms of each response, of which most may cancel."""
+        return np.abs(self.c) @ np.abs(self._states(frequencies)) + np.abs(self.d)
+
+    def _states(self, frequencies):
         unit = np.eye(len(self.a))
-        return np.array(
-            [self.c @ np.linalg.solve(2j * np.pi * f * unit - self.a, self.b) + self.d for f in frequencies]
-        )
+        return np.array([np.linalg.solve(2j * np.pi * f * unit - self.a, self.b) for f in frequencies])
 
 
 def varied(system, state, z):
