@@ -25,6 +25,23 @@ def test_the_note_lists_the_eigenvalues_that_differ():
     assert "eigenvalues are -10" in note or "on one side and -10" in note
 
 
+@pytest.mark.parametrize("law", ["-8*max(b.vx, 0) - 8*min(b.vx, 0)", "-branch(b.vx, 8*b.vx, 0, 8*b.vx)"])
+def test_laws_whose_breakpoints_cancel_have_the_derivatives_of_both_sides(law):
+    """On the breakpoint itself those of max and min are 1, and that of branch is of its middle value."""
+    found = stiffmbs.modes(slider(law))
+    assert not found.sides
+    assert np.linalg.eigvals(found.state.matrix).real.min() == pytest.approx(-4)
+    response = transfer(slider(law), ["b.fx"], ["b.vx"]).response(np.array([1.0]))
+    assert response[0, 0, 0] == pytest.approx(1 / (2 * 2j * np.pi + 8))
+
+
+def test_the_modes_at_a_breakpoint_are_those_of_a_side():
+    found = stiffmbs.modes(slider("-8*max(b.vx, 0) - 20*min(b.vx, 0)"))
+    rates = [np.linalg.eigvals(matrix).real.min() for matrix in (found.state.matrix, *(s.matrix for s in found.sides))]
+    assert sorted(rates[1:]) == pytest.approx([-10, -4])
+    assert min(abs(rates[0] - rate) for rate in rates[1:]) < 1e-9
+
+
 @pytest.mark.long
 def test_a_ball_that_just_touches_has_both_sides():
     found = stiffmbs.modes(ball(0.1))

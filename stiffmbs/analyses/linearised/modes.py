@@ -13,7 +13,6 @@ from ...dynamics.algebraic_states import failure
 from ...errors import InputError, SolverError
 from ...linear_analysis.modes import Mode, Motion, natural_modes
 from ...linear_analysis.state_space import StateMatrix, state_matrix
-from ...linear_analysis.tangent_space import linearised
 from ...model.settings import RunSettings, Settings, takes_settings
 from ...reading.files.quoted import MOST_LISTED
 from ...redundancy.messages.redundancy import derivative_sentences
@@ -24,7 +23,7 @@ from ..equilibrium import solution_of_rows
 from ..job import Runnable
 from ..settled import GROWING
 from ..start_from import StartFrom
-from .sides import AtState, Kink, at_state, kink_at
+from .sides import AtState, Kink, at_state, linearised_at
 
 AT_REST = 1e-6
 """Acceleration below which a state counts as an equilibrium, relative to gravity (to 1 m/s^2 without gravity)."""
@@ -134,10 +133,8 @@ def modes(
     found = at_state(model, settings, at, start_from, **changes)
     system = found.dynamics.system
     scale = system.per_velocity(system.size, 1.0)
-    linear = linearised(found.dynamics, found.t, found.acceleration)
-    state = state_matrix(linear, scale)
+    linear, state, kink = linearised_at(found, scale)
     shapes = tuple(natural_modes(state, linear.mass, system.bodies, scale))
-    kink = kink_at(found, state, linear)
     sides = () if kink is None else tuple(state_matrix(side, scale) for side in kink.sides)
     of_sides = [natural_modes(side, linear.mass, system.bodies, scale) for side in sides]
     notes = (*_notes(found, state), *([] if kink is None else [_kink_sentence(kink, of_sides)]))

@@ -10,7 +10,7 @@ import numpy as np
 from ...dynamics.algebraic_states import failure
 from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
-from ...linear_analysis.state_space import StateMatrix
+from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...linear_analysis.tangent_space import Linearised, linearised
 from ...model.model_data import ModelData
 from ...model.settings import RunSettings
@@ -101,15 +101,22 @@ class Kink:
     sides: tuple[Linearised, Linearised]
 
 
-def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves = MOVES) -> Kink | None:
-    """Return the breakpoint of a force or rate at a state, or None.
+def linearised_at(found: AtState, scale: np.ndarray) -> tuple[Linearised, StateMatrix, Kink | None]:
+    """Return the linearised equations, those of one side on a breakpoint of a force, with that breakpoint or None.
 
     Raise a SolverError if a force is discontinuous at the state, so that no linearisation exists.
     """
-    if not len(state.matrix):
-        return None
+    linear = linearised(found.dynamics, found.t, found.acceleration)
+    state = state_matrix(linear, scale)
+    kink, side = _breakpoint(found, state, linear, scale) if len(state.matrix) else (None, None)
+    return (linear, state, kink) if side is None else (side, state_matrix(side, scale), kink)
+
+
+def _breakpoint(
+    found: AtState, state: StateMatrix, linear: Linearised, scale: np.ndarray, moves: Moves = MOVES
+) -> tuple[Kink | None, Linearised | None]:
+    """Return the breakpoint of a force or rate at a state or None, and the equations of a side if they replace those there."""
     system = found.dynamics.system
-    scale = system.per_velocity(system.size, 1.0)
     move = _generic_move(state, scale)
     wide, narrow = (
         [_side(found, state, linear, sign * size * move) for sign in (-1.0, 1.0)] for size in (moves.wide, moves.narrow)
@@ -134,11 +141,14 @@ def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves
     zero = np.maximum(curved * parts, summed * _largest(parts, state))
     # A derivative that bends next to the state has changes across it in no proportion, but those to one side in proportion.
     bends = moves.break_between(*changes) & moves.break_between(*to_a_side) & (np.abs(changes[0]) > zero)
+    # On a breakpoint the derivatives of several functions, such as max(x, 0) + min(x, 0), may add up to those of no side.
+    off, off_narrow = (np.minimum(*(abs(side.matrix - middle) for side in pair)) for pair in (wide, narrow))
+    side = narrow[0].linear if np.any((off > zero) & (off_narrow > moves.curved * off)) else None
     if not bends.any():
-        return None
+        return None, side
     share = np.where(bends, np.abs(changes[0]) / np.where(bends, parts + np.abs(changes[0]), 1.0), 0.0)
     where = rows[int(np.argmax(share.max(axis=1)))]
-    return Kink(where, (wide[0].linear, wide[1].linear))
+    return Kink(where, (wide[0].linear, wide[1].linear)), side
 
 
 def _largest(parts: np.ndarray, state: StateMatrix) -> np.ndarray:

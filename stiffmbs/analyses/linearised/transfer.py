@@ -12,8 +12,8 @@ from ...dynamics.dynamics import Dynamics
 from ...elements.requests.order import reading
 from ...elements.requests.output import Term
 from ...errors import InputError, SolverError, refuse_text
-from ...linear_analysis.state_space import StateMatrix, state_matrix
-from ...linear_analysis.tangent_space import Linearised, linearised
+from ...linear_analysis.state_space import StateMatrix
+from ...linear_analysis.tangent_space import Linearised
 from ...linear_analysis.transfer import Input, Transfer, effect
 from ...model.model_data import ModelData
 from ...model.settings import RunSettings, Settings, takes_settings
@@ -23,7 +23,7 @@ from ...results.channels import channels_of
 from ..job import Runnable, prepare
 from ..start_from import StartFrom
 from .inputs import ForceOnBody, Parameterised, force_on
-from .sides import AtState, at_state, kink_at
+from .sides import AtState, at_state, linearised_at
 
 PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
 """Measures of displacements and angles."""
@@ -84,15 +84,14 @@ def transfer(
     found = at_state(model, settings, at, start_from, **changes)
     system = found.dynamics.system
     scale = system.per_velocity(system.size, 1.0)
-    linear = linearised(found.dynamics, found.t, found.acceleration)
-    about = _About(found, linear, state_matrix(linear, scale), scale)
-    kink = kink_at(found, about.state, linear)
+    linear, state, kink = linearised_at(found, scale)
     if kink is not None:
         raise SolverError(
             f"the state at t = {found.t:g} s lies on a breakpoint of a force on {kink.where}, or within a millionth of the mechanism's "
             "size of one, where the linearised equations of both sides differ; expected a state away from it, or a smooth law "
             "(`modes` has the state matrices of both sides)"
         )
+    about = _About(found, linear, state, scale)
     nothing, as_they_are = np.zeros((1, system.n_u)), np.zeros((1, len(system.states)))
     at_zero = _channels(about, found.dynamics, nothing, nothing, as_they_are, outputs)[0]
     given = inputs if isinstance(inputs, Mapping) else {name: force_on(found.data, name) for name in inputs}
