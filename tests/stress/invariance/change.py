@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -45,10 +46,17 @@ VECTORS: Mapping[str, tuple[str, ...]] = {
     name: tuple(name.format(axis) for axis in "xyz") for name in ("{}", "v{}", "a{}", "f{}", "t{}")
 }
 """Channels along the ground's axes, by vector."""
+MODAL = re.compile(r"\.modes\d+$")
+"""End of the names of modal coordinates."""
 
 
 def vector(channels: Channels, owner: str, labels: tuple[str, ...]) -> np.ndarray | None:
-    """Return a vector over time, shape (3, n), with z = 0 for planar scenes, or None if it does not exist."""
+    """Return a vector over time, shape (3, n), with z = 0 for planar scenes, or None if it does not exist.
+
+    Modal coordinates of flexible bodies are three numbers, but no vector.
+    """
+    if MODAL.search(owner):
+        return None
     found = [channels.get(f"{owner}.{label}") for label in labels]
     if found[0] is None or found[1] is None:
         return None

@@ -20,11 +20,11 @@ FORCE, TORQUE, ENERGY = (1.0, 1.0, -2.0), (1.0, 2.0, -2.0), (1.0, 2.0, -2.0)
 LENGTH, VELOCITY, ACCELERATION = (0.0, 1.0, 0.0), (0.0, 1.0, -1.0), (0.0, 1.0, -2.0)
 NUMBER, RATE, RATE_OF_RATE = (0.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 0.0, -2.0)
 LABELS: dict[str, Dimension] = {
-    **dict.fromkeys(("x", "y", "z", "deflection", "dx", "dy", "dz", "dm"), LENGTH),
-    **dict.fromkeys(("vx", "vy", "vz", "vm", "vr"), VELOCITY),
+    **dict.fromkeys(("x", "y", "z", "deflection", "dx", "dy", "dz", "dm", "displacement"), LENGTH),
+    **dict.fromkeys(("vx", "vy", "vz", "vm", "vr", "displacement_rate"), VELOCITY),
     **dict.fromkeys(("ax", "ay", "az", "accx", "accy", "accz"), ACCELERATION),
     **dict.fromkeys(("angle", "q0", "q1", "q2", "q3", "slip", "slip_angle", "camber"), NUMBER),
-    **dict.fromkeys(("omega", "wx", "wy", "wz", "wm"), RATE),
+    **dict.fromkeys(("omega", "wx", "wy", "wz", "wm", "angle_rate"), RATE),
     **dict.fromkeys(("alpha", "wdx", "wdy", "wdz"), RATE_OF_RATE),
     **dict.fromkeys(("fx", "fy", "fz", "longitudinal", "lateral", "load"), FORCE),
     **dict.fromkeys(("torque", "tx", "ty", "tz", "overturning", "rolling", "aligning", "braking"), TORQUE),
