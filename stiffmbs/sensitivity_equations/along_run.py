@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -180,6 +180,12 @@ FURTHER, LINEAR = 1e3, 0.1
 REST, MOVED, KINKED, NOTICED = 1e-12, 1e-6, 0.4, 1e-12
 """Value, SI units, of an event function that is on its breakpoint; displacement, m or rad, from such a state; second difference of rates over half of it, relative to that over the
 whole, which is 1/2 at a kink and 1/4 without one; and least second difference relative to the rates."""
+STEADY = 0.75
+"""Least ratio of the errors of derivatives over half of a displacement and the whole: 1 at a breakpoint, 1/2 at most without one."""
+ROUNDED = 1e-14
+"""Rounding of forces, relative to the largest one, and of places, relative to the largest coordinate."""
+FORCES = "f", "rate"
+"""Terms of the equations of motion with forces, and of the rates of states."""
 
 
 class Touches:
@@ -238,18 +244,59 @@ class Touches:
                     "and that a parameter moves it off: the motion is not differentiable there; expected an event that crosses it or "
                     "stays clear of it"
                 )
+            off = [self._off_differences(row[0], row[2 : 2 + n], way, numbers, part * size) for part in (1.0, 0.5)]
+            if np.any((off[1] > STEADY * off[0]) & (size * off[0] > NOTICED * (1.0 + np.abs(row[2 + n :]).max()))):
+                name = writer(self._dynamics.system, "event_function", int(resting[0]))
+                raise SolverError(
+                    f"sensitivities: found that '{name}' stays on its breakpoint from t = {segment.first[0]:.9g} s to {row[0]:.9g} s, "
+                    "where the derivatives of its formula are those of neither side; expected one smooth formula instead of several "
+                    "with breakpoints that cancel"
+                )
+
+    def _off_differences(self, t: float, y: np.ndarray, way: np.ndarray, numbers: Numbers, size: float) -> np.ndarray:
+        """Return the error of the derivatives of forces along a change of state and numbers, beyond rounding of differences."""
+        lam = self._recorder.equations.at["lam"]
+        solved = lam != ABSENT
+        before, after = (self._with_numbers(t, y, way, numbers, part, self._forces) for part in (-size, size))
+        self._take(t, y)
+        direction = Direction(self._dynamics.state, "motion", numbers)
+        direction.q[:], direction.u[:] = self._recorder.split(way)
+        direction.lam[solved] = way[lam[solved]]
+        direction.evaluate(t)
+        found = np.concatenate([direction.vector(name) for name in FORCES])
+        system, values = self._dynamics.system, self._dynamics.state.values["motion"]
+        terms = np.concatenate([system.term("motion", name).source for name in FORCES])
+        of_forces = float(np.max(np.abs(values[terms]), initial=0.0)) / size
+        of_places = float(np.max(np.abs(direction.values[terms]), initial=0.0)) * (1.0 + np.abs(y).max()) / MOVED
+        rounding = ROUNDED * (of_forces + of_places)
+        return np.maximum(np.abs(found - (after - before) / (2 * size)) - rounding, 0.0)
+
+    def _forces(self, t: float, y: np.ndarray) -> np.ndarray:
+        self._take(t, y)
+        self._dynamics.state.evaluate("motion", t)
+        return np.concatenate([self._dynamics.state.vector("motion", name) for name in FORCES])
 
     def _bend(self, t: float, y: np.ndarray, way: np.ndarray, numbers: Numbers, size: float) -> np.ndarray:
         """Return the second difference of the rates along a change of state and numbers."""
-        groups, found = self._dynamics.system.groups, []
+        found = [self._with_numbers(t, y, way, numbers, part, self._all_rates) for part in (-size, 0.0, size)]
+        return np.asarray(np.abs(found[0] - 2 * found[1] + found[2]))
+
+    def _with_numbers(
+        self, t: float, y: np.ndarray, way: np.ndarray, numbers: Numbers, part: float,
+        evaluated: Callable[[float, np.ndarray], np.ndarray],
+    ) -> np.ndarray:  # fmt: skip
+        """Return a function of the state after a part of a change of state and numbers."""
+        groups = self._dynamics.system.groups
         kept = {g: groups[g].numbers.copy() for g in numbers.moved}
-        for part in (-size, 0.0, size):
-            for g, own in kept.items():
-                groups[g].numbers[:] = own + part * numbers.of_groups[g]
-            found.append(np.concatenate(list(self._rates(t, y + part * way))))
+        for g, own in kept.items():
+            groups[g].numbers[:] = own + part * numbers.of_groups[g]
+        found = evaluated(t, y + part * way)
         for g, own in kept.items():
             groups[g].numbers[:] = own
-        return np.asarray(np.abs(found[0] - 2 * found[1] + found[2]))
+        return found
+
+    def _all_rates(self, t: float, y: np.ndarray) -> np.ndarray:
+        return np.concatenate(list(self._rates(t, y)))
 
     def _take(self, t: float, y: np.ndarray) -> None:
         state, lam = self._dynamics.state, self._recorder.equations.at["lam"]

@@ -257,6 +257,13 @@ def test_a_parameter_that_moves_a_body_off_a_kink_has_no_derivative(law, to, sol
         sensitivities(stiffmbs.read_scene(ON_A_KINK.replace("LAW", law)), [to], "final(b.vx)", solver=solver)
 
 
+@pytest.mark.parametrize("law", ["(max(a.vx, 0) + min(a.vx, 0))", "branch(a.vx, a.vx, 0, a.vx)"])
+def test_breakpoints_that_cancel_are_refused_where_a_body_stays_on_them(law):
+    """On the breakpoint itself the derivatives of max and min are 1, and that of branch is of its middle value."""
+    with pytest.raises(SolverError, match="those of neither side"):
+        sensitivities(stiffmbs.read_scene(ON_A_KINK.replace("LAW", law)), ["push"], "final(b.vx)")
+
+
 @pytest.mark.parametrize(("edge", "refused"), [(0.7e-12, True), (1.5e-12, False)])
 def test_a_breakpoint_counts_as_touched_up_to_rounding(edge, refused):
     scene = stiffmbs.read_scene(ON_A_KINK.replace("LAW", "max(a.vx - edge, 0)").replace("edge: 0", f"edge: {edge!r}"))
