@@ -15,7 +15,7 @@ from stiffmbs.elements.spatial.orientation import conjugate, from_matrix, matrix
 from stiffmbs.reading.formula.field import FormulaOf
 
 from ..random_scenes.draft import GROUND, Content
-from .change import VECTORS, Change, Channels, vector, with_vector
+from .change import MODAL, VECTORS, Change, Channels, vector, with_vector
 from .formulas import call_of, coordinate_of, replaced, with_other_formulas
 from .typed import Mapper, NotLegitimate, class_of, has_road, mapped
 
@@ -204,7 +204,7 @@ def _back(channels: Channels, placing: Placing, parts: Collection[str]) -> Chann
                 with_vector(found, owner, labels, inverse @ moved)
         if {f"{owner}.angle", f"{owner}.omega"} <= channels.keys():  # bodies; joints have angles too
             found[f"{owner}.angle"] = channels[f"{owner}.angle"] - placing.angle
-        if f"{owner}.q0" in channels:
+        if f"{owner}.q0" in channels and not MODAL.search(owner):
             turned = conjugate(from_matrix(placing.rotation))
             rows = np.array([channels[f"{owner}.q{k}"] for k in range(4)]).T
             for k, series in enumerate(np.array([product(turned, row) for row in rows]).T):
