@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..cache.installed import installed_version
-from ..cache.source_files import files_within
+from ..cache.source_files import versions_within
 from ..compile.machine.cache import own_directory
 from ..model.files.scenes_read_before import ScenePickler
 from ..model.model_data import ModelData
@@ -84,8 +84,5 @@ class _ByContent(ScenePickler):
 def _solver() -> bytes:
     """Return what the rounding of a start depends on: files, libraries, threads, compiler, processor."""
     threads = os.cpu_count(), *map(os.environ.get, ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"))
-    files = [
-        (str(file), found.st_size, found.st_mtime_ns) for file in files_within(PACKAGE) for found in (file.stat(),)
-    ]
     libraries = np.__version__, installed_version("scipy"), installed_version("sympy")
-    return repr((files, threads, libraries, own_directory().name)).encode()
+    return repr(([*versions_within(str(PACKAGE))], threads, libraries, own_directory().name)).encode()

@@ -31,6 +31,18 @@ def files_within(package: Path) -> Iterator[Path]:
         yield from (Path(place, name) for name in sorted(names))
 
 
+def versions_within(folder: str) -> Iterator[tuple[str, int, int]]:
+    """Yield the path, size and modification time of all files of a package, sorted by name within each folder."""
+    with os.scandir(folder) as found:  # three times as fast as paths of `files_within`
+        entries = sorted(found, key=lambda entry: entry.name)
+    for entry in entries:
+        if not entry.is_dir():
+            state = entry.stat()
+            yield entry.path, state.st_size, state.st_mtime_ns
+        elif entry.name != NOT_READ:
+            yield from versions_within(entry.path)
+
+
 def modules_within(package: Path, folder: str) -> Iterator[Path]:
     """Yield the modules in all folders of a name within a package, and in their subfolders, sorted by name."""
     for place, folders, names in os.walk(package):

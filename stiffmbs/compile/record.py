@@ -251,8 +251,21 @@ def _classes_in(shape: Shape) -> Iterator[type]:
 
 
 def _files(elements: list[type]) -> list[str]:
-    """Return a digest of the files of shipped classes, and of the functions that their equations may call."""
-    return [digest_of([*(Path(inspect.getfile(element)) for element in elements), *sorted(_helpers(elements))])]
+    """Return digests of the files of shipped classes, and of the functions that their equations may call."""
+    return [
+        _content(file) for file in (*(_file(element.__module__) for element in elements), *sorted(_helpers(elements)))
+    ]
+
+
+@cache
+def _file(module: str) -> Path:
+    return Path(inspect.getfile(sys.modules[module]))
+
+
+@cache
+def _content(file: Path) -> str:
+    """Return a digest of a file, which is read once for all kinds: its classes stay as they were imported."""
+    return digest_of([file])
 
 
 def _equations(kind: Kind) -> list[str]:
@@ -280,7 +293,7 @@ def _called_by(module: str) -> frozenset[Path]:
 @cache
 def _imported_later(module: str) -> set[Path]:
     """Return the files that the functions of a module import from, relative to it."""
-    file = Path(inspect.getfile(sys.modules[module]))
+    file = _file(module)
     imports = _INDENTED_IMPORT.findall(file.read_text(encoding="utf-8"))
     found = [file.parents[len(dots) - 1].joinpath(*name.split(".")).with_suffix(".py") for dots, name in imports]
     return {path for path in found if path.is_file()}
