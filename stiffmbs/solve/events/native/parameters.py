@@ -51,7 +51,7 @@ class EventSearchParameters:
     """Finest resolution of times: shortest part of a step that is searched, and distance to a predicted event up to which a
     step goes, relative to that from its start."""
     few_parts: int = 100
-    """Largest number of parts if arguments of sines cannot be followed."""
+    """Number of parts after which these are no longer halved, if arguments of sines cannot be followed."""
     difference: float = 1e-6
     """Fraction of a step, or of a part, over which rates are computed. The motion is extrapolated up to it past an event,
     until a sign change exceeds rounding."""
