@@ -7,8 +7,8 @@ CHECKOUT is the folder of another version; this one by default.  ``--list`` prin
 A parameter is a number, or a tuple of numbers, that a person chose.  Three kinds of numbers are counted in columns of their
 own, and are not among the parameters: tables, which are mappings, and collections of collections (coefficients and units of a
 standard, vertices of elements, layouts of memory, values of examples); neutral defaults of fields, 0 or 1, of data that
-have no such part (a mass of zero, a factor of one); and given numbers, which are annotated as ``Final``.  No value of these
-would be better: codes, constants of nature, of mathematics or of another program, sizes of a format, seeds.
+have no such part (a mass of zero, a factor of one); and given numbers, which are annotated as ``Final``.  They cannot be
+tuned: codes, constants of nature, of mathematics or of another program, sizes of a format, seeds.
 """
 
 from __future__ import annotations

@@ -205,8 +205,8 @@ def _change(system: System, name: str, force: Element, data: ModelData) -> Chang
 def with_numbers(job: Job, name: str, **numbers: Any) -> Job:
     """Return a job with changed parameters of a force, without a new compilation, examination or presolve.
 
-    The model is prepared again only if its equations change, or if the presolve solves mechanisms separately.  The
-    compiled system is changed in place, so `job` itself must not be integrated again.  Threads may run concurrently,
+    The model is prepared again only if its equations change, if the presolve solves mechanisms separately, or if it leaves
+    out modes of flexible bodies.  The compiled system is changed in place, so `job` itself must not be integrated again.  Threads may run concurrently,
     each with its own job from `prepare`.
 
     Parameters

@@ -288,12 +288,13 @@ class Touches:
         """Return a function of the state after a part of a change of state and numbers."""
         groups = self._dynamics.system.groups
         kept = {g: groups[g].numbers.copy() for g in numbers.moved}
-        for g, own in kept.items():
-            groups[g].numbers[:] = own + part * numbers.of_groups[g]
-        found = evaluated(t, y + part * way)
-        for g, own in kept.items():
-            groups[g].numbers[:] = own
-        return found
+        try:
+            for g, own in kept.items():
+                groups[g].numbers[:] = own + part * numbers.of_groups[g]
+            return evaluated(t, y + part * way)
+        finally:
+            for g, own in kept.items():
+                groups[g].numbers[:] = own
 
     def _all_rates(self, t: float, y: np.ndarray) -> np.ndarray:
         return np.concatenate(list(self._rates(t, y)))

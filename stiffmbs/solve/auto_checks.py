@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .auto_choice import Choice, Switch
-from .auto_decisions import ExplicitSteps, loss_of_trial, since, tolerable_loss
+from .auto_decisions import AUTO, ExplicitSteps, loss_of_trial, since, tolerable_loss
 from .explicit import DOP853
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED
@@ -75,7 +75,7 @@ class ImplicitCheck:
         left = tolerable_loss(self._implicit.start, self._choice.thresholds.loss, following) - self.loss
         integrator = self._implicit.integrator
         taken = integrator.steps() - self._begun
-        every = max(int(left / self._implicit.cost.step), int(self._choice.parameters.check_interval * taken), 1)
+        every = max(int(left / self._implicit.cost.step), int(AUTO.check_interval * taken), 1)
         self._next = integrator.steps() + every
         integrator.engine.pause_after(every)
         return left

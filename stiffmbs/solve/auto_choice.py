@@ -13,7 +13,7 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..model.settings import RunSettings
 from . import cost
-from .auto_decisions import AUTO, AutoParameters, ExplicitSteps, Thresholds, saving_by_return, steps_of_decay
+from .auto_decisions import AUTO, ExplicitSteps, Thresholds, saving_by_return, steps_of_decay
 from .auto_implicit import Implicit
 from .error_control.newton import Stiffness, stiffness_at
 from .error_control.tolerances import absolute_tolerances
@@ -49,7 +49,6 @@ class Choice:
     dynamics : Dynamics
     grid : Grid
     settings : RunSettings
-    parameters : AutoParameters
 
     Attributes
     ----------
@@ -60,10 +59,8 @@ class Choice:
         Cost of an explicit step.
     """
 
-    def __init__(
-        self, dynamics: Dynamics, grid: Grid, settings: RunSettings, parameters: AutoParameters = AUTO
-    ) -> None:
-        self._dynamics, self._grid, self._settings, self.parameters = dynamics, grid, settings, parameters
+    def __init__(self, dynamics: Dynamics, grid: Grid, settings: RunSettings) -> None:
+        self._dynamics, self._grid, self._settings = dynamics, grid, settings
         self.implicit = Implicit(dynamics, settings)
         self._breakpoints = dynamics.input_features(grid.start, grid.end).breakpoints
         self.explicit_step = cost.of_explicit_step(dynamics)
@@ -91,7 +88,7 @@ class Choice:
             return None
         stiffness = self._stiffness(t, start.q, start.u)
         self.implicit.choose(stiffness, self.remaining(t) * rate / self.explicit_step, pieces)
-        decay = steps_of_decay(self.parameters, self._excitation(start, fastest), fastest, stiffness.of_velocities)
+        decay = steps_of_decay(AUTO, self._excitation(start, fastest), fastest, stiffness.of_velocities)
         if not explicit_cost > self._least_cost(pieces, decay):
             return None
         self.implicit.create()
@@ -102,7 +99,7 @@ class Choice:
         return Switch(reason, rate, self.thresholds.of_trial(saving / explicit_cost))
 
     def _least_cost(self, pieces: int, decay: float = 0.0) -> float:
-        """Return the least cost of implicit steps from the start: small ones, those of a decay, or a start, which a failed trial costs."""
+        """Return a lower bound of the cost of implicit steps from the start: small steps and a decay, at least a failed trial."""
         return max(pieces * self.implicit.growth + decay * self.implicit.cost.step, self.implicit.start)
 
     def later_trial(self, steps: ExplicitSteps, segment: ExplicitSteps, work: Integration) -> Switch | None:
@@ -171,7 +168,7 @@ class Choice:
     def _justifying(self, t: float) -> float:
         """Return the saving that justifies a switch to implicit steps, with small steps after each breakpoint."""
         small = self.implicit.start + self._breakpoints_after(t) * self.implicit.growth
-        return self.parameters.trial_margin * small
+        return AUTO.trial_margin * small
 
     @property
     def evaluations(self) -> int:

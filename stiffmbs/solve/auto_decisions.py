@@ -23,13 +23,13 @@ class AutoParameters:
     steps_per_radian : float
         Implicit steps per radian of a vibration that the start excites, until it has decayed to the tolerances.
     trial_margin : float
-        Saving that justifies a later trial of implicit steps, in costs of their start and of their small steps, and radau in
-        place of bdf for overdamped motions.
+        Saving of a later trial of implicit steps, relative to the cost of their start and of their small steps, above which it
+        is justified; and run length above which radau replaces bdf for overdamped motions.
     check_interval : float
         Least number of steps up to the next check of implicit steps, relative to those of the segment so far.
     loose : float
-        Relative tolerance from which on bdf is taken for overdamped motions; the higher orders of radau save more steps at tighter
-        ones than its iterations cost.
+        Smallest relative tolerance at which bdf is always taken for overdamped motions; at tighter ones the higher orders of
+        radau save more than its iterations cost.
     """
 
     steps_per_radian: float = 0.5
@@ -108,14 +108,14 @@ class Thresholds:
         return replace(self, loss=0.0, penalty=max(cost, 2.0 * self.penalty))
 
 
-def implicit_solver(parameters: AutoParameters, damping_ratio: float, rtol: float, long: float) -> str:
+def implicit_solver(parameters: AutoParameters, damping_ratio: float, rtol: float, run_length: float) -> str:
     """Return the name of the implicit integrator, ``bdf`` or ``radau``.
 
     BDF is taken for overdamped motions at loose tolerances, or if small steps after starts are a large part of the run.
-    `damping_ratio`: that of the stiffest vibration. `long`: cost of as many steps of bdf as explicit ones are needed, relative to
-    that of the small steps of radau.
+    `damping_ratio`: that of the stiffest vibration. `run_length`: number of explicit steps at the cost of steps of bdf,
+    relative to the cost of the small steps of radau.
     """
-    pays = rtol < parameters.loose and long > parameters.trial_margin
+    pays = rtol < parameters.loose and run_length > parameters.trial_margin
     return "radau" if damping_ratio < 1.0 or pays else "bdf"
 
 

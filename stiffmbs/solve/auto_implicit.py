@@ -38,8 +38,8 @@ class Implicit:
         """
         if not self._created:
             self._be("radau")
-            long = explicit_steps * self._of_bdf.step / (pieces * self.growth)
-            self._be(implicit_solver(AUTO, stiffness.damping_ratio, self._settings.rtol, long))
+            run_length = explicit_steps * self._of_bdf.step / (pieces * self.growth)
+            self._be(implicit_solver(AUTO, stiffness.damping_ratio, self._settings.rtol, run_length))
 
     def _be(self, name: str) -> None:
         if name != self.name:

@@ -13,7 +13,7 @@ from ..reading.formula.text import UNIT, FormulaError, parse
 PARAMETERS = "parameters"
 AS_THEY_STAND = ("inputs", "forces", "states")
 """Sections whose values by path are numbers of elements."""
-ELSEWHERE = ("use", "stages", "options", "choose")
+ELSEWHERE = ("use", "parts", "path", "stages", "options", "choose")
 """Sections whose formulas are not all in the scene, or that change others."""
 
 

@@ -48,7 +48,7 @@ def test_anything_that_a_start_depends_on_makes_it_searched_anew(scene, searches
         case "numpy":
             monkeypatch.setattr(np, "__version__", "0")
         case "library":
-            monkeypatch.setattr(found_before, "version", lambda name: "0")
+            monkeypatch.setattr(found_before, "installed_version", lambda name: "0")
         case "threads":
             monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
         case "file":

@@ -67,6 +67,12 @@ def test_the_earliest_of_several_ends_is_told_for_independent_bodies():
     assert "t = 1.2 s" in solution.message
 
 
+def test_an_end_that_an_input_of_the_model_places_is_found():
+    text = "{bodies: {b: {mass: 1, inertia: 1}}, inputs: {F: 1.2}, forces: {pull: {type: force, i: b, force: [sqrt(F - t), 0]}}}"
+    solution = stiffmbs.run(stiffmbs.read_scene(text), duration=2.0, points=201)
+    assert "t = 1.2 s: 'pull' has no finite value there, as 'sqrt(F - t)' has no value beyond" in solution.message
+
+
 def test_steps_below_the_precision_of_time_end_the_run():
     """A force over the state and time with a pole: the explicit steps shrink until t + h = t."""
     for scheme in ("dop853", "dopri5"):

@@ -237,8 +237,7 @@ class System:
         laws = {key: _law(force.get(key)) for key in ("spring_law", "damper_law")}
         begin = joints.angle(i, j, self.start.poses)
         if not self.in_space:
-            own = [self.angles[m.body] + np.arctan2(m.axes[1, 0], m.axes[0, 0]) for m in (i, j)]
-            begin = own[0] - own[1] if self._drawn_angles(force) is None else self._drawn_angles(force)
+            begin = self._drawn_angles(force)
         turn = Point(j.body, j.point, j.axes @ about_z(begin))
 
         def wrench(poses, u, values):
@@ -482,12 +481,8 @@ class System:
         r, A, u = (
             y[a * n : b * n].reshape(shape) for a, b, shape in ((0, 3, (n, 3)), (3, 12, (n, 3, 3)), (12, 18, (n, 6)))
         )
-        ground = State(Poses(np.zeros((1, 3)), np.eye(3)[None]), np.zeros((1, 6)), y)
-        return State(
-            Poses(np.vstack([r, ground.poses.r]), np.concatenate([A, ground.poses.A])),
-            np.vstack([u, ground.u]),
-            y[18 * n :],
-        )
+        with_ground = Poses(np.vstack([r, np.zeros((1, 3))]), np.concatenate([A, np.eye(3)[None]]))
+        return State(with_ground, np.vstack([u, np.zeros((1, 6))]), y[18 * n :])
 
     def run(self, state, t0, times, rtol=1e-11, inputs=None):
         """Integrate from t0 and return the states at the times, by DOP853."""

@@ -213,6 +213,22 @@ def test_an_input_in_a_function_is_not_taken_as_linear(law, value):
         assert 2 * sim["sled.ax"] == pytest.approx(value(F), rel=1e-6, abs=1e-6)
 
 
+def test_an_input_of_a_part_in_a_function_is_not_taken_as_linear():
+    part = """
+parts:
+  pull:
+    parameters: {G: 0}
+    mounts: {on: ground}
+    forces: {f: {type: force, i: on, force: ["G + max(G, 2000)", 0]}}
+  p: {use: pull, parameters: {G: F}, mounts: {on: sled}}
+"""
+    text = SLED.replace("force: [F, 0]", "force: [0, 0]").replace("parameters: {F: 0 N", "parameters: {F: 0") + part
+    sim = simulation(stiffmbs.read_scene(text.replace("100 N/m", "100")), inputs={"F": 0.0})
+    for F in (0.0, 5.0, -3.0, 6000.0):
+        sim.step(1e-9, inputs={"F": F})
+        assert 2 * sim["sled.ax"] == pytest.approx(F + max(F, 2000), rel=1e-6, abs=1e-6)
+
+
 @pytest.mark.parametrize("law", ["F*cos(t)", "F*abs(F)", "F*dx(sled)*cos(t)"])
 @pytest.mark.parametrize("own", [True, False])
 def test_an_input_returns_to_its_first_value(own, law):

@@ -124,7 +124,9 @@ class Spline(Numbered):
         x, y = found.numbers("X") or (), found.numbers("Y") or ()
         several = len(y) > len(x) + 1 and len(y) % (len(x) + 1) == 0
         if not x or not y or not (len(x) == len(y) or several):
-            raise found.fault(f"found {len(x)} X and {len(y)} Y, expected as many of each, or more in each Y by its z")
+            raise found.fault(
+                f"found {len(x)} X and {len(y)} Y, expected as many of each, or for a family of curves one Y for each: its z, then as many values as X"
+            )
         z = y[:: len(x) + 1] if several else ()
         if len(x) < FEWEST_POINTS or any(b <= a for values in (x, z) for a, b in itertools.pairwise(values)):
             raise found.fault(

@@ -139,11 +139,12 @@ def _breakpoint(
     summed = len(scale) * np.finfo(float).eps  # an entry is a sum over all velocities: Higham (2002), eq. 3.5
     curved = moves.steep * moves.wide  # relative change of a derivative over a move that a curved law may have
     zero = np.maximum(curved * parts, summed * _largest(parts, state))
-    # A derivative that bends next to the state has changes across it in no proportion, but those to one side in proportion.
+    # At a breakpoint, changes across the state and to a side are not proportional to the move.
     bends = moves.break_between(*changes) & moves.break_between(*to_a_side) & (np.abs(changes[0]) > zero)
     # On a breakpoint the derivatives of several functions, such as max(x, 0) + min(x, 0), may add up to those of no side.
-    off, off_narrow = (np.minimum(*(abs(side.matrix - middle) for side in pair)) for pair in (wide, narrow))
-    side = narrow[0].linear if np.any((off > zero) & (off_narrow > moves.curved * off)) else None
+    off, off_narrow = (np.array([abs(side.matrix - middle) for side in pair]) for pair in (wide, narrow))
+    apart = ((off > zero) & (off_narrow > moves.curved * off)).all(axis=0)
+    side = narrow[0].linear if apart.any() else None
     if not bends.any():
         return None, side
     share = np.where(bends, np.abs(changes[0]) / np.where(bends, parts + np.abs(changes[0]), 1.0), 0.0)

@@ -18,7 +18,7 @@ from ...reading.formula.functions import EVERYWHERE, IN_FORMULAS
 from ...reading.formula.nodes import TIME, parts_of
 from ...reading.table import Table
 from ..system import System
-from .of_time import Input, expressions_of
+from .of_time import Given, Input, expressions_of, given_to
 from .table_ranges import TableRanges
 from .zeros import FIRST_STRETCHES, SHORTEST_STRETCH
 
@@ -64,18 +64,19 @@ class InputEnd(NamedTuple):
 
 def first_input_end(system: System, start: float, end: float) -> InputEnd | None:
     """Return the first time of a run at which a formula of time ends; None if all have values. `start`, `end`: s."""
+    given = given_to(system)
     found = [
         each for group in system.groups if group.has_inputs for name, element in zip(group.names, group.elements, strict=True)
-        for each in _of_element(name, element, start, end)
+        for each in _of_element(name, element, given, start, end)
     ]  # fmt: skip
     return min(found, key=lambda each: each.t, default=None)
 
 
-def _of_element(name: str, element: Element, start: float, end: float) -> Iterator[InputEnd]:
-    for expression, text, values, tables in expressions_of(element):
+def _of_element(name: str, element: Element, given: Given, start: float, end: float) -> Iterator[InputEnd]:
+    for expression, text, values, tables in expressions_of(element, given):
         risky = [node for node in _outside_tables(expression, tables) if _is_risky(node)]
-        given = Input(expression, text, values, {table: TableRanges(tables[table]) for table in tables if risky})
-        yield from filter(None, (_of_node(name, given, node, start, end) for node in risky))
+        of_time = Input(expression, text, values, {table: TableRanges(tables[table]) for table in tables if risky})
+        yield from filter(None, (_of_node(name, of_time, node, start, end) for node in risky))
 
 
 def _outside_tables(expression: ast.expr, tables: Mapping[str, Table]) -> Iterator[ast.expr]:

@@ -30,7 +30,7 @@ CALLS_WITH_LOOPS = (SERIES, GEOMETRY)
 FULL, SHORT = 3, 1
 """LLVM's levels of code generation: with its usual passes of optimisation, or with those of `_SHORT` alone."""
 _SHORT = ("always_inliner", "dead_arg_elimination", "sroa", "simplify_cfg", "instruction_combine")
-"""Passes for straight code, and for routines that spend their time in kernels; none works on loops or makes vectors."""
+"""Passes for straight code, and for routines that spend their time in kernels; none transforms loops or vectorises."""
 _INLINED = 40
 """Instructions of functions that these passes inline: about as many as LLVM's usual ones do."""
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")

@@ -1,4 +1,4 @@
-"""Fields of tyre properties that a property file states other than by a number: version, mode, curves and ranges."""
+"""Fields of a tyre property file that are not single numbers: version, mode, curves and ranges."""
 
 from __future__ import annotations
 

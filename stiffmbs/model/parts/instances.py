@@ -140,7 +140,7 @@ class Instances:
         )
         definition = definition_in_components(definition, vectors, f"parts.{use.part}")
         own = parameters_of(use, where, definition.get("parameters"), parameters)
-        check_limits(use, where, definition.get("limits"), own)
+        check_limits(use, where, definition.get("limits"), own, definition.get("parameters") or {})
         default = own
         if f"{WHEEL}_y" in use.parameters:
             default = parameters_of(

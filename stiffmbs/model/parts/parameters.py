@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from ...errors import InputError
@@ -60,21 +60,23 @@ def parameters_of(use: Use, where: str, found: object, outside: Mapping[str, Qua
     return inside
 
 
-def check_limits(use: Use, where: str, limits: object, own: Mapping[str, Quantity]) -> None:
+def check_limits(use: Use, where: str, limits: object, values: Mapping[str, Quantity], own: Collection[str]) -> None:
     """Refuse parameters beyond the limits of their part, ``limits: {ratio: positive, split: fraction}``.
 
-    A limit of a vector is that of its components. `where`: path of the use. `own`: parameters of the instance.
+    A limit of a vector is that of its components. `where`: path of the use. `values`: parameters of the instance, and those
+    around it. `own`: names of the part's parameters.
     """
-    for name, word in _limits(limits, f"parts.{use.part}.limits").items():
+    place = f"parts.{use.part}.limits"
+    for name, word in _limits(limits, place).items():
         found = [each for each in (name, *(f"{name}{end}" for end in COMPONENT_ENDS)) if each in own]
-        if not found or not isinstance(word, str) or word not in LIMITS:
-            raise InputError(
-                f"parts.{use.part}.limits.{name}: found {written(word)}, expected one of {', '.join(LIMITS)} for one of its parameters"
-            )
+        if not found:
+            raise InputError(f"{place}: found {written(name)}, expected a parameter of the part")
+        if not isinstance(word, str) or word not in LIMITS:
+            raise InputError(f"{place}.{name}: found {written(word)}, expected one of {', '.join(LIMITS)}")
         holds, expected = LIMITS[word]
         for each in found:
-            if not holds(own[each].value):
-                raise InputError(f"{where}.parameters.{each}: found {own[each].value:g}, expected {expected}")
+            if not holds(values[each].value):
+                raise InputError(f"{where}.parameters.{each}: found {values[each].value:g}, expected {expected}")
 
 
 def _limits(limits: object, where: str) -> dict[str, object]:

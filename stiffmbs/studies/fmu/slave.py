@@ -142,10 +142,14 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
         self._start, self._tolerance, self._initialized = state["start"], state["tolerance"], state["initialized"]
         self._channels = None
         if state["motion"] is not None:
-            running = self._running(self._described)  # there may be no start with the inputs of the state
-            running.reset()  # so that the steps do not depend on those before
-            running.set_inputs(self._inputs)
-            running.load(SavedState("the state of the FMU", *state["motion"]))
+            running = self._running(self._described)  # with the inputs of the state there may be no consistent start
+            try:
+                running.reset()  # so that the steps do not depend on those before
+                running.set_inputs(self._inputs)
+                running.load(SavedState("the state of the FMU", *state["motion"]))
+            except StiffmbsError as error:
+                self._simulation = None
+                raise self._logged(error) from None
 
     def _running(self, inputs: Mapping[str, float] | None = None) -> Simulation:
         """Return the simulation, made if there is none, of the scene with other inputs or those that were set."""

@@ -156,7 +156,7 @@ def frequency_response(
     steps = np.diff(time)
     if np.ptp(steps) > UNEQUAL * np.max(steps):
         raise InputError(
-            f"found time steps from {steps.min():.3g} to {steps.max():.3g} s, expected equal ones: set output"
+            f"found time steps from {steps.min():.3g} to {steps.max():.3g} s, expected equal ones: set run.output to a fixed interval"
         )
     rate = (len(time) - 1) / (time[-1] - time[0])
     settings = {"fs": rate, "nperseg": min(len(time), round(segment * rate)), "detrend": False}

@@ -43,7 +43,8 @@ def test_values_without_a_meaning_are_refused(part, parameters, words, message):
 
 def own(limits):
     part = {"parameters": {"m": 2, "at": [0, 0, 1]}, "limits": limits, "bodies": {"b": {"mass": "m", "inertia": [1, 1, 1], "position": "at"}}}  # fmt: skip
-    return json.dumps({"dimensions": 3, "parts": {"lump": part}, "use": {"p": {"part": "lump"}}})
+    outside = {"n": 1, "m_x": -1}  # of the scene, which the limits of a part do not concern
+    return json.dumps({"dimensions": 3, "parameters": outside, "parts": {"lump": part}, "use": {"p": {"part": "lump"}}})
 
 
 @pytest.mark.parametrize(
@@ -52,7 +53,7 @@ def own(limits):
         ({"m": "fraction"}, "use.p.parameters.m: found 2, expected a value from 0 to 1"),
         ({"at": "positive"}, "use.p.parameters.at_x: found 0, expected a value above zero"),
         ({"m": "small"}, "parts.lump.limits.m: found 'small', expected one of positive, nonnegative, fraction"),
-        ({"n": "positive"}, "parts.lump.limits.n: found 'positive'"),
+        ({"n": "positive"}, "parts.lump.limits: found 'n', expected a parameter of the part"),
         ([1], "parts.lump.limits: found"),
     ],
 )

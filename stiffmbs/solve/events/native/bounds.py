@@ -53,7 +53,7 @@ def edge(w, k, number):
 
 @compiled
 def place(w, k, value):
-    """Return an even number in an interval of function k, and the odd one between two of them on a breakpoint."""
+    """Return 2 n in the interval n of function k, and 2 n + 1 on the breakpoint between the intervals n and n + 1."""
     number = zone(w, k, value)
     return 2 * number + (1 if value == edge(w, k, number) else 0)
 

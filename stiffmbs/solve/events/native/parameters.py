@@ -42,7 +42,7 @@ class EventSearchParameters:
     """Allowed deviation from the cubic, relative to the range of values there."""
     precision: float = 1e-9
     """Precision of values and rates, relative to the largest number in the state: smaller differences are rounding. Both sides
-    of a state are as far from it."""
+    of a state are evaluated after a displacement of this size."""
     shallow: float = 1e-5
     """Depth below zero, relative to that rounding, that is no event: rounding changes the sign of a closed contact."""
     well: float = 0.03
