@@ -90,8 +90,9 @@ else:
 
         @classmethod
         def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
-            """Build the class on first use: not a generic one whose type is chosen, since no object of it exists."""
-            if options.get("_types_namespace") is not None and cls.__pydantic_fields_complete__:
+            """Build the class on first use; skip the rebuild of a generic class whose type is chosen, as no object of it exists."""
+            is_complete = getattr(cls, "__pydantic_fields_complete__", False)  # since pydantic 2.11
+            if options.get("_types_namespace") is not None and is_complete:
                 return None
             return super().model_rebuild(_parent_namespace_depth=_parent_namespace_depth + 1, **options)
 

@@ -91,8 +91,8 @@ def targets(
         for duration, k, zeta in product(durations or DURATIONS, stiffness, damping):
             yield f"{name}, {k} N/m, damping {zeta}, {duration:g} s", model_of(name, k, zeta), {"duration": duration}
     else:
-        for one in durations or [None]:
-            yield name, stiffmbs.load_scene(name), {} if one is None else {"duration": one}
+        for settings in [{"duration": one} for one in durations or ()] or [{}]:
+            yield name, stiffmbs.load_scene(name), settings
 
 
 def reference(model: Any, settings: dict[str, Any]) -> tuple[np.ndarray, float] | None:
