@@ -165,7 +165,7 @@ def _violation_sentence(dynamics: Dynamics, t: float) -> str:
     row = int(np.argmax(gaps))
     joint, equation = system.equations[row]
     return (
-        f"the scene cannot be assembled: the largest gap is left in joint '{joint}' (equation {equation}, "
+        f"the scene cannot be assembled: the largest gap is in joint '{joint}' (equation {equation}, "
         f"{position_gap(state, t, row)}, expected less than {POSITION_TOLERANCE:g})"
     )
 
