@@ -26,7 +26,7 @@ class Shape(Described):
 
     type: str
 
-    color: str | None = Field(None, description="such as '#336699'; chosen by the drawing unless given")
+    color: str | None = Field(None, description="such as '#336699'; by default chosen by the drawing")
 
     @field_validator("color")
     @classmethod
@@ -45,7 +45,7 @@ class PolylineShape(Shape):
 
     type: Literal["polyline"] = "polyline"
     points: tuple[Any, ...]
-    closed: bool = Field(False, description="whether a line leads back; in the plane the inside is then filled")
+    closed: bool = Field(False, description="whether the line is closed; in the plane the inside is then filled")
 
     def placed(self, frame: Any) -> Any:
         return self.model_copy(update={"points": tuple(frame.to_outside(point) for point in self.points)})
@@ -76,7 +76,7 @@ class MeshShape(Shape):
     """Base of planar and spatial meshes."""
 
     type: Literal["mesh"] = "mesh"
-    file: str = Field(description="a file .stl or .obj, from the folder of the scene on")
+    file: str = Field(description="a file .stl or .obj, relative to the folder of the scene")
     scale: Scale = Field(
         (1.0, 1.0, 1.0), description="metres for one unit of the file, 1e-3 for mm: one number, or along x, y and z"
     )

@@ -63,7 +63,7 @@ class ModelData(NotebookMethods, Described):
         default_factory=dict, description="values by name that equations of their own determine"
     )
     inputs: dict[str, InputValue] = Field(
-        default_factory=dict, description="values by name that another program gives: numbers, or tables of time"
+        default_factory=dict, description="values by name that another program provides: numbers, or tables of time"
     )
     joints: dict[str, Any] = Field(default_factory=dict, description="joints by name")
     forces: dict[str, Any] = Field(default_factory=dict, description="forces by name")

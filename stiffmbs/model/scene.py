@@ -58,11 +58,11 @@ class Scene(ModelData):
         "described velocities (settled), or in steady motion",
     )
     at_start: dict[str, Any] = Field(
-        default_factory=dict, description="joints and drives that hold at the start alone, by name"
+        default_factory=dict, description="joints and drives that hold only at the start, by name"
     )
-    stages: tuple[Stage, ...] = Field((), description="runs one after the other, each with its own changes")
-    figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
-    notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
+    stages: tuple[Stage, ...] = Field((), description="consecutive runs, each with its own changes")
+    figure: Figure | None = Field(None, description="the main plot of the scene")
+    notes: tuple[str, ...] = Field((), description="text shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
     _written: WrittenScene | None = PrivateAttr(default=None)
     _validated: Unchanged = PrivateAttr(default_factory=Unchanged)

@@ -75,7 +75,7 @@ def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str
     name = {"type": "string"}
     include = {
         "anyOf": [name, {"type": "array", "items": name}],
-        "description": "files whose sections are put with those here, from the folder of this file on",
+        "description": "files whose sections are merged with those of this file, relative to its folder",
     }
     placed = definitions[use["$ref"].rpartition("/")[2]]
     placed["additionalProperties"] = {"type": "string", "description": "a word that the part offers"}
@@ -84,7 +84,7 @@ def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str
     options = {
         "type": "object",
         "additionalProperties": {"type": "object", "additionalProperties": {"type": ["object", "null"]}},
-        "description": "sections of which a word chooses one set: choice, word, sections",
+        "description": "alternative sections: choice, alternative, sections",
     }
     own = {key: whole["properties"][key] for key in KEYS if key in whole["properties"]}
     number = {"anyOf": [{"type": "number"}, name]}
@@ -98,7 +98,7 @@ def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str
             "use": used,
             "mounts": {
                 **words,
-                "description": "further bodies that the part connects to, and what they are by default",
+                "description": "further bodies that the part connects to, with their defaults",
             },
             "limits": {
                 "type": "object",
@@ -118,9 +118,9 @@ def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str
     parts = {
         "type": "object",
         "additionalProperties": {"anyOf": [part, placing]},
-        "description": "what `use` places, by name; or placed at once, with `use` for the name of a part",
+        "description": "definitions of parts, by name; or instances, with `use` for the name of a part",
     }
-    chosen = {**words, "description": "a word for each choice of the scene or its parts"}
+    chosen = {**words, "description": "the selected alternative of each choice of the scene or its parts"}
     whole["properties"] |= {"include": include, "parts": parts, "use": used, OPTIONS: options, CHOOSE: chosen}
     whole["required"] = [key for key in whole["required"] if key != "bodies"]
     if not whole["required"]:

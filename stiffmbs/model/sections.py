@@ -90,7 +90,9 @@ class Sections(Generic[Data, Body, BodyHandle]):
         except ValueError as error:
             section.clear()
             section.update(before)
-            raise InputError(f"{name}: found it in use ({error}), expected what names it changed first") from None
+            raise InputError(
+                f"{name}: found it in use ({error}), expected the elements that refer to it to be changed first"
+            ) from None
 
     def _of_the_family(self) -> str:
         return " of stiffmbs.spatial" if self._dimensions() == 3 else " of the plane (stiffmbs)"

@@ -57,10 +57,11 @@ class RunSettings(Described):
     duration: si.PositiveTime = Field(10.0, description="s")
     start: si.Time = Field(0.0, description="time at the start, s")
     output: si.PositiveTime | None = Field(
-        None, description="spacing of the output points, s; a thousandth of the duration without it and points"
+        None, description="output interval, s; by default a thousandth of the duration"
     )
     points: int | Literal["steps"] | None = Field(
-        None, description="number of output points, evenly spaced, ends included; or the solver's own steps"
+        None,
+        description="number of output times, equally spaced, with both ends; or steps, for the steps of the solver",
     )
     solver: SolverName = Field(
         "bdf",
@@ -84,13 +85,13 @@ class RunSettings(Described):
     step: si.PositiveTime = Field(
         1e-3, description="step of the fixed schemes, s; reduced if it does not divide the time between output points"
     )
-    projection: bool = Field(True, description="whether projected returns to the constraints after each step")
+    projection: bool = Field(True, description="whether projected projects onto the constraints after each step")
     max_step: si.TimeOrZero = Field(
         0.0, description="largest step of bdf, radau and the adaptive schemes, s; 0 for none"
     )
     max_order: Annotated[int, Field(ge=1, le=5)] | None = Field(
         None,
-        description="highest order of bdf, 1 to 5, which is never reduced; by default 5, and 2 for a while if orders 3 to 5 require very small steps for a stiff, lightly damped vibration",
+        description="highest order of bdf, 1 to 5; by default 5, and temporarily 2 if orders 3 to 5 require very small steps for a stiff, lightly damped vibration",
     )
     stages: Literal[3, 5, 7, "auto"] = Field(
         "auto",
@@ -168,14 +169,12 @@ class SteadyMotion(Described):
         Literal["found"] | si.AngularVelocity | tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity]
     ) = Field(
         0.0,
-        description="angular velocity, rad/s: a number in the plane, in space a vector in ground axes, or a number about the direction opposite to gravity; `found` if forces determine that number, as of a car that pulls to one side (it is sought too if nothing is given and the forces do not balance on a straight line)",
+        description="angular velocity, rad/s: a number in the plane, in space a vector in ground axes, or a number about the direction opposite to gravity; `found` if forces determine it, as for a car that pulls to one side (also if no rotation is given and the forces do not balance on a straight line)",
     )
-    about: tuple[si.Length, ...] = Field(
-        (), description="a point of the axis of the rotation, m; the origin without it"
-    )
+    about: tuple[si.Length, ...] = Field((), description="a point of the axis of rotation, m; by default the origin")
     rolling: tuple[str, ...] = Field(
         (),
-        description="bodies with an additional spin about their axis of symmetry, which rolling constraints determine, or forces that depend on it, such as a tyre's; otherwise it is as described",
+        description="bodies with an additional spin about their axis of symmetry, determined by rolling constraints or by forces such as those of tyres; otherwise as described",
     )
     speed: Literal["given", "found"] = Field(
         "given",

@@ -23,5 +23,5 @@ class SpatialScene(SpatialData, Scene):
     )
     path: Path | None = Field(None, description="the course that a driver follows")
     vehicle: Vehicle | None = Field(
-        None, description="the sprung body whose motion is reported in the axes of ISO 8855"
+        None, description="the sprung body, whose motion is reported in the axes of ISO 8855"
     )

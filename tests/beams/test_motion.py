@@ -214,7 +214,7 @@ def test_an_element_that_is_bent_too_far_stops_the_run():
     )
     found = stiffmbs.run(stiffmbs.read_scene(text), duration=1.0, solver="radau")
     assert found.outcome.name == "STOPPED" and "divide the beam into more elements" in found.message
-    assert "turns its ends by more than half a turn" in found.notes[0]
+    assert "rotates its ends by more than half a revolution" in found.notes[0]
 
 
 def test_sensitivities_with_respect_to_stiffness_and_length():

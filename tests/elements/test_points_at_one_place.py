@@ -17,7 +17,7 @@ def test_points_at_one_place_but_for_rounding_give_a_line_force_no_direction():
         if not together:
             model.data()
             continue
-        with pytest.raises(stiffmbs.InputError, match=r"forces\.force: found both of its points at one place"):
+        with pytest.raises(stiffmbs.InputError, match=r"forces\.force: found both of its points in the same place"):
             model.data()
 
 
@@ -25,7 +25,7 @@ def test_a_spring_of_free_length_needs_points_apart():
     model = spatial.Model()
     model.add("ball", spatial.Body(mass=1, inertia=(1, 1, 1)))
     model.add("spring", spatial.SpringDamper(i="ball", j="ground", stiffness=1, free_length=0.1))
-    with pytest.raises(stiffmbs.InputError, match=r"forces\.spring: found both of its points at one place"):
+    with pytest.raises(stiffmbs.InputError, match=r"forces\.spring: found both of its points in the same place"):
         model.data()
 
 

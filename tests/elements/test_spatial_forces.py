@@ -266,7 +266,7 @@ def test_a_bushing_that_is_wound_too_far_stops_the_run(solver):
     model = alone(omega=(0, 0, 30))
     model.add("mount", spatial.Bushing(i="ball", j="ground", stiffness=(1, 1, 1, 2, 2, 2)))
     solution = stiffmbs.run(model, duration=3, solver=solver, rtol=1e-8)
-    assert "'mount': found its bodies turned by three quarters of a turn" in solution.message
+    assert "'mount': found its bodies rotated by three quarters of a revolution" in solution.message
     turned = 2 * np.arccos(solution["ball.q0"][-1])
     assert np.radians(260) < turned <= np.radians(270.001)
 

@@ -24,7 +24,7 @@ def thrown(stiffness, speed):
 def test_bodies_turned_beyond_use_are_told_with_the_first_instant(stiffness, limit):
     rate = np.sqrt(2 / 0.1)
     solution = thrown(stiffness, 1.1 * limit * rate)
-    (note,) = (note for note in solution.notes if "'mount' turns its bodies" in note)
+    (note,) = (note for note in solution.notes if "'mount' rotates its bodies" in note)
     first = np.arcsin(1 / 1.1) / rate
     assert solution.success and float(note.partition("t = ")[2].split()[0]) == pytest.approx(first, abs=2.6e-3)
 

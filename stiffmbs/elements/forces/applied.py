@@ -42,7 +42,7 @@ class AppliedForce(Force):
     reflected = {"force": "vector"}
 
     i: Marker = Field(description="marker at which the force acts")
-    j: Marker | None = Field(None, description="a second body, which takes the opposite force at the same point")
+    j: Marker | None = Field(None, description="a second body, on which the opposite force acts at the same point")
     force: tuple[ForceOfMotion, ForceOfMotion] = Field(description="components along x and y, N: numbers or formulas")
     axes: Literal["ground", "body"] = Field("ground", description="whether x and y are the ground's or marker i's axes")
 
@@ -72,7 +72,7 @@ class AppliedTorque(Force):
     reflected = {"torque": "angle"}
 
     i: Marker = Field(description="marker of the body on which the torque acts")
-    j: Marker | None = Field(None, description="marker of a second body, which takes the opposite torque")
+    j: Marker | None = Field(None, description="marker of a second body, on which the opposite torque acts")
     torque: TorqueOfMotion = Field(description="about z, N m: a number or a formula")
 
     @staticmethod

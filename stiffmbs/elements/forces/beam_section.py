@@ -40,7 +40,7 @@ class BeamSectionLaw(Force):
     reference: int = Field(description="place of the reference among the nodes, from 0")
     shapes: tuple[float, ...] = Field(description="value of each node's interpolation polynomial at the section")
     slopes: tuple[float, ...] = Field(description="their derivatives along the axis, 1/m")
-    length: si.PositiveLength = Field(description="length of the beam that the section stands for, m")
+    length: si.PositiveLength = Field(description="length of the beam represented by the section, m")
     unloaded: Any
     stiffness: Any
     damping_ratio: si.TimeOrZero | None = Field(None, description="viscous over elastic stiffness, s")

@@ -11,8 +11,8 @@ from ...reading.units import si
 from ..element import Expr, Force, Symbolic
 from .bushing import times
 
-BEYOND = "found its ends turned by three quarters of a turn against each other, expected less; divide the beam into more elements"
-DOUBT = "turns its ends by more than half a turn against each other; divide the beam into more elements"
+BEYOND = "found its ends rotated by three quarters of a revolution relative to each other, expected less; divide the beam into more elements"
+DOUBT = "rotates its ends by more than half a revolution relative to each other; divide the beam into more elements"
 
 
 class Stretch(NamedTuple):

@@ -40,7 +40,7 @@ class Friction(Force):
     }
 
     friction: si.NumberOrZero | None = Field(None, description="mu_d, dynamic coefficient of friction")
-    static_friction: si.NumberOrZero | None = Field(None, description="mu_s, static coefficient; mu_d unless given")
+    static_friction: si.NumberOrZero | None = Field(None, description="mu_s, static coefficient; by default mu_d")
     friction_velocity: si.PositiveVelocity = Field(
         0.01, description="v_d, scale of the sliding speeds over which mu_s falls to mu_d, m/s"
     )

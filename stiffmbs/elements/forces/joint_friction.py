@@ -26,7 +26,7 @@ class AnyJointFriction(Friction):
     joint: JointReference = Field(description="the joint")
     friction: si.NumberOrZero = Field(description="mu_d, dynamic coefficient of friction")
     radius: si.LengthOrZero = Field(0.0, description="R of a pin or ball, m")
-    length: si.PositiveLength | None = Field(None, description="of a guide or bearing, for its moment, m")
+    length: si.PositiveLength | None = Field(None, description="length of a guide or bearing, for its moment, m")
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         joint = joints[self.joint.joint]

@@ -24,14 +24,12 @@ class ForceAlongLine(Force, Generic[M]):
 
     i: M = Field(description="marker of the first body, on which the force is reported")
     j: M = Field(description="marker of the second body")
-    force: ForceOfMotion = Field(
-        description="N, pushing the points apart where it is above zero: a number or a formula"
-    )
+    force: ForceOfMotion = Field(description="force, N, positive if it pushes the points apart: a number or a formula")
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
         """Yield an error for coincident points, between which the force has no direction."""
         if pose.at_one_place(self.i, self.j):
-            yield "found both of its points at one place, where its force has no direction, expected them apart"
+            yield "found both of its points in the same place, where its force has no direction, expected them apart"
 
     def spins_with(self) -> dict[str, str]:
         return {"i": "point", "j": "point"}

@@ -24,9 +24,9 @@ class ForceOfFunction(Force, Generic[M]):
     kind = "python_force"
 
     i: M = Field(description="marker at which the force acts")
-    j: M | None = Field(None, description="a second body, which takes the opposite force at the same point")
-    of: tuple[OfMotion, ...] = Field(min_length=1, description="what the function is given: formulas")
-    function: PythonFunction = Field(description="takes an array of the values of `of`, returns force and torque")
+    j: M | None = Field(None, description="a second body, on which the opposite force acts at the same point")
+    of: tuple[OfMotion, ...] = Field(min_length=1, description="arguments of the function: formulas")
+    function: PythonFunction = Field(description="function of an array of the values of `of`; returns force and torque")
 
 
 class PythonForce(ForceOfFunction[Marker]):

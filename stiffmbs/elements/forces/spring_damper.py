@@ -57,7 +57,7 @@ class LineSpring(Spring, Generic[M]):
     stiffness: si.Stiffness = Field(0.0, description="k, N/m")
     damping: si.Damping = Field(0.0, description="c, N s/m")
     free_length: si.LengthOrZero = Field(0.0, description="L0, the length without tension of the spring, m")
-    preload: si.Force = Field(0.0, description="tension added at every length, N")
+    preload: si.Force = Field(0.0, description="constant part of the tension, N")
     spring_law: ForceOfDeflection | None = Field(None, description="tension added over s = L - L0 (m), N")
     damper_law: ForceOfRate | None = Field(None, description="tension added over v = L' (m/s), N")
 
@@ -65,7 +65,7 @@ class LineSpring(Spring, Generic[M]):
         """Yield an error for coincident points, between which the force has no direction."""
         if (self.free_length or self.preload) and pose.at_one_place(self.i, self.j):
             yield (
-                "found both of its points at one place, where its force has no direction, expected them apart or "
+                "found both of its points in the same place, where its force has no direction, expected them apart or "
                 "neither free_length nor preload"
             )
 

@@ -29,8 +29,8 @@ class AngleSpring(Spring, Generic[M]):
     j: M = Field(description="marker of the second body")
     stiffness: si.TorsionalStiffness = Field(0.0, description="k, N m/rad")
     damping: si.TorsionalDamping = Field(0.0, description="c, N m s/rad")
-    free_angle: si.Angle = Field(0.0, description="angle of i against j without moment of the spring, rad")
-    preload: si.Torque = Field(0.0, description="moment added at every angle, N m")
+    free_angle: si.Angle = Field(0.0, description="angle of i relative to j without moment of the spring, rad")
+    preload: si.Torque = Field(0.0, description="constant part of the moment, N m")
     spring_law: TorqueOfDeflection | None = Field(
         None, description="moment added over s = angle - free_angle (rad), N m"
     )

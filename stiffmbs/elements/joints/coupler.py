@@ -31,7 +31,9 @@ class Coupler(Relation):
     joint_1: JointReference = Field(description="joint with the coordinate s_1")
     joint_2: JointReference = Field(description="joint with the coordinate s_2")
     scale: si.ValueNotZero = Field(description="ds_1/ds_2, in units of s_1 over units of s_2 (m, rad)")
-    offset: si.Anything | None = Field(None, description="s_1 - scale s_2, m or rad; as drawn unless given")
+    offset: si.Anything | None = Field(
+        None, description="s_1 - scale s_2, m or rad; by default that of the initial pose"
+    )
 
     @staticmethod
     def relation(e: Symbolic) -> Expr:

@@ -69,7 +69,7 @@ class Drive(Joint):
         None, description="joint whose coordinate is driven, or one of its coordinates"
     )
     driven: OfPosition | None = Field(
-        None, alias="coordinate", description="what is driven, in place of a joint: crank.angle, dm(bar.end, ground)"
+        None, alias="coordinate", description="driven quantity, instead of a joint: crank.angle, dm(bar.end, ground)"
     )
     prescribed_position: OfTimeAndStates | None = Field(
         None, alias="position", description="angle, rad, or displacement, m, over time"

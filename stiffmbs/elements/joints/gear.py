@@ -30,8 +30,10 @@ class Gear(Relation):
 
     joint_1: JointReference = Field(description="revolute joint of wheel 1 (marker i), on which the torque is reported")
     joint_2: JointReference = Field(description="revolute joint of wheel 2 (marker i), in the same carrier (marker j)")
-    ratio: si.NumberNotZero = Field(description="teeth of wheel 2 over teeth of wheel 1, below zero for internal teeth")
-    offset: si.Angle | None = Field(None, description="theta_1 + ratio theta_2, rad; as drawn unless given")
+    ratio: si.NumberNotZero = Field(description="teeth of wheel 2 over teeth of wheel 1, negative for internal teeth")
+    offset: si.Angle | None = Field(
+        None, description="theta_1 + ratio theta_2, rad; by default that of the initial pose"
+    )
 
     @staticmethod
     def relation(e: Symbolic) -> Expr:

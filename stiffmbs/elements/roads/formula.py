@@ -25,7 +25,7 @@ class FormulaRoad(Road):
     kind = "formula"
 
     z: Height = Field(description="height, m, of x along and y across, m")
-    first: si.Length | None = Field(None, description="x where the stretch for the filter begins, m")
+    first: si.Length | None = Field(None, description="x of the start of the interval for the filter, m")
     last: si.Length | None = Field(None, description="x where it ends, m")
 
     @model_validator(mode="after")
@@ -33,7 +33,7 @@ class FormulaRoad(Road):
         if (self.first is None or self.last is None) != (self.filter_radius is None):
             raise ValueError("found some of first, last and filter_radius, expected all three or none")
         if self.first is not None and self.last is not None and not self.first < self.last:
-            raise ValueError(f"found last = {self.last:g} m, expected it behind first = {self.first:g} m")
+            raise ValueError(f"found last = {self.last:g} m, expected it after first = {self.first:g} m")
         names = {node.id for node in ast.walk(self.z.tree) if isinstance(node, ast.Name)}
         if self.filter_radius is not None and "y" in names:
             raise ValueError("found y in the formula of a road with filter_radius, expected a formula of x alone")

@@ -45,15 +45,19 @@ class Iso8608Road(Road):
 
     kind = "iso8608"
 
-    roughness: Literal["A", "B", "C", "D", "E", "F", "G", "H"] = Field(description="its class, from A (very good) to H")
+    roughness: Literal["A", "B", "C", "D", "E", "F", "G", "H"] = Field(
+        description="roughness class, from A (very good) to H"
+    )
     seed: int = Field(0, ge=0, description="of the random phases")
-    track: si.PositiveLength = Field(1.5, description="distance of the left and the right track, m")
-    length: si.PositiveLength = Field(250.0, description="after which the road repeats, m")
+    track: si.PositiveLength = Field(1.5, description="distance between the left and the right track, m")
+    length: si.PositiveLength = Field(250.0, description="period of the road, m")
     longest: si.PositiveLength = Field(100.0, description="longest wave, m")
     shortest: si.PositiveLength = Field(0.2, description="shortest wave, m")
     coherence: Literal["isotropic", "full", "none"] = Field("isotropic", description="between left and right")
-    start: si.Length | None = Field(None, description="x where it begins, m; it begins nowhere by default")
-    entry: si.PositiveLength = Field(5.0, description="over which it grows from nothing behind its start, m")
+    start: si.Length | None = Field(None, description="x of the start of the road, m; by default it has no start")
+    entry: si.PositiveLength = Field(
+        5.0, description="length over which the roughness grows from zero after the start, m"
+    )
 
     @model_validator(mode="after")
     def _waves(self) -> Iso8608Road:

@@ -28,7 +28,7 @@ class StepRoad(Obstacle):
     kind = "step"
 
     length: si.PositiveLength = Field(description="over which it rises, m")
-    rise: si.Length = Field(description="height behind it, m; below zero it falls")
+    rise: si.Length = Field(description="height after the step, m; negative for a descent")
 
     @staticmethod
     def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
@@ -42,7 +42,7 @@ class CosineBump(Obstacle):
     kind = "cosine_bump"
 
     length: si.PositiveLength = Field(description="of the bump, m")
-    crest: si.Length = Field(description="its height in the middle, m; below zero it is a hole")
+    crest: si.Length = Field(description="height in the middle, m; negative for a hole")
 
     @staticmethod
     def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
@@ -60,10 +60,12 @@ class SineSweep(Obstacle):
 
     kind = "sine_sweep"
 
-    length: si.PositiveLength = Field(description="over which the waves go on, m")
+    length: si.PositiveLength = Field(description="length of the waves, m")
     amplitude: si.Length = Field(description="of the waves, m")
     first_wavelength: si.PositiveLength = Field(description="at the start, m")
-    last_wavelength: si.PositiveLength = Field(description="at the end, m; the same: a plain sine wave")
+    last_wavelength: si.PositiveLength = Field(
+        description="wavelength at the end, m; equal to the first for a sine wave"
+    )
 
     @staticmethod
     def height(r: Symbolic, x: Expr, y: Expr) -> Expr:

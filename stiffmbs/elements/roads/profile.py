@@ -26,7 +26,7 @@ class TableRoad(Road):
     profile: Table | None = Field(None, description="height over x, m, the same for all y; a table or its name")
     left: Table | None = Field(None, description="height over x at y = track/2 and beyond")
     right: Table | None = Field(None, description="height over x at y = -track/2 and beyond")
-    track: si.PositiveLength | None = Field(None, description="distance of the tracks left and right, m")
+    track: si.PositiveLength | None = Field(None, description="distance between the left and right tracks, m")
 
     @field_validator("profile", "left", "right", mode="before")
     @classmethod

@@ -88,12 +88,12 @@ class Elastic(Force):
     """
 
     beyond = (
-        "found its bodies turned by three quarters of a turn against each other (an axis about which they are free: "
+        "found its bodies rotated by three quarters of a revolution relative to each other (an axis about which they are free: "
         "tilted by 135 degrees), expected less; a vibration that grows, as shimmy, is shown by 'stiffmbs modes' with an earlier --at"
     )
     doubtful = math.sqrt(0.5)  # half a turn, or a tilt of 90 degrees
     doubt = (
-        "turns its bodies by more than half a turn against each other (an axis about which they are free: tilts it by more than a "
+        "rotates its bodies by more than half a revolution relative to each other (an axis about which they are free: tilts it by more than a "
         "right angle)"
     )
 

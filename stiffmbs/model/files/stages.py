@@ -71,7 +71,7 @@ class Until(Described):
         if len(given) != 1:
             raise ValueError(f"found {' and '.join(given) or 'no bound'}, expected one of {', '.join(BOUNDS)}")
         if self.output is not None and self.then != "on":
-            raise ValueError("found an output of a condition that ends the stage, expected then: on")
+            raise ValueError("found an output in a condition that ends the stage, expected then: on")
         return self
 
 

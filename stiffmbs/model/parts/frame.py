@@ -28,7 +28,7 @@ class Use(Described):
         default_factory=dict, description="values of the part's parameters, by formulas of the parameters around it"
     )
     mounts: dict[str, str] = Field(
-        default_factory=dict, description="further bodies that the part connects to, by what it calls them"
+        default_factory=dict, description="further bodies that the part connects to, by their names in the part"
     )
 
 

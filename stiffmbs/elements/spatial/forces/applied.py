@@ -21,7 +21,9 @@ class Applied(Force):
     """
 
     i: Marker = Field(description="marker of the body on which it acts")
-    j: Marker | None = Field(None, description="a second body, which takes the opposite at the same point of space")
+    j: Marker | None = Field(
+        None, description="a second body, on which the opposite load acts at the same point of space"
+    )
     axes: Literal["ground", "body"] = Field("ground", description="whether x, y and z are the ground's or marker i's")
     frame: Marker | None = Field(None, description="marker whose axes x, y and z are, in place of `axes`")
 

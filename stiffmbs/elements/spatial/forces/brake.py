@@ -33,10 +33,10 @@ class Brake(AxleForce):
 
     torque: TorqueOfMotion = Field(description="C, the largest torque, N m: a number or a formula")
     windup: Annotated[float, Measured("angle", above=0)] = Field(
-        0.01, description="a, the angle over which it builds up from a standstill, rad"
+        0.01, description="a, the angle over which it builds up from standstill, rad"
     )
-    settling: si.PositiveTime = Field(0.005, description="T, of the damping at a standstill, s")
-    lag: si.PositiveTime = Field(0.01, description="L, with which it turns round at speed, s")
+    settling: si.PositiveTime = Field(0.005, description="T, time constant of the damping at standstill, s")
+    lag: si.PositiveTime = Field(0.01, description="L, time constant of its reversal at speed, s")
 
     def own_states(self) -> tuple[str, ...]:
         return ("part",)

@@ -41,10 +41,10 @@ class JointFriction(AnyJointFriction):
     )
 
     thrust_radius: si.PositiveLength | None = Field(
-        None, description="of a revolute joint's collar, on which its thrust rubs, m"
+        None, description="radius of the collar of a revolute joint, for the friction of its thrust, m"
     )
     torsion_radius: si.PositiveLength | None = Field(
-        None, description="at which a prismatic joint's guide takes the moment about its line, m"
+        None, description="radius at which the guide of a prismatic joint carries the moment about its line, m"
     )
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
