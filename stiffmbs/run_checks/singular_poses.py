@@ -227,7 +227,7 @@ def _sentence(pose: SingularPose, d: float, rtol: float) -> Iterator[str]:
     at = f"near t = {pose.t:.6g} s, where the equations of {listed(list(pose.joints))} are nearly dependent"
     if _decided_by_chance(d):
         yield (
-            f"passes a singular pose {at}: more than one motion may follow, selected by the last digits of the geometry "
+            f"passes a singular pose {at}: more than one motion may follow, and the motion depends on the last digits of the geometry "
             f"({where})"
         )
     elif magnified * rtol >= RUN_CHECKS.worth_telling:

@@ -88,7 +88,7 @@ def test_a_request_counts_as_a_torsion_spring_does(settings, follows):
         assert np.allclose(solution["turned"], -solution["spring.tz"] / 1e-3, rtol=0, atol=1e-6)
         assert np.allclose(solution["turned"], 3000 / w * np.sin(w * solution.time), rtol=0, atol=apart)
         assert np.allclose(solution["sum"], 3 * solution["turned"], rtol=1e-12)
-        assert any("whole turns" in note and "'spring'" in note for note in solution.notes) is not follows
+        assert any("revolutions" in note and "'spring'" in note for note in solution.notes) is not follows
 
 
 def test_turns_are_counted_beside_a_pole():
@@ -101,7 +101,7 @@ def test_turns_are_counted_beside_a_pole():
     model.request("turned", "az(sphere)")
     solution = stiffmbs.run(model, duration=500.0, points=2, solver="projected", scheme="dop853", rtol=1e-6)
     assert solution["turned"][-1] - solution["turned"][0] == pytest.approx(1e5, abs=0.1)
-    assert not any("whole turns" in note for note in solution.notes)
+    assert not any("revolutions" in note for note in solution.notes)
 
 
 @pytest.mark.long

@@ -251,7 +251,9 @@ def test_a_spring_between_points_at_one_place_is_refused(fields):
     model = Model()
     model.add("mass", Body(mass=1, inertia=1))
     model.add("spring", SpringDamper(i="mass", j="ground", stiffness=10.0, **fields))
-    with pytest.raises(InputError, match=r"forces.spring: found both of its points in the same place.*expected them apart"):
+    with pytest.raises(
+        InputError, match=r"forces.spring: found both of its points in the same place.*expected them apart"
+    ):
         stiffmbs.run(model, duration=0.1)
     without = Model()
     without.add("mass", Body(mass=1, inertia=1))

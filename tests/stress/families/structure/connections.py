@@ -121,7 +121,7 @@ CASES = (
     _held("the same, 1 N m/rad about the line", partial(wishbone, 0.0, 1.0)),
     _held("the same, a damper about the line", partial(wishbone, 0.0, 0.0, 10.0), "arm can turn"),
     _held("plate on two rods", plate, "plate can turn", "rod_one", "rod_two"),
-    _held("plate on two rods and a torsion spring", partial(plate, 5.0), "would let plate turn", "spring holds"),
-    _held("plate on two rods and a spring of 1e-6 N m/rad", partial(plate, 1e-6), "would let plate turn", "spring holds"),
+    _held("plate on two rods and a torsion spring", partial(plate, 5.0), "let plate turn", "spring prevents"),
+    _held("plate on two rods and a spring of 1e-6 N m/rad", partial(plate, 1e-6), "let plate turn", "spring prevents"),
     _held("plate on two rods and a spring without stiffness", partial(plate, 0.0), "plate can turn"),
 )  # fmt: skip
