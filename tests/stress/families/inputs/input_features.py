@@ -111,6 +111,6 @@ CASES = (
     ),
     simulation(
         "fixed steps over a short pulse", "told", partial(scene, "exp(-((t - 0.5)/1e-4)^2)"), lambda solution: 0.0, 1.0,
-        noted=("shorter than the steps of 0.001 s that rk4 takes",), expected=Outcome.TOLD, duration=1.0, points=11, solver="projected", scheme="rk4",
+        noted=("shorter than the steps of 0.001 s of rk4",), expected=Outcome.TOLD, duration=1.0, points=11, solver="projected", scheme="rk4",
     ),
 )  # fmt: skip
