@@ -82,7 +82,7 @@ class _ByContent(ScenePickler):
 
 @cache
 def _solver() -> bytes:
-    """Return what the rounding of a start depends on: files, libraries, threads, compiler, processor."""
+    """Return the dependencies of the rounding of a start: files, libraries, threads, compiler, processor."""
     threads = os.cpu_count(), *map(os.environ.get, ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"))
     libraries = np.__version__, installed_version("scipy"), installed_version("sympy")
     return repr(([*versions_within(str(PACKAGE))], threads, libraries, own_directory().name)).encode()

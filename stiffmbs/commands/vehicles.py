@@ -117,7 +117,7 @@ def _sizes(cases: tuple[str, ...]) -> dict[str, float]:
 def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple[str, str]]) -> None:
     """Run SCENE in each load case, and print the largest force and torque of every bushing in its own axes.
 
-    --case kerb=choose.manoeuvre=bump --case fast=V=30,run.duration=5 runs two cases; by default SCENE runs as it is.
+    --case kerb=choose.manoeuvre=bump --case fast=V=30,run.duration=5 runs two cases; by default SCENE runs unchanged.
 
     Exit status: 0 done, 1 a run stopped early, 2 the input is wrong.
     """

@@ -68,7 +68,7 @@ def open(model: Any, port: int = 0, browser: bool = True, **changes: Any) -> Liv
     ----------
     model : Model, Scene, str or Path
         A model, a scene, or the file of a scene, which need not exist yet.  A model becomes the text of a scene; one
-        with Python functions, or with flexible bodies, is shown and solved as it is.
+        with Python functions, or with flexible bodies, is shown and solved without an editor.
     port : int
         Port on the loopback interface; 0 for any free one.
     browser : bool

@@ -1,6 +1,6 @@
 """Process that solves the scene of one page: requests on standard input, answers on standard output, JSON on each line.
 
-The newest request wins: a run that goes on for an older one is interrupted.
+The newest request wins: the run of an older one is interrupted.
 """
 
 from __future__ import annotations

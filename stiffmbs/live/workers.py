@@ -60,7 +60,7 @@ class Channel:
 
 
 class Process:
-    """Worker in a process of its own. `file`: file of the scene."""
+    """Worker in a separate process. `file`: file of the scene."""
 
     def __init__(self, file: Path | None, loop: asyncio.AbstractEventLoop) -> None:
         self.channel = Channel(loop)

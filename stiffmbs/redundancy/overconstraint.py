@@ -82,7 +82,7 @@ def _alike(
 
 
 def _overconstraint(system: System, rank_result: LoopRankResult, block: list[Redundant], what: str) -> Overconstraint:
-    """Describe one block; `what` becomes unique by a remedy."""
+    """Describe one block; `what`: reactions that a remedy makes unique."""
     loop = rank_result.rank.equations.loop
     joint_of = [joint for joint in loop.joints for _ in joint.rows]
     rows = sorted({row for part in block for row in (part.row, *part.others)})

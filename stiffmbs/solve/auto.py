@@ -54,7 +54,7 @@ def begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, settin
 
 
 class _ExplicitFailure(Exception):
-    """Explicit steps cannot go on; the message says where and why."""
+    """Explicit steps failed; the message gives time and reason."""
 
 
 class _Left(NamedTuple):
@@ -118,7 +118,7 @@ class _AutoRun:
         Raises
         ------
         _ExplicitFailure
-            If explicit steps cannot go on.
+            If explicit steps fail.
         """
         run = AdaptiveRun(DOP853, self._dynamics, start, self._rest(t), self._settings, self._watch)
         check = ExplicitCheck(self._choice, t)

@@ -1,4 +1,4 @@
-"""Checks of the steps of a segment: they go on, or are left to the other integrator of `stiffmbs.solve.auto`."""
+"""Checks of the steps of a segment: continue, or change to the other integrator of `stiffmbs.solve.auto`."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class ImplicitCheck:
         return self._wait(reached.t) > 0.0
 
     def _wait(self, t: float) -> float:
-        """Set the next check, before which average steps do not exceed the tolerable loss; return what is left of that."""
+        """Set the next check, before which average steps do not exceed the tolerable loss; return the remaining loss."""
         following = self._choice.explicit_cost(self._choice.remaining(t), 0)
         left = tolerable_loss(self._implicit.start, self._choice.thresholds.loss, following) - self.loss
         integrator = self._implicit.integrator

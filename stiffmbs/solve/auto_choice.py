@@ -103,7 +103,7 @@ class Choice:
         return max(pieces * self.implicit.growth + decay * self.implicit.cost.step, self.implicit.start)
 
     def later_trial(self, steps: ExplicitSteps, segment: ExplicitSteps, work: Integration) -> Switch | None:
-        """Return the decision to try the implicit integrator, because stability limits explicit steps; None to go on with these.
+        """Return the decision to try the implicit integrator, because stability limits explicit steps; None to continue with these.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ class Choice:
         return Switch(reason, rate, self.thresholds.of_trial(share))
 
     def returned(self, steps: ExplicitSteps, t: float) -> Switch | None:
-        """Return the decision to resume the implicit integrator, because explicit steps cost more than its own did; None to go on with these."""
+        """Return the decision to resume the implicit integrator, because explicit steps cost more; None to continue with these."""
         rate = steps.cost / steps.time
         saving = saving_by_return(rate, self._implicit_rate, self.thresholds.return_ratio, self._grid.end - t)
         if not saving > self.implicit.start:

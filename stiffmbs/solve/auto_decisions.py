@@ -145,5 +145,5 @@ def loss_of_trial(before: float, implicit_cost: float, explicit_cost: float) -> 
 
 
 def tolerable_loss(start: float, allowed: float, remaining_cost: float) -> float:
-    """Return the loss up to which a trial of implicit steps goes on: a start and a fraction of the remaining explicit cost."""
+    """Return the loss up to which a trial of implicit steps continues: a start and a fraction of the remaining explicit cost."""
     return start + allowed * remaining_cost

@@ -1,12 +1,12 @@
 """Contract of all solvers: arguments and results of an integrator.
 
-A solver is a function in a file of its own: `solve(dynamics, start, grid, settings, watch) -> Trajectory`. Other
+A solver is a function in its own file: `solve(dynamics, start, grid, settings, watch) -> Trajectory`. Other
 packages read its traits (`stiffmbs.solve.solver`).
 
 1. It starts from consistent initial values and works on the dynamics' state; it knows no kinds of element.
 2. It returns the state at every time of `grid`, or at its own steps if the grid's `times` is None.
 3. It calls `watch(t)` at least a few times a second.
-4. When it cannot go on or is interrupted, it returns the rows so far with the outcome: its loop is in a
+4. If it fails or is interrupted, it returns the rows so far with the outcome: its loop is in a
    ``with Ending()``.
 """
 

@@ -136,7 +136,7 @@ class _Graph:
         return sign * sizes.pop(), self.number((SUM, *terms))
 
     def product(self, terms: Iterable[Term]) -> Term:
-        """Return a product; factors of products are not taken apart."""
+        """Return a product; factors that are products are not expanded."""
         factor: Number = 1
         nodes = []
         for each, node in terms:
@@ -187,7 +187,7 @@ def _name(node: int) -> str:
 
 
 def _share_multiples(graph: _Graph) -> None:
-    """Make multiples that occur in several sums nodes of their own."""
+    """Make separate nodes of multiples that occur in several sums."""
     sums = {k: node[1:] for k, node in enumerate(graph.nodes) if node[0] == SUM and len(node) > 2}
     counts = Counter((abs(factor), node) for terms in sums.values() for factor, node in terms)
     shared = {

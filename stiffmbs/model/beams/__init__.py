@@ -1,1 +1,1 @@
-"""Beams: line bodies that stand for rigid nodes joined by elastic elements."""
+"""Beams: line bodies of rigid nodes connected by elastic elements."""

@@ -79,7 +79,7 @@ class Element:
         Rotation matrix of the element's axes at its first node against the node's axes, other than the identity after a
         corner.
     length : float
-        Length that it stands for, m.
+        Length of the beam represented by the element, m.
     unloaded : ndarray
         Strain without load, shape (6,).
     stiffness : ndarray

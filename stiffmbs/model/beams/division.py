@@ -82,7 +82,7 @@ def _whole(found: object, info: ValidationInfo) -> int:
 
 @dataclass(frozen=True)
 class Divided:
-    """Beam of a scene as it is divided.
+    """Division of a beam of a scene.
 
     Attributes
     ----------
@@ -130,7 +130,7 @@ def beams_read() -> Iterator[Beams]:
 
 
 def record_beams(divided: Mapping[str, Divided], forces: Iterable[str]) -> None:
-    """Add beams by their full names, and the forces that stand for them, to the open record."""
+    """Add beams by their full names, and their elastic elements, to the open record."""
     record = _READ.get()
     if record is not None:
         record.divided |= divided

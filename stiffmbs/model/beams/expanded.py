@@ -1,4 +1,4 @@
-"""Rigid bodies and elastic elements that stand for a beam, as entries of a scene."""
+"""Rigid bodies and elastic elements of a beam, as entries of a scene."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ IN_PLANE = [0, 1, 5]
 
 @dataclass(frozen=True)
 class Expanded:
-    """Bodies and forces that stand for a beam, as entries of a scene, and its nodes and elements."""
+    """Bodies and forces of a beam, as entries of a scene, and its nodes and elements."""
 
     bodies: dict[str, Any]
     forces: dict[str, Any]
@@ -26,7 +26,7 @@ class Expanded:
 
 
 def expanded(name: str, beam: Any) -> Expanded:
-    """Return the bodies and forces that stand for a beam; ValueError as for `discretise`."""
+    """Return the bodies and forces of a beam; ValueError as for `discretise`."""
     line = discretise(beam)
     planar = beam.dimensions == 2
     neighbours = _neighbours(line)

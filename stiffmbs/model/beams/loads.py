@@ -38,7 +38,7 @@ class DistributedLoad(Described):
 
 
 def node_forces(name: str, load: DistributedLoad, lines: Mapping[str, Line], where: str) -> dict[str, Any]:
-    """Return the forces that stand for a distributed load, as entries of a scene.
+    """Return the nodal forces of a distributed load, as entries of a scene.
 
     The weights of the nodes are those of their masses. Raises InputError if the load names an unknown beam.
     """
@@ -54,7 +54,7 @@ def node_forces(name: str, load: DistributedLoad, lines: Mapping[str, Line], whe
 def node_contacts(
     name: str, entry: Mapping[str, Any], lines: Mapping[str, Line], where: str, kind: str
 ) -> dict[str, Any]:
-    """Return the contacts of the nodes of a beam that stand for an entry ``beam_contact``, as entries of a scene.
+    """Return the contacts of nodes of an entry ``beam_contact``, as entries of a scene.
 
     They are of the given kind and have its fields, with `beam` in place of `i`. The stiffness is per length of the beam; the
     radius of a node is by default that of its section. Raises InputError for an unknown beam or without a stiffness.

@@ -1,6 +1,6 @@
 """Scene text before validation: parameters, repeated entries and values set from outside.
 
-A repeated entry stands for many: ``link{k}: {for: k in 1..N, mass: 1, position: [(k - 0.5)*L, 0]}``. For each k,
+A repeated entry is copied for each value of its loop variable: ``link{k}: {for: k in 1..N, mass: 1, position: [(k - 0.5)*L, 0]}``. For each k,
 ``{...}`` in its name and text is replaced by its value (``"link{k-1}"``), and k itself is replaced in its formulas.
 """
 

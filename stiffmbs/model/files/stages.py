@@ -112,7 +112,7 @@ class Stage(Described):
 
 
 def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[WrittenScene]:
-    """Return each stage as a scene of its own.
+    """Return each stage as a separate scene.
 
     Raises InputError if a change from outside concerns a setting that each stage has for itself.
     """

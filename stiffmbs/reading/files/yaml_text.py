@@ -12,7 +12,7 @@ from ...errors import InputError
 from .quoted import quoted
 
 _DECIMAL = re.compile(r"-?(0|[1-9][0-9]{0,14})(\.[0-9]{1,15})?")
-"""Numbers that YAML and Python read alike."""
+"""Numbers that YAML and Python read in the same way."""
 _PART_OF_FORMULA = re.compile(r"^[-+.]?\d|\)$")
 _OTHER_ENDS = re.compile("[\x85\u2028\u2029]")
 """Line ends of YAML 1.1 that YAML 1.2 does not have; it has only LF and CR."""

@@ -77,7 +77,7 @@ def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
     """Set the relaxations of all rows at the current state.
 
     They are the diagonals of E_mu = eps C_q C_q^T and E_lam = eps J M^-1 J^T, with eps in proportion to the tolerance.
-    So lengths, angles, masses and forces of any size drift alike.  M is the inertia of the heaviest body at an arm as
+    The drift in tolerances then does not depend on the sizes of lengths, angles, masses and forces.  M is the inertia of the heaviest body at an arm as
     long as the mechanism: light bodies and small moments of inertia may carry its weight.
     """
     state, system = dynamics.state, dynamics.system

@@ -33,13 +33,13 @@ class ChatteringParameters:
     least_power: float = 0.8
     largest_power: float = 2.0
     """Bounds of the power of the number of events with which their rate grows in an exponentially driven motion.
-    Bounces of a ball that comes to rest have larger powers, and end."""
+    Bounces of a ball with damping have larger powers, and their number is finite."""
     steps_seen: int = 500_000
     """Steps over which the rate of a run is measured."""
     steps_ahead: float = 2e8
     """Expected further steps at which it is stopped."""
     stays_within: float = 1e3
-    """Distance from a jump at which a state is taken to stay there, relative to rtol."""
+    """Distance from a jump up to which a state is assumed to stay there, relative to rtol."""
     stays_within_at_most: float = 0.1
     """Upper bound of that distance, and of the change of a velocity in a fixed step, m/s and rad/s."""
 

@@ -159,7 +159,7 @@ class AdaptiveRun:
         return status
 
     def _leave_to_rounding(self) -> None:
-        """Stop if rounding governs the steps; another solver may go on."""
+        """Stop if rounding errors limit the steps; another solver may continue."""
         reason = self._rounding.look(self.work)
         if reason:
             self.left = True

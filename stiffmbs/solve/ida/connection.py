@@ -72,7 +72,7 @@ class Formula(Protocol):
         ...
 
     def forget(self) -> None:
-        """Forget what an earlier run has found out."""
+        """Discard results of an earlier run."""
         ...
 
 
@@ -212,7 +212,7 @@ class Connection:
 
     @property
     def on_one_thread(self) -> bool:
-        """Return True if the linear solver never starts threads of its own."""
+        """Return True if the linear solver never starts threads."""
         return not self._session.libraries.may_start_threads
 
     def ask(self, function: str, *arguments: Any) -> None:

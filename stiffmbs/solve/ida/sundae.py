@@ -190,7 +190,7 @@ class SundaeEngine(Engine):
         return self._reached(last, False)._replace(times=times[:served], rows=rows[:served])
 
     def _to(self, time: float, stop: float) -> Any:
-        """Integrate to a time, with the stops that inputs require on the way to `stop`."""
+        """Integrate to `stop`, with the intermediate stops that inputs require."""
         while self._near < time:
             if self._last.t < self._near:
                 self._last = self._ida.step(self._near, method="normal", tstop=self._near)

@@ -61,7 +61,7 @@ def of_lanes(standard: str) -> Callable[[Known, Any, list[Run]], Metrics]:
 def highest_entry_speed(known: Known, test: ObstacleAvoidance, solve: Callable[[Manoeuvre], Run]) -> Metrics:
     """Return the highest entry speed at which no cone is hit, by bisection to the resolution of the test.
 
-    All lower speeds are taken to pass, too. A run that stops early does not pass. The value is NaN if the slowest
+    All lower speeds are assumed to pass, too. A run that stops early does not pass. The value is NaN if the slowest
     speed does not pass, and infinite if the fastest one does.
     """
 

@@ -1,4 +1,4 @@
-"""Memory layouts of the event search within a step, and of what bounds a step."""
+"""Memory layouts of the event search within a step, and of the limits of a step."""
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 

@@ -26,9 +26,9 @@ class StepControlParameters:
     """Multiple of the stability limit above which rounding grows before the error estimate detects it; steps that the
     estimate limits remain closer."""
     stiff_part: float = 0.1
-    """Fraction of steps limited by stability from which on a run may be given up, and the summary recommends bdf."""
+    """Fraction of steps limited by stability from which on a run may be aborted, and the summary recommends bdf."""
     enough_steps: int = 20_000
-    """Number of steps before a run may be given up, because of stiffness, or of a tolerance below rounding, and between two
+    """Number of steps before a run may be aborted, because of stiffness, or of a tolerance below rounding, and between two
     checks for jumps by rounding."""
     too_many_steps: float = 1e9
     """Expected steps times state variables at which it is."""
