@@ -18,7 +18,7 @@ class CostParameters:
 
     Source: least-squares fit of processor times of 20 scenes by ``python -m tests.bench.costs``.
 
-    - `explicit_step`: DOP853 step, without projection and event functions.
+    - `explicit_step`: DOP853 step, without the following items.
     - `explicit_operation`: operation of the acceleration kernels in such a step.
     - `explicit_equation`: constraint equation in such a step.
     - `multiplication`: multiplication of the elimination in such a step, or of the LU of the full block system.
