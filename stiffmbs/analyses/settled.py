@@ -16,10 +16,10 @@ from ..equilibria.steady_motion import at_rest
 from ..errors import SolverError
 from ..linear_analysis.eigenvalues import eigen
 from ..linear_analysis.stability import lowest
-from ..linear_analysis.state_space import state_matrix
-from ..linear_analysis.tangent_space import linearised
+from ..linear_analysis.state_space import StateMatrix, state_matrix
 from ..results.scales import ROUNDING
 from .far_away import far_away
+from .linearised.sides import Instant, linearised_at
 
 MOST_FOR_EIGENVALUES = 1500
 """Largest number of velocities for eigenvalues (dense matrices)."""
@@ -118,24 +118,32 @@ def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], fre
 def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
     """Yield a note if an equilibrium is dynamically unstable, or if this was not assessed."""
     system = dynamics.system
-    if not system.states and _is_conservative(dynamics, t):  # static stability is sufficient
-        return
+    if not (system.states or system.n_event_functions) and _is_conservative(dynamics, t):
+        return  # static stability is sufficient away from breakpoints
     if system.n_u > MOST_FOR_EIGENVALUES:
         yield f"the dynamic stability of the equilibrium was not assessed: {system.n_u} velocities, at most {MOST_FOR_EIGENVALUES} expected"
         return
     _, acceleration = dynamics.accelerate(t)
+    scale = system.per_velocity(system.size, 1.0)
     try:
-        state = state_matrix(linearised(dynamics, t, acceleration), system.per_velocity(system.size, 1.0))
+        _, state, kink = linearised_at(Instant(dynamics, t, acceleration), scale)
     except SolverError as error:
         yield f"the dynamic stability of the equilibrium was not assessed: {error}"
         return
-    values, _, _ = eigen(state.matrix, state.n_poses, state.n_states)
-    sizes = np.abs(values)
-    growing = values[values.real > GROWING * sizes + ROUNDED * np.max(sizes, initial=0.0)]
+    sides = [state] if kink is None else [state_matrix(side, scale) for side in kink.sides]
+    growing = np.concatenate([_growing(side) for side in sides])
     if len(growing):
         fastest = growing[np.argmax(growing.real)]
         how = f" and oscillate at {abs(fastest.imag) / (2 * np.pi):.3g} Hz" if fastest.imag else ""
-        yield f"the equilibrium is unstable: disturbances grow at {fastest.real:.3g} 1/s{how}"
+        where = "" if kink is None else f" on one side of a breakpoint of a force on {kink.where}"
+        yield f"the equilibrium is unstable{where}: disturbances grow at {fastest.real:.3g} 1/s{how}"
+
+
+def _growing(state: StateMatrix) -> np.ndarray:
+    """Return the eigenvalues of growing motions, 1/s."""
+    values, _, _ = eigen(state.matrix, state.n_poses, state.n_states)
+    sizes = np.abs(values)
+    return np.asarray(values[values.real > GROWING * sizes + ROUNDED * np.max(sizes, initial=0.0)])
 
 
 def _is_conservative(dynamics: Dynamics, t: float) -> bool:
