@@ -88,7 +88,7 @@ def divided_by(data: Scene, solve: Callable[[Scene], Solution]) -> Scene:
         wanting = [name for name, tolerance in tolerances.items() if not errors[name] <= tolerance]
         if not wanting:
             notes = (
-                f"beam {name}: {counts[name]} elements, with an estimated error of {errors[name]:.2g} m of its position"
+                f"beam {name}: {counts[name]} elements, estimated position error {errors[name]:.2g} m"
                 for name in tolerances
             )
             return redivided(data, elements, tuple(notes))
@@ -96,7 +96,7 @@ def divided_by(data: Scene, solve: Callable[[Scene], Solution]) -> Scene:
             if 2 * counts[name] > MOST:
                 raise SolverError(
                     f"bodies.{name}.elements: found an estimated error of {errors[name]:.2g} m with {counts[name]} elements, expected "
-                    f"{tolerances[name]:.2g} m; choose a larger tolerance or a number of elements"
+                    f"{tolerances[name]:.2g} m; use a larger tolerance or give a number of elements"
                 )
             doublings[name] += 1
         coarse = fine
@@ -178,6 +178,6 @@ def _sentence(found: Solution, errors: Mapping[str, float], beams: list[str], co
             largest[unit] = name
     errors_found = [f"{errors[name]:.2g} {unit} of {name}" for unit, name in sorted(largest.items())]
     other = ", ".join(
-        f"{b} in place of {a} elements of {name}" for name, (a, b) in list(zip(beams, counts, strict=True))[:3]
+        f"{b} instead of {a} elements of {name}" for name, (a, b) in list(zip(beams, counts, strict=True))[:3]
     )
-    return f"discretisation of beams, by {other}: errors of at most about {', '.join(errors_found) or 'zero'}"
+    return f"discretisation of beams ({other}): errors of at most about {', '.join(errors_found) or 'zero'}"

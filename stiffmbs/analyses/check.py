@@ -196,7 +196,7 @@ def _assembly_sentence(start: InitialValues | None) -> Iterator[str]:
 
 def _freedom_sentences(found: Examined, system: System, free: Sequence[IdleFreedom]) -> Iterator[str]:
     if found.redundancy.degrees_of_freedom == 0:
-        yield "joints and drives hold every coordinate: 0 degrees of freedom, the motion is a matter of kinematics"
+        yield "joints and drives prescribe every coordinate: 0 degrees of freedom, the motion is kinematic"
     for freedom in free:
         yield _idle_freedom_sentence(freedom)
     yield from unconnected_sentence(system)
@@ -206,5 +206,5 @@ def _idle_freedom_sentence(freedom: IdleFreedom) -> str:
     body, motion, between = freedom.body, freedom.motion, listed(freedom.between)
     if not freedom.held_by:
         return f"{body} can {motion} by itself between {between}, which moves no other body"
-    hold = "holds" if len(freedom.held_by) == 1 else "hold"
-    return f"joints alone would let {body} {motion} by itself between {between}: {listed(freedom.held_by)} {hold} it"
+    prevent = "prevents" if len(freedom.held_by) == 1 else "prevent"
+    return f"the joints let {body} {motion} by itself between {between}; {listed(freedom.held_by)} {prevent} it"

@@ -23,6 +23,6 @@ def far_away(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> It
     body = int(np.argmax(moved))
     if moved[body] > FAR * system.size:
         yield (
-            f"the equilibrium that the run starts in lies {moved[body]:.3g} m away from the described pose ({system.bodies[body]}): "
-            "where that matters, as on a road with bumps, describe the bodies where they come to lie right"
+            f"the equilibrium at the start is {moved[body]:.3g} m away from the described pose ({system.bodies[body]}); "
+            "if the position matters, as on a road with bumps, describe a pose nearer to the equilibrium"
         )

@@ -187,8 +187,8 @@ def refuse_tolerances(data: ModelData) -> None:
     """Raise an InputError if the number of elements of a beam depends on a tolerance that was not followed yet."""
     if isinstance(data, Scene) and data._beams.by_tolerance:
         raise InputError(
-            f"bodies.{data._beams.by_tolerance[0]}.elements: found a tolerance, which run, equilibrium and studies of runs follow, "
-            "expected a number"
+            f"bodies.{data._beams.by_tolerance[0]}.elements: found a tolerance, expected a number: "
+            "only run, equilibrium and studies of runs accept a tolerance"
         )
 
 
@@ -245,9 +245,7 @@ def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
     node = next(
         (move.body for move in found.moved_far if GROUND_AXES in getattr(data.bodies[move.body], "markers", ())), None
     )
-    hint = (
-        f"; the axes of a beam's node are along the beam, those of its marker {node}.{GROUND_AXES} along the ground's"
-    )
+    hint = f"; the axes of a beam's node are along the beam, those of its marker {node}.{GROUND_AXES} are ground axes"
     return replace(found, hint=hint) if node else found
 
 
@@ -295,7 +293,7 @@ def examined(
     """Compile a model and examine it for redundant equations; parameters and errors as for `run`."""
     data = data_of(model)
     if isinstance(data, Scene) and data.stages:
-        raise InputError("found a scene with stages, which only a run follows, expected a scene of one run")
+        raise InputError("found a scene with stages, which only `run` accepts, expected a scene of one run")
     state = state_to_start_from(start_from)
     given = settings or (data.run if isinstance(data, Scene) else RunSettings())
     chosen = changed(given, starting_at(state, settings, changes))

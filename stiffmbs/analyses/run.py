@@ -176,7 +176,7 @@ def _headline(outcome: Outcome, message: str, doubts: Sequence[str]) -> str:
     """Return the final message of a run, with the first of the notes that question its results."""
     if outcome is not Outcome.DONE or not doubts:
         return message
-    return message.replace(Outcome.DONE.value, f"{IN_DOUBT}: {doubts[0].partition(';')[0]}")
+    return message.replace(Outcome.DONE.value, f"{IN_DOUBT}: {doubts[0].partition(';')[0]}", 1)
 
 
 def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:

@@ -73,7 +73,7 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     for _ in range(MOST_BRANCHES):
         unstable, free = _directions(dynamics, t)
         if unstable is None:
-            held = f"nothing holds {', '.join(free)}: the pose along it is the one nearest to the described one"
+            held = f"no force determines {', '.join(free)}: the equilibrium nearest to the described pose is given"
             return _settled(found, start, [*notes, *([held] if free else []), *_growth(dynamics, t)], free)
         poses = [_branch(dynamics, found, sign * unstable, t) for sign in (1.0, -1.0)]
         notes.append(_branch_sentence(dynamics, unstable, poses))
@@ -81,7 +81,7 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
             return _settled(found, start, notes)
         found = next(pose for pose in poses if pose is not None)
         state.q[:] = found.q
-    return _settled(found, start, [*notes, "the pose found is unstable too: no stable equilibrium was found near it"])
+    return _settled(found, start, [*notes, "this equilibrium is also unstable; no stable one was found near it"])
 
 
 def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
@@ -99,10 +99,12 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     if status == 0:
         status, acceleration = dynamics.accelerate(t)
     if status < 0:
-        raise SolverError(f"the described velocities do not go on in the equilibrium: {failure(dynamics, status, t)}")
+        raise SolverError(
+            f"the described velocities are not possible in the equilibrium: {failure(dynamics, status, t)}"
+        )
     lam = state.lam[: dynamics.system.n_c].copy()
     notes = (
-        "whether the equilibrium that the run starts in is stable was not looked at",
+        "the stability of the equilibrium at the start was not checked",
         *far_away(dynamics, start, found),
     )
     return replace(start, q=found.q, u=state.u.copy(), acceleration=acceleration, lam=lam, moved=(), notes=notes)
@@ -121,14 +123,14 @@ def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
     if not (system.states or system.n_event_functions) and _is_conservative(dynamics, t):
         return  # static stability is sufficient away from breakpoints
     if system.n_u > MOST_FOR_EIGENVALUES:
-        yield f"the dynamic stability of the equilibrium was not assessed: {system.n_u} velocities, at most {MOST_FOR_EIGENVALUES} expected"
+        yield f"the dynamic stability of the equilibrium was not checked: the model has {system.n_u} velocities, more than {MOST_FOR_EIGENVALUES}"
         return
     _, acceleration = dynamics.accelerate(t)
     scale = system.per_velocity(system.size, 1.0)
     try:
         _, state, kink = linearised_at(Instant(dynamics, t, acceleration), scale)
     except SolverError as error:
-        yield f"the dynamic stability of the equilibrium was not assessed: {error}"
+        yield f"the dynamic stability of the equilibrium was not checked: {error}"
         return
     sides = [state] if kink is None else [state_matrix(side, scale) for side in kink.sides]
     growing = np.concatenate([_growing(side) for side in sides])
@@ -200,6 +202,6 @@ def _branch_sentence(dynamics: Dynamics, direction: np.ndarray, poses: list[Equi
     if not count:
         return f"the equilibrium is unstable in {label}, and no stable one was found near it"
     return (
-        f"an equilibrium on the way is unstable in {label}: {count} lead{'s' if count == 1 else ''} away from it, "
-        f"this is the one towards {'positive' if poses[0] is not None else 'negative'} {label}"
+        f"an equilibrium nearer to the described pose is unstable in {label}; of {count} branch{'es' if count > 1 else ''} "
+        f"from it, this is the one towards {'positive' if poses[0] is not None else 'negative'} {label}"
     )

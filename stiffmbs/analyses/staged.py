@@ -103,7 +103,7 @@ def run_until(
         state = replace(part.state(), source=f"'{name}'")
         changes = {**changes, "start_from": state, "start": float(part.time[-1]), "duration": rest}
     else:
-        raise InputError(f"found conditions that begin to hold more than {MOST} times, expected fewer")
+        raise InputError(f"found conditions that become true more than {MOST} times, expected fewer")
     doubtful = (part.message for part in parts if IN_DOUBT in part.message)
     solution = replace(joined(parts[0].name, parts), message=next(doubtful, parts[-1].message))
     return Ended(solution, ended_by, given)
@@ -120,8 +120,8 @@ def _up_to_the_first(
     for name, margin in margins.items():
         if fresh and margin(whole)[0] >= 0:
             raise InputError(
-                f"'{name}': found its condition true where the run starts, at t = {whole.time[0]:.9g} s, expected it to come "
-                "true on the way"
+                f"'{name}': found its condition true at the start, t = {whole.time[0]:.9g} s, expected it to become true "
+                "during the run"
             )
     grid = {"output": interval, "points": None} if interval else {}
     crossing = _first(margins, whole)
@@ -251,7 +251,7 @@ def _solved(
         return Ended(equilibrium(scene, start_from=state, **changes).solution)
     grid = output_grid(changed(scene.run, {**changes, "start": state.t if state else scene.run.start}))
     if grid.times is None:
-        raise InputError("found points = steps for an equilibrium, expected a number or an output interval")
+        raise InputError("found points = steps for an equilibrium, expected a number of points or an output interval")
     rows: list[Solution] = []
     for t in grid.times:
         rows.append(equilibrium(scene, start_from=state, **{**changes, "start": float(t)}).solution)
@@ -268,5 +268,5 @@ def _interval(scene: Scene, changes: dict[str, Any]) -> float | None:
 def _up_to(end: float, start: float) -> float:
     """Return the duration of a stage that ends at a given time."""
     if not end > start:
-        raise InputError(f"found its end at {end:g} s, expected a time after {start:g} s, where it starts")
+        raise InputError(f"found its end at {end:g} s, expected a time after its start at {start:g} s")
     return end - start

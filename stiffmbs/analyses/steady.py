@@ -56,7 +56,7 @@ def start_in_motion(
 ) -> InitialValues:
     """Return initial values in steady motion, unchecked for stability; arguments as for `settled_in_motion`."""
     found = _found(model, dynamics, start, t, described)
-    unseen = "whether the steady motion that the run starts in is stable was not looked at"
+    unseen = "the stability of the steady motion at the start was not checked"
     return _moving(start, found, (unseen, *far_away(dynamics, start, found)))
 
 
@@ -80,7 +80,7 @@ def rotation_left_out(model: ModelData, dynamics: Dynamics, start: InitialValues
     about = _rounded(np.cross(rotation, velocity) / rate**2, system.size)[:d]
     turn = _rounded(rotation, rate)
     return (
-        "the run starts in the pose at rest, without the centrifugal forces of its rotation: for the equilibrium in "
+        "the run starts in the equilibrium at rest, without the centrifugal forces of its rotation; for the equilibrium in "
         f"rotation write start: {{rotation: {turn[2] if d == 2 else turn}, about: {about}}}",
     )
 
@@ -154,11 +154,11 @@ def _stability(values: np.ndarray | None, n_u: int) -> str:
 
     if values is None:
         reason = f"it has {n_u} velocities" if n_u > MOST_FOR_EIGENVALUES else "its equations change along the motion"
-        return f"whether the steady motion is stable was not looked at: {reason}"
+        return f"the stability of the steady motion was not checked: {reason}"
     fastest = float(np.max(values.real, initial=0.0))
     if fastest > GROWING * np.max(np.abs(values), initial=0.0):
-        return f"the steady motion is unstable: motions near it grow at {fastest:.3g} 1/s"
-    return "no small motion near the steady one grows"
+        return f"the steady motion is unstable: disturbances grow at {fastest:.3g} 1/s"
+    return "the steady motion is stable: no disturbance grows"
 
 
 def _motion(model: ModelData, dynamics: Dynamics, start: InitialValues, described: Described) -> SteadyMotion:
@@ -212,7 +212,7 @@ def _spin(system: System, body: str) -> int:
         if np.isclose(one, other, rtol=1e-9, atol=0):
             return first + k
     raise InputError(
-        f"rolling: found three different moments of inertia of body '{body}', expected two alike about its axis of symmetry"
+        f"rolling: found three different moments of inertia of body '{body}', expected an axisymmetric body"
     )
 
 
@@ -224,8 +224,8 @@ def _refuse_joints(dynamics: Dynamics, t: float) -> None:
     if len(missed) and missed[worst] > VELOCITY_ERROR * max(1.0, np.max(np.abs(state.u), initial=0.0)):
         joint, equation = system.equations[worst]
         raise SolverError(
-            f"joint '{joint}' (equation {equation}) does not let the mechanism move so: found {missed[worst]:.3g} of "
-            "velocity across it, expected none"
+            f"joint '{joint}' (equation {equation}) does not allow this motion: found a velocity of {missed[worst]:.3g} "
+            "across it, expected zero"
         )
 
 
@@ -251,6 +251,6 @@ def _refuse_unsteady(dynamics: Dynamics, t: float, motion: SteadyMotion) -> None
             worst = int(np.argmax(np.abs(known.left[: system.n_u])))
             raise SolverError(
                 f"the motion is not steady: forces balance at t = {t:g} s, but {later:.3g} s later "
-                f"{system.name_of(worst, system.of_body.reactions)} has {known.left[worst]:.3g} left; expected forces that "
+                f"{system.name_of(worst, system.of_body.reactions)} has an imbalance of {known.left[worst]:.3g}; expected forces that "
                 "move with the bodies, and a rotation about the direction of gravity"
             )

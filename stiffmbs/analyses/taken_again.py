@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 ROUNDS, STARTS = 3, 1000
 """Number of reruns, and of restarts in a rerun, at most."""
-AGAIN = "the run was taken again with a start there; what neither output instants nor long steps show, max_step or more output points do"
-LEFT = "the results may be wrong from there on; set max_step to far less than that"
+AGAIN = "the run was repeated with a restart there; set max_step, or request more output points, to resolve events between output times"
+LEFT = "the results may be wrong from there on; set max_step to a much smaller value"
 
 RELAXED, EXACT = "SI2", "SI2_exact"
 CREPT = 10.0
@@ -94,18 +94,18 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
     if not (creep.mean > CREPT or (stopped and creep.at_end > CREPT)):
         return found
     if found.trajectory.outcome is Outcome.INTERRUPTED:
-        return _doubted(found, f"{creep.sentence()}; the results may be wrong by that")
+        return _doubted(found, f"{creep.sentence()}; the results may be wrong by this amount")
     again = compute(exactly(job))
     if len(again.rows.t) >= len(found.rows.t):
         # the rest is no drift, but jumps of velocities without a known breakpoint
         if creep.mean > CREPT and _creep(job, again).mean > LESS * creep.mean:
             return found
-        return _noted(again, f"{creep.sentence()}; the run was taken again by formulation {EXACT}")
+        return _noted(again, f"{creep.sentence()}; the run was repeated with formulation {EXACT}")
     if stopped:
         return found
     return _doubted(
         found,
-        f"{creep.sentence()}; the results may be wrong by that, and formulation {EXACT} does not come as far: "
+        f"{creep.sentence()}; the results may be wrong by this amount, and formulation {EXACT} stopped earlier: "
         f"{again.trajectory.message}",
     )
 

@@ -112,7 +112,7 @@ def _trusted(directory: Path, prefix: str = "") -> bool:
     try:
         check_folder(directory)
     except NotOwnError as fault:
-        _tell(f"{prefix}the cache {directory} is not used, as {fault}; expected a folder of your own (chmod go-w)")
+        _tell(f"{prefix}the cache {directory} is not used, because {fault}; expected a folder of your own (chmod go-w)")
         return False
     return True
 
@@ -146,7 +146,7 @@ class Folder:
         try:
             stored = read_own(directory / name)
         except NotOwnError as fault:
-            _tell(f"the cache's entry {directory / name} is made anew, as {fault}; expected a file of your own")
+            _tell(f"the cache's entry {directory / name} is replaced, because {fault}; expected a file of your own")
             return None
         if stored is None:
             return None
@@ -208,7 +208,7 @@ def _secret(directory: Path) -> bytes | None:
     try:
         found = read_own(directory / SECRET, secret=True)
     except NotOwnError as fault:
-        _tell(f"the entries of the cache are made anew, as of its file {directory / SECRET} {fault}")
+        _tell(f"the entries of the cache are replaced, because of its file {directory / SECRET} {fault}")
         return None
     return found if found is not None and len(found) == SECRET_SIZE else None
 

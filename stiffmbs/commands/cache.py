@@ -58,7 +58,7 @@ def clear() -> None:
     click.echo(f"removed {removed.entries} entries, {removed.size / 1e6:.2f} MB, from {cache_directory()}")
 
 
-@cache.command(short_help="Compile all usual elements and all solvers ahead.")
+@cache.command(short_help="Compile all usual elements and all solvers in advance.")
 def warm() -> None:
     """Compile all kinds of elements in their usual forms and all solvers, to shorten first runs."""
     from ..analyses.warm import warm as fill

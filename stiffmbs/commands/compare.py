@@ -35,9 +35,12 @@ if TYPE_CHECKING:
     metavar="VALUES",
     help="Relative tolerances, FROM:TO[:COUNT][:log] or VALUE,VALUE,...; 1e-3:1e-8:log, four per decade, by default.",
 )
-@click.option("--step", metavar="VALUES", help="Steps of the schemes with fixed steps, s, as for --rtol.")
+@click.option("--step", metavar="VALUES", help="Steps of the fixed-step schemes, s, in the forms of --rtol.")
 @click.option(
-    "--measure", default="positions", show_default=True, help="What errors are of: positions, velocities or forces."
+    "--measure",
+    default="positions",
+    show_default=True,
+    help="Quantity whose errors are compared: positions, velocities or forces.",
 )
 @click.option(
     "--over",
@@ -45,12 +48,14 @@ if TYPE_CHECKING:
     help="Time at an equal error against a parameter or a path, as in k_b=1e5:1e9:9:log, k=1:100 N/mm:5 or N=10,20.",
 )
 @click.option(
-    "--error", type=float, help="With --over: at which times are compared; of positions 1e-4 m or rad by default."
+    "--error",
+    type=float,
+    help="With --over: the error at which run times are compared; by default 1e-4 m or rad for positions.",
 )
 @click.option("--repeats", type=click.IntRange(1), default=9, show_default=True, help="How often a run is timed.")
 @click.option(
     "--longest", type=click.FloatRange(0, min_open=True), default=20.0, show_default=True,
-    help="A run that takes longer is given up, s; one of the reference may take ten times as long.",
+    help="Longest time of a run, s; ten times as long for the reference. Longer runs are aborted.",
 )  # fmt: skip
 @click.option("--duration", help="Time to solve, s, or with a unit.")
 @CHANGES

@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 @click.argument("scene")
 @output_option("Write the state, which run --from starts from: .npz, .csv or .nc.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
-@click.option("--velocity", help="Seek it at constant speed: VX,VY or VX,VY,VZ, m/s, or with units.")
+@click.option("--velocity", help="Equilibrium at constant velocity: VX,VY or VX,VY,VZ, m/s, or with units.")
 @click.option(
     "--rotation",
-    help="Seek it on circles: an angular velocity, rad/s, or found; in space about the vertical, or WX,WY,WZ.",
+    help="Equilibrium in rotation: an angular velocity, rad/s, or found; in space about the vertical, or WX,WY,WZ.",
 )
-@click.option("--about", help="A point of the axis of the rotation: X,Y or X,Y,Z, m; the origin without it.")
+@click.option("--about", help="A point of the axis of rotation: X,Y or X,Y,Z, m; by default the origin.")
 @click.option("--rolling", multiple=True, metavar="BODY", help="A further body that rolls, or spins as described.")
 @click.option(
     "--speed", type=click.Choice(["given", "found"]), help="Whether the forces determine the speed along --velocity."

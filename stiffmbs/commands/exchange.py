@@ -18,14 +18,14 @@ DATASET = ".adm"
 
 @click.command(short_help="Write a dataset, a robot, or a planar scene, as a scene; or a scene as a dataset.")
 @click.argument("scene")
-@output_option("The scene file, or a dataset where it ends in .adm; standard output without.")
+@output_option("Scene file, or dataset if it ends in .adm; by default standard output.")
 @click.option("--in-space", is_flag=True, help="Take a planar SCENE, and write it in the x-y plane of space.")
 @click.option(
     "--at",
     "coordinates",
     multiple=True,
     metavar="JOINT=VALUE",
-    help="Where a hinge or slide of a robot starts, rad or m; as drawn without it.",
+    help="Initial position of a hinge or slide of a robot, rad or m; by default as drawn.",
 )
 @CHANGES
 def convert(
@@ -119,7 +119,7 @@ def _coordinate(text: str) -> tuple[str, float]:
     type=float,
     default=1e-3,
     show_default=True,
-    help="Largest relative difference that is no difference.",
+    help="Largest relative difference that counts as equal.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, as_json: bool) -> None:
@@ -173,12 +173,12 @@ def _lines(text: str) -> list[str]:
 
 @click.command(short_help="An FMU for co-simulation.")
 @click.argument("scene")
-@output_option("The FMU, .fmu; SCENE.fmu in the working folder without it.")
+@output_option("The FMU, .fmu; by default SCENE.fmu in the working folder.")
 @click.option(
     "--channel",
     "outputs",
     multiple=True,
-    help="An output of the FMU; the scene's requests, or all channels, without it.",
+    help="An output of the FMU; by default the requests of the scene, or all channels.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def fmu(scene: str, output: Path | None, outputs: tuple[str, ...], as_json: bool) -> None:

@@ -62,9 +62,9 @@ def _text(found: Sensitivity) -> str:
 _sought_options = several(
     click.option(
         "--parameter", "parameters", multiple=True, required=True, metavar="NAME=FROM:TO[:log]",
-        help="What is sought, a parameter or a path, with its bounds; any number of times.",
+        help="Parameter or path to determine, with its bounds; any number of times.",
     ),
-    click.option("--start", "start", multiple=True, metavar="NAME=VALUE", help="Where the search starts."),
+    click.option("--start", "start", multiple=True, metavar="NAME=VALUE", help="Initial value of the search."),
     click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table."),
 )  # fmt: skip
 
@@ -91,7 +91,7 @@ def fit(
     sys.exit(0 if found.success else Status.FAILED)
 
 
-@click.command(short_help="Find the parameters that make an output least.")
+@click.command(short_help="Find the parameters that minimise an output.")
 @click.argument("scene")
 @click.option("--minimise", required=True, metavar="FORMULA", help="What is made least: 'rms(chassis.ay)'.")
 @click.option(

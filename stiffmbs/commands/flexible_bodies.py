@@ -26,7 +26,9 @@ from .scene import (
 
 @click.command(short_help="Reduction of a flexible body.")
 @click.argument("body")
-@click.option("--hold", "held", multiple=True, metavar="NAME,...", help="Frequencies with these interfaces held too.")
+@click.option(
+    "--hold", "held", multiple=True, metavar="NAME,...", help="Also list the frequencies with these interfaces fixed."
+)
 @click.option(
     "-o",
     "--output",
@@ -87,7 +89,9 @@ def _number(name: str, names: list[str]) -> int:
 @click.argument("body")
 @click.argument("results", required=False, type=click.Path(path_type=Path))
 @output_option("Write the deformed mesh with its stresses over time for ParaView: .xdmf.")
-@click.option("--node", "nodes", multiple=True, type=int, help="Report the displacement of a node too, from 0.")
+@click.option(
+    "--node", "nodes", multiple=True, type=int, help="Also report the displacement of this node (numbers from 0)."
+)
 @click.option("--scale", type=float, default=1.0, show_default=True, help="Factor of the deformation in the file.")
 @click.option("--every", type=click.IntRange(1), default=1, show_default=True, help="Write every n-th output time.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of text.")

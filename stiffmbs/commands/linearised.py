@@ -21,7 +21,7 @@ from .scene import changes_of, in_file, is_written, output_option, refusing, sol
 @click.option(
     "--at",
     type=float,
-    help="The instant whose state is taken, s: of that FILE (else its last row), or of the run (else its start).",
+    help="Time at which the state is taken, s: of FILE (by default its last row), or of the run (by default its start).",
 )
 @output_option(
     "Write a page with the modes in motion (.html), or one period of every mode: FILE.npz becomes FILE_1.npz, FILE_2.npz, "
@@ -32,7 +32,7 @@ from .scene import changes_of, in_file, is_written, output_option, refusing, sol
     type=click.FloatRange(0, min_open=True),
     default=0.1,
     show_default=True,
-    help="Of what is written, relative to the mechanism's size.",
+    help="Amplitude of the motion written, relative to the size of the mechanism.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @solving_options
@@ -72,9 +72,13 @@ def modes(
 @click.command(short_help="Frequency response.")
 @click.argument("scene")
 @click.option(
-    "--input", "inputs", multiple=True, required=True, help="BODY.fx, BODY.MARKER.fy, ..., or a parameter of SCENE."
+    "--input",
+    "inputs",
+    multiple=True,
+    required=True,
+    help="BODY.fx, BODY.MARKER.fy, ..., or a parameter of SCENE; any number of times.",
 )
-@click.option("--output", "outputs", multiple=True, required=True, help="A channel or request.")
+@click.option("--output", "outputs", multiple=True, required=True, help="A channel or request; any number of times.")
 @click.option("--from", "lowest", type=click.FloatRange(0, min_open=True), default=0.1, show_default=True, help="Hz.")
 @click.option("--to", "highest", type=click.FloatRange(0, min_open=True), default=100.0, show_default=True, help="Hz.")
 @click.option(
@@ -84,7 +88,7 @@ def modes(
     show_default=True,
     help="Frequencies, evenly on a logarithmic scale.",
 )
-@click.option("--at", type=float, help="The instant of the run whose state is taken, s; its start by default.")
+@click.option("--at", type=float, help="Time of the run at which the state is taken, s; by default the start.")
 @click.option(
     "-o", "--to-file", "path", type=click.Path(path_type=Path), help="Write gain and phase at every frequency: .csv."
 )

@@ -61,17 +61,15 @@ def runs_of(source: str, others: Sequence[Path], options: dict[str, Any]) -> dic
 
 @click.command(short_help="A picture of a mechanism.")
 @click.argument("scene")
-@output_option("Where to draw: .svg, .png, .pdf, or .json; SCENE.svg without it.")
-@click.option("--at", type=float, help="The instant of the run, s; its start by default.")
-@click.option("--described", is_flag=True, help="The bodies as they are described, before assembly, without forces.")
-@click.option("--check", "checked", is_flag=True, help="Show what is redundant or not unique in colors of its own.")
+@output_option("File to draw: .svg, .png, .pdf, or .json; by default SCENE.svg.")
+@click.option("--at", type=float, help="Time of the run, s; by default the start.")
+@click.option("--described", is_flag=True, help="Draw the bodies as described, before assembly, without forces.")
+@click.option("--check", "checked", is_flag=True, help="Color redundant joints and reactions that are not unique.")
 @click.option(
     "--view", default="", help="front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees."
 )
 @click.option("--names/--no-names", default=True, show_default=True, help="Whether names are written.")
-@click.option(
-    "--forces/--no-forces", default=None, help="Whether forces are drawn, to scale; by default in the plane alone."
-)
+@click.option("--forces/--no-forces", default=None, help="Draw forces to scale; by default only for planar scenes.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was drawn.")
 @solving_options
 def draw(
@@ -103,7 +101,7 @@ def draw(
 @click.command(short_help="A mechanism in motion: a film or a page.")
 @click.argument("scene")
 @click.argument("results", nargs=-1, type=click.Path(path_type=Path))
-@output_option("Where to write: .gif, .mp4 or .html; SCENE.html without it.")
+@output_option("File to write: .gif, .mp4 or .html; by default SCENE.html.")
 @click.option(
     "--view", default="", help="front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees."
 )
@@ -119,7 +117,7 @@ def draw(
 )
 @click.option("--names/--no-names", default=False, show_default=True, help="Whether a film shows names.")
 @click.option(
-    "--forces/--no-forces", default=None, help="Whether a film shows forces, to scale; by default in the plane alone."
+    "--forces/--no-forces", default=None, help="Show forces to scale in a film; by default only for planar scenes."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was written.")
 @solving_options
@@ -169,9 +167,9 @@ def animate(
     type=click.Path(path_type=Path),
     help="Results (.npz) of another run, drawn over; any number of times.",
 )
-@click.option("--title", default="", help="Shown above; the scene's name without it.")
-@output_option("Where to draw: .png, .svg or .pdf; a window without it.")
-@click.option("--live", is_flag=True, help="A window whose plots grow while SCENE is solved.")
+@click.option("--title", default="", help="Title; by default the name of the scene.")
+@output_option("File to draw: .png, .svg or .pdf; by default a window.")
+@click.option("--live", is_flag=True, help="Show the plots in a window while SCENE is solved.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was drawn.")
 @solving_options
 def plot(

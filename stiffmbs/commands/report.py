@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 @output_option("Where to write the page: .html.")
 @click.option("--verify/--no-verify", default=True, show_default=True, help="Whether peaks get error bars.")
 @click.option("--equilibrium", is_flag=True, help="With the static equilibrium.")
-@click.option("--compare", is_flag=True, help="With run time against error of bdf, dop853 and auto.")
-@click.option("--kc", multiple=True, metavar="AXLE", help="With kinematics and compliance of an axle, such as front.")
+@click.option("--compare", is_flag=True, help="Add run time against error of bdf, dop853 and auto.")
+@click.option("--kc", multiple=True, metavar="AXLE", help="Add kinematics and compliance of an axle, such as front.")
 @click.option("--loads", is_flag=True, help="With the largest loads of all bushings.")
 @solving_options
 def report(

@@ -37,7 +37,7 @@ READ_BY_RICH = "COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "J
 @click.command(short_help="Solve a scene.")
 @click.argument("scene")
 @output_option(
-    "Write every channel: .csv, .npz, .nc, .tab or .res; to SCENE.results.npz without it and without --json."
+    "Write every channel: .csv, .npz, .nc, .tab or .res; by default SCENE.results.npz, or no file with --json."
 )
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the scene's figure: .png, .svg or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")
@@ -45,7 +45,7 @@ READ_BY_RICH = "COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "J
 @state_options
 @solving_options
 @click.option(
-    "--verify", is_flag=True, help="Solve again, tighter and in another way: error bars, and what is in doubt."
+    "--verify", is_flag=True, help="Rerun at a smaller tolerance and with another integrator: error bars, and warnings."
 )
 def run(
     scene: str, output: Path | None, figure: Path | None, as_json: bool, all_loads: bool, verify: bool, state: str | None,

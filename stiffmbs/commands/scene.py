@@ -66,7 +66,7 @@ solving_options = several(
     click.option("--solver", help=f"{', '.join(get_args(SolverName))}."),
     click.option(
         "--scheme",
-        help=f"Of projected: {', '.join(get_args(SchemeName))}; by default dop853, and euler_cromer where a step is given.",
+        help=f"Scheme of projected: {', '.join(get_args(SchemeName))}; by default dop853, or euler_cromer if a step is given.",
     ),
     CHANGES,
 )
@@ -75,7 +75,7 @@ state_options = several(
     click.option(
         "--from", "state", metavar="FILE", help="Start from the state in FILE, results of run -o or equilibrium -o."
     ),
-    click.option("--at", type=float, help="The instant of the row in that FILE, s; its last row by default."),
+    click.option("--at", type=float, help="Time of the row in FILE, s; by default the last row."),
 )
 """Options ``--from`` and ``--at`` of a command that may start from a saved state; see `start_of`."""
 

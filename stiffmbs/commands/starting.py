@@ -35,7 +35,7 @@ def init(file: Path) -> None:
 @click.command("open", short_help="Edit and solve in the browser.")
 @click.argument("scene")
 @click.option(
-    "--port", type=click.IntRange(0, 65535), default=0, help="Port on the loopback interface; any free one by default."
+    "--port", type=click.IntRange(0, 65535), default=0, help="Port on the loopback interface; by default a free one."
 )
 @click.option("--browser/--no-browser", default=True, show_default=True, help="Whether to open the browser.")
 def open_scene(scene: str, port: int, browser: bool) -> None:

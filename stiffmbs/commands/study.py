@@ -26,10 +26,13 @@ if TYPE_CHECKING:
     metavar="NAME=VALUES",
     help="FROM:TO:COUNT[:log] or VALUE,VALUE,... of a parameter or a path; any number of times.",
 )
-@click.option("--sample", metavar="KIND:N", help="lhs:N, sobol:N or random:N cases in place of the full grid.")
-@click.option("--seed", type=int, default=0, help="Of the sample.")
+@click.option("--sample", metavar="KIND:N", help="lhs:N, sobol:N or random:N cases instead of the full grid.")
+@click.option("--seed", type=int, default=0, help="Seed of the sample.")
 @click.option(
-    "--of", "outputs", multiple=True, help="What is kept: 'peak(rail.fy)', 'rms(bar.ax)', 'bar.x'; any number of times."
+    "--of",
+    "outputs",
+    multiple=True,
+    help="Output to keep: 'peak(rail.fy)', 'rms(bar.ax)', 'bar.x'; any number of times.",
 )
 @click.option("--workers", type=click.IntRange(1), default=1, help="How many cases are solved at once.")
 @click.option("--processes", is_flag=True, help="Processes in place of threads.")

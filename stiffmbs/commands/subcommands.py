@@ -36,7 +36,7 @@ def with_logging_options(command: click.Command) -> click.Command:
         click.Option(["-q", "--quiet"], is_flag=True, expose_value=False, callback=_quieten, help="No progress and no notes."),
         click.Option(
             ["-v", "--verbose"], count=True, expose_value=False, callback=_tell_more,
-            help="Report on standard error what is done; -vv in detail.",
+            help="Print progress messages on standard error; -vv for details.",
         ),
     ]  # fmt: skip
     return command

@@ -17,25 +17,42 @@ from .scene import CHANGES, in_file, is_written, output_option, pairs, refuse_ow
 
 @click.command(short_help="Kinematics and compliance of an axle.")
 @click.argument("scene")
-@click.option("--axle", default="front", show_default=True, help="What stands before .left and .right; '' for nothing.")
-@click.option("--points", type=int, default=11, show_default=True, help="Of each curve: odd, 5 or more.")
-@click.option("--body", help="The body to clamp; chassis, or the one that carries the axle, by default.")
-@click.option("--steering", help="The prismatic or revolute joint that steers; the axle's guide by default.")
 @click.option(
-    "--wheel", "wheels", multiple=True, metavar="BODY", help="The body of a wheel, once or twice, in any scene."
+    "--axle",
+    default="front",
+    show_default=True,
+    help="Name of the axle: the part of names before .left and .right; '' for none.",
 )
-@click.option("--radius", type=float, help="From the wheels' centres to the road, m; the tyres' radius by default.")
-@click.option("--wheelbase", type=float, help="m; from the scene by default.")
-@click.option("--cg-height", type=float, help="Height of the centre of mass, m; from the scene by default.")
-@click.option("--brake-share", type=float, help="Of this axle, 0 to 1; 0.6 in front and 0.4 behind by default.")
-@click.option("--drive-share", type=float, help="Of this axle, 0 to 1; 1 by default.")
-@click.option("--inboard-brakes", is_flag=True, help="Brakes are on the body.")
+@click.option(
+    "--points", type=int, default=11, show_default=True, help="Number of points of each curve: odd, 5 or more."
+)
+@click.option("--body", help="Body that the rig clamps; by default chassis, or the body that carries the axle.")
+@click.option("--steering", help="Prismatic or revolute joint that steers; by default the guide of the axle.")
+@click.option(
+    "--wheel",
+    "wheels",
+    multiple=True,
+    metavar="BODY",
+    help="Body of a wheel, for scenes with other names; once or twice.",
+)
+@click.option(
+    "--radius", type=float, help="Distance from the wheel centres to the road, m; by default the radius of the tyres."
+)
+@click.option("--wheelbase", type=float, help="Wheelbase, m; by default from the scene.")
+@click.option("--cg-height", type=float, help="Height of the centre of mass, m; by default from the scene.")
+@click.option(
+    "--brake-share",
+    type=float,
+    help="Share of this axle in braking, 0 to 1; by default 0.6 in front and 0.4 at the rear.",
+)
+@click.option("--drive-share", type=float, help="Share of this axle in traction, 0 to 1; by default 1.")
+@click.option("--inboard-brakes", is_flag=True, help="The brakes are mounted on the body.")
 @click.option(
     "--outboard-drive/--inboard-drive",
     default=None,
     help="Whether the carriers react the driving torque; a solid axle does.",
 )
-@click.option("--case", "cases", multiple=True, metavar="NAME=SIZE", help="How far a load case goes; 0 leaves it out.")
+@click.option("--case", "cases", multiple=True, metavar="NAME=SIZE", help="Size of a load case; 0 omits it.")
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the curves: .png, .svg or .pdf.")
 @output_option("Write the curves: .csv.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
@@ -93,7 +110,7 @@ def _sizes(cases: tuple[str, ...]) -> dict[str, float]:
 @click.command(short_help="Peaks of all bushings' loads over load cases.")
 @click.argument("scene")
 @click.option(
-    "--case", "cases", multiple=True, metavar="NAME=PATH=VALUE[,...]", help="A load case with what it changes in SCENE."
+    "--case", "cases", multiple=True, metavar="NAME=PATH=VALUE[,...]", help="A load case, and a change of SCENE for it."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @CHANGES
@@ -138,10 +155,10 @@ def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
 @click.option(
     "--test", "tests", multiple=True, metavar="NAME", help="One of the tests; any number of times, all by default."
 )
-@click.option("--body", help="The sprung body; that of the section vehicle, or chassis, by default.")
-@click.option("--steering", help="The joint that steers; steering_wheel or the only one named guide by default.")
-@click.option("--width", type=float, help="Width of the vehicle, m; the track and 0.2 m by default.")
-@click.option("--workers", type=click.IntRange(1), help="Number of processes; one for each core by default.")
+@click.option("--body", help="Sprung body; by default that of the section vehicle, or chassis.")
+@click.option("--steering", help="Joint that steers; by default steering_wheel, or the only joint named guide.")
+@click.option("--width", type=float, help="Width of the vehicle, m; by default the track plus 0.2 m.")
+@click.option("--workers", type=click.IntRange(1), help="Number of processes; by default one for each core.")
 @click.option(
     "--set-test",
     "parameters",
@@ -196,7 +213,7 @@ def handling(
 @click.option("--pressure", "pressures", multiple=True, help="Pa, or with a unit, of 6.1 and 6.2; any number of times.")
 @click.option("--camber", default="0", help="rad, or with a unit.")
 @click.option("--speed", help="m/s, or with a unit; LONGVL by default.")
-@click.option("--points", type=int, default=61, show_default=True, help="Of each curve.")
+@click.option("--points", type=int, default=61, show_default=True, help="Number of points of each curve.")
 @click.option(
     "--at", "states", multiple=True, metavar="Fz,kappa,...",
     help="Evaluate one state of Fz, kappa, alpha, gamma, p, Vx, phit in SI units, each empty for its default; any number of times.",

@@ -122,7 +122,7 @@ def _at_value(
     """Return times at the error for one value, and True if the user ended this early."""
     resolved = sweep.reference.resolved(plan.measure)
     if error < resolved:
-        message = f"the reference is good to {resolved:.1e} alone, expected an error above that"
+        message = f"the reference has an accuracy of {resolved:.1e}, expected a larger error"
         return AtValue(value, (), None, message), False
     target = (plan.measure, error)
     swept = (point for entry in entries for point in sweep.points(entry, plan.values(entry, sweep.settings), target))

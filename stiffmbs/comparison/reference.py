@@ -188,10 +188,10 @@ def _sizes(solution: Solution, size: float) -> dict[str, float]:
 def _unended(name: str, found: Solution, end: float, allowed: float) -> str:
     why = found.message
     if allowed:
-        why = f"given up at t = {found.time[-1]:.4g} s of {end:.4g} s, as it would take more than {allowed:.4g} s"
+        why = f"aborted at t = {found.time[-1]:.4g} s of {end:.4g} s: it would take more than {allowed:.4g} s"
     return (
-        f"no reference: {name}: {why}; expected an implicit and an explicit integrator that come to the end and agree; "
-        "a shorter duration may do" + (", or a larger 'longest'" if allowed else "")
+        f"no reference: {name}: {why}; expected an implicit and an explicit integrator that complete the run and agree; "
+        "try a shorter duration" + (", or a larger 'longest'" if allowed else "")
     )
 
 
@@ -208,7 +208,7 @@ def _disagreement(pair: _Pair, settings: RunSettings) -> str:
     return (
         f"no reference: {pair.names[0]} and {pair.names[1]} disagree: {name} differs by more than {AGREED:g} of its motion "
         f"from t = {times[first]:.4g} s on, by {apart[worst]:.2g} {unit} at t = {times[worst]:.4g} s; the motion is chaotic, "
-        f"may go on in more than one way, or has an event that a step passes over; {remedy}"
+        f"may branch, or has an event that a step misses; {remedy}"
     )
 
 

@@ -148,13 +148,13 @@ class Sweep:
             raise KeyboardInterrupt
         steps = int(trajectory.statistics.get("steps", 0))
         if deadline.passed:
-            message = f"given up at t = {trajectory.t[-1]:.4g} s: it would take more than {self.longest:g} s"
+            message = f"aborted at t = {trajectory.t[-1]:.4g} s: it would take more than {self.longest:g} s"
             return Point(None, [], entry, setting, {}, steps, message), True
         trajectory = up_to_a_fault(job.dynamics.system, trajectory)
         message = "" if trajectory.outcome is Outcome.DONE else trajectory.message
         errors = {} if message else self._errors(job, trajectory)
         if not message and not errors:
-            message = "some output instants have no accelerations and reactions"
+            message = "some output times have no accelerations and reactions"
         solve = (lambda: _again(job)) if seconds < TIMING.once and not message else None
         return Point(solve, [] if message else [seconds], entry, setting, errors, steps, message), False
 

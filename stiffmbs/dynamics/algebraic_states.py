@@ -90,19 +90,19 @@ def no_value(dynamics: Dynamics, t: float) -> str:
     undefined = np.flatnonzero(~np.isfinite(left) | ~np.all(np.isfinite(slopes), axis=1))
     if len(undefined):
         worst = int(undefined[0])
-        return f"the formula that the state '{names[worst]}' keeps at zero has no finite value at {at[worst]}"
+        return f"the equation of the state '{names[worst]}' has no finite value at {at[worst]}"
     values, vectors = np.linalg.eigh((slopes * sizes).T @ (slopes * sizes))
     if not values[0] > ZERO_SLOPE**2 * max(values[-1], np.finfo(float).tiny):
         worst = int(np.argmax(np.abs(vectors[:, 0])))
         return (
-            f"the state '{names[worst]}' has no unique value: the derivative of its formula by the state is zero at {at[worst]}, "
-            "expected one that changes with the state"
+            f"the state '{names[worst]}' has no unique value: the derivative of its equation by the state is zero at {at[worst]}, "
+            "expected an equation that depends on the state"
         )
     moves = np.abs(np.linalg.solve(slopes, left)) / sizes
     worst = int(np.argmax(moves))
     if not moves[worst] > ZERO_SLOPE:
         return ""
     return (
-        f"the state '{names[worst]}' has no value: Newton's iteration finds no zero of its formula from {at[worst]}, "
+        f"the state '{names[worst]}' has no value: Newton's iteration finds no zero of its equation from {at[worst]}, "
         f"where it is {left[worst]:.3g}; expected a zero near there"
     )

@@ -78,7 +78,7 @@ class InitialValues:
         bodies = f"{len(far)} bodies move" if len(far) > 1 else f"{far[0].body} moves"
         return (
             f": {bodies} by more than a quarter of the mechanism's size ({self.size:.3g} m) or 45 deg; "
-            f"look for a wrong point of a marker, position or angle{self.hint}"
+            f"check points of markers, positions and angles{self.hint}"
         )
 
 
@@ -150,7 +150,7 @@ def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
         return _dependent_sentence(dynamics)
     if status == NO_BALANCE:
         rubbing = ", ".join(dynamics.system.forces_by_reactions)
-        return f"the start has no accelerations: {FAILURES[NO_BALANCE]}, expected less of it in {rubbing}"
+        return f"the start has no accelerations: {FAILURES[NO_BALANCE]}; expected less friction in {rubbing}"
     if status == NOT_FINITE:
         return _undefined_sentence(dynamics, t)
     return f"no consistent start was found: {failure(dynamics, status, t)}"
@@ -165,7 +165,7 @@ def _violation_sentence(dynamics: Dynamics, t: float) -> str:
     row = int(np.argmax(gaps))
     joint, equation = system.equations[row]
     return (
-        f"the scene cannot be assembled: the largest gap is left in joint '{joint}' (equation {equation}, "
+        f"the scene cannot be assembled: the largest gap is in joint '{joint}' (equation {equation}, "
         f"{position_gap(state, t, row)}, expected less than {POSITION_TOLERANCE:g})"
     )
 
@@ -176,8 +176,8 @@ def _dependent_sentence(dynamics: Dynamics) -> str:
     jacobian = state.matrix("motion", "J")[solved_for]
     joint, equation = system.equations[solved_for[_most_dependent_row(jacobian)]]
     return (
-        f"the constraint equations depend on each other at the start: joint '{joint}' (equation {equation}) repeats "
-        "what other joints already hold, so its reaction has no unique value"
+        f"the constraint equations are dependent at the start: joint '{joint}' (equation {equation}) is "
+        "redundant with other joints, so its reaction is not unique"
     )
 
 
@@ -197,4 +197,4 @@ def _undefined_sentence(dynamics: Dynamics, t: float) -> str:
             values = values_of(system, state.values[term_set], term_set, name)
             if not all(np.all(np.isfinite(part)) for part in values.values()):
                 return f"'{name}' has no finite value at the start, expected equations that are defined there"
-    return "the accelerations at the start are not finite, expected forces and masses of ordinary size"
+    return "the accelerations at the start are not finite; check the sizes of forces and masses"

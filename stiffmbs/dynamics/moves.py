@@ -99,7 +99,7 @@ def _listed(
             found.append((max(sizes), words))
     found.sort(key=lambda change: -change[0])
     more = len(found) - most
-    less = f" (and {more} more {'bodies' if more > 1 else 'body'} by less)" if more > 0 else ""
+    less = f" ({more} more {'bodies' if more > 1 else 'body'} by less)" if more > 0 else ""
     return ", ".join(part for _, words in found[:most] for part in words) + less
 
 

@@ -209,14 +209,14 @@ def unbalanced(dynamics: Dynamics, known: Balance) -> str:
     if system.states and np.all(np.abs(forces) <= known.allowed[: system.n_u]):
         worst = int(np.argmax(np.abs(rates) / np.maximum(known.allowed[system.n_u :], np.finfo(float).tiny)))
         return (
-            f"no equilibrium was found: the state {system.states[worst]} goes on changing ({rates[worst]:.3g} per second), "
-            "expected rates of states that can vanish"
+            f"no equilibrium was found: the rate of the state {system.states[worst]} stays {rates[worst]:.3g} per second, "
+            "expected rates that can vanish"
         )
     worst = int(np.argmax(np.abs(forces)))
     name = system.name_of(worst, system.of_body.reactions)
     return (
-        f"no equilibrium was found: the largest imbalance is left in {name} ({forces[worst]:.3g} of "
-        f"{known.largest:.3g}), expected forces that hold every free motion"
+        f"no equilibrium was found: the largest imbalance is {name} = {forces[worst]:.3g} ("
+        f"the largest force is {known.largest:.3g}); expected forces that balance every free motion"
     )
 
 

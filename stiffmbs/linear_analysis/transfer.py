@@ -57,7 +57,7 @@ def effect(linear: Linearised, state: StateMatrix, given: Input, scale: np.ndarr
     """
     if np.any(linear.position_by_states) and (np.any(given.rates) or np.any(given.position)):
         raise InputError(
-            f"input '{given.name}': found one that changes rates of states or moves a constraint where constraints follow states, "
+            f"input '{given.name}': found an input of rates of states or of a constraint in a scene whose constraints depend on states, "
             "expected a force"
         )
     n_a, end = state.n_poses, state.n_poses + state.degrees_of_freedom

@@ -72,7 +72,7 @@ class RunSettings(Described):
     )
     scheme: SchemeName | None = Field(
         None,
-        description="of projected: euler_cromer and rk4 have fixed steps, dopri5 and dop853 adaptive ones; dop853 by default, euler_cromer with a step",
+        description="scheme of projected: euler_cromer and rk4 have fixed steps, dopri5 and dop853 adaptive ones; dop853 by default, euler_cromer with a step",
     )
     rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
         DEFAULT_RTOL, description="relative error tolerance of bdf, radau and the adaptive schemes"

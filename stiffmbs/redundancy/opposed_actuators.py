@@ -53,7 +53,7 @@ def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid
 def _sentence(actuator: str, drives: list[str]) -> str:
     prescribe = "prescribes" if len(drives) == 1 else "prescribe"
     return (
-        f"{actuator} acts on a motion that {listed(drives)} {prescribe}: it changes only the reaction of "
+        f"{actuator} acts on a motion that {listed(drives)} {prescribe}, so it changes only the reaction of "
         f"{listed(drives)}; remove one of them"
     )
 

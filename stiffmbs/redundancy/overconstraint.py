@@ -114,17 +114,19 @@ def _overconstraint(system: System, rank_result: LoopRankResult, block: list[Red
 
 
 def _reason(system: System, joints: list[LoopJoint], driven: list[str], count: int) -> str:
-    names, equations = [joint.name for joint in joints], f"{count} equation{'s' if count > 1 else ''} too many"
+    names, equations = [joint.name for joint in joints], f"{count} redundant equation{'s' if count > 1 else ''}"
     bodies = sorted({body for joint in joints for body in joint.bodies})
     held = listed([system.bodies[body] for body in bodies])
     if len(driven) > 1:
         return f"over-driven: {listed(driven)} prescribe the same motion of {held} ({equations})"
     if driven:
-        return f"over-driven: {driven[0]} prescribes a motion of {held} that other joints hold already ({equations})"
+        return (
+            f"over-driven: {driven[0]} prescribes a motion of {held} that other joints already prescribe ({equations})"
+        )
     if _between_the_same(joints):
-        against = " against each other" if len(bodies) > 1 else ""
-        return f"{held} {'are' if against else 'is'} guided twice{against}: {listed(names)} hold the same ({equations})"
-    return f"{held} form loops that hold themselves: {listed(names)} close them more often than needed ({equations})"
+        relative = "relative " if len(bodies) > 1 else ""
+        return f"{listed(names)} constrain the same {relative}motion of {held} ({equations})"
+    return f"{listed(names)} overconstrain loops of {held} ({equations})"
 
 
 def _between_the_same(joints: list[LoopJoint]) -> bool:
@@ -185,8 +187,8 @@ def _remedy(
     told = [f"{', or '.join(ways)}, {what} are statically determinate"] if ways else []
     if elastic:
         told.append(
-            f"with {_elastic_words(elastic)}, stiffness decides how {what} are shared; one elastic joint next to rigid ones "
-            "that hold the same would carry nothing"
+            f"with {_elastic_words(elastic)}, stiffness determines {what}; a single elastic joint parallel to rigid ones "
+            "carries no load"
         )
     return "; ".join(told)
 

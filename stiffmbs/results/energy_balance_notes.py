@@ -60,9 +60,9 @@ def undefined_values(rows: OutputRows, channels: Mapping[str, np.ndarray]) -> It
     for name in list(found)[:MOST_LISTED]:
         bad = found[name]
         first = float(time[np.argmax(bad)])
-        yield f"{name} is no finite number at {np.count_nonzero(bad)} of {len(time)} output times, first at t = {first:.9g} s"
+        yield f"{name} is not finite at {np.count_nonzero(bad)} of {len(time)} output times, first at t = {first:.9g} s"
     if len(found) > MOST_LISTED:
-        yield f"the same holds for {len(found) - MOST_LISTED} other channels"
+        yield f"{len(found) - MOST_LISTED} more channels are not finite at some output times"
 
 
 FINER = ("rtol", "max_step", "step")
@@ -96,10 +96,7 @@ def unresolved_work(balance: Balance) -> str:
     """Return a note on the work between output times that their values do not resolve, or an empty string."""
     if balance.keeps_energy or balance.between <= max(TOLD * balance.scale, balance.imbalance):
         return ""
-    return (
-        f"between output times {balance.between:.2g} J of work is not resolved, as the solver took several steps there; "
-        "use 'points: steps' or --verify"
-    )
+    return f"between output times {balance.between:.2g} J of work is not resolved; use 'points: steps' or --verify"
 
 
 def balance_notes(
@@ -139,10 +136,10 @@ def _changed(
     if not len(beyond):
         return
     finer = [name for name in FINER if name in traits_of(settings).reads]
-    remedy = f"; take a smaller {' or '.join(finer)} until it is kept" if finer else ""
+    remedy = f"; use a smaller {' or '.join(finer)}" if finer else ""
     steepest = int(np.argmax(np.abs(np.diff(balance.open))))
     yield (
-        f"the energy balance is broken: nothing in the scene takes or gives energy, but the energy changes by "
+        f"the energy balance is broken: all forces are conservative, but the energy changes by "
         f"{balance.imbalance:.3g} J of the {balance.scale:.3g} J exchanged (first by more than {allowed:.2g} J at "
         f"t = {balance.t[beyond[0]]:.6g} s{_where(system, balance, rows, steepest)}){remedy}"
     )

@@ -63,8 +63,8 @@ class JointAngles:
         if apart[row, k] > UNCERTAIN_TURN:
             name = self.followed[k]
             yield (
-                f"whole turns of {name} are not certain: between t = {rows.t[row]:.6g} s and {rows.t[row + 1]:.6g} s it changes "
-                "too much for the output times; name it in a request, so that the integration counts its turns, or take "
+                f"the revolutions of {name} are uncertain: between t = {rows.t[row]:.6g} s and {rows.t[row + 1]:.6g} s it changes "
+                "too much for the output times; name it in a request, so that the integration counts its revolutions, or use "
                 "more output points"
             )
 

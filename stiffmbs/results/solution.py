@@ -123,11 +123,11 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         return channel in self.channels
 
     def __repr__(self) -> str:
-        return f"<Solution '{self.name}': {len(self.channels)} channels at {len(self.time)} instants, {self.message}>"
+        return f"<Solution '{self.name}': {len(self.channels)} channels at {len(self.time)} times, {self.message}>"
 
     def __array__(self, *_: Any, **__: Any) -> NoReturn:
         raise InputError(
-            "found a whole solution in place of an array, expected one channel, solution['energy.total'], or solution.to_pandas()"
+            "found a solution instead of an array, expected one channel, solution['energy.total'], or solution.to_pandas()"
         )
 
     def to_pandas(self) -> pandas.DataFrame:

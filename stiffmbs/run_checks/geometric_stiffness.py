@@ -40,8 +40,8 @@ def _note_on_large_deformation(name: str, numbers: dict[str, np.ndarray], y: np.
     error = RUN_CHECKS.of_second_order * ratio**2
     if error > RUN_CHECKS.too_much:
         yield (
-            f"'{name}' deforms by up to {100 * ratio:.2g} % of its length (root mean square), beyond the theory of second order: "
-            f"deflections of a beam would be wrong by about {100 * error:.1g} %; {REMEDY}"
+            f"'{name}' deforms by up to {100 * ratio:.2g} % of its length (root mean square), outside the second-order theory: "
+            f"deflections of a beam would have an error of about {100 * error:.1g} %; {REMEDY}"
         )
 
 
@@ -58,7 +58,7 @@ def _note(name: str, numbers: dict[str, np.ndarray], rows: OutputRows, places: n
     lowest, highest = ratios[at]
     if max(-lowest, highest) > RUN_CHECKS.stiffened:
         beyond = (
-            f". A body that loses all its stiffness buckles, beyond the theory of second order: {REMEDY}"
+            f". A body that loses all its stiffness buckles, outside the second-order theory: {REMEDY}"
             if lowest < -1
             else ""
         )
@@ -86,7 +86,7 @@ def _note_without_mesh(
         yield (
             f"'{name}': rotation at up to {rate:.3g} rad/s and interface forces of up to {force:.3g} N can change its stiffness by {100 * ratio:.2g} %, "
             f"estimated by a slender clamped beam with its lowest free frequency of {lowest / (2 * np.pi):.3g} Hz; geometric stiffness is not "
-            "included, as a body described by matrices has no stresses: use a mesh, or several bodies"
+            "included, because a body described by matrices has no stresses: use a mesh, or several bodies"
         )
 
 

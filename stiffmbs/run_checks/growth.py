@@ -53,7 +53,7 @@ def _grown(system: System, rows: OutputRows) -> str:
     if np.nanmax(speed) > SPEED_OF_LIGHT:
         return _growth_sentence(system, rows, speed, SPEED_OF_LIGHT, "the speed of light", fastest)
     if np.nanmax(far) > resolved and _connected(system):
-        what = f"where rounding takes more than {RUN_CHECKS.coarse:.0e} of the mechanism's size of {system.size:.3g} m"
+        what = f"the distance where rounding is {RUN_CHECKS.coarse:.0e} of the mechanism's size of {system.size:.3g} m"
         return _growth_sentence(system, rows, far, resolved, what, farthest)
     return ""
 
@@ -81,7 +81,7 @@ def _growth_sentence(
     first = int(np.argmax(np.max(sizes(slice(None))[:, body * width : (body + 1) * width], axis=1) > limit))
     unit = "m/s" if limit == SPEED_OF_LIGHT else "m"
     return (
-        f"the motion grows beyond sense: at t = {rows.t[first]:.6g} s '{system.bodies[body]}' is past {what}, and comes to "
+        f"the motion diverges: at t = {rows.t[first]:.6g} s '{system.bodies[body]}' exceeds {what}, and reaches "
         f"{np.nanmax(values):.2g} {unit}{_strongest(system, rows, first)}; look for a wrong sign of a stiffness, damping or force"
     )
 
@@ -118,8 +118,8 @@ def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> s
     joint, equation = system.equations[int(np.argmax(gaps))]
     first = int(np.argmax(violation > allowed))
     return (
-        f"constraints are violated: joint '{joint}' (equation {equation}) is open by {violation[worst]:.3g} at "
-        f"t = {rows.t[worst]:.6g} s, first by more than {allowed:.1g} at t = {rows.t[first]:.6g} s; expected at most {allowed:.1g}"
+        f"constraints are violated: joint '{joint}' (equation {equation}) has an error of {violation[worst]:.3g} at "
+        f"t = {rows.t[worst]:.6g} s, expected at most {allowed:.1g}, first exceeded at t = {rows.t[first]:.6g} s"
     )
 
 
@@ -137,8 +137,8 @@ def accumulated_errors_sentence(system: System, settings: RunSettings, trajector
         return
     what, unit = _position(system, worst)
     yield (
-        f"the errors of the steps may add up: {what} may be off by {displaced[worst]:.2g} {unit} by t = {trajectory.t[-1]:.6g} s, "
-        f"{errors[worst]:.2g} times the tolerance; choose a smaller rtol, or run with --verify for error bars"
+        f"integration errors may accumulate: the estimated error of {what} at t = {trajectory.t[-1]:.6g} s is "
+        f"{displaced[worst]:.2g} {unit}, {errors[worst]:.2g} times the tolerance; use a smaller rtol, or --verify for error bars"
     )
 
 

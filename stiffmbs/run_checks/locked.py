@@ -24,8 +24,8 @@ def locked(dynamics: Dynamics, redundancy: Redundancy, way: Trajectory) -> tuple
         output, row, gap = velocity
         joint, equation = equations[row]
         return max(1, output), (
-            f"stopped before t = {way.t[output]:.6g} s: joint '{joint}' (equation {equation}) is not followed there, its velocity is "
-            f"off by {gap:.3g}: the mechanism locks, or a prescribed velocity asks for more than the other joints allow"
+            f"stopped before t = {way.t[output]:.6g} s: joint '{joint}' (equation {equation}) is violated there by a velocity of "
+            f"{gap:.3g}: the mechanism locks, or the other joints do not allow a prescribed velocity"
         )
     others = unproven(redundancy)
     rows = tuple(row for row in others if dynamics.system.holonomic[row])
@@ -36,8 +36,8 @@ def locked(dynamics: Dynamics, redundancy: Redundancy, way: Trajectory) -> tuple
     joint, equation = equations[row]
     names = listed(list(dict.fromkeys(equations[other][0] for other in others[row])) or [joint])
     return output + 1, (
-        f"stopped at t = {t:.6g} s: joint '{joint}' (equation {equation}) was left out, as near the start it holds the same "
-        f"as {names}; it does not hold there, so that the joints lock or contradict each other"
+        f"stopped at t = {t:.6g} s: joint '{joint}' (equation {equation}), left out because near the start it is "
+        f"redundant with {names}, is violated there: the joints lock or contradict each other"
     )
 
 

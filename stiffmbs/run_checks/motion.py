@@ -53,8 +53,8 @@ def near_limits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
         passed = np.flatnonzero(state.values["event_function"][first:end] < doubtful)
         if len(passed):
             yield (
-                f"{words[passed[0]]}, first seen at t = {rows.t[k]:.6g} s; a vibration that has grown, as shimmy, may come to that, "
-                "and the motion may then depend on the tolerances: look at it with --verify, and at its growth with "
+                f"{words[passed[0]]}, first at t = {rows.t[k]:.6g} s, for example because of a growing vibration (shimmy); "
+                "the motion may then depend on the tolerances: check it with --verify, and its growth with "
                 "'stiffmbs modes' and an earlier --at"
             )
             return
@@ -93,9 +93,9 @@ def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     k, worst = np.unravel_index(int(np.nanargmax(apart)), apart.shape)
     name = writer(system, "position", int(counted.source[worst]))
     yield (
-        f"whole turns of the angle of '{name}' are not certain: at t = {rows.t[instants[k]]:.6g} s the orientations and the integral of "
-        f"the angular velocity differ by {apart[k, worst]:.2g} rad; the steps are too long for the speed (tighten rtol, or shorten step), "
-        "or the angle's reference axis comes to lie along the axis of rotation"
+        f"the revolutions of the angle of '{name}' are uncertain: at t = {rows.t[instants[k]]:.6g} s the orientation and the integral of "
+        f"the angular velocity differ by {apart[k, worst]:.2g} rad; the steps are too long for the speed (use a smaller rtol or step), "
+        "or the reference axis of the angle becomes parallel to the axis of rotation"
     )
 
 
@@ -122,8 +122,8 @@ def refuse_far_away(system: System) -> None:
     rounding, size = farthest[body] * sys.float_info.epsilon, system.size
     if rounding > RUN_CHECKS.coarse * size:
         raise InputError(
-            f"bodies.{system.bodies[body]}.position: found {farthest[body]:.3g} m in a mechanism of {size:.3g} m, where neighbouring "
-            f"numbers are {rounding:.1g} m apart, expected it nearer to the origin"
+            f"bodies.{system.bodies[body]}.position: found {farthest[body]:.3g} m in a mechanism of {size:.3g} m, with a rounding "
+            f"error of {rounding:.1g} m, expected a position nearer to the origin"
         )
 
 

@@ -50,11 +50,11 @@ class Overlooked:
 
     def sentence(self) -> str:
         """Return a sentence on the first missed event."""
-        more = f" and at {len(self.times) - 1} more instants" if len(self.times) > 1 else ""
-        law = f"'{self.element}'" if self.element else "a law"
+        more = f" and at {len(self.times) - 1} more times" if len(self.times) > 1 else ""
+        law = f"'{self.element}'" if self.element else "a force"
         return (
-            f"a step of {self.step:.2g} s passed over {law} at t = {self.times[0]:.6g} s{more}: "
-            f"forces there accelerate {self.velocity} otherwise than the step has followed"
+            f"a step of {self.step:.2g} s missed {law} at t = {self.times[0]:.6g} s{more}: "
+            f"the accelerations of {self.velocity} there contradict the solution of the step"
         )
 
 

@@ -166,8 +166,8 @@ def singular_passage_sentence(
     d, pose = found
     if not _decided_by_chance(d) and not (len(reached) and reached[-1] >= asked):
         yield (
-            f"may pass a singular pose near t = {rows.t[min(dips)]:.6g} s or later, where more than one motion may follow: "
-            "a second run that looks at it was cut short"
+            f"may pass a singular pose near t = {rows.t[min(dips)]:.6g} s or later, where more than one motion may follow; "
+            "the rerun that examines it was aborted"
         )
     elif pose is not None:
         yield from _sentence(pose, d, rtol)
@@ -224,15 +224,15 @@ def _decided_by_chance(d: float) -> bool:
 def _sentence(pose: SingularPose, d: float, rtol: float) -> Iterator[str]:
     magnified = _magnified(d)
     where = "; ".join(f"{body} at {place}" for body, place in zip(pose.bodies, pose.poses, strict=True))
-    at = f"near t = {pose.t:.6g} s, where {listed(list(pose.joints))} nearly depend on each other"
+    at = f"near t = {pose.t:.6g} s, where the equations of {listed(list(pose.joints))} are nearly dependent"
     if _decided_by_chance(d):
         yield (
-            f"passes a singular pose {at}: more than one motion may follow, and the motion depends on the last digits of the geometry "
+            f"passes a singular pose {at}: more than one motion may follow, selected by the last digits of the geometry "
             f"({where})"
         )
     elif magnified * rtol >= RUN_CHECKS.worth_telling:
         decided = "more than one motion may follow, and " if magnified * rtol >= RUN_CHECKS.decided else ""
         yield (
-            f"passes near a singular pose {at}: {decided}errors come back about {magnified:.1g} times as large; set a smaller rtol "
+            f"passes near a singular pose {at}: {decided}errors grow by a factor of about {magnified:.1g}; use a smaller rtol "
             f"({where})"
         )

@@ -33,7 +33,7 @@ WORK = {
 """Counters of work, in the order of a summary."""
 AS_MANY_AS = {"newton_iterations": "residuals", "factorizations": "jacobians"}
 """Counters that are shown only where they differ from others."""
-REPEATED = {"error_test_failures": "failed the error test", "convergence_failures": "did not converge"}
+REPEATED = {"error_test_failures": "error test failures", "convergence_failures": "convergence failures"}
 """Reasons for which steps were repeated."""
 RESTARTS = {"breakpoints": ("input breakpoint", "input breakpoints"), "events": ("event", "events")}
 """Instants at which the solver restarts: one, and several."""
@@ -61,9 +61,9 @@ def solver_lines(solver: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _steps(solver: Mapping[str, Any]) -> Iterator[str]:
-    repeated = [f"{solver[counter]} more {why}" for counter, why in REPEATED.items() if solver.get(counter)]
+    repeated = [f"{solver[counter]} {why}" for counter, why in REPEATED.items() if solver.get(counter)]
     if solver.get("rejected") and not repeated:
-        repeated = [f"{solver['rejected']} more rejected"]
+        repeated = [f"{solver['rejected']} rejected"]
     yield str(solver["steps"]) + (f" ({', '.join(repeated)})" if repeated else "")
     if "order" in solver:
         yield f"order {solver['order']} at the end"
@@ -192,7 +192,7 @@ def _print(scene: str, solution: Solution, console: Console | PlainConsole, all:
     energy, constraints = solution.channels["energy.total"], ("constraint.position", "constraint.velocity")
     line("energy", balance_words(solution.balance, float(energy[0])))
     position, velocity = (np.nanmax(solution.channels[name]) for name in constraints)
-    line("constraints", f"hold to {position:.2g} in position, {velocity:.2g} in velocity")
+    line("constraints", f"position {position:.2g} m, velocity {velocity:.2g} m/s")
     for label, text in solver_lines(solution.solver):
         line(label, text)
     for label, sentences in (("presolve", solution.presolve), ("verified", solution.verification)):
@@ -216,4 +216,4 @@ def _print_loads(solution: Solution, console: Console | PlainConsole, say: Calla
         else:
             console.print(rich_table(heads, *rows))
     if solution.not_unique:
-        say(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values")
+        say(f"{NOT_UNIQUE} not determined by rigid bodies: one possible solution")

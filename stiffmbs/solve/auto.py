@@ -144,7 +144,7 @@ class _AutoRun:
             return None
         self._choice.leave_implicit(check.rate, check.loss)
         self._messages.append(
-            f"projected again from t = {reached.t:.4g} s on, as {self._implicit.name} took shorter steps than they pay for"
+            f"projected again from t = {reached.t:.4g} s on (the steps of {self._implicit.name} had become too short)"
         )
         return _Left(reached.t, *integrator.split(reached.y))
 
@@ -153,7 +153,7 @@ class _AutoRun:
         self._implicit.create()
         trajectory = bdf.integrated(self._implicit.integrator, start, self._grid, self._watch)
         self._segments = [Segment(replace(trajectory, solver=self._implicit.name), self._implicit.traits())]
-        self._messages = [f"{self._implicit.name}, as explicit steps {message}"]
+        self._messages = [f"{self._implicit.name}, because explicit integration {message}"]
 
     def _switch(self, switch: Switch) -> None:
         """Continue with the implicit integrator."""
@@ -177,7 +177,7 @@ class _AutoRun:
         """Join the segments to one trajectory with a note on the switches."""
         messages = self._messages[:MOST_MESSAGES]
         if len(self._messages) > MOST_MESSAGES:
-            messages += [f"and so on, {len(self._messages)} changes in all"]
+            messages += [f"and so on, {len(self._messages)} changes of integrator"]
         if not self._segments[0].traits.implicit:
             messages.insert(0, "projected dop853")
         parts = [segment.trajectory for segment in self._segments]

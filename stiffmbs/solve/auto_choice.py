@@ -95,7 +95,7 @@ class Choice:
         saving = explicit_cost - self._least_cost(pieces, decay)
         if not saving > 0.0:
             return None
-        reason = f"{self.implicit.name}, as the fastest rate is {fastest:.3g} 1/s"
+        reason = f"{self.implicit.name} (fastest rate {fastest:.3g} 1/s)"
         return Switch(reason, rate, self.thresholds.of_trial(saving / explicit_cost))
 
     def _least_cost(self, pieces: int, decay: float = 0.0) -> float:
@@ -129,8 +129,8 @@ class Choice:
         if not min(saving, self.remaining(work.t) * rate) > self._justifying(work.t):
             return None
         reason = (
-            f"{self.implicit.name} from t = {work.t:.4g} s on, as stability held back {100 * share:.0f} % of the "
-            f"steps (fastest rate {fastest:.3g} 1/s)"
+            f"{self.implicit.name} from t = {work.t:.4g} s on (stability limited {100 * share:.0f} % of the "
+            f"explicit steps, fastest rate {fastest:.3g} 1/s)"
         )
         return Switch(reason, rate, self.thresholds.of_trial(share))
 
@@ -140,7 +140,7 @@ class Choice:
         saving = saving_by_return(rate, self._implicit_rate, self.thresholds.return_ratio, self._grid.end - t)
         if not saving > self.implicit.start:
             return None
-        reason = f"{self.implicit.name} from t = {t:.4g} s on, as explicit steps cost more than its own had"
+        reason = f"{self.implicit.name} again from t = {t:.4g} s on (explicit steps cost more)"
         return Switch(reason, rate, self.thresholds.after_return())
 
     def _stable_rate(self, fastest: float) -> float:

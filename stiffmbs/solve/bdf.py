@@ -57,8 +57,8 @@ def refuse_untested_reactions(system: System, settings: RunSettings) -> None:
         return
     if system.forces_by_reactions:
         raise InputError(
-            f"formulation {settings.formulation}: found forces that follow reactions ({', '.join(system.forces_by_reactions)}), which this "
-            "formulation does not test; expected SI2, SI1 or index1"
+            f"formulation {settings.formulation}: found forces that depend on reactions ({', '.join(system.forces_by_reactions)}), expected "
+            "formulation SI2, SI1 or index1: the error test of this one does not include velocities"
         )
 
 

@@ -78,8 +78,8 @@ class _Along:
         way, self._looked_at = t - self._looked_at, t
         if (self._end - t) * CONTROL.enough_steps > CHATTERING.too_many * max(way, 0.0):
             raise SolverError(
-                f"stopped at t = {t:.9g} s: the states could not be integrated: the last {CONTROL.enough_steps} evaluations have covered {way:.3g} s; "
-                "expected rates that change less, or fewer digits in what they follow from"
+                f"stopped at t = {t:.9g} s: the states could not be integrated: the last {CONTROL.enough_steps} evaluations covered only {way:.3g} s; "
+                "expected smoother rates, or inputs with less rounding"
             )
 
     def jacobian(self, t: float, values: np.ndarray) -> np.ndarray:

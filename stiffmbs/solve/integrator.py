@@ -54,11 +54,11 @@ class Integrator:
             self.equations, self.engine = driven_by_callbacks(dynamics, settings)
             cost = dense_cost(self.equations.n)
             self._notes.append(
-                f"IDA runs through scikit-sundae's callbacks, which is slower, and coarser where forces are very stiff: {reason}"
+                f"IDA runs through the callbacks of scikit-sundae, which is slower, and less accurate with very stiff forces: {reason}"
             )
             if dynamics.system.n_values("event_function"):
                 self._notes.append(
-                    "contacts and other events that begin and end within one step are not seen this way; set max_step"
+                    "contacts and other events that begin and end within one step are then missed; set max_step"
                 )
         self.factors = 1e-3 * cost
         self._jumps = VelocityJumps(dynamics)

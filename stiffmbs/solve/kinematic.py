@@ -84,8 +84,8 @@ def _refuse_followed_states(dynamics: Dynamics) -> None:
     rows = [*system.term("tangent", "C_x").row, *of_velocities.row[of_velocities.column >= system.first_state]]
     if rows:
         raise InputError(
-            f"'{system.equations[rows[0]][0]}': found a state in a drive or constraint, expected functions of time for the solver "
-            "kinematic; take bdf or auto"
+            f"'{system.equations[rows[0]][0]}': found a state in a drive or constraint, expected functions of time with solver "
+            "kinematic; use bdf or auto"
         )
 
 
@@ -94,8 +94,8 @@ def _refuse_freedoms(dynamics: Dynamics) -> None:
     equations = int(np.sum(system.active))
     if equations != system.n_u:
         raise InputError(
-            f"kinematic analysis: found {equations} independent equations for {system.n_u} freedoms of the bodies, "
-            "expected as many: joints and drives that fix every coordinate"
+            f"kinematic analysis: found {equations} independent equations for {system.n_u} velocities of the bodies, "
+            "expected joints and drives that prescribe every coordinate"
         )
 
 
@@ -229,6 +229,6 @@ class _Motion:
         pose = ", ".join(f"{body} at {system.of_body.place(self.q, k)}" for k, body in enumerate(system.bodies[:6]))
         more = ", ..." if len(system.bodies) > 6 else ""
         return (
-            f"the mechanism locks at t = {self.t:.9g} s (dead centre): the drives ask for more than "
-            f"{', '.join(involved)} allow; there {pose}{more}"
+            f"the mechanism locks at t = {self.t:.9g} s (dead centre): the drives prescribe a motion that "
+            f"{', '.join(involved)} do not allow; last pose: {pose}{more}"
         )

@@ -32,9 +32,7 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool) -> tuple
         following = dynamics.report(t[done + 1 :], q[done + 1 :], u[done + 1 :], project)
         pose = dynamics.system.of_body.moved(q[done], np.zeros_like(u[done]))  # quaternions of length 1
         parts += [_unknown(parts[0], t[done], pose, u[done]), following]
-        notes.append(
-            f"no accelerations and reactions at t = {t[done]:.9g} s: {FAILURES[status]}; they are left out there"
-        )
+        notes.append(f"no accelerations and reactions at t = {t[done]:.9g} s (NaN there): {FAILURES[status]}")
         done += 1 + len(following.t)
     return _joined(parts), notes
 

@@ -67,8 +67,8 @@ def settings_notes(settings: RunSettings, system: System) -> Iterator[str]:
         yield f"run.tuning changes parameters of solvers or checks: {changes}"
     if not traits.locates_events and system.n_values("event_function"):
         yield (
-            f"{traits.name} does not locate the breakpoints that forces have in the state (contacts, step, abs, tables), and a step of "
-            f"{settings.step:g} s may pass over them; dopri5, dop853 and bdf see them"
+            f"{traits.name} does not locate breakpoints of forces (contacts, step, abs, tables), and steps of "
+            f"{settings.step:g} s may miss them; dopri5, dop853, radau and bdf locate them"
         )
 
 
@@ -76,7 +76,7 @@ def _ignored(settings: RunSettings, traits: Traits) -> Iterator[str]:
     ignored = traits.ignored(settings)
     if ignored:
         given = [f"{name} = {f'{value:g}' if isinstance(value, float) else value}" for name, value in ignored.items()]
-        reads = f"reads {_listed(traits.reads)}" if traits.reads else "follows the drives alone"
+        reads = f"reads {_listed(traits.reads)}" if traits.reads else "uses the drives alone"
         yield f"{_listed(given)} {'has' if len(given) == 1 else 'have'} no effect: {traits.name} {reads}"
 
 

@@ -29,7 +29,7 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
             dynamics.state.evaluate(term_set, t + later)
             name = _undefined(dynamics.system, dynamics.state.values[term_set], term_set)
             if name:
-                return f"; '{name}' has no finite value {'beyond' if ahead else 'at'} that instant"
+                return f"; '{name}' has no finite value {'after' if ahead else 'at'} that time"
     _move(dynamics, q, u)
     return _open(dynamics, t) or _hardest(dynamics, t)
 
@@ -61,7 +61,7 @@ def _open(dynamics: Dynamics, t: float) -> str:
     if not len(gaps) or gaps.max() < LEFT_OPEN:
         return ""
     joint, equation = system.equations[int(np.argmax(gaps))]
-    return f"; joint '{joint}' (equation {equation}) is open by {gaps.max():.3g}"
+    return f"; joint '{joint}' (equation {equation}) is violated by {gaps.max():.3g}"
 
 
 def _hardest(dynamics: Dynamics, t: float) -> str:
@@ -70,14 +70,16 @@ def _hardest(dynamics: Dynamics, t: float) -> str:
     largest, name, k = max(_pulls(dynamics, t), default=(0.0, "", 0))
     if not largest > 0.0:
         return ""
-    return f"; '{name}' pulls hardest there ({acceleration_name(dynamics.system, k)} by {largest:.3g})"
+    return (
+        f"; '{name}' causes the largest acceleration there ({acceleration_name(dynamics.system, k)} by {largest:.3g})"
+    )
 
 
 def acceleration_name(system: System, k: int) -> str:
     """Return the name of a velocity's rate; in space, angular rates about principal axes have no channel."""
     of_body = system.of_body
     if of_body.dimensions == 3 and k % of_body.n_u >= of_body.linear:
-        return f"the turning of {system.bodies[k // of_body.n_u]}"
+        return f"the angular acceleration of {system.bodies[k // of_body.n_u]}"
     return system.name_of(k, of_body.accelerations)
 
 

@@ -41,12 +41,12 @@ def unwatched(t: float) -> None:
 class Outcome(Enum):
     """Outcome of a run, as a sentence."""
 
-    DONE = "the whole time was solved"
-    INTERRUPTED = "interrupted by the user; the results up to there are kept"
-    STOPPED = "the solver stopped early; the results up to there are kept"
+    DONE = "completed"
+    INTERRUPTED = "interrupted by the user; the results so far are kept"
+    STOPPED = "the solver stopped early; the results so far are kept"
 
 
-IN_DOUBT = "the end was reached, but the results are in doubt"
+IN_DOUBT = "completed, but the results are in doubt"
 """Sentence in place of `Outcome.DONE` for a run whose notes say that its results may be wrong."""
 
 

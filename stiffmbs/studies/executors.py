@@ -93,7 +93,7 @@ def rows_of(
 
 def _ended(error: Exception) -> SolverError:
     return SolverError(
-        f"a worker of the study ended ({type(error).__name__}: {error}); what is done is kept: start the study again to go on"
+        f"a worker of the study ended ({type(error).__name__}: {error}); the completed cases are kept; start the study again to continue"
     )
 
 

@@ -177,7 +177,7 @@ class _Model:
         """Raise an error if the model cannot be solved at the start of the search."""
         solution = self.solution(point)
         if solution.outcome is not Outcome.DONE:
-            raise SolverError(f"the model where the search starts: {solution.message}")
+            raise SolverError(f"at the start of the search: {solution.message}")
         for output in self._outputs:
             output.refuse_unknown(solution)
 

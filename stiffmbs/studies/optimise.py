@@ -151,7 +151,7 @@ class _Model:
             output.refuse_unknown(known)
         found = self.outputs(point)
         if not np.isfinite(found).all():
-            raise SolverError(f"the model where the search starts: {self._message}")
+            raise SolverError(f"at the start of the search: {self._message}")
         return found
 
     def outputs(self, point: np.ndarray) -> np.ndarray:

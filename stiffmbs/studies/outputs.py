@@ -120,7 +120,7 @@ def parsed(text: str) -> ast.Expression:
     try:
         return ast.parse(text.strip().replace("^", "**"), mode="eval")
     except (SyntaxError, ValueError):
-        raise InputError(f"output '{text}': found no formula, expected such as peak(rail.fy)") from None
+        raise InputError(f"output '{text}': found no formula, expected a formula such as peak(rail.fy)") from None
 
 
 def channel_of(node: ast.AST) -> str | None:

@@ -102,10 +102,10 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
             for body, words in zip(pose.bodies[: VERIFICATION.named], pose.poses[: VERIFICATION.named], strict=True)
         )
         return (
-            f"another branch: at t = {pose.t:.6g} s the mechanism passes a (nearly) singular pose ({where}); "
-            f"{', '.join(pose.joints)} hold less there than elsewhere, and the motion may go on in more than one way; the runs "
-            f"part there ({first.body} is elsewhere from t = {first.t:.4g} s on). Remedy: a tighter rtol until two runs "
-            "agree, exact dimensions, or a gear or stop that decides the branch"
+            f"another branch: at t = {pose.t:.6g} s the mechanism passes a (nearly) singular pose ({where}), where "
+            f"the equations of {', '.join(pose.joints)} lose rank and the motion may branch; the runs "
+            f"diverge there ({first.body} differs from t = {first.t:.4g} s on). Remedy: a smaller rtol until two runs "
+            "agree, exact dimensions, or a gear or stop that selects the branch"
         )
     others = [comparison.other.name] if comparison.other else []
     names = ["this run", *(run.name for run in comparison.tighter), *others]
@@ -115,14 +115,14 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
         later = of_levels[1].t - begin
         if later < VERIFICATION.sensitive * (of_levels[0].t - begin):
             return (
-                f"a sensitive (chaotic) motion: from t = {of_levels[0].t:.4g} s on {of_levels[0].body} is elsewhere in "
-                f"{names[1]}, and that parts from {names[2]} at t = {of_levels[1].t:.4g} s; a tighter tolerance puts "
-                "the divergence off but never away, so beyond it the results are one of many possible motions"
+                f"a sensitive (chaotic) motion: {of_levels[0].body} differs in {names[1]} from t = {of_levels[0].t:.4g} s on, "
+                f"and in {names[2]} from t = {of_levels[1].t:.4g} s on; a smaller tolerance only delays "
+                "the divergence, and the results after it are one of many possible motions"
             )
     remedy = f"tighten {'the step' if traits_of(settings).fixed_steps else 'rtol'}"
     other = names[1] if of_levels and of_levels[0] else names[-1]
     return (
-        f"the motion is not resolved: from t = {first.t:.4g} s on {first.body} is elsewhere in {other}; {remedy} until "
+        f"the motion is not resolved: from t = {first.t:.4g} s on {first.body} differs in {other}; {remedy} until "
         "two runs agree"
     )
 
@@ -132,7 +132,7 @@ def _uncertain_sentence(comparison: Comparison, parted: bool) -> str:
     peaks = ", ".join(_peak(comparison, name) for name in worst)
     more = len(comparison.uncertain) - len(worst)
     others = f" and {more} more channels" if more else ""
-    return f"peaks are less certain than they should be: {peaks}{others}; {_remedy(comparison, worst[0], parted)}"
+    return f"error bars of peaks are large: {peaks}{others}; {_remedy(comparison, worst[0], parted)}"
 
 
 def _peak(comparison: Comparison, name: str) -> str:
@@ -149,21 +149,21 @@ def _remedy(comparison: Comparison, name: str, parted: bool) -> str:
     fixed = traits_of(settings).fixed_steps
     what, ratio = (f"step {settings.step:.3g} s", 2.0) if fixed else (f"rtol {settings.rtol:.3g}", 10.0)
     if parted:
-        return f"at {what} they belong to motions that part"
+        return f"at {what} the motions of the runs diverge"
     whole = [run for run in comparison.tighter if not run.obstacle]
     if len(whole) < 2:
-        return f"{what} is too coarse for them, or the integrators disagree; compare with a tighter one"
+        return f"{what} is too large, or the integrators disagree; use a smaller one"
     peaks = [(float(np.nanmin(v)), float(np.nanmax(v))) for v in (first[name], *(run.reported(name) for run in whole))]
     once = max(abs(a - b) for a, b in zip(peaks[0], peaks[1], strict=True))
     twice = max(abs(a - b) for a, b in zip(peaks[1], peaks[2], strict=True))
     shrinks = once / twice if twice else math.inf
     if shrinks < VERIFICATION.converges:
-        return f"they do not settle with a tighter tolerance than {what}: differences shrink by {shrinks:.2g} only"
+        return f"they do not converge below {what}: differences decrease only by a factor of {shrinks:.2g}"
     needed = comparison.uncertain[name] / comparison.acceptable
     steps = math.ceil(math.log(needed) / math.log(min(shrinks, ratio)))
     if fixed:
-        return f"they converge; step {settings.step / ratio**steps:.2g} s should do"
-    return f"they converge; rtol {settings.rtol / ratio**steps:.1g} should do"
+        return f"they converge; step {settings.step / ratio**steps:.2g} s should suffice"
+    return f"they converge; rtol {settings.rtol / ratio**steps:.1g} should suffice"
 
 
 def _missed(comparison: Comparison) -> list[str]:
@@ -186,10 +186,10 @@ def _missed_sentence(comparison: Comparison, missed: list[str]) -> str:
     low = below > above
     k = int(np.nanargmin(values) if low else np.nanargmax(values))
     reported = np.nanmin(values[at]) if low else np.nanmax(values[at])
-    more = f", and {len(missed) - 1} more channels alike" if len(missed) > 1 else ""
+    more = f", and {len(missed) - 1} more channels" if len(missed) > 1 else ""
     return (
-        f"peaks lie between the output instants: {name} comes to {values[k]:.4g} at t = {times[k]:.6g} s, "
-        f"{reported:.4g} at output instants{more}; take a smaller output, or points: steps"
+        f"peaks lie between the output times: {name} reaches {values[k]:.4g} at t = {times[k]:.6g} s, but "
+        f"{reported:.4g} at output times{more}; use a smaller output interval, or points: steps"
     )
 
 
@@ -205,15 +205,15 @@ def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None
     if by_luck(comparison, shorter):
         assert shorter is not None
         yield (
-            "runs part by what their steps see of the scene's laws, not by their tolerance: this one agrees with "
-            f"{shorter.name}, others do not; set max_step to that, so that it is not left to luck"
+            "runs diverge because some steps miss events, not because of the tolerance: this run agrees with "
+            f"{shorter.name}, others do not; set max_step to this value"
         )
         return
     different = _different(comparison, shorter)
     if shorter is not None and different:
         yield (
-            f"the length of the steps decides: {different} in {shorter.name}, though a tighter tolerance alone changes less; "
-            "set max_step to that, and to less until two runs agree"
+            f"the results depend on the step length: {different} in {shorter.name}, but not at a smaller tolerance alone; "
+            "set max_step to this value, and reduce it until two runs agree"
         )
     elif along.balance is not None and not any("energy balance" in note for note in comparison.first.notes):
         yield from _open_balance(along)
@@ -236,14 +236,14 @@ def _parts(comparison: Comparison, channels: Mapping[str, np.ndarray], shorter: 
     first = comparison.first
     other = {name: shorter.reported(name) for name in first}
     found = divergence(first.time, distance(channels, other, len(first.time), comparison.sizes))
-    return f"from t = {found.t:.4g} s on {found.body} is elsewhere" if found is not None else ""
+    return f"from t = {found.t:.4g} s on {found.body} differs" if found is not None else ""
 
 
 def _stepped_over(comparison: Comparison, found: SteppedOver, shorter: Again | None) -> str:
     whose = f"'{found.element}' acts" if found.element else "something acts"
-    known = _off(comparison, shorter) or "how far all is off from there on is not known, and nothing has a bar"
+    known = _off(comparison, shorter) or "the errors after it are unknown, and there are no error bars"
     return (
-        f"stepped over: {whose} at t = {found.at:.6g} s within a step of the solver, which goes on as if it did not; {known}; "
+        f"missed event: {whose} at t = {found.at:.6g} s within a step that does not contain its force; {known}; "
         f"set max_step to {found.max_step:.1g} s or less"
     )
 
@@ -261,7 +261,7 @@ def _off(comparison: Comparison, shorter: Again | None) -> str:
     if not name:
         return ""
     unit = comparison.first.unit(name)
-    return f"{name} is off by up to {parts[name] * comparison.sizes[name]:.3g} {unit} ({shorter.name})"
+    return f"{name} differs by up to {parts[name] * comparison.sizes[name]:.3g} {unit} ({shorter.name})"
 
 
 def _different(comparison: Comparison, shorter: Again | None) -> str:
@@ -281,5 +281,5 @@ def _open_balance(along: Along) -> Iterator[str]:
         k = int(np.argmax(np.abs(balance.open)))
         yield (
             f"the energy balance is broken: {balance.imbalance:.3g} J of the {balance.scale:.3g} J exchanged are missing at "
-            f"t = {balance.t[k]:.6g} s; tighten rtol or set max_step"
+            f"t = {balance.t[k]:.6g} s; use a smaller rtol or set max_step"
         )

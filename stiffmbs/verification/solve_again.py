@@ -86,7 +86,7 @@ def solve_again(
     the load of the machine.
     """
     if allowed <= 0:
-        return Again(name, None, "not begun: no effort was left", at[:0])
+        return Again(name, None, "not started: the limit of evaluations is reached", at[:0])
     grid = Grid(job.grid.start, float(times[-1]), times)
     deadline = Deadline(grid.start, grid.end, allowed, job.evaluations)
     try:
@@ -97,9 +97,8 @@ def solve_again(
     if solution.outcome is Outcome.INTERRUPTED:
         if not deadline.passed:
             raise KeyboardInterrupt
-        obstacle = f"given up at t = {solution.time[-1]:.4g} s: it would have taken more than {allowed:.2g} evaluations"
-    how = solution.outcome.value
-    remark = solution.message.removeprefix(how).removeprefix("; ") if solution.message.startswith(how) else ""
+        obstacle = f"aborted at t = {solution.time[-1]:.4g} s: it needs more than {allowed:.2g} evaluations"
+    remark = solution.message.partition(f"{solution.outcome.value}; ")[2]
     return Again(name, solution, obstacle, at[at < len(solution.time)], remark)
 
 

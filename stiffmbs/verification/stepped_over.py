@@ -85,7 +85,7 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     except StiffmbsError as error:
         return Along(None, obstacle=str(error))
     if trajectory.outcome is Outcome.INTERRUPTED:
-        return Along(None, obstacle="not looked along: no effort was left")
+        return Along(None, obstacle="missed events were not searched: the limit of evaluations is reached")
     rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
     system = job.dynamics.system
     balance = energy_balance(system, rows, trajectory.step_times)

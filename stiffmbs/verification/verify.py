@@ -65,7 +65,7 @@ def verify(
     job = prepare(data, settings, start_from, **changes)
     first = solved(job, watch)
     if len(first.time) < 2:
-        return replace(first, verification=("not verified: nothing was solved",))
+        return replace(first, verification=("not verified: the run has no results",))
     if first.outcome is Outcome.INTERRUPTED:
         return replace(first, verification=("not verified: interrupted by the user",))
     try:
@@ -188,7 +188,7 @@ class _Verification:
             return run
         whose = f"'{found.stretches[0].element}'" if found.stretches[0].element else "something"
         return replace(
-            run, blind=f"its steps go over {whose} at t = {found.stretches[0].at:.6g} s, which this run has seen"
+            run, blind=f"its steps missed {whose} at t = {found.stretches[0].at:.6g} s, which this run located"
         )
 
     def _sample_densely(self) -> None:
@@ -227,7 +227,7 @@ class _Verification:
     def _tighter_settings(self, level: int) -> tuple[str, dict[str, Any]]:
         settings = self._job.settings
         if self._exact:
-            return "kinematic between the output instants", {}
+            return "kinematic between the output times", {}
         if self._traits.fixed_steps:
             step = settings.step / 2**level
             return f"{self._traits.name} with steps of {step:.3g} s", {"step": step}
@@ -274,19 +274,19 @@ class _Verification:
         done = [
             run.name for run in runs if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
         ]
-        found = [f"solved again with {' and '.join(done)}"] if done else []
+        found = [f"rerun with {' and '.join(done)}"] if done else []
         if self._exact:
-            found = ["kinematic: positions follow from the drives alone, exact but for rounding; bars are of sampling"]
+            found = ["kinematic: positions are exact up to rounding; the error bars are those of sampling"]
         found += [f"{run.name}: {run.obstacle}" for run in runs if run.obstacle]
         found += [f"{run.name}, not counted: {run.blind}" for run in runs if run.blind]
         if self._other is not None and self._other.remark:
             found.append(f"{self._other.name}, not counted: {self._other.remark}")
         if self._dense is None:
-            found.append("nothing is known between the output instants")
+            found.append("peaks between the output times are unknown")
         elif self._dense.singular:
             found.append(
                 f"at t = {self._dense.singular[0]:.6g} s the pose is singular: accelerations and reactions have no value "
-                "there, and their peaks are those of other instants"
+                "there, and their peaks are those of other times"
             )
         return [*found, *self._skipped]
 

@@ -147,9 +147,7 @@ def test_an_inactive_sensor_keeps_what_it_has_seen(tmp_path):
 
 def test_a_sensor_that_is_true_at_once_is_told(run_with):
     """It was not deactivated after it had ended the first simulation."""
-    with pytest.raises(
-        InputError, match=r"stage 2 of 2: 'SENSOR_3': found its condition true where the run starts, at t = 0.3"
-    ):
+    with pytest.raises(InputError, match=r"stage 2 of 2: 'SENSOR_3': found its condition true at the start, t = 0.3"):
         run_with("SENSOR/3, FUNCTION=TIME, VALUE=0.3, GE, RETURN", "SIM/DYN, END=1, STEPS=4\nSIM/DYN, END=2, STEPS=4\n")
 
 

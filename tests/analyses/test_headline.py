@@ -37,9 +37,8 @@ def test_constraint_drift_that_stays_is_in_the_headline(monkeypatch):
     monkeypatch.setattr(taken_again, "CREPT", 1e-9)
     scene = stiffmbs.read_scene(FOUR_BAR.replace("1e7", "1e2"))
     solution = stiffmbs.run(scene, solver="bdf", duration=3, points=61)
-    assert any("creep by" in note and "may be wrong" in note for note in solution.notes)
-    assert solution.message.startswith(f"{IN_DOUBT}: under the forces in '")
-    assert "the whole time was solved" not in solution.message
+    assert any("constraint drift" in note and "may be wrong" in note for note in solution.notes)
+    assert solution.message.startswith(f"{IN_DOUBT}: the reactions in '")
 
 
 def test_drift_that_exact_constraints_have_removed_is_not():
@@ -51,5 +50,5 @@ def test_drift_that_exact_constraints_have_removed_is_not():
 def test_growth_beyond_sense_is_in_the_headline(solver):
     solution = stiffmbs.run(stiffmbs.read_scene(GROWS), solver=solver, duration=8, points=81)
     assert np.all(np.isfinite(solution["b.x"]))
-    assert any("beyond sense" in note for note in solution.notes)
-    assert solution.message.startswith(f"{IN_DOUBT}: the motion grows beyond sense")
+    assert any("the motion diverges" in note for note in solution.notes)
+    assert solution.message.startswith(f"{IN_DOUBT}: the motion diverges")

@@ -18,13 +18,13 @@ run: {duration: 1 s, points: 101, rtol: 1e-9}
 def test_a_load_swings_about_where_it_would_hang():
     found = stiffmbs.run(stiffmbs.read_scene(SCENE))
     assert found["load.y"] == pytest.approx(-0.1 + 0.03 * np.sin(10 * found.time), abs=1e-7)
-    assert any("stable was not looked at" in note for note in found.notes)
+    assert any("at the start was not checked" in note for note in found.notes)
 
 
 def test_an_equilibrium_far_from_the_described_pose_is_told():
     near, far = (stiffmbs.run(stiffmbs.read_scene(SCENE.replace("-10", weight))) for weight in ("-10", "-40"))
     assert not any("away from the described pose" in note for note in near.notes)
-    assert any("lies 0.4 m away from the described pose (load)" in note for note in far.notes)
+    assert any("is 0.4 m away from the described pose (load)" in note for note in far.notes)
 
 
 def test_a_steady_motion_far_from_the_described_pose_is_told():
@@ -39,4 +39,4 @@ run: {duration: 1 s}
 """
     near, far = (stiffmbs.run(stiffmbs.read_scene(f"gravity: [0, {weight}]{text}")) for weight in (-10, -40))
     assert not any("away from the described pose" in note for note in near.notes)
-    assert any("lies 0.4 m away from the described pose (load)" in note for note in far.notes)
+    assert any("is 0.4 m away from the described pose (load)" in note for note in far.notes)

@@ -70,7 +70,7 @@ def test_changes_that_make_no_sense_are_refused(change, words):
 def test_other_jobs_refuse_a_scene_with_stages():
     scene = stiffmbs.read_scene(THROWN)
     for job in (stiffmbs.modes, stiffmbs.equilibrium, stiffmbs.verify):
-        with pytest.raises(stiffmbs.InputError, match="found a scene with stages, which only a run follows"):
+        with pytest.raises(stiffmbs.InputError, match="found a scene with stages, which only `run` accepts"):
             job(scene)
     with pytest.raises(stiffmbs.InputError, match="found duration for a scene with stages"):
         stiffmbs.run(scene, duration=3)

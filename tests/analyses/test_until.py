@@ -61,7 +61,7 @@ def test_no_stage_follows_where_the_condition_says_so():
         ("speed", "found no bound, expected one of at_least, at_most, equals"),
         ("speed, at_least: 1, at_most: 2", "found at_least and at_most, expected one of"),
         ("spin, at_least: 1", "stage 1 of 2: 'top': found request = spin, expected the name of a request"),
-        ("speed, at_least: 1", "'top': found its condition true where the run starts"),
+        ("speed, at_least: 1", "'top': found its condition true at the start"),
     ],
 )
 def test_a_wrong_condition_is_said(condition, message):
@@ -72,5 +72,7 @@ def test_a_wrong_condition_is_said(condition, message):
 def test_a_stage_has_one_end_that_lies_after_its_start():
     with pytest.raises(stiffmbs.InputError, match="found end and a duration, expected one of them"):
         ran("speed, at_most: 0", THROWN.replace("end: 3, run: {", "end: 3, run: {duration: 1, "))
-    with pytest.raises(stiffmbs.InputError, match=r"stage 2 of 2: found its end at 0.5 s, expected a time after 0.6 s"):
+    with pytest.raises(
+        stiffmbs.InputError, match=r"stage 2 of 2: found its end at 0.5 s, expected a time after its start at 0.6 s"
+    ):
         ran("speed, at_most: 0", THROWN.replace("end: 3", "end: 0.5"))

@@ -81,14 +81,14 @@ def test_verification_reports_the_discretisation(tmp_path):
     file.write_text(pendulum(8))
     found = CliRunner().invoke(main, ["run", str(file), "--verify", "--json", "--set", "run.solver=radau"])
     result = json.loads(found.stdout)
-    assert any("by 4 in place of 8 elements of rod: errors of at most about" in one for one in result["verification"])
+    assert any("4 instead of 8 elements of rod): errors of at most about" in one for one in result["verification"])
     assert 2e-3 < result["channels"]["rod.end.x"]["discretisation"] < 2e-2
 
 
 def test_an_odd_node_of_a_joint_is_kept_by_a_finer_beam():
     text = cantilever(5, force="[0, 5]").replace("i: strip.end, force", "i: strip.node3, force")
     verified = stiffmbs.verify(read_scene(text + "run: {duration: 0.01}"), solver="radau")
-    assert "by 10 in place of 5 elements" in verified.verification[-1]
+    assert "10 instead of 5 elements" in verified.verification[-1]
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_elements_by_a_tolerance(tolerance, spare):
     text = princeton(8, 13.345, 45).replace("elements: 8", f"elements: {tolerance}")
     found = stiffmbs.equilibrium(read_scene(text))
     assert [found.channels[name] for name in STRIP[1:]] == pytest.approx([0.156587823, 0.015342258], abs=spare)
-    assert re.search(r"beam strip: \d+ elements, with an estimated error of", " ".join(found.notes))
+    assert re.search(r"beam strip: \d+ elements, estimated position error", " ".join(found.notes))
 
 
 def test_elements_by_a_tolerance_of_a_run_and_in_a_part():
@@ -139,7 +139,7 @@ def test_bad_tolerances_are_reported(monkeypatch):
             read_scene(text.replace("elements: 8", f"elements: {bad}"))
     with pytest.raises(SolverError, match=r"bodies.strip.elements: found an estimated error of .* expected 1e-12 m"):
         stiffmbs.equilibrium(read_scene(text.replace("elements: 8", "elements: {tolerance: 1e-12}")))
-    with pytest.raises(InputError, match="found a tolerance, which run, equilibrium"):
+    with pytest.raises(InputError, match="found a tolerance, expected a number"):
         stiffmbs.modes(read_scene(text.replace("elements: 8", "elements: auto")))
     with pytest.raises(InputError, match=r"b.elements: found a tolerance, which a scene may have"):
         Model().add("b", BeamBody(start=(0, 0), end=(1, 0), elements="auto", stiffness=(1, 1, 1), mass_per_length=1, inertia_per_length=1))  # fmt: skip

@@ -106,8 +106,10 @@ def test_what_is_redundant_near_the_start_alone_ends_the_run(text, end):
     assert solution.outcome is Outcome.STOPPED
     assert solution.time[-1] == pytest.approx(end)
     assert f"joint '{second}'" in solution.message
-    assert "does not hold there" in solution.message
-    assert any("the run stops where formulas or tables no longer hold the same" in note for note in solution.notes)
+    assert "is violated there" in solution.message
+    assert any(
+        "the run stops where formulas or tables make these equations independent" in note for note in solution.notes
+    )
     assert any("and stops where formulas" in message for message in stiffmbs.check(scene).messages)
 
 

@@ -130,9 +130,9 @@ def test_a_run_ends_with_a_sentence_where_the_value_ends(solver: str) -> None:
 @pytest.mark.parametrize(
     ("zero", "told"),
     [
-        ("p^2 + 1", "the state 'p' has no value: Newton's iteration finds no zero of its formula from p = 0.5"),
-        ("cart.x", "the state 'p' has no unique value: the derivative of its formula by the state is zero at p = 0.5"),
-        ("log(p - 1)", "the formula that the state 'p' keeps at zero has no finite value at p = 0.5"),
+        ("p^2 + 1", "the state 'p' has no value: Newton's iteration finds no zero of its equation from p = 0.5"),
+        ("cart.x", "the state 'p' has no unique value: the derivative of its equation by the state is zero at p = 0.5"),
+        ("log(p - 1)", "the equation of the state 'p' has no finite value at p = 0.5"),
     ],
 )
 def test_a_start_without_a_value_is_refused(zero: str, told: str) -> None:

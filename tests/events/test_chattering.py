@@ -98,7 +98,7 @@ def test_a_force_that_jumps_where_the_motion_stays_is_told_soon(scene, solver, m
     make, instant = STUCK[scene]
     solution = solve(make(), solver, monkeypatch, duration=4.0, points=401)
     assert solution.outcome is Outcome.STOPPED
-    assert "'push' jumps back and forth" in solution.message
+    assert "'push' chatters" in solution.message
     stopped = float(solution.message.split("t = ")[1].split(" s")[0])
     assert instant - 1e-3 < stopped < instant + 0.15
     assert solution.solver["steps"] < 30_000
@@ -110,7 +110,7 @@ def test_fixed_steps_note_a_force_that_jumps_back_and_forth(scene, scheme):
     make, instant = STUCK[scene]
     solution = stiffmbs.run(make(), solver="projected", scheme=scheme, duration=2.0, points=401)
     assert solution.outcome is Outcome.DONE
-    (note,) = [note for note in solution.notes if "'push' jumps back and forth" in note]
+    (note,) = [note for note in solution.notes if "'push' chatters" in note]
     assert instant <= float(note.split("t = ")[1].split(" s")[0]) < instant + 0.2
 
 
@@ -144,7 +144,7 @@ def spun_up():
 def test_a_law_that_changes_ever_faster_is_told_within_some_thousand_changes(solver, monkeypatch):
     solution = solve(spun_up(), solver, monkeypatch, duration=1.0)
     assert solution.outcome is Outcome.STOPPED
-    assert "'push' changes its law back and forth ever faster" in solution.message
+    assert "'push' chatters" in solution.message
     assert 2 * CHATTERING.window <= solution.solver["events"] <= 5 * CHATTERING.window
 
 
@@ -165,7 +165,7 @@ def test_the_number_of_events_to_come_follows_the_law_of_their_growth():
     for k in range(1, 30_000):
         evenly.note_event(10.0 * np.sqrt(k / 60_000), q, u, 0)
     exponentially = Chattering(dynamics, 2.0, 1e-6)
-    with pytest.raises(stiffmbs.errors.SolverError, match="'push' changes its law back and forth ever faster"):
+    with pytest.raises(stiffmbs.errors.SolverError, match="'push' chatters"):
         for k in range(1, 10_000):
             exponentially.note_event(np.log(k) / 10.0, q, u, 0)
 
@@ -211,5 +211,5 @@ def test_a_damper_over_a_kink_is_passed(solver, scene, profile, damping, monkeyp
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_friction_slides_on_the_belt_whose_speed_is_reached_not_where_belts_meet(solver, monkeypatch):
     solution = solve(belts(), solver, monkeypatch, duration=8.0, points=401)
-    assert "'f' jumps back and forth" in solution.message
+    assert "'f' chatters" in solution.message
     assert abs(solution.t[-1] - SLIDES) < 0.05

@@ -70,7 +70,7 @@ def test_all_integrators_meet_the_same_impacts(engine, monkeypatch):
 
 def test_impacts_between_output_instants_are_told():
     found = stiffmbs.verify(ball(0.3, (1, 0, 0)), points=11)
-    assert any("between the output instants: ball.az" in note for note in found.notes)
+    assert any("between the output times: ball.az" in note for note in found.notes)
     assert found["floor.fz"].max() + found.errors["floor.fz"].greatest > 600
 
 

@@ -218,7 +218,7 @@ def test_a_load_beyond_buckling_is_noted(folder):
     """Five times Euler's load of the clamped column is more than that of the free bar, which is four times it."""
     force = f"forces: {{P: {{type: force, i: bar.b, force: [{-5 * EULER}, 0, 0]}}}}\n"
     notes = run(scene(folder, CLAMP + force + RUN, run__duration="1 ms")).notes
-    assert any("buckles, beyond the theory of second order: use a body of type: beam" in note for note in notes)
+    assert any("buckles, outside the second-order theory: use a body of type: beam" in note for note in notes)
 
 
 def test_the_note_on_a_mesh_with_one_interface_does_not_miss_a_mesh(folder):

@@ -109,7 +109,7 @@ joints:
 
 
 def test_what_falls_for_ever_has_no_equilibrium(few_moves):
-    with pytest.raises(SolverError, match=r"no equilibrium was found: the largest imbalance is left in stone.fy"):
+    with pytest.raises(SolverError, match=r"no equilibrium was found: the largest imbalance is stone.fy"):
         equilibrium(stiffmbs.read_scene("gravity: [0, -9.81]\nbodies: {stone: {mass: 2, inertia: 1}}"))
 
 
@@ -122,7 +122,7 @@ def test_random_trees_with_springs_settle_or_say_why(seed):
     try:
         found = equilibrium(model)
     except SolverError as error:
-        assert "the largest imbalance is left in" in str(error)
+        assert "the largest imbalance is" in str(error)
         return
     labels = [name for name in found.channels if name.endswith((".ax", ".ay", ".alpha"))]
     assert max(abs(found.channels[name]) for name in labels) < 1e-7

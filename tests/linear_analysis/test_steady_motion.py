@@ -120,7 +120,7 @@ def test_a_sled_at_the_speed_at_which_thrust_and_drag_balance(few_moves):
     scene = stiffmbs.read_scene(SLED)
     found = stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0)))
     assert found.channels["sled.vx"] == 20 and found.channels["rail.fy"] == pytest.approx(49.05)
-    with pytest.raises(stiffmbs.SolverError, match=r"the largest imbalance is left in sled\.fx"):
+    with pytest.raises(stiffmbs.SolverError, match=r"the largest imbalance is sled\.fx"):
         stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(19, 0)))
 
 
@@ -188,13 +188,13 @@ def test_a_wheel_spins_as_its_tyre_asks(relaxation):
 @pytest.mark.long
 def test_a_speed_that_no_force_tells_is_refused(few_moves):
     scene = stiffmbs.read_scene(SLED.replace("40 N - 2 N s/m*vx(sled)", "40 N"))
-    with pytest.raises(stiffmbs.SolverError, match=r"the largest imbalance is left in sled\.fx"):
+    with pytest.raises(stiffmbs.SolverError, match=r"the largest imbalance is sled\.fx"):
         stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0), speed="found"))
 
 
 WRONG = [
     ({"rotation": (1, 0, 0)}, "the motion is not steady"),
-    ({"velocity": (1, 0, 0)}, "joint 'hook' (equation x) does not let the mechanism move so"),
+    ({"velocity": (1, 0, 0)}, "joint 'hook' (equation x) does not allow this motion"),
     ({"velocity": (1, 0)}, "velocity: found 2 numbers, expected 3"),
     ({"rolling": ("ball",)}, "rolling: found no body 'ball', expected one of bob"),
 ]

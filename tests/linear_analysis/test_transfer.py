@@ -297,7 +297,7 @@ def test_a_derivative_of_a_reaction_without_a_unique_value_is_noted():
     scene = stiffmbs.read_scene(GUIDED_TWICE)
     found = transfer(scene, ["a.fy"], ["left.fy", "right.fy", "a.x"])
     assert found.d[:2].sum() == pytest.approx(-1)
-    note = "rigid bodies do not determine left.fy and right.fy: one of many possible values is differentiated"
+    note = "rigid bodies do not determine left.fy and right.fy: the derivatives are those of one possible solution"
     assert found.notes == (note,)
     assert transfer(scene, ["a.fy"], ["a.x"]).notes == ()
     slopes = stiffmbs.sensitivities(scene, "F", "final(left.fy + right.fy)")

@@ -41,7 +41,7 @@ FAST = {
 
 def sets(scene, **settings):
     """The bodies that are solved together."""
-    lines = [line for line in stiffmbs.check(scene, **settings).presolve if "solved apart" in line]
+    lines = [line for line in stiffmbs.check(scene, **settings).presolve if "solved separately" in line]
     return [each.strip() for each in lines[0].split(":")[1].split(";")] if lines else []
 
 

@@ -115,7 +115,7 @@ def test_examples_have_the_same_numbers_without_it(examples, name):
 def test_welded_bodies_and_independent_mechanisms(solver, scheme):
     with_it, without = both(read_scene(WELDED), solver=solver, scheme=scheme, rtol=1e-10)
     assert_same(with_it, without, 2e-7)
-    assert with_it.presolve[-1] == f"62 unknowns become {18 if solver == 'bdf' else 26}"
+    assert with_it.presolve[-1] == f"62 unknowns reduced to {18 if solver == 'bdf' else 26}"
 
 
 def test_differences_shrink_with_the_tolerance():
@@ -138,13 +138,13 @@ def test_differences_shrink_with_the_tolerance():
 def test_the_report_line_by_line():
     report = stiffmbs.check(read_scene(WELDED))
     assert report.presolve == (
-        "fixed joints make one body of cart and box",
-        "fixed joints make one body of bar, tip and top",
-        "held still by constant equations: box.angle",
-        "tied in a constant ratio: box.y (-0.422793 of box.x)",
-        "their multipliers are computed afterwards: rail.normal and rail.angle",
-        "2 independent mechanisms solved apart: cart, box, bar, tip and top; lonely",
-        "62 unknowns become 18",
+        "bodies merged by fixed joints: cart and box",
+        "bodies merged by fixed joints: bar, tip and top",
+        "coordinates fixed by constant equations: box.angle",
+        "coordinates in a constant ratio: box.y (-0.422793 of box.x)",
+        "multipliers recovered afterwards: rail.normal and rail.angle",
+        "2 independent mechanisms solved separately: cart, box, bar, tip and top; lonely",
+        "62 unknowns reduced to 18",
     )
     assert report.unknowns == (62, 18)
 
@@ -153,9 +153,9 @@ def test_the_report_reaches_the_user(tmp_path):
     scene = tmp_path / "welded.yaml"
     scene.write_text(WELDED)
     shown = CliRunner().invoke(main, ["run", str(scene), "-o", str(tmp_path / "out.csv")])
-    assert "presolve     fixed joints make one body of cart and box" in shown.output
+    assert "presolve     bodies merged by fixed joints: cart and box" in shown.output
     found = json.loads(CliRunner().invoke(main, ["run", str(scene), "--json"]).output)
-    assert "62 unknowns become 18" in found["presolve"]
+    assert "62 unknowns reduced to 18" in found["presolve"]
     checked = CliRunner().invoke(main, ["check", str(scene), "--json"])
     assert json.loads(checked.output)["unknowns"] == {"before": 62, "after": 18}
     off = json.loads(CliRunner().invoke(main, ["run", str(scene), "--json", "--set", "run.presolve=false"]).output)
@@ -180,7 +180,7 @@ def wheels():
 def test_gears_and_sliders_are_tied():
     with_it, without = both(wheels(), duration=1.0, points=51, rtol=1e-10)
     assert_same(with_it, without, 1e-6)
-    assert with_it.presolve[0] == "held still by constant equations: one.x, one.y, two.x and two.y"
+    assert with_it.presolve[0] == "coordinates fixed by constant equations: one.x, one.y, two.x and two.y"
     assert (
         "one.angle (-0.5 of two.angle)" in with_it.presolve[1] or "two.angle (-2 of one.angle)" in with_it.presolve[1]
     )

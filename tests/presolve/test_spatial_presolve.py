@@ -68,9 +68,9 @@ def test_welded_bodies_and_independent_mechanisms(solver, scheme):
     with_it, without = both(read_scene(WELDED), solver=solver, scheme=scheme, rtol=1e-10)
     assert_same(with_it, without, 5e-6)
     assert with_it.presolve == (
-        "fixed joints make one body of arm, head and tip",
-        "2 independent mechanisms solved apart: arm, head and tip; lonely",
-        f"{4 * 13 + 2 * 15} unknowns become {2 * 13 + 2 * 3}",
+        "bodies merged by fixed joints: arm, head and tip",
+        "2 independent mechanisms solved separately: arm, head and tip; lonely",
+        f"{4 * 13 + 2 * 15} unknowns reduced to {2 * 13 + 2 * 3}",
     )
 
 
@@ -150,7 +150,7 @@ def test_two_welded_halves_are_a_whole():
         i = Marker(body=body, point=(end, 0, 0), orientation=across)
         model.add("hinge", Revolute(i=i, j=Marker(body="ground", orientation=across)))
     one, other = (stiffmbs.run(model, duration=1.0, points=21, rtol=1e-10) for model in (halves, whole))
-    assert one.presolve[0] == "fixed joints make one body of inner and outer"
+    assert one.presolve[0] == "bodies merged by fixed joints: inner and outer"
     np.testing.assert_allclose((one["inner.x"] + one["outer.x"]) / 2, other["rod.x"], atol=1e-8)
     np.testing.assert_allclose(one["hinge.fz"], other["hinge.fz"], atol=1e-6)
     np.testing.assert_allclose(one["energy.kinetic"], other["energy.kinetic"], atol=1e-7)
@@ -173,7 +173,7 @@ def test_moments_of_no_distribution_of_mass_are_kept_by_welds(seed):
         model.bodies[f"b{k}"] = Body(**kept, inertia=tensor, any_moments=True)
     model.add("pin", Spherical(i="b0", j="ground"))
     with_it, without = both(model, duration=0.3, points=11, rtol=1e-9)
-    assert any("fixed joints make one body" in line for line in with_it.presolve)
+    assert any("bodies merged by fixed joints" in line for line in with_it.presolve)
     assert_same(with_it, without, 1e-4)
 
 
@@ -205,9 +205,9 @@ def cart(rail, **changes):
 def test_a_cart_keeps_one_coordinate(rail, lines):
     with_it, without = both(cart(rail), duration=1.0, points=21, rtol=1e-10)
     still, tied = lines
-    assert with_it.presolve[0] == f"held still by constant equations: {still}"
-    assert not tied or with_it.presolve[1] == f"tied in a constant ratio: {tied}"
-    assert with_it.presolve[-1] == "42 unknowns become 21"  # 7 + 1 coordinates, 6 + 1 velocities, 3 + 3 of the ball
+    assert with_it.presolve[0] == f"coordinates fixed by constant equations: {still}"
+    assert not tied or with_it.presolve[1] == f"coordinates in a constant ratio: {tied}"
+    assert with_it.presolve[-1] == "42 unknowns reduced to 21"  # 7 + 1 coordinates, 6 + 1 velocities, 3 + 3 of the ball
     assert_same(with_it, without, 1e-5)
     np.testing.assert_allclose(with_it["cart.q0"], with_it["cart.q0"][0], atol=1e-15)
 
@@ -255,7 +255,9 @@ def test_sliders_on_sliders_stand_upright():
         j = Marker(body=f"slide{k - 1}" if k else "ground", orientation={"z": axis})
         model.add(f"rail{k}", Prismatic(i=Marker(body=f"slide{k}", orientation={"z": axis}), j=j))
     with_it, without = both(model, duration=0.5, points=6, rtol=1e-11)
-    assert with_it.presolve[0].startswith("held still by constant equations: slide0.y, slide0.z, slide0.orientation")
+    assert with_it.presolve[0].startswith(
+        "coordinates fixed by constant equations: slide0.y, slide0.z, slide0.orientation"
+    )
     assert "slide2.orientation" in with_it.presolve[0]
     assert_same(with_it, without, 1e-5)
 
@@ -269,7 +271,7 @@ def test_what_turns_is_not_held():
     along = {"z": (1, 0, 0)}
     model.add("slot", Prismatic(i=Marker(body="block", orientation=along), j=Marker(body="arm", orientation=along)))
     with_it, without = both(model, duration=0.5, points=6, rtol=1e-9)
-    assert with_it.presolve[0] == "held still by constant equations: arm.x, arm.y and arm.z"
+    assert with_it.presolve[0] == "coordinates fixed by constant equations: arm.x, arm.y and arm.z"
     assert_same(with_it, without, 1e-6)
 
 
@@ -301,11 +303,11 @@ def test_turns_are_counted_where_mechanisms_are_solved_apart():
     with_it, without = both(model, duration=2.0, points=21, rtol=1e-10)
     assert_same(with_it, without, 1e-5)
     assert with_it.presolve[:2] == (
-        "fixed joints make one body of wheel1 and askew",
-        "fixed joints make one body of wheel2 and more",
+        "bodies merged by fixed joints: wheel1 and askew",
+        "bodies merged by fixed joints: wheel2 and more",
     )
     assert any(
-        "independent mechanisms solved apart: wheel0, wheel1 and askew; wheel2 and more" in line
+        "independent mechanisms solved separately: wheel0, wheel1 and askew; wheel2 and more" in line
         for line in with_it.presolve
     )
     t = with_it.time

@@ -60,7 +60,7 @@ def test_two_hinges_of_a_door_share_its_weight_by_their_stiffness(ratio):
     case, at_rest = shared(door(), ratio)
     assert set(case.elastic) == {"lower", "upper"}
     assert "bushings in place of both lower and upper" in case.remedy
-    assert "one elastic joint next to rigid ones that hold the same would carry nothing" in case.remedy
+    assert "a single elastic joint parallel to rigid ones carries no load" in case.remedy
     assert at_rest["lower.fz"] == pytest.approx(20 * WEIGHT * ratio / (1 + ratio), rel=1e-3)
     assert at_rest["upper.fz"] == pytest.approx(20 * WEIGHT / (1 + ratio), rel=1e-3)
 

@@ -146,7 +146,7 @@ def test_equal_lengths_are_equal_to_some_digits(much):
     assert (report.rank, report.degrees_of_freedom, report.inconsistencies) == (11, 1, ())
     solution = stiffmbs.run(with_a_crank_longer_by(much), duration=1.0, points=11)
     assert 0.1 * much < solution["constraint.position"].max() < 2 * much
-    assert any("of their size only" in note for note in solution.notes) == (much > 1e-11)
+    assert any("agree only to" in note for note in solution.notes) == (much > 1e-11)
 
 
 @pytest.mark.parametrize("much", [1e-5, 1e-3])
@@ -390,7 +390,7 @@ def test_friction_on_a_reaction_that_is_not_unique_is_told():
 def test_bodies_connected_to_nothing_are_told():
     model = guided_twice()
     model.add("stone", Body(mass=1, inertia=1))
-    assert any("stone" in message and "nothing" in message for message in model.check().messages)
+    assert any("stone" in message and "not connected" in message for message in model.check().messages)
 
 
 def test_what_cannot_be_assembled_is_a_problem():
@@ -412,5 +412,5 @@ def test_a_gap_is_no_singular_pose():
     bar = model.add("bar", Body(mass=1, inertia=1 / 12, position=(0.5, 0)))
     model.add("hinge", Revolute(i=bar.at(-0.5, 0), j="ground"))
     model.add("strut", Distance(i=bar.at(0.5, 0), j=Marker(body="ground", point=(5, 0)), length=1.0))
-    with pytest.raises(AssemblyError, match=r"the largest gap is left in joint 'strut'"):
+    with pytest.raises(AssemblyError, match=r"the largest gap is in joint 'strut'"):
         stiffmbs.run(model, duration=0.1)

@@ -211,10 +211,10 @@ def test_uncertain_turns_are_noted_unless_they_are_counted():
     model.add("hinge", spatial.Revolute(i="wheel", j="ground"))
     model.add("spring", spatial.TorsionSpring(i="wheel", j="ground", stiffness=2000.0))
     coarse = stiffmbs.run(model, duration=2, output=0.11, rtol=1e-7)
-    assert any("whole turns of hinge.angle are not certain" in note for note in coarse.notes)
+    assert any("the revolutions of hinge.angle are uncertain" in note for note in coarse.notes)
     model.request("counted", "hinge.angle")
     counted = stiffmbs.run(model, duration=2, output=0.11, rtol=1e-7)
-    assert not any("whole turns of hinge.angle are not certain" in note for note in counted.notes)
+    assert not any("the revolutions of hinge.angle are uncertain" in note for note in counted.notes)
     frequency = np.sqrt(2000 / 0.5)
     np.testing.assert_allclose(counted["hinge.angle"], 1500 / frequency * np.sin(frequency * counted.time), atol=1e-2)
 

@@ -66,7 +66,7 @@ def test_a_page_holds_check_peaks_figures_and_settings(page_of):
         "presolve:",
         "rail.fy",
         "\u00b1",
-        "solved again with bdf at rtol 1e-09",
+        "rerun with bdf at rtol 1e-09",
         "steps",
         "1e-07",
     ):
@@ -122,7 +122,7 @@ def test_two_runs_are_compared_differences_first(tmp_path, as_results):
 @pytest.mark.long
 def test_what_is_in_doubt_stands_first(page_of):
     page = page_of("cam_follower")
-    doubt = next(k for k, text in enumerate(page.texts) if "sensitive" in text or "less certain" in text)
+    doubt = next(k for k, text in enumerate(page.texts) if "sensitive" in text or "error bars of peaks" in text)
     assert doubt < page.texts.index("Check")
 
 

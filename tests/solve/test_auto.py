@@ -32,7 +32,7 @@ def test_a_scene_that_is_stiff_from_the_first_is_left_to_radau(examples):
     chosen, implicit = (stiffmbs.run(scene, solver=solver, rtol=1e-4) for solver in ("auto", "radau"))
     assert chosen.solver["name"] == "radau"
     (note,) = (note for note in chosen.notes if note.startswith("auto chose"))
-    rate = float(note.removeprefix("auto chose radau, as the fastest rate is ").removesuffix(" 1/s"))
+    rate = float(note.removeprefix("auto chose radau (fastest rate ").removesuffix(" 1/s)"))
     arm = np.array([[1 / 40 + 0.04**2 / 1.5, -0.35 * 0.04 / 1.5], [-0.35 * 0.04 / 1.5, 1 / 40 + 0.35**2 / 1.5]])
     np.testing.assert_allclose(rate, np.sqrt(2e9 * np.linalg.eigvalsh(arm)[-1]), rtol=0.05)
     np.testing.assert_array_equal(chosen.step_times, implicit.step_times)
@@ -48,7 +48,7 @@ def test_hands_are_changed_as_one_or_the_other_gets_ahead():
     chosen = stiffmbs.run(model, solver="auto", duration=30.0, points=301, rtol=1e-8)
     assert chosen.solver["name"] == "projected, radau"
     (note,) = (note for note in chosen.notes if note.startswith("auto chose"))
-    assert "then projected again from t = " in note and "stability held back" in note
+    assert "then projected again from t = " in note and "stability limited" in note
     exact = stiffmbs.run(model, solver="projected", scheme="dop853", duration=30.0, points=301, rtol=1e-12)
     np.testing.assert_array_equal(chosen.time, exact.time)
     np.testing.assert_allclose(chosen["a.x"], exact["a.x"], atol=1e-6)
@@ -118,7 +118,7 @@ def test_an_implicit_solver_that_falls_behind_is_left_again():
     model = ringing()
     solution = stiffmbs.run(model, solver="auto", duration=20.0, points=101, rtol=1e-8)
     (note,) = (note for note in solution.notes if note.startswith("auto chose"))
-    assert "then projected again from t = " in note and "changes in all" in note
+    assert "then projected again from t = " in note and "changes of integrator" in note
     assert len(note) < 500
     explicit = stiffmbs.run(model, solver="projected", scheme="dop853", duration=20.0, points=101, rtol=1e-8)
     assert 0.7 * explicit.solver["steps"] <= solution.solver["steps"] < 1.3 * explicit.solver["steps"]
@@ -139,7 +139,7 @@ def test_where_explicit_steps_stop_the_run_is_bdfs_from_its_start():
     assert max(swing_error(solution) for solution in solutions) < 3e-7  # bdf beside the flat pose: up to 7.4e-8
     left = [solution for solution in solutions if solution.solver["name"] == "bdf"]
     assert left
-    assert all("auto chose bdf, as explicit steps stopped at t = " in solution.notes[0] for solution in left)
+    assert all("auto chose bdf, because explicit integration stopped at t = " in solution.notes[0] for solution in left)
 
 
 def test_flat_poses_are_passed_by_explicit_steps_where_no_digits_are_lost(examples):
@@ -232,7 +232,7 @@ def test_radau_comes_back_where_explicit_steps_cost_more_than_its_own_had(exampl
     road = examples / "vehicles" / "quarter_car.yaml"
     solution = stiffmbs.run(road, solver="auto", rtol=1e-6)
     (note,) = (note for note in solution.notes if note.startswith("auto chose"))
-    assert "as explicit steps cost more than its own had" in note
+    assert "(explicit steps cost more)" in note
     assert solution.solver["steps"] > 0.9 * stiffmbs.run(road, solver="radau", rtol=1e-6).solver["steps"]
 
 

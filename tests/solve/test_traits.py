@@ -79,10 +79,12 @@ def test_projected_chooses_its_steps_and_takes_fixed_ones_where_a_step_is_given(
 def test_a_step_that_output_points_cut_is_told(cart, scheme):
     how = {"solver": "projected", "scheme": scheme, "duration": 1.0, "output": 0.01}
     for step, taken in ((0.2, "0.01"), (4e-3, "0.00333333"), (5e-3, ""), (1e-3, "")):
-        notes = [note for note in stiffmbs.run(cart, **how, step=step).notes if "was cut" in note]
-        assert [note.partition(", ")[0] for note in notes] == [f"step = {step:g} s was cut to {taken} s"] * bool(taken)
+        notes = [note for note in stiffmbs.run(cart, **how, step=step).notes if "was reduced" in note]
+        assert [note.partition(", ")[0] for note in notes] == [f"step = {step:g} s was reduced to {taken} s"] * bool(
+            taken
+        )
     unasked = stiffmbs.run(cart, **{**how, "output": 5e-4})
-    assert not any("was cut" in note for note in unasked.notes)
+    assert not any("was reduced" in note for note in unasked.notes)
 
 
 def test_a_solver_is_known_by_its_traits_alone(cart, monkeypatch):

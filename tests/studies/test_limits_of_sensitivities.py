@@ -84,7 +84,7 @@ def test_a_motion_that_chatters_is_not_solved_a_second_time(monkeypatch):
         module, "prepare", lambda scene, settings: solved.append(settings.rtol) or prepare(scene, settings)
     )
     text = SLED.replace("- c*sled.vx", "- 20*sign(sled.vx)")
-    with pytest.raises(SolverError, match="jumps back and forth"):
+    with pytest.raises(SolverError, match="chatters"):
         sensitivities(stiffmbs.read_scene(text.replace("c: 1 N s/m, ", "")), ["k"], "final(sled.x)")
     assert len(solved) == 1
 

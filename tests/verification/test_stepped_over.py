@@ -66,7 +66,7 @@ def test_runs_that_are_all_blind_get_bars_that_hold_the_error_and_the_remedy(mon
     found = module.verified(job, first, 1e8)
     true = np.sqrt(100 + 2 * np.trapezoid(BUMP, WAY))
     assert abs(found["body.vx"][-1] - true) < found.errors["body.vx"].over_time
-    (doubt,) = (note for note in found.notes if "stepped over" in note)
+    (doubt,) = (note for note in found.notes if "missed event" in note)
     assert "'push'" in doubt and "max_step" in doubt
 
 

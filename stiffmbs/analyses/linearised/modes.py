@@ -152,7 +152,7 @@ def _kink_sentence(kink: Kink, sides: list[list[Mode]]) -> str:
     listed = [", ".join(f"{pair[k]:.4g}" for pair in pairs[:MOST_LISTED]) for k in (0, 1)]
     return (
         f"the state lies on a breakpoint of a force on {kink.where}, or within a millionth of the mechanism's size of one: the modes "
-        f"are those of one side; the eigenvalues are {listed[0]} on one side and {listed[1]} on the other"
+        f"are those of one side; eigenvalues: {listed[0]} on one side, {listed[1]} on the other"
     )
 
 
@@ -162,8 +162,8 @@ def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
     if sizes.size and sizes.max() > AT_REST * (float(np.linalg.norm(found.data.gravity)) or 1.0):
         most = int(np.argmax(sizes))
         yield (
-            f"the state at t = {found.t:g} s is no equilibrium: {system.name_of(most, system.of_body.accelerations)} = "
-            f"{found.acceleration[most]:.3g}; frequencies are those of this instant"
+            f"the state at t = {found.t:g} s is not an equilibrium: {system.name_of(most, system.of_body.accelerations)} = "
+            f"{found.acceleration[most]:.3g}; the frequencies hold at this time only"
         )
     rolling = state.n_poses - state.degrees_of_freedom
     if rolling:
@@ -171,7 +171,7 @@ def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
         yield f"nonholonomic constraints, such as rolling, leave {ways} without a free velocity; zero eigenvalues of these are not modes"
     extra = state.degrees_of_freedom - found.redundancy.degrees_of_freedom
     if extra > 0:
-        yield f"the state is a singular pose: {extra} degrees of freedom more than in general"
+        yield f"the state is a singular pose: {extra} more degrees of freedom than elsewhere"
     yield from derivative_sentences(found.redundancy, ())
     yield from held(system)
 
@@ -203,7 +203,9 @@ def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amp
             f"{failure(dynamics, rows.status, found.t)}; expected a smaller amplitude"
         )
     message = (
-        f"one period of mode {number}, {mode.natural_frequency:.6g} Hz" if oscillates else f"mode {number}, to and fro"
+        f"one period of mode {number}, {mode.natural_frequency:.6g} Hz"
+        if oscillates
+        else f"mode {number}, forward and back"
     )
     solution = solution_of_rows(
         f"{found.data.name or 'model'}, mode {number}", found.data, system, rows, found.redundancy.not_unique, message, (),

@@ -41,37 +41,37 @@ def presolve_sentences(whole: System, subsystems: Sequence[Subsystem], dynamics:
         yield from _left_out(part)
     if len(subsystems) > 1:
         inside = [listed([whole.bodies[k] for k in subsystem.part.bodies]) for subsystem in subsystems]
-        yield f"{len(subsystems)} independent mechanisms solved apart: {'; '.join(inside)}"
+        yield f"{len(subsystems)} independent mechanisms solved separately: {'; '.join(inside)}"
     before, after = unknowns(whole, subsystems, dynamics)
     if after != before:
-        yield f"{before} unknowns become {after}"
+        yield f"{before} unknowns reduced to {after}"
 
 
 def _of_bodies(whole: System, subsystem: Subsystem) -> Iterator[str]:
     for parent, count in Counter(subsystem.part.parent.tolist()).items():
         if count > 1:
             names = [whole.bodies[k] for k in subsystem.part.bodies[subsystem.part.parent == parent]]
-            yield f"fixed joints make one body of {listed(names)}"
+            yield f"bodies merged by fixed joints: {listed(names)}"
     spinning = np.isin(subsystem.part.parent, [spin.body for spin in subsystem.part.spins])
     if spinning.any():
         names = [whole.bodies[k] for k in subsystem.part.bodies[spinning]]
-        yield f"the angle of spin is a coordinate of its own: {listed(names)}"
+        yield f"spin angle separated from the orientation: {listed(names)}"
 
 
 def _left_out(dynamics: Dynamics) -> Iterator[str]:
     system, coordinates = dynamics.system, dynamics.coordinates
     if coordinates.at_rest:
         names = listed(_names(system, coordinates.at_rest))
-        yield f"modes out of the plane of the motion, which no load excites, are left out: {names}"
+        yield f"out-of-plane modes that no load excites left out: {names}"
     still = [k for k in np.flatnonzero(coordinates.independent_of == FIXED).tolist() if k not in coordinates.at_rest]
     if still:
-        yield f"held still by constant equations: {listed(list(dict.fromkeys(_names(system, still))))}"
+        yield f"coordinates fixed by constant equations: {listed(list(dict.fromkeys(_names(system, still))))}"
     tied = np.flatnonzero((coordinates.independent_of != FIXED) & ~coordinates.independent).tolist()
     if tied:
-        yield f"tied in a constant ratio: {listed(_ties(system, coordinates, tied))}"
+        yield f"coordinates in a constant ratio: {listed(_ties(system, coordinates, tied))}"
     rows = np.flatnonzero(coordinates.satisfied).tolist()
     if rows:
-        yield f"their multipliers are computed afterwards: {listed([_equation(system, row) for row in rows])}"
+        yield f"multipliers recovered afterwards: {listed([_equation(system, row) for row in rows])}"
 
 
 def _names(system: System, coordinates: Sequence[int]) -> list[str]:
@@ -130,7 +130,7 @@ def unconnected_sentence(system: System) -> Iterator[str]:
     """Yield a sentence on unconnected bodies, if others are connected."""
     if alone := _unconnected(system):
         names = f"{', '.join(alone[:-1])} and {alone[-1]} are" if len(alone) > 1 else f"{alone[0]} is"
-        yield f"{names} connected to nothing: no joint and no force but weight acts there"
+        yield f"{names} not connected: no joint and no force except gravity acts there"
 
 
 def _unconnected(system: System) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from ..redundancy import Redundancy
 from ..uniqueness import Direction, Indeterminate, unproven
 
 MOTION_NOT_UNIQUE = "the motion is not unique either"
-STOPS_WHERE = "stops where formulas or tables no longer hold the same"
+STOPS_WHERE = "stops where formulas or tables make these equations independent"
 
 
 def known_near_start(case: Overconstraint, redundancy: Redundancy) -> bool:
@@ -40,7 +40,7 @@ def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> 
     what_then = f"and {STOPS_WHERE}" if near_start else "which does not change the motion"
     yield f"{case.reason}; a run leaves out {_given_way(case)}, {what_then}"
     if case.indeterminate:
-        shared = ["what they carry together is unique"] if case.shared else []
+        shared = ["their sum is unique"] if case.shared else []
         directed = "; ".join([*directed_words(case.indeterminate), *shared])
         yield f"rigid bodies do not determine {channel_words(case.indeterminate)}" + (
             f": {directed}" if directed else ""
@@ -67,7 +67,7 @@ def _inconsistency_sentence(system: System, rank_result: LoopRankResult, inconsi
     joint, equation = system.equations[rank_result.rank.equations.loop.rows[inconsistency.row]]
     others = listed([name for name in inconsistency.joints if name != joint])
     against = f"joint '{joint}' (equation {equation}) contradicts {others or 'itself'}"
-    where = "its positions do not agree with theirs" if inconsistency.level == "position" else "their velocities differ"
+    where = "positions differ" if inconsistency.level == "position" else "velocities differ"
     return f"the scene cannot be assembled: {against} at t = {inconsistency.t:.6g} s, {where} (by {inconsistency.gap})"
 
 
@@ -87,16 +87,16 @@ def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
     count = redundancy.extra_freedoms
     more = "is one degree" if count == 1 else f"are {count} degrees"
     yield (
-        f"the start is a singular pose of {listed(bodies)}: for an instant there {more} "
-        "of freedom more than elsewhere, and neither accelerations nor reactions are determined; this is no redundancy, "
-        "start a little away from there"
+        f"the start is a singular pose of {listed(bodies)}: there {more} "
+        "of freedom more than in other poses, and accelerations and reactions are not determined; "
+        "start in a pose nearby"
     )
 
 
 def derivative_sentences(redundancy: Redundancy, channels: Collection[str]) -> Iterator[str]:
     """Yield the sentences on derivatives of channels: those of reactions without a unique value, and of a motion without."""
     if found := [name for name in redundancy.not_unique if name in channels]:
-        yield f"rigid bodies do not determine {listed(found)}: one of many possible values is differentiated"
+        yield f"rigid bodies do not determine {listed(found)}: the derivatives are those of one possible solution"
     yield from (sentence for sentence in pose_sentences(redundancy) if sentence.endswith(MOTION_NOT_UNIQUE))
 
 
@@ -106,16 +106,16 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
         joints = [joint.name for joint in rank_result.rank.equations.loop.joints]
         if rank_result.nearly_dependent and not rank_result.inconsistencies:
             yield (
-                f"{listed(joints)} nearly repeat each other (smallest singular value {rank_result.rank.least:.1g}): the motion "
-                "depends on the last digits of their geometry, expected either an exact or a clear difference"
+                f"the equations of {listed(joints)} are nearly dependent (smallest singular value {rank_result.rank.least:.1g}), and the motion "
+                "depends on the last digits of the geometry; expected equations that are exactly dependent or clearly independent"
             )
         if rank_result.redundant and REDUNDANCY.closed < rank_result.rank.start.gap <= REDUNDANCY.agrees:
             yield (
-                f"{listed(joints)} agree to {rank_result.rank.start.gap:.1g} of their size only: the equations left out stay open by "
-                "so much"
+                f"the redundant equations of {listed(joints)} agree only to {rank_result.rank.start.gap:.1g} of the size: the equations left out "
+                "keep this error"
             )
         if not rank_result.motion_unique:
-            yield f"a force (of friction, or by a formula) or a rate depends on reactions of {listed(joints)} that are not unique, so {MOTION_NOT_UNIQUE}"
+            yield f"friction, a formula or the rate of a state depends on reactions of {listed(joints)} that are not unique, so {MOTION_NOT_UNIQUE}"
 
 
 def note_sentences(redundancy: Redundancy) -> Iterator[str]:
@@ -125,7 +125,7 @@ def note_sentences(redundancy: Redundancy) -> Iterator[str]:
         yield f"{case.reason}; left out: {_given_way(case)}{where}"
     if redundancy.indeterminate:
         words = channel_words(redundancy.indeterminate)
-        yield f"rigid bodies do not determine {words}: one of many possible values is shown"
+        yield f"rigid bodies do not determine {words}: the values shown are one possible solution"
     yield from pose_sentences(redundancy)
 
 
@@ -146,16 +146,16 @@ def directed_words(parts: Sequence[Indeterminate]) -> Iterator[str]:
         for direction in part.directions if len(direction.vector) == 2
     ]  # fmt: skip
     if in_plane:
-        yield f"forces only in the directions {listed(in_plane)}, across them they are unique"
+        yield f"only forces in the directions {listed(in_plane)}; perpendicular to them they are unique"
     alike: dict[Direction, list[str]] = {}
     for part in parts:
         for direction in part.directions:
             if len(direction.vector) == 3 and not _told_by_channels(part, direction):
                 alike.setdefault(direction, []).append(part.element)
     for direction, elements in alike.items():
-        where = f"{'across' if direction.across else 'along'} {_axis(direction.vector)} of {direction.axes}"
-        other = "along it" if direction.across else "across it"
-        yield f"{direction.quantity}s of {listed(elements)} only {where}, {other} they are unique"
+        where = f"{'perpendicular to' if direction.across else 'along'} {_axis(direction.vector)} of {direction.axes}"
+        other = "along it" if direction.across else "perpendicular to it"
+        yield f"only {direction.quantity}s of {listed(elements)} {where}; {other} they are unique"
 
 
 def _degrees(vector: Sequence[float]) -> float:

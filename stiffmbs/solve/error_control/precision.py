@@ -67,9 +67,9 @@ def _held_too_little(dynamics: Dynamics, settings: RunSettings, t: float, q: np.
     if not moved > tolerance:
         return ""
     return (
-        f"{name} = {tolerance:g} asks for more digits than rounding leaves: '{system.equations[row][0]}' changes by "
-        f"{slopes[row]:.1g} where coordinates change by 1, so that its rounding moves these by {moved:.1g}; expected "
-        "an equation of a larger slope, or solver projected with scheme dop853"
+        f"{name} = {tolerance:g} is below rounding: the derivatives of '{system.equations[row][0]}' by coordinates are at most "
+        f"{slopes[row]:.1g}, so its rounding moves coordinates by {moved:.1g}; expected "
+        "an equation with larger derivatives, or solver projected with scheme dop853"
     )
 
 
@@ -99,8 +99,8 @@ def _known_too_little(system: System, settings: RunSettings, q: np.ndarray) -> s
         return ""
     value, unit = float(own[body, k]), "m" if k < of_body.linear else "rad"
     return (
-        f"{name} = {tolerance:g} asks for more digits than rounding leaves: {system.bodies[body]}.{of_body.positions[k]} = "
-        f"{value:.4g} {unit} is known to {np.spacing(abs(value)) / 2:.1g} {unit} only, expected "
+        f"{name} = {tolerance:g} is below rounding: {system.bodies[body]}.{of_body.positions[k]} = "
+        f"{value:.4g} {unit} has a rounding error of {np.spacing(abs(value)) / 2:.1g} {unit}; expected "
         f"{name} = {tolerance * max(10.0, excess[body, k]):.1g} or more, or solver projected with scheme dop853"
     )
 

@@ -68,8 +68,8 @@ class Creep(NamedTuple):
         """Return a clause that describes the drift."""
         seen = self.mean >= self.at_end
         return (
-            f"under the forces in '{self.joint}' relaxed constraints (formulation SI2) let "
-            f"{self.velocity if seen else 'velocities'} creep by {max(self.mean, self.at_end):.2g} tolerances"
+            f"the reactions in '{self.joint}' cause constraint drift (formulation SI2): an error of "
+            f"{self.velocity if seen else 'velocities'} of {max(self.mean, self.at_end):.2g} tolerances"
         )
 
 
@@ -184,7 +184,7 @@ def refuse_drift(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, set
         dynamics.state.q[:] = q
         if (drift := creep_at(dynamics, t, u, settings)) > RELAXATION.refused:
             raise SolverError(
-                f"stopped at t = {t:.9g} s: relaxed constraints let velocities creep by {drift:.2g} tolerances"
+                f"stopped at t = {t:.9g} s: constraint drift: velocities violate the constraints by {drift:.2g} tolerances"
                 f"{suspect(dynamics, t, q, u)}"
             )
 

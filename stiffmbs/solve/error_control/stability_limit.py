@@ -233,7 +233,7 @@ class StabilityLimitDetection:
         first, last = reported[0], self._limitations[-1]
         limited = self._limited_steps + (steps - last.steps if self.held and not last.faint else 0)
         return (
-            f"from t = {first.t:.4g} s on BDF's order was held at {A_STABLE_ORDER} for {limited} of {steps} steps: orders 3 to 5 "
-            f"had crept along a stiff, little damped vibration of less than {self._parameters.negligible:g} tolerances, {first.steps} "
-            "steps up to there; it is now damped away, also in forces; a smaller rtol, or max_order: 5, keeps it"
+            f"from t = {first.t:.4g} s on the order of BDF was limited to {A_STABLE_ORDER} for {limited} of {steps} steps: a stiff, "
+            f"lightly damped vibration of less than {self._parameters.negligible:g} tolerances had limited the steps of orders 3 to 5 "
+            f"({first.steps} steps up to there); it is now damped numerically, also in forces; a smaller rtol, or max_order: 5, keeps it"
         )

@@ -83,9 +83,9 @@ class Chattering:
         pace = (t - since) / (steps - before)
         if self._end - t > CHATTERING.steps_ahead * pace:
             raise SolverError(
-                f"stopped at t = {t:.9g} s: the last {steps - before} steps have covered {t - since:.3g} s, and at least "
-                f"{CHATTERING.steps_ahead:.0e} more would follow to the end: expected a motion without singularities (a force that divides by "
-                "a velocity at rest, a jump without a breakpoint, a mechanism that jams)"
+                f"stopped at t = {t:.9g} s: the last {steps - before} steps covered only {t - since:.3g} s, and the rest of the run would take "
+                f"at least {CHATTERING.steps_ahead:.0e} more; look for a singularity: a force that divides by "
+                "a velocity at rest, a jump without a breakpoint, or a mechanism that locks"
             )
 
     def note_event(self, t: float, q: np.ndarray, u: np.ndarray, event_function: int) -> None:
@@ -106,9 +106,9 @@ class Chattering:
                 else "a force"
             )
             raise ChatteringError(
-                f"stopped at t = {t:.9g} s: {name} changes its law back and forth ever faster, {self._count} times so far and once in "
-                f"{(last - middle) / CHATTERING.window:.3g} s: the run would come to no end; expected a force without a jump where the motion comes "
-                "to rest, a switch with hysteresis, or a force that does not drive the motion beyond all bounds"
+                f"stopped at t = {t:.9g} s: {name} chatters: it has passed breakpoints {self._count} times, now once in "
+                f"{(last - middle) / CHATTERING.window:.3g} s, so the run would not end; expected a force without a jump where the motion comes "
+                "to rest, a relay with hysteresis, or a force that does not drive the motion beyond all bounds"
             )
 
     def _to_come(self, before: float, last: float) -> float:
@@ -134,9 +134,9 @@ class Chattering:
 def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
     """Return a sentence on a chattering force."""
     return (
-        f"'{writer(dynamics.system, 'event_function', event_function)}' jumps back and forth, as a force does that changes its "
-        "sign where the motion comes to rest: no motion follows it from there on; expected a force that is steep "
-        "there, without a jump: joint_friction with its stiction_velocity, or tanh(v/0.001) in place of sign(v)"
+        f"'{writer(dynamics.system, 'event_function', event_function)}' chatters: the force jumps back and forth, for example because its sign "
+        "changes where the motion comes to rest, and no solution exists beyond; expected a steep, continuous force "
+        "there: joint_friction with its stiction_velocity, or tanh(v/0.001) in place of sign(v)"
     )
 
 

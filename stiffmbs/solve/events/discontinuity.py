@@ -226,7 +226,7 @@ class VelocityJumps:
             system = self._dynamics.system
             name = system.name_of(k, system.of_body.velocities)
             self._messages.append(
-                f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); no force shows that blow"
+                f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); the reactions do not contain this impulse"
             )
 
     def clear(self) -> None:

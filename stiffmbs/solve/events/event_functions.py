@@ -91,8 +91,8 @@ class EventSearch:
             return ""
         name = writer(self._system, "event_function", int(cells["fastest"]))
         return (
-            f"'{name}' has a law that repeats more than once within a step, first at t = {cells['first_unresolved']:.6g} s: it cannot be "
-            "resolved by this many steps; expected a longer period, a shorter run, or max_step far below the period"
+            f"'{name}' has a force law whose period is shorter than a step, first at t = {cells['first_unresolved']:.6g} s, so the steps do "
+            "not resolve it; expected a longer period, or max_step far below the period"
         )
 
 

@@ -36,7 +36,7 @@ def narrower_than_output(features: InputFeatures, spacing: float) -> str:
         return ""
     return (
         f"a prescribed motion or force has a feature of {length:.2g} s at t = {t:.6g} s, shorter than the {spacing:.2g} s "
-        "between output points: peaks there may be missing; shorter output spacing or --verify shows them"
+        "between output times; the results may not show its peaks: use a shorter output interval or --verify"
     )
 
 
@@ -58,8 +58,8 @@ def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndar
         k = int(np.argmax(beyond))
         if beyond[k] > NARROW_INPUTS.hidden * change and change > SEARCH.precision * size:
             return (
-                f"'{given.text}' has a peak of {values[k]:.3g} at t = {between[k]:.6g} s, between output points, which show "
-                f"it from {low:.3g} to {high:.3g}: shorter output spacing or --verify shows it"
+                f"'{given.text}' has a peak of {values[k]:.3g} at t = {between[k]:.6g} s, between output times, where "
+                f"it is between {low:.3g} and {high:.3g}: use a shorter output interval or --verify"
             )
     return ""
 
@@ -71,7 +71,7 @@ def narrower_than_steps(features: InputFeatures, step: float, scheme: str) -> st
         return ""
     return (
         f"a prescribed motion or force has a feature of {length:.2g} s at t = {t:.6g} s, shorter than the steps of "
-        f"{step:.2g} s that {scheme} takes: it may be followed badly or missed; take shorter steps, or dopri5, dop853 or bdf"
+        f"{step:.2g} s of {scheme}, which may not resolve it or miss it; use shorter steps, dopri5, dop853 or bdf"
     )
 
 

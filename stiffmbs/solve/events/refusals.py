@@ -49,7 +49,7 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
     speed, body = fastest(system, u)
     if speed > SPEED_OF_LIGHT:
         raise SolverError(
-            _sentence(dynamics, t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light")
+            _sentence(dynamics, t, q, u, f"body '{body}' reaches {speed:.3g} m/s, more than the speed of light")
         )
     times, places, _ = rows.stored
     few = slice(None, None, 1 + len(times) // DEFAULT_POINTS)
@@ -57,14 +57,16 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
     if far[-1] > DIVERGENCE.unbounded * system.size and exponential(
         np.append(times[few], t), np.maximum.accumulate(far)
     ):
-        what = f"body '{body}' has moved by {far[-1]:.3g} m, and ever faster, in a mechanism of {system.size:.3g} m"
+        what = (
+            f"body '{body}' has moved by {far[-1]:.3g} m, growing exponentially, in a mechanism of {system.size:.3g} m"
+        )
         raise SolverError(_sentence(dynamics, t, q, u, what))
 
 
 def _sentence(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, what: str) -> str:
     likely = suspect(dynamics, t, q.copy(), u.copy())
     remedy = "look for a wrong sign of a stiffness, damping or force"
-    return f"stopped at t = {t:.9g} s: the motion grows beyond sense: {what}{likely}; {remedy}"
+    return f"stopped at t = {t:.9g} s: the motion diverges: {what}{likely}; {remedy}"
 
 
 def reaches(system: System) -> np.ndarray:

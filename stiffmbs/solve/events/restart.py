@@ -110,7 +110,7 @@ def _at_hand(dynamics: Dynamics, t: float) -> InitialValues:
 def _go_on(dynamics: Dynamics, status: int, t: float, clause: str = "") -> None:
     if status < 0:
         raise SolverError(
-            f"no consistent values were found to start anew at t = {t:.9g} s: {failure(dynamics, status, t)}{clause}"
+            f"no consistent values were found for a restart at t = {t:.9g} s: {failure(dynamics, status, t)}{clause}"
         )
 
 
@@ -124,4 +124,6 @@ def _no_longer_redundant(dynamics: Dynamics, t: float, q: np.ndarray) -> str:
     if not gaps[row] > LEFT_OPEN * min(1.0, system.size):
         return ""
     joint, equation = system.equations[row]
-    return f"; joint '{joint}' (equation {equation}) was left out, as near the start it holds the same as others; it does not hold there"
+    return (
+        f"; joint '{joint}' (equation {equation}), left out because it is redundant near the start, is violated there"
+    )

@@ -122,14 +122,14 @@ def _jumps(dynamics: Dynamics, stepper: Stepper, t: float, step: float) -> str:
     change = 2.0 * step * float(np.max(np.abs(dynamics.accelerate(t)[1]), initial=0.0))
     found = sliding(dynamics, t, q, u, min(max(change, JUMP.larger_move), CHATTERING.stays_within_at_most))
     stepper.q[:], stepper.u[:] = q, u
-    return f"at t = {t:.6g} s and before, {jump_sentence(dynamics, int(found[0]))}" if len(found) else ""
+    return f"up to t = {t:.6g} s, {jump_sentence(dynamics, int(found[0]))}" if len(found) else ""
 
 
 def _cut(longest: float, settings: RunSettings) -> str:
     """Return a sentence if every step is shorter than the given one, else an empty string."""
     if "step" not in settings.model_fields_set or longest >= settings.step * (1 - SAME_TIME):
         return ""
-    return f"step = {settings.step:.6g} s was cut to {longest:.6g} s, the longest that divides the time between output points"
+    return f"step = {settings.step:.6g} s was reduced to {longest:.6g} s, to divide the output interval"
 
 
 def _own_steps(grid: Grid, step: float) -> np.ndarray:

@@ -132,13 +132,13 @@ class Integration:
         self.step_times.append(memory.ends[np.arange(before, self._collected) % self.capacity])
 
 
-_USE_BDF = "the scene is stiff, and solver bdf would be the choice"
+_USE_BDF = "the scene is stiff; use solver bdf or radau"
 REASONS = {
     **FAILURES,
-    NOT_FINITE: "the motion has grown beyond all numbers; the step is too long for the stiffness of the scene",
-    STEP_TOO_SMALL: "the step that the tolerance asks for has become too small: the motion has a singularity there, or "
+    NOT_FINITE: "the solution has overflowed; the step is too long for the stiffness of the scene",
+    STEP_TOO_SMALL: "the step that the tolerance requires has become too small: the motion has a singularity there, or "
     + _USE_BDF,
-    STIFF: f"steps as short as stability asks for would take more than ten minutes to the end; {_USE_BDF}",
+    STIFF: f"the steps that stability allows are so short that the run would take more than ten minutes; {_USE_BDF}",
 }
 """Reasons by status."""
 
@@ -146,4 +146,4 @@ REASONS = {
 def stiff_sentence(work: Integration) -> str:
     """Return a sentence on steps limited by stability."""
     held = work.count("stiff_steps")
-    return f"stability, not accuracy, held back {held} of {work.count('steps')} steps: {_USE_BDF}"
+    return f"stability, not accuracy, limited {held} of {work.count('steps')} steps: {_USE_BDF}"

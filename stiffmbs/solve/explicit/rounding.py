@@ -83,9 +83,9 @@ class Rounding:
             return ""
         likely = suspect(self._dynamics, work.t, work.q.copy(), work.u.copy())
         return (
-            f"rounding governs the steps, {CONTROL.enough_steps} of which cover {CONTROL.enough_steps * pace:.3g} s: the last digits of the coordinates change "
-            f"{acceleration_name(self._dynamics.system, k)} by {jumps[k]:.2g}{likely}; expected constraints that either repeat each "
-            "other exactly or differ clearly, or solver bdf"
+            f"rounding errors limit the steps ({CONTROL.enough_steps} steps cover {CONTROL.enough_steps * pace:.3g} s): rounding of the coordinates changes "
+            f"{acceleration_name(self._dynamics.system, k)} by {jumps[k]:.2g}{likely}; expected constraints that are either exactly "
+            "redundant or clearly independent, or solver bdf"
         )
 
     def _jumps(self, work: Integration, span: float) -> np.ndarray:

@@ -292,7 +292,7 @@ class DifferentiatedRun:
             rows, gaps = reported(self._job.dynamics, self._trajectory, True)
         if len(rows.t) < len(self._trajectory.t) or gaps:
             raise SolverError(
-                "sensitivities: found instants without accelerations and reactions, expected them everywhere"
+                "sensitivities: found output times without accelerations and reactions, expected them everywhere"
             )
         return rows
 

@@ -16,7 +16,7 @@ HOW = {"duration": 2.0, "points": 101, "rtol": 1e-7}
 def test_steps_that_rounding_shortens_are_told_by_the_explicit_integrator():
     solution = stiffmbs.run(nearly_repeated(1e-7), solver="projected", scheme="dop853", **HOW)
     assert solution.outcome is Outcome.STOPPED
-    assert "rounding governs the steps" in solution.message and "change block.ax by" in solution.message
+    assert "rounding errors limit the steps" in solution.message and "changes block.ax by" in solution.message
     assert solution.message.endswith("or solver bdf")
 
 

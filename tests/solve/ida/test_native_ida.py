@@ -315,7 +315,7 @@ def test_a_run_into_the_undefined_fails_in_words():
     ida = undefined.native()
     rows, status = undefined.through(ida, np.linspace(0, 2, 201)[1:])
     assert status is Status.FAILED
-    assert "no solution was found beyond this instant" in ida.failure()
+    assert "no solution was found beyond" in ida.failure()
     assert 0.99 < ida.y[0] <= 1
     assert 0 < len(rows) < 200
     assert np.all(np.isfinite(rows))

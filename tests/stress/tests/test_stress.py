@@ -119,7 +119,7 @@ def test_a_run_that_takes_too_long_is_called_slow(monkeypatch):
     case = simulation("slow", "", double_pendulum, lambda s: 0.0, 1.0, duration=100.0, points=11)
     (row,) = outcomes([("made up", case)])
     assert row.verdict.outcome is Outcome.SLOW
-    assert "given up" in row.verdict.detail
+    assert "aborted" in row.verdict.detail
 
 
 @pytest.mark.parametrize(

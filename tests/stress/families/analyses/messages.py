@@ -85,7 +85,7 @@ CASES = (
         )
     ),
     *(
-        said(f"slider under the force {law or 'of nothing'} in {dimensions}D", "it is named", partial(notes_at_rest, dimensions, law), "nothing holds b.vx")
+        said(f"slider under the force {law or 'of nothing'} in {dimensions}D", "it is named", partial(notes_at_rest, dimensions, law), "no force determines b.vx")
         for dimensions, law in ((2, "0"), (3, ""), (2, "-3*b.vx"))
     ),
     *(

@@ -69,5 +69,5 @@ CASES = (
         "block that comes to rest", "way against mu g", partial(block, "2*(1 - step(t, 1, 0, 1 + 1e-9, 1))"), _stopped, 1e-3,
         duration=3.0, points=301, rtol=1e-8,
     ),
-    refusal("a joint that jams", "friction and the reactions that press it have no balance", jammed, ("rub", "balance")),
+    refusal("a joint that jams", "friction and the reactions that press it have no balance", jammed, ("rub", "no unique solution")),
 )  # fmt: skip

@@ -127,12 +127,12 @@ def _told(name: str, scene: Callable[[], Model], error: Callable[[Solution], flo
 
 
 CASES = (
-    *(_told(name, *of, "jumps back and forth", solver) for name, of in JUMPS.items() for solver in SOLVERS),
-    *(_told(name, scene, _nothing, "ever faster", solver) for name, scene in FASTER.items() for solver in SOLVERS),
+    *(_told(name, *of, "chatters", solver) for name, of in JUMPS.items() for solver in SOLVERS),
+    *(_told(name, scene, _nothing, "chatters", solver) for name, scene in FASTER.items() for solver in SOLVERS),
     *(
         simulation(
             f"sign(v) at rest, {scheme} in steps of 1 ms", "the jump is noted", JUMPS["sign(v) at rest"][0], _until_rest, 5e-3,
-            noted=("'push' jumps back and forth",), expected=Outcome.TOLD, duration=1.0, points=101, solver="projected", scheme=scheme,
+            noted=("'push' chatters",), expected=Outcome.TOLD, duration=1.0, points=101, solver="projected", scheme=scheme,
         )
         for scheme in ("rk4", "euler_cromer")
     ),

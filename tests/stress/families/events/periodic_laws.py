@@ -121,7 +121,7 @@ UNRESOLVED = tuple(
             read_scene,
             "gravity: [0, 0]\nbodies: {b: {mass: 1, inertia: 1}, w: {mass: 1, inertia: 1, position: [0, 1], velocity: [1, 0]}}\n"
             f"forces: {{fast: {{type: force, i: b, force: ['{FAST}', 0]}}}}",
-        ), lambda solution: 0.0, 1.0, names=("fast",), noted=("fast", "cannot be resolved"), expected=Outcome.TOLD, duration=1.0, points=2, **how,
+        ), lambda solution: 0.0, 1.0, names=("fast",), noted=("fast", "do not resolve it"), expected=Outcome.TOLD, duration=1.0, points=2, **how,
     )
     for solver, how in SOLVERS.items()
 )  # fmt: skip

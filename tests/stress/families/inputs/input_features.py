@@ -107,7 +107,7 @@ CASES = (
         "peak of a drive between output points", "told by a kinematic run; positions against the drive",
         partial(led, "1e-3*exp(-((t - 0.505)/1 ms)^2)"),
         lambda solution: float(np.max(np.abs(solution["b.x"] - 1e-3 * np.exp(-(((solution.t - 0.505) / 1e-3) ** 2))))), 1e-9,
-        noted=("shorter than the 0.01 s between output points", "t = 0.5"), expected=Outcome.TOLD, duration=1.0, points=101, solver="kinematic",
+        noted=("shorter than the 0.01 s between output times", "t = 0.5"), expected=Outcome.TOLD, duration=1.0, points=101, solver="kinematic",
     ),
     simulation(
         "fixed steps over a short pulse", "told", partial(scene, "exp(-((t - 0.5)/1e-4)^2)"), lambda solution: 0.0, 1.0,

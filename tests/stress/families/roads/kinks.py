@@ -110,7 +110,7 @@ CASES = (
     *(
         simulation(
             f"two belts, {solver}, rtol {rtol:g}", "stops on the second belt, not where it is met", belts, _before, 1e-2,
-            names=("t = 4.7", "jumps back and forth"), expected=Outcome.TOLD, duration=8.0, points=401, rtol=rtol, **how,
+            names=("t = 4.7", "chatters"), expected=Outcome.TOLD, duration=8.0, points=401, rtol=rtol, **how,
         )
         for solver, how in SOLVERS.items()
         for rtol in (1e-4, 1e-7)

@@ -106,7 +106,7 @@ CASES = (
     _law("100*sin(6*pi*t)", lambda t: 100 * np.sin(6 * np.pi * t), 2),
     simulation(
         "pendulum at 1e4 rad/s, rtol 1e-10", "told, as the angle's rounding does not allow the tolerance", partial(pendulum, 1e4),
-        lambda solution: 0.0, 1.0, names=("more digits than rounding", "bar.angle"), expected=Outcome.TOLD, duration=1.0,
+        lambda solution: 0.0, 1.0, names=("is below rounding", "bar.angle"), expected=Outcome.TOLD, duration=1.0,
         points=11, rtol=1e-10, quick=False,
     ),
 )  # fmt: skip

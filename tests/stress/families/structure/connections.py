@@ -16,7 +16,7 @@ from stiffmbs.reading.marker import Marker
 
 from ...case import Case, Outcome, Verdict, measured, told
 
-SEPARATE = "connected to nothing"
+SEPARATE = "not connected"
 FREE = "by itself"
 
 

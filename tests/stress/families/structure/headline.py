@@ -28,7 +28,7 @@ LATE = 1e-3
 """Error, rad or m, that no run without a doubt has."""
 PATIENCE = 4.0
 """Processor time, s, after which a run is interrupted."""
-DOUBTS = ("may be wrong", "beyond sense", "creep by")
+DOUBTS = ("may be wrong", "the motion diverges", "constraint drift")
 
 
 def loop(cranks: int, torque: float, space: bool, omega: float) -> Any:
@@ -62,7 +62,7 @@ def _judged(scene: Callable[[], Any], error: Callable[[Solution], float], words:
         return told(solution.message, ("t = ",), found, LATE)
     if solution.message.startswith(IN_DOUBT):
         return told(solution.message, (words,))
-    doubts = [doubt for doubt in DOUBTS if doubt in notes and "was taken again" not in notes]
+    doubts = [doubt for doubt in DOUBTS if doubt in notes and "was repeated" not in notes]
     if doubts:
         return Verdict(Outcome.WRONG, found, LATE, f"'{solution.message}' with the notes {notes}")
     return measured(found, LATE, notes)
@@ -71,7 +71,7 @@ def _judged(scene: Callable[[], Any], error: Callable[[Solution], float], words:
 def _loop(cranks: int, torque: float, space: bool, omega: float, expected: Outcome, **how: Any) -> Case:
     name = f"{cranks} cranks, +-{torque:.0e} N m, {omega:g} rad/s{', in space' if space else ''} {how or ''}"
     scene, error = partial(loop, cranks, torque, space, omega), partial(swing_of, cranks, omega)
-    judge = partial(_judged, scene, error, "creep by", {"duration": 3.0, "points": 61, **how})
+    judge = partial(_judged, scene, error, "constraint drift", {"duration": 3.0, "points": 61, **how})
     return Case(name, "a pendulum, or a message that the results are in doubt", judge, expected)
 
 
@@ -82,7 +82,7 @@ def _growth(
         _judged,
         partial(grows, dimensions, law),
         error,
-        "the motion grows beyond sense",
+        "the motion diverges",
         {"duration": duration, "points": 81, **how},
     )
     return Case(

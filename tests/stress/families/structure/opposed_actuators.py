@@ -85,7 +85,7 @@ LEGITIMATE: dict[str, Actuator] = {
     "over what a rail carries": (PLANE, {"type": "force", "i": "a", "force": [0, "9*(t - a.y)"]}, {}),
     "on the frame": (HOUSING, {"type": "force", "i": "frame", "force": ["9*(t - frame.x)", 0]}, {}),
 }  # fmt: skip
-NOTE = "servo acts on a motion that motor prescribes: it changes only the reaction"
+NOTE = "servo acts on a motion that motor prescribes, so it changes only the reaction"
 
 
 def notes(actuator: Actuator, ask: str) -> str:

@@ -200,7 +200,7 @@ def _told(name: str, what: str, text: str, joint: str, speed: float) -> Case:
     """A case in which two joints hold the same at the start and contradict each other later."""
     return simulation(
         name, what, partial(read_scene, text), lambda solution: float(np.max(np.abs(solution["b.x"] - speed * solution.t))), 1e-9,
-        names=(f"joint '{joint}'", "does not hold"), expected=Outcome.TOLD, duration=1.0, points=11,
+        names=(f"joint '{joint}'", "is violated"), expected=Outcome.TOLD, duration=1.0, points=11,
     )  # fmt: skip
 
 
