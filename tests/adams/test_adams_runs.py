@@ -79,6 +79,24 @@ def test_a_motor_turns_many_times(kind):
     np.testing.assert_allclose(solution["MOTION_1.tz"], torque, atol=1e-5)
 
 
+@pytest.mark.parametrize(("order", "travel", "speed"), [("ACCELERATION", 0.02135, 0.065), ("VELOCITY", 0.065, 0.1)])
+def test_a_slide_is_led_by_the_integral_of_a_step(order, travel, speed):
+    """STEP from 0 at 0.2 s to 100 mm/s at 0.5 s: its integral at 1 s is 65 mm, twice integrated 21.35 mm."""
+    text = f"""millimetres
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND
+PART/1, GROUND
+MARKER/1, PART=1
+PART/2, MASS=2, CM=20, IP=1,1,1
+MARKER/20, PART=2
+JOINT/1, TRANSLATIONAL, I=20, J=1
+MOTION/1, JOINT=1, {order}, ICDISP=20, FUNCTION=STEP(TIME, 0.2, 0, 0.5, 100)
+END
+"""
+    solution = stiffmbs.run(read_adams(text), duration=1.0, rtol=1e-9)
+    assert solution["PART_2.z"][-1] == pytest.approx(0.02 + travel, abs=1e-8)
+    assert solution["PART_2.vz"][-1] == pytest.approx(speed, abs=1e-8)
+
+
 @pytest.mark.long
 def test_a_sleeve_is_turned_and_pushed():
     text = (
