@@ -34,6 +34,7 @@ from .metric_datasets import GRAVITY, HEAD, TWO, G, run
         ("MARKER/22, PART=2, REULER=0,90D,0\nJPRIM/1, PERPENDICULAR, I=22, J=1", 1),
         ("GCON/1, FUNCTION=DX(21,1)+DY(21,1)", 1),
         ("GCON/1, FUNCTION=VX(21)-0.5*WZ(21)", 1),
+        ("VARIABLE/1, FUNCTION=WZ(21)\nVARIABLE/2, FUNCTION=2*VARVAL(1)\nGCON/1, FUNCTION=DX(21)+VARVAL(2)", 1),
         ("MOTION/1, I=21, J=1, X, FUNC=TIME", 1),
         pytest.param("MOTION/1, I=21, J=1, B2, FUNC=TIME", 1, marks=pytest.mark.long),
     ],

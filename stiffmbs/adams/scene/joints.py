@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from ...elements.spatial.number_format import plain, quaternion, vector
-from ..functions.translate import ANGULAR_VELOCITIES as TURNING
-from ..functions.translate import VELOCITIES, Translation
+from ...reading.formula.text import parse
+from ..functions.translate import ANGULAR_VELOCITIES, VELOCITIES, Translation
 from ..statements.constraints import GeneralConstraint, Joint, Primitive
 from ..statements.geometry import Frame
 from ..statements.text import of_each
@@ -34,6 +33,8 @@ KINDS = {
     "PERPENDICULAR": "perpendicular",
 }
 """Joints that use their two markers unchanged."""
+RATES = {name.lower() for name in (*VELOCITIES, *ANGULAR_VELOCITIES)}
+"""Measures of velocity in formulas."""
 Z_ALONG_X = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Axes with z along the x axis of the axes they are given in."""
 Z_ALONG_Y = Z_ALONG_X.T
@@ -90,15 +91,20 @@ def _general(constraint: GeneralConstraint, mechanism: Mechanism, translation: T
         *ends, length = distance
         i, j = (mechanism.place(ident, constraint, "the marker").reference for ident in ends)
         return {"type": "distance", "i": i, "j": j, "length": plain(length * mechanism.dataset.units.length)}
-    called = {name.id for node in ast.walk(constraint.function.tree) for name in _callee(node)}
-    kind = "velocity_equation" if called & {*VELOCITIES, *TURNING} else "equation"
+    formula = translation.translated(constraint.function)
+    kind = "velocity_equation" if _has_velocities(formula, mechanism) else "equation"
     reported = {} if constraint.i is None else {"i": mechanism.place(constraint.i, constraint, "I").reference}
-    return {"type": kind, **reported, "zero": translation.formula(constraint.function)}
+    return {"type": kind, **reported, "zero": ast.unparse(formula)}
 
 
-def _callee(node: ast.AST) -> Iterator[ast.Name]:
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-        yield node.func
+def _has_velocities(formula: ast.expr, mechanism: Mechanism) -> bool:
+    """Return True if a formula measures a velocity, itself or in its variables."""
+    names, pending = set[str](), [formula]
+    while pending:
+        found = {node.id for node in ast.walk(pending.pop()) if isinstance(node, ast.Name)} - names
+        names |= found
+        pending += [parse(mechanism.variables[name]) for name in found if name in mechanism.variables]
+    return bool(names & RATES)
 
 
 def rod(constraint: GeneralConstraint) -> tuple[int, int, float] | None:
