@@ -128,6 +128,14 @@ def test_three_motors_lead_the_body_123_angles():
         np.testing.assert_allclose(solution[f"PART_2.q{k}"] * sign, expected[k], atol=1e-7)
 
 
+def test_a_sleeve_that_a_motor_turns_starts_to_slide_as_its_joint_says():
+    text = TWO + "JOINT/1, CYLINDRICAL, I=21, J=1, ICROT=20D, ICTRAN=0.1,3\nMOTION/1, JOINT=1, ROT, FUNC=7*TIME\n"
+    solution = run(text + "VARIABLE/1, FUNC=AZ(21,1)")
+    np.testing.assert_allclose(solution["VARIABLE_1"], 7 * solution.t, atol=1e-7)
+    np.testing.assert_allclose(solution["PART_2.z"], 0.1 + 3 * solution.t, atol=1e-7)
+    assert any("initial conditions of JOINT/1 are left out" in note for note in solution.notes)
+
+
 GEARS = (
     TWO
     + """JOINT/1, REVOLUTE, I=21, J=1
