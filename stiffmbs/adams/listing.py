@@ -18,7 +18,7 @@ from .functions.adams_functions import ADAMS_FUNCTIONS
 from .functions.expression import ExpressionError, parse
 from .functions.force_laws import LAWS
 from .functions.inputs import PLANTS
-from .functions.measures import ANGLES_OF_AXES, REACTIONS
+from .functions.measures import ANGLES_OF_AXES, COMPONENTS, REACTIONS
 from .functions.splines import CURVES
 from .functions.translate import ANGLES, ANGULAR_VELOCITIES, COUPLED, PLAIN, POSITIONS, VELOCITIES
 from .functions.translate_output import ACCELERATIONS, ANGULAR_ACCELERATIONS, ROUNDING_FUNCTIONS
@@ -33,7 +33,7 @@ from .statements.units import Units
 READ, OMITTED, NOT_READ = "read", "left out", "refused"
 ANYWHERE = {
     *POSITIONS, *ANGLES, *VELOCITIES, *ANGULAR_VELOCITIES, *PLAIN, *ADAMS_FUNCTIONS, *CURVES, *ANGLES_OF_AXES, *REACTIONS,
-    *LAWS, "INTERP", "ARYVAL", *PLANTS, "VARVAL", "DIF", "DIF1", "INCANG", "SENVAL",
+    *LAWS, *COMPONENTS, "INTERP", "ARYVAL", *PLANTS, "VARVAL", "DIF", "DIF1", "INCANG", "SENVAL",
 }  # fmt: skip
 IN_REQUESTS = {*ANYWHERE, *COUPLED, *ACCELERATIONS, *ANGULAR_ACCELERATIONS, *ROUNDING_FUNCTIONS, "ORIENT"}
 REPORTED = ("REQUEST", "VARIABLE", "SENSOR")

@@ -188,8 +188,8 @@ VTORQUE/7, I=21, JFLOAT=39, RM=33, TX=1\ TY=2\ TZ=4
 @pytest.mark.parametrize("name", ["SFORCE(1", "SFORCE(2", "SPDP(3", "GFORCE(4", "VFORCE(5", "BUSH(6", "VTORQ(7"])
 def test_forces_follow_other_forces(name):
     """A torque by a component of another force is that component, as a VARIABLE reports it."""
-    components = range(1, 5 if name == "BUSH(6" else 9)
-    terms = [f"{name},{on_j},{component},{axes})" for on_j in (0, 1) for component in components for axes in (0, 33)]
+    components = (1, 2) if name == "BUSH(6" else (1, 2, 5, 8)
+    terms = [f"{name},0,{component},33)" for component in components] + [f"{name},1,4,0)", f"{name},1,3,33)"]
     followers = "".join(
         f"SFORCE/{k}, ROT, ACTION, I=20, J=1, FUNC={term}\nVARIABLE/{k}, FUNC={term}\n"
         for k, term in enumerate(terms, start=100)
@@ -198,6 +198,30 @@ def test_forces_follow_other_forces(name):
     solution = run(moving + ELEMENTS + followers, 1e-6)
     for k, term in enumerate(terms, start=100):
         assert solution[f"SFORCE_{k}.tz"][0] == pytest.approx(solution[f"VARIABLE_{k}"][0], rel=1e-9, abs=1e-9), term
+
+
+PAIRS = """
+SPRINGDAMPER/8, TRANS, I=21, J=31, K=7, LENGTH=0.5
+SFORCE/9, ROT, I=20, J=33, FUNC=2*DM(21,31)
+MARKER/22, PART=2, QP=0.2,0.1,-0.3, REULER=20D,30D,40D
+MARKER/12, PART=1, QP=0.2,0.1,-0.3
+JOINT/1, SPHERICAL, I=22, J=12
+SFORCE/10, ACTION, ROT, I=22, J=12, FUNC=3
+"""
+
+
+@pytest.mark.parametrize("pair", ["31,21", "21,0", "22,12", "33,20"])
+def test_forces_follow_all_that_acts_between_two_markers(pair):
+    terms = [f"{name}({pair},22)" for name in ("FX", "FM", "TZ")] + [f"FZ({pair})"]
+    followers = "".join(
+        f"SFORCE/{k}, ROT, ACTION, I=20, J=1, FUNC={term}\nVARIABLE/{k}, FUNC={term}\n"
+        for k, term in enumerate(terms, start=100)
+    )
+    moving = TWO.replace("QG=1,0,0", "QG=1,0.2,0.1, REULER=20D,30D,0, VX=1, WX=1, WY=2, WZ=3")
+    without = "\n".join(line for line in ELEMENTS.splitlines() if "BUSHING" not in line)
+    solution = run(moving + without + PAIRS + followers, 1e-6)
+    for k, term in enumerate(terms, start=100):
+        assert solution[f"SFORCE_{k}.tz"][0] == pytest.approx(solution[f"VARIABLE_{k}"][0], rel=1e-8, abs=1e-8), term
 
 
 def test_a_block_rubs_by_the_force_that_presses_it():
@@ -223,14 +247,20 @@ SFORCE/2, TRANS, ACTION, I=20, J=2, FUNC=-0.3*VARVAL(1)*STEP(VX(20), -0.01, -1, 
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        ("SFORCE(1,0,1,0)", r"found SFORCE\(1, ...\) in its own law"),
-        ("VARVAL(1)", r"found SFORCE\(1, ...\) in its own law"),
+        ("SFORCE(1,0,1,0)", "found the force of SFORCE/1 in its own law"),
+        ("VARVAL(1)", "found the force of SFORCE/1 in its own law"),
         ("SFORCE(2,0,1,0)", r"found SFORCE\(2, ...\), expected the number of a SFORCE"),
-        ("FX(21,31)", "found FX in 'FX.*expected it in a REQUEST, or one of JOINT, JPRIM, SFORCE"),
+        ("FX(21,31)", "found the force of SFORCE/1 in its own law"),
+        ("FX(20,30)", "found the force of BEAM/7 in 'FX.*expected it in a REQUEST, or that of a joint, or of SFORCE"),
+        ("BEAM(7,0,1,0)", "found BEAM in 'BEAM.*expected it in a REQUEST, or one of JOINT, JPRIM, SFORCE"),
+        ("FX(20,1)", "found no joint and no force between the markers 20 and 1"),
         ("BUSH(6,0,8,0)", "found the torque of BUSHING/6, expected it in a REQUEST alone"),
     ],
 )
 def test_forces_that_cannot_be_followed_are_named(law, words):
-    bushing = "BUSHING/6, I=21, J=31, K=10,20,30, KT=1,2,3\n"
+    more = (
+        "BUSHING/6, I=20, J=31, K=10,20,30, KT=1,2,3\n"
+        "BEAM/7, I=20, J=30, LENGTH=1, AREA=1E-4, IXX=1E-9, IYY=1E-9, IZZ=1E-9, EMODULUS=1E9, GMODULUS=4E8\n"
+    )
     with pytest.raises(stiffmbs.InputError, match=words):
-        run(f"{TWO}{bushing}VARIABLE/1, FUNC=SFORCE(1,0,1,0)\nSFORCE/1, TRANS, I=21, J=31, FUNC={law}", 0.01)
+        run(f"{TWO}{more}VARIABLE/1, FUNC=SFORCE(1,0,1,0)\nSFORCE/1, TRANS, I=21, J=31, FUNC={law}", 0.01)

@@ -1,7 +1,7 @@
 """Forces of elements in the expressions of other forces: laws of positions and velocities are substituted.
 
-SFORCE(id, jflag, comp, rm) and alike for SPDP, BUSH, VFORCE, VTORQ and GFORCE. The torque of a BUSHING, and elements
-whose force is not an expression, are not supported.
+SFORCE(id, jflag, comp, rm) and alike for SPDP, BUSH, VFORCE, VTORQ and GFORCE, and FX(i, j, rm) and alike of these and of
+joints. The torque of a BUSHING, and elements whose force is not an expression, are not supported.
 """
 
 from __future__ import annotations
@@ -11,13 +11,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ...reading.files.quoted import quoted
 from ..scene.mechanism import Mechanism, Place
-from ..statements.constraints import TRANSLATIONAL
+from ..statements.constraints import TRANSLATIONAL, Primitive
 from ..statements.declared import Numbered
 from ..statements.elastic import Bushing, SpringDamper
 from ..statements.forces import SingleForce, VectorForce
+from .acting import acting_between, has_action_only
 from .function import Function
-from .measures import component_of
+from .measures import BY_ITS_PLACE, component_of, reaction
 from .trees import call, difference, measured, number, over, power, product, quotient, times, total
 
 if TYPE_CHECKING:
@@ -51,7 +53,7 @@ class _Part:
 
 
 def force_by_law(name: str, arguments: list[ast.expr], function: Function, translation: Translation) -> ast.expr:
-    """Return a component of a force on marker I or J, in the dataset's units.
+    """Return SFORCE(id, jflag, comp, rm) and alike: a component of a force on marker I or J, in the dataset's units.
 
     Raises DatasetFault if there is no such statement, or it has no law of positions and velocities.
     """
@@ -62,18 +64,65 @@ def force_by_law(name: str, arguments: list[ast.expr], function: Function, trans
     found = mechanism.dataset.statements.get(LAWS[name], {}).get(ident)
     if found is None:
         raise function.fault(f"found {name}({ident}, ...), expected the number of a {LAWS[name]}")
+    frame = mechanism.place(axes, function, "RM") if axes else None
     which = component_of(name, component, function)
-    parts = list(_parts(found, which[0], function, translation))
+    return over(_component(found, bool(on_j), which, frame, function, translation), _unit(which, translation))
+
+
+def force_between(name: str, arguments: list[ast.expr], function: Function, translation: Translation) -> ast.expr:
+    """Return FX(i, j, rm) and alike: the sum of what acts between two markers, in the dataset's units.
+
+    Raises DatasetFault if nothing acts there, or an element that is neither a joint nor has a law.
+    """
+    mechanism = translation.mechanism
+    i, j, axes = (*function.identifiers(arguments), 0, 0)[:3]
+    acting = list(acting_between(i, j, mechanism))
+    if not acting and (mechanism.dataset.inactive or has_action_only(i, j, mechanism)):
+        return number(0.0)
+    if not acting:
+        raise function.fault(f"found no joint and no force between the markers {i} and {j}, expected one at least")
+    frame = mechanism.place(axes, function, "RM") if axes else None
+
+    def along(component: str) -> ast.expr:
+        return total([_component(found, on_j, component, frame, function, translation) for found, on_j in acting])
+
+    several = name[1] == "M" and len(acting) > 1
+    value = call("sqrt", total([power(along(name[0] + axis), 2) for axis in "XYZ"])) if several else along(name)
+    return over(value, _unit(name, translation))
+
+
+def _unit(component: str, translation: Translation) -> float:
+    return translation.units.of(force=1, length=1 if component[0] == "T" else 0)
+
+
+def _component(
+    found: Numbered, on_j: bool, component: str, frame: Place | None, function: Function, translation: Translation
+) -> ast.expr:
+    """Return a component of the force of an element on marker I or J, N or N m."""
+    mechanism = translation.mechanism
+    if isinstance(found, Primitive) and found.kind not in BY_ITS_PLACE:
+        return reaction(found, component, on_j, frame, mechanism)
+    if found.keyword not in LAWS.values():
+        raise function.fault(
+            f"found the force of {found.label} in '{quoted(function.text)}', expected it in a REQUEST, or that of a joint, or of "
+            f"{', '.join(dict.fromkeys(LAWS.values()))}"
+        )
+    if found.label in translation.substituted:
+        raise function.fault(
+            f"found the force of {found.label} in its own law, expected forces that do not hang on themselves"
+        )
+    translation.substituted.append(found.label)
+    try:
+        parts = list(_parts(found, component[0], function, translation))
+    finally:
+        translation.substituted.pop()
     if not parts or (on_j and isinstance(found, SingleForce) and found.action_only):
         return number(0.0)
-    if which[1] == "M":
+    if component[1] == "M":
         sizes = [part.size for part in parts]
-        value = call("abs", *sizes) if len(sizes) == 1 else call("sqrt", total([power(size, 2) for size in sizes]))
-    else:
-        frame = mechanism.place(axes, function, "RM") if axes else None
-        value = total([part.along(which[1].lower(), frame, mechanism) for part in parts])
-        value = times(value, -1.0) if on_j else value
-    return over(value, translation.units.of(force=1, length=1 if which[0] == "T" else 0))
+        return call("abs", *sizes) if len(sizes) == 1 else call("sqrt", total([power(size, 2) for size in sizes]))
+    value = total([part.along(component[1].lower(), frame, mechanism) for part in parts])
+    return times(value, -1.0) if on_j else value
 
 
 def _parts(found: Numbered, kind: str, function: Function, translation: Translation) -> Iterator[_Part]:

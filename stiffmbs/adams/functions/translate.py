@@ -17,12 +17,13 @@ from ..scene.mechanism import Mechanism
 from ..statements.declared import Numbered
 from .adams_functions import ADAMS_FUNCTIONS
 from .expression import IF, OMITTED, parse
-from .force_laws import LAWS, force_by_law
+from .force_laws import LAWS, force_between, force_by_law
 from .function import Function
 from .inputs import PLANTS, evaluated_name, variable_of_plant
 from .measures import (
     ANGLES_OF_AXES,
     BY_ITS_PLACE,
+    COMPONENTS,
     REACTIONS,
     angle,
     component_of,
@@ -47,19 +48,25 @@ PLAIN = {
 }  # fmt: skip
 """Functions with an equivalent in scene formulas."""
 COUPLED = (
-    "MOTION", "GCON", "COUPLER", "GEAR", "PTCV", "CVCV", "CONTACT", "BEAM", "FIELD", "FX", "FY", "FZ", "FM", "TX", "TY", "TZ", "TM",
+    "MOTION", "GCON", "COUPLER", "GEAR", "PTCV", "CVCV", "CONTACT", "BEAM", "FIELD",
 )  # fmt: skip
 """Force functions that only requests may use."""
 NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 
 
 class Translation:
-    """Translator of the expressions of one dataset."""
+    """Translator of the expressions of one dataset.
+
+    Attributes
+    ----------
+    substituted : list of str
+        Labels of the forces whose laws are being substituted.
+    """
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
         self.units = mechanism.dataset.units
-        self._within: list[tuple[str, int]] = []
+        self.substituted: list[str] = []
 
     @cached_property
     def implicit_variables(self) -> frozenset[int]:
@@ -155,11 +162,13 @@ class Translation:
         if name in REACTIONS:
             return self._reaction(name, arguments, function)
         if name in LAWS:
-            return self._law_of_another(name, arguments, function)
+            return force_by_law(name, arguments, function, self)
+        if name in COMPONENTS:
+            return force_between(name, arguments, function, self)
         if name in COUPLED:
             raise function.fault(
                 f"found {name} in '{quoted(function.text)}', a force that hangs on others at the same instant, expected it in a "
-                f"REQUEST, or one of {', '.join((*REACTIONS, *LAWS))}"
+                f"REQUEST, or one of {', '.join((*REACTIONS, *LAWS, *COMPONENTS))}"
             )
         if name == "INCANG":
             ends = [self.reference(function.identifier(arguments, k), function) for k in range(3)]
@@ -241,19 +250,6 @@ class Translation:
         frame = self.mechanism.place(axes, function, "RM") if axes else None
         force = reaction(joint, which, bool(on_j), frame, self.mechanism)
         return over(force, self.units.of(force=1, length=1 if which[0] == "T" else 0))
-
-    def _law_of_another(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
-        """Translate SFORCE(id, jflag, comp, rm) and similar functions by the law of the force."""
-        force = name, function.identifier(arguments, 0)
-        if force in self._within:
-            raise function.fault(
-                f"found {name}({force[1]}, ...) in its own law, expected forces that do not hang on themselves"
-            )
-        self._within.append(force)
-        try:
-            return force_by_law(name, arguments, function, self)
-        finally:
-            self._within.pop()
 
     def array_value(self, arguments: list[ast.expr], function: Function) -> ast.expr:
         """Return a number of an ARRAY."""
