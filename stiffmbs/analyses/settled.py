@@ -84,6 +84,20 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     return _settled(found, start, [*notes, "this equilibrium is also unstable; no stable one was found near it"])
 
 
+def driven_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
+    """Find a stable equilibrium, and move from there as drives prescribe, with the smallest velocities in the mass matrix.
+
+    Raise a SolverError if no equilibrium is found, or the velocities have no accelerations there.
+    """
+    system, state = dynamics.system, dynamics.state
+    found = settled(dynamics, start, t).start
+    state.q[:], state.u[:] = found.q, found.u
+    state.evaluate("motion", t)
+    if not np.any(state.vector("motion", "V")[system.active]):
+        return found
+    return _moving(dynamics, found, "the velocities of drives", t)
+
+
 def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
     """Find the equilibrium pose at rest and make the described velocities consistent there: a car that begins to roll.
 
@@ -93,21 +107,25 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
     state.q[:], state.u[:] = found.q, start.u
+    notes = (
+        "the stability of the equilibrium at the start was not checked",
+        *far_away(dynamics, start, found),
+    )
+    return _moving(dynamics, replace(start, q=found.q, moved=(), notes=notes), "the described velocities", t)
+
+
+def _moving(dynamics: Dynamics, start: InitialValues, velocities: str, t: float) -> InitialValues:
+    """Return a start with the current velocities made consistent in its pose; `velocities` names them in the error."""
+    state = dynamics.state
     status = min(dynamics.correct_velocities(t), 0)
     state.count_anew(t)
     acceleration = start.acceleration
     if status == 0:
         status, acceleration = dynamics.accelerate(t)
     if status < 0:
-        raise SolverError(
-            f"the described velocities are not possible in the equilibrium: {failure(dynamics, status, t)}"
-        )
+        raise SolverError(f"{velocities} are not possible in the equilibrium: {failure(dynamics, status, t)}")
     lam = state.lam[: dynamics.system.n_c].copy()
-    notes = (
-        "the stability of the equilibrium at the start was not checked",
-        *far_away(dynamics, start, found),
-    )
-    return replace(start, q=found.q, u=state.u.copy(), acceleration=acceleration, lam=lam, moved=(), notes=notes)
+    return replace(start, u=state.u.copy(), acceleration=acceleration, lam=lam)
 
 
 def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:
