@@ -211,6 +211,12 @@ def test_integrals_that_are_no_formula_are_states():
     }
 
 
+@pytest.mark.parametrize("function", ["DX(22,1)", "JOINT(1,0,2,0)*STEP(TIME,0,0,1,1)"])
+def test_integrals_of_what_moves_are_refused(function):
+    with pytest.raises(InputError, match=r"MOTION/1: found '.*' measured in '.*', expected a function of time"):
+        made(JOINTS + f"MOTION/1, JOINT=2, ACCELERATION, FUNC={function}")
+
+
 def test_components_between_markers_are_driven():
     found = made(
         "MOTION/1, I=22, J=2, Y, FUNC=TIME\nMOTION/2, I=22, J=2, B1, FUNC=TIME\nMOTION/3, I=22, J=2, B3, FUNC=0"

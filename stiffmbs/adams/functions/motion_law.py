@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from ...elements.spatial.number_format import plain
+from ...reading.files.quoted import quoted
 from ...reading.formula.text import FormulaError, parse
 from ..statements.constraints import TRANSLATIONAL, Motion
 from ..statements.geometry import ROUNDING
@@ -136,7 +137,17 @@ class Law:
         return {"position": ast.unparse(total([*terms, integral]))}
 
     def _state(self, start: float) -> str:
-        """Add a state of the scene for each integral without a formula, and return the name of the displacement."""
+        """Add a state of the scene for each integral without a formula, and return the name of the displacement.
+
+        Raises DatasetFault if the function measures positions, velocities or reactions.
+        """
+        function, dataset = self._motion.function, self._translation.mechanism.dataset
+        joints = {joint.name for joint in (*dataset.joints.values(), *dataset.primitives.values())}
+        for node in ast.walk(parse(self._formula())):
+            if isinstance(node, ast.Attribute) or (isinstance(node, ast.Name) and node.id in joints):
+                raise function.fault(
+                    f"found '{ast.unparse(node)}' measured in '{quoted(function.text)}', expected a function of time"
+                )
         displacement, velocity = (f"{self._motion.name}_{what}" for what in ("displacement", "velocity"))
         states = {displacement: {"rate": self._formula(), "start": plain(start)}}
         if self._motion.order == 2:
