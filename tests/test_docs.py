@@ -21,8 +21,8 @@ from stiffmbs.commands.main import main
 from stiffmbs.model import model
 from stiffmbs.model import spatial_model as spatial_model
 from stiffmbs.model.files.expand import repeat_entries
+from stiffmbs.model.planar_scene import PlanarScene
 from stiffmbs.model.read_scene import SECTIONS
-from stiffmbs.model.scene import PlanarScene
 
 HERE = Path(__file__).parent.parent
 GENERATED = HERE / "docs" / "gallery"

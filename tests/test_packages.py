@@ -98,6 +98,20 @@ def test_a_planar_scene_loads_nothing_of_space():
     assert not found.stdout.split()
 
 
+def test_a_spatial_scene_loads_no_planar_kinds():
+    """Bases and equations that both have in common are in files of their own."""
+    program = (
+        "import sys, stiffmbs;"
+        f"stiffmbs.run({str(ROOT.parent / 'examples' / 'car.yaml')!r}, duration=0.01);"
+        "print(*sys.modules)"
+    )
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    planar = [f"forces.{name}" for name in ("bushing", "line_force", "spring_damper", "torsion_spring")]
+    planar += ["joints.fixed", "joints.planar_pair", "planar_kinds"]
+    unused = {"model.model", "elements.spatial.flexible.inertia", *(f"elements.{name}" for name in planar)}
+    assert not {f"stiffmbs.{name}" for name in unused} & set(found.stdout.split())
+
+
 def test_a_run_without_tables_and_drives_loads_no_masked_arrays():
     """`numpy.unique` and the functions of sets load them; they are 3 % of a short run."""
     program = (

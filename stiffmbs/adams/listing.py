@@ -16,8 +16,9 @@ from .commands.command_files import Read, command_file_of
 from .commands.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands
 from .functions.adams_functions import ADAMS_FUNCTIONS
 from .functions.expression import ExpressionError, parse
+from .functions.force_laws import LAWS
 from .functions.inputs import PLANTS
-from .functions.measures import ANGLES_OF_AXES, REACTIONS
+from .functions.measures import ANGLES_OF_AXES, COMPONENTS, REACTIONS
 from .functions.splines import CURVES
 from .functions.translate import ANGLES, ANGULAR_VELOCITIES, COUPLED, PLAIN, POSITIONS, VELOCITIES
 from .functions.translate_output import ACCELERATIONS, ANGULAR_ACCELERATIONS, ROUNDING_FUNCTIONS
@@ -32,7 +33,7 @@ from .statements.units import Units
 READ, OMITTED, NOT_READ = "read", "left out", "refused"
 ANYWHERE = {
     *POSITIONS, *ANGLES, *VELOCITIES, *ANGULAR_VELOCITIES, *PLAIN, *ADAMS_FUNCTIONS, *CURVES, *ANGLES_OF_AXES, *REACTIONS,
-    "INTERP", "ARYVAL", *PLANTS, "VARVAL", "DIF", "DIF1", "INCANG", "SENVAL",
+    *LAWS, *COMPONENTS, "INTERP", "ARYVAL", *PLANTS, "VARVAL", "DIF", "DIF1", "INCANG", "SENVAL",
 }  # fmt: skip
 IN_REQUESTS = {*ANYWHERE, *COUPLED, *ACCELERATIONS, *ANGULAR_ACCELERATIONS, *ROUNDING_FUNCTIONS, "ORIENT"}
 REPORTED = ("REQUEST", "VARIABLE", "SENSOR")

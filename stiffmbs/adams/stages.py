@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 from ..model.files.stages import merge_patch
 from .commands.commands import Segment
-from .commands.simulations import STATICS, one_run, refuse_velocities
+from .commands.simulations import KINEMATICS, STATICS, one_run, refuse_velocities
 from .scene.requests import conditions
 from .statements.constraints import Motion
 from .statements.dataset import Dataset
@@ -43,8 +44,15 @@ def followed(
     DatasetFault
         If a simulation cannot be continued from the end of its predecessor.
     """
-    dataset, _ = described
+    dataset, scene = described
     units = dataset.units
+    integrated = [
+        name for name, joint in scene.get("joints", {}).items() if joint.get("position") in scene.get("states", ())
+    ]
+    if integrated and any(segment.simulation.kind == KINEMATICS for segment in segments):
+        found = followed([_by_dynamics(segment) for segment in segments], described, read, source)
+        told = f"{', '.join(integrated)}: integrals without a formula; KINEMATICS is solved as DYNAMICS"
+        return found | {"notes": [*found["notes"], told]}
     first = segments[0].simulation
     if first.kind == STATICS:
         refuse_velocities(first.line, dataset)
@@ -60,6 +68,13 @@ def followed(
         notes = [f"duration and output are those of {source}"]
         return {"run": whole | _in_si(over_time[0], units), **start, "notes": notes}
     return _staged(segments, described, read, source, watched)
+
+
+def _by_dynamics(segment: Segment) -> Segment:
+    """Return a segment whose kinematic simulation is a dynamic one."""
+    simulation = segment.simulation
+    kind = "DYNAMICS" if simulation.kind == KINEMATICS else simulation.kind
+    return replace(segment, simulation=replace(simulation, kind=kind))
 
 
 def _staged(

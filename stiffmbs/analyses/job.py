@@ -275,9 +275,9 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
 
         return start_in_motion(data, dynamics, start, t, asked)
     if asked == "equilibrium":
-        from .settled import settled
+        from .settled import driven_in_equilibrium
 
-        return settled(dynamics, start, t).start
+        return driven_in_equilibrium(dynamics, start, t)
     if asked == "settled":
         from .settled import moving_in_equilibrium
         from .steady import rotation_left_out

@@ -208,7 +208,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and compute its output rows."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
-    rows, left_out = reported(job.dynamics, trajectory, job.on_constraints)
+    rows, left_out = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)
     return Computed(trajectory, rows, left_out)
 
 
@@ -217,7 +217,7 @@ def _reported_at(job: Job, times: np.ndarray) -> OutputRows:
     grid = replace(job.grid, end=float(times[-1]), times=np.union1d(job.grid.start, times))
     again = replace(job, grid=grid)
     trajectory = up_to_a_fault(job.dynamics.system, again.integrate())
-    rows = reported(job.dynamics, trajectory, job.on_constraints)[0]
+    rows = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)[0]
     if job.dynamics.system.has_functions:
         fault_of(job.dynamics.system)  # clears the fault that left out rows, before the next run
     return rows

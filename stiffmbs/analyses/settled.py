@@ -16,10 +16,10 @@ from ..equilibria.steady_motion import at_rest
 from ..errors import SolverError
 from ..linear_analysis.eigenvalues import eigen
 from ..linear_analysis.stability import lowest
-from ..linear_analysis.state_space import state_matrix
-from ..linear_analysis.tangent_space import linearised
+from ..linear_analysis.state_space import StateMatrix, state_matrix
 from ..results.scales import ROUNDING
 from .far_away import far_away
+from .linearised.sides import Instant, linearised_at
 
 MOST_FOR_EIGENVALUES = 1500
 """Largest number of velocities for eigenvalues (dense matrices)."""
@@ -84,6 +84,20 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     return _settled(found, start, [*notes, "this equilibrium is also unstable; no stable one was found near it"])
 
 
+def driven_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
+    """Find a stable equilibrium, and move from there as drives prescribe, with the smallest velocities in the mass matrix.
+
+    Raise a SolverError if no equilibrium is found, or the velocities have no accelerations there.
+    """
+    system, state = dynamics.system, dynamics.state
+    found = settled(dynamics, start, t).start
+    state.q[:], state.u[:] = found.q, found.u
+    state.evaluate("motion", t)
+    if not np.any(state.vector("motion", "V")[system.active]):
+        return found
+    return _moving(dynamics, found, "the velocities of drives", t)
+
+
 def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
     """Find the equilibrium pose at rest and make the described velocities consistent there: a car that begins to roll.
 
@@ -93,21 +107,25 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
     state.q[:], state.u[:] = found.q, start.u
+    notes = (
+        "the stability of the equilibrium at the start was not checked",
+        *far_away(dynamics, start, found),
+    )
+    return _moving(dynamics, replace(start, q=found.q, moved=(), notes=notes), "the described velocities", t)
+
+
+def _moving(dynamics: Dynamics, start: InitialValues, velocities: str, t: float) -> InitialValues:
+    """Return a start with the current velocities made consistent in its pose; `velocities` names them in the error."""
+    state = dynamics.state
     status = min(dynamics.correct_velocities(t), 0)
     state.count_anew(t)
     acceleration = start.acceleration
     if status == 0:
         status, acceleration = dynamics.accelerate(t)
     if status < 0:
-        raise SolverError(
-            f"the described velocities are not possible in the equilibrium: {failure(dynamics, status, t)}"
-        )
+        raise SolverError(f"{velocities} are not possible in the equilibrium: {failure(dynamics, status, t)}")
     lam = state.lam[: dynamics.system.n_c].copy()
-    notes = (
-        "the stability of the equilibrium at the start was not checked",
-        *far_away(dynamics, start, found),
-    )
-    return replace(start, q=found.q, u=state.u.copy(), acceleration=acceleration, lam=lam, moved=(), notes=notes)
+    return replace(start, u=state.u.copy(), acceleration=acceleration, lam=lam)
 
 
 def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:
@@ -120,24 +138,32 @@ def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], fre
 def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
     """Yield a note if an equilibrium is dynamically unstable, or if this was not assessed."""
     system = dynamics.system
-    if not system.states and _is_conservative(dynamics, t):  # static stability is sufficient
-        return
+    if not (system.states or system.n_event_functions) and _is_conservative(dynamics, t):
+        return  # static stability is sufficient away from breakpoints
     if system.n_u > MOST_FOR_EIGENVALUES:
         yield f"the dynamic stability of the equilibrium was not checked: the model has {system.n_u} velocities, more than {MOST_FOR_EIGENVALUES}"
         return
     _, acceleration = dynamics.accelerate(t)
+    scale = system.per_velocity(system.size, 1.0)
     try:
-        state = state_matrix(linearised(dynamics, t, acceleration), system.per_velocity(system.size, 1.0))
+        _, state, kink = linearised_at(Instant(dynamics, t, acceleration), scale)
     except SolverError as error:
         yield f"the dynamic stability of the equilibrium was not checked: {error}"
         return
-    values, _, _ = eigen(state.matrix, state.n_poses, state.n_states)
-    sizes = np.abs(values)
-    growing = values[values.real > GROWING * sizes + ROUNDED * np.max(sizes, initial=0.0)]
+    sides = [state] if kink is None else [state_matrix(side, scale) for side in kink.sides]
+    growing = np.concatenate([_growing(side) for side in sides])
     if len(growing):
         fastest = growing[np.argmax(growing.real)]
         how = f" and oscillate at {abs(fastest.imag) / (2 * np.pi):.3g} Hz" if fastest.imag else ""
-        yield f"the equilibrium is unstable: disturbances grow at {fastest.real:.3g} 1/s{how}"
+        where = "" if kink is None else f" on one side of a breakpoint of a force on {kink.where}"
+        yield f"the equilibrium is unstable{where}: disturbances grow at {fastest.real:.3g} 1/s{how}"
+
+
+def _growing(state: StateMatrix) -> np.ndarray:
+    """Return the eigenvalues of growing motions, 1/s."""
+    values, _, _ = eigen(state.matrix, state.n_poses, state.n_states)
+    sizes = np.abs(values)
+    return np.asarray(values[values.real > GROWING * sizes + ROUNDED * np.max(sizes, initial=0.0)])
 
 
 def _is_conservative(dynamics: Dynamics, t: float) -> bool:

@@ -162,7 +162,7 @@ class Sweep:
     def _errors(self, job: Job, trajectory: Trajectory) -> dict[str, float]:
         """Return the errors by measure; empty if some output instants have no solution."""
         with in_use(job.settings.tuning):
-            rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
+            rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings), job.settings.rtol)
         if len(rows.t) < len(self.reference.solution.time):
             return {}
         return self.reference.errors(channels_of(job.data, job.dynamics.system, rows))

@@ -18,6 +18,7 @@ from ..reading.marker import GROUND, PlacedMarkers
 from .bodies import BODY_KINDS, BodyKind
 from .group import Group
 from .kind import Compilable, ElementData, Kind, sorted_out
+from .machine.layout import at_a_line
 from .record import KindRecord, record_of
 from .system import INITIAL_COUNT, System
 
@@ -183,8 +184,10 @@ def _group(kind: Kind, record: KindRecord, of_body: BodyKind, members: list[_Mem
     index = [
         places.index(member.data, start, record.n_counters) for member, start in zip(members, starts, strict=False)
     ]
+    aligned = at_a_line(starts[-1] + 1)
+    np.concatenate(numbers, out=aligned[:-1])
     return Group(
         kind, record, of_body, tuple(m.name for m in members), [m.element for m in members],
-        np.array(index, dtype=np.int64), np.concatenate([*numbers, [0.0]]),
+        np.array(index, dtype=np.int64), aligned,
         places.rows[members[0].name] if record.n_equations else 0,
     )  # fmt: skip

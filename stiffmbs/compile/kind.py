@@ -23,6 +23,7 @@ from ..reading.python_function import PythonFunction
 from ..reading.table import Table
 from .callbacks import callback_of
 from .formula_shape import FormulaShape, Shape
+from .machine.layout import whole_lines
 from .table_values import spline_data
 
 STATE_RATES = "state_rates"
@@ -149,15 +150,17 @@ class ElementData:
         return self.states.index(state)
 
     def flat(self) -> np.ndarray:
-        """Return numbers and tables in one array; a table's number is its offset in it."""
+        """Return numbers and tables in one array; a table's number is its offset in it.
+
+        Tables begin at a cache line if the array does, and its length is in cache lines.
+        """
         numbers = np.array(self.numbers, dtype=float)
-        end = len(numbers)
         parts = [numbers]
         for at, table in self.tables:
-            numbers[at] = end
+            parts = whole_lines(parts)
+            numbers[at] = sum(map(len, parts))
             parts.append(table)
-            end += len(table)
-        return np.concatenate(parts)
+        return np.concatenate(whole_lines(parts) if self.tables else parts)
 
     def marker_shape(self, marker: MarkerReference) -> Shape:
         """Return the shape of a marker; append its placement to the numbers."""

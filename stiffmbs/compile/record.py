@@ -13,7 +13,7 @@ import sys
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -161,9 +161,9 @@ def _rare_source(kind: Kind, term_set: str) -> str:
     return source
 
 
-@lru_cache(maxsize=4)
+@cache
 def _terms(kind: Kind) -> Derived:
-    """Return the terms of a kind, cached for successive kernels."""
+    """Return the terms of a kind, which its record and its rare kernels share."""
     from .symbolic.derive import derive
 
     return derive(kind)

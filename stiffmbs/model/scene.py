@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
 from ..elements.element import Component
 from ..elements.requests.check import check_output
-from ..elements.requests.names import OF_PLANE
 from ..elements.requests.order import dimension, dimensions
-from ..elements.requests.output import Output
-from ..elements.requests.output_field import output_field
 from ..elements.roads.field import AnyRoad
 from ..reading.fields import Described
 from ..reading.files.unchanged import Unchanged
@@ -21,7 +18,6 @@ from ..reading.table import Table
 from ..reading.units.units import Quantity, in_text
 from .beams.division import Beams
 from .files.stages import Stage, WrittenScene
-from .model import PlanarData
 from .model_data import ModelData
 from .settings import RunSettings, SteadyMotion
 
@@ -144,17 +140,11 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
     return (*own, *(f"{', '.join(names)}: {note}" for note, names in told.items()))
 
 
-class PlanarScene(PlanarData, Scene):
-    """Scene in the plane."""
-
-    variables: dict[str, Annotated[Output, output_field(OF_PLANE)]] = Field(
-        default_factory=dict, description="formulas by name, which other formulas use"
-    )
-
-
 def scene_class(dimensions: int) -> type[Scene]:
-    """Return the class of planar or spatial scenes; the latter is imported on demand."""
+    """Return the class of planar or spatial scenes, which is imported on demand."""
     if dimensions == 2:
+        from .planar_scene import PlanarScene
+
         return PlanarScene
     from .spatial_scene import SpatialScene
 

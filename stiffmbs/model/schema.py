@@ -10,7 +10,7 @@ from .parts.definitions import KEYS
 from .parts.options import CHOOSE, OPTIONS
 from .parts.parameters import LIMITS
 from .parts.planar_frame import PlanarUse
-from .scene import PlanarScene
+from .planar_scene import PlanarScene
 
 
 def scene_schema() -> dict[str, Any]:

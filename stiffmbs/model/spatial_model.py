@@ -17,7 +17,6 @@ from ..elements.requests.order import channels_in
 from ..elements.requests.output import CONTINUOUS_ANGLES
 from ..elements.requests.output_field import SpatialRequest
 from ..elements.spatial.body import Body, BodyHandle
-from ..elements.spatial.flexible.inertia import flexible_inertias
 from ..elements.spatial.forces.gyroscopic_torque import turnings
 from ..elements.spatial.marker import Placement
 from ..elements.spatial.orientation import matrix, product, rotated
@@ -80,7 +79,12 @@ class SpatialData(ModelData):
         """Yield the weights and gyroscopic torques of the bodies."""
         yield from weights({name: body for name, body in bodies.items() if body.weighs}, self.gravity)
         yield from turnings(bodies)
-        yield from flexible_inertias(bodies, self.gravity)
+        if not all(body.rigid for body in bodies.values()):
+            from ..elements.spatial.flexible.inertia import (
+                flexible_inertias,  # models without flexible bodies do not load it
+            )
+
+            yield from flexible_inertias(bodies, self.gravity)
 
     def initial_marker(self, marker: MarkerReference) -> InitialSpatialMarker:
         """Return a marker with numbers, in ground axes, at the initial pose."""

@@ -8,12 +8,14 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from ..elements.element import Element, Joint
-from ..elements.joints.fixed import Fixed
 from ..elements.states.state import StateValue
 from ..model.model_data import ModelData
 from ..reading.formula.formula import Formula
 from ..reading.joint_name import JointName
 from ..reading.marker import GROUND, MarkerReference
+
+FIXED = "fixed"
+"""Kind of fixed joints."""
 
 
 class MergedBodies(NamedTuple):
@@ -85,7 +87,7 @@ def merge(model: ModelData, held: Container[str]) -> MergedBodies | None:
     acts, and those of a joint to which another element refers. `held`: joints without redundant equations, as a merged
     joint must not constrain more than the original. The result: none if there is nothing to merge.
     """
-    if not any(joint.kind == Fixed.kind for joint in model.joints.values()):
+    if not any(joint.kind == FIXED for joint in model.joints.values()):
         return None
     joints = [name for name in _candidates(model) if name in held]
     groups = _Groups(model)
@@ -112,7 +114,7 @@ def _candidates(model: ModelData) -> Iterator[str]:
     for name, joint in model.joints.items():
         bodies = {marker.body for _, marker in joint.markers()}
         apart = {GROUND, *named, *(body for body in bodies - {GROUND} if not model.bodies[body].rigid)}
-        if joint.kind == Fixed.kind and name not in referred and not bodies & apart:
+        if joint.kind == FIXED and name not in referred and not bodies & apart:
             yield name
 
 

@@ -9,17 +9,18 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import FAILURES
+from .stiff_rows import with_stiff_forces
 from .trajectory import Trajectory
 
 MOST_MISSING = 100
 """Largest number of gaps; the rows end after it."""
 
 
-def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool) -> tuple[OutputRows, list[str]]:
+def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: float) -> tuple[OutputRows, list[str]]:
     """Return the output rows of a trajectory, and a note for each row without a solution.
 
-    A time without a solution between two that have one keeps its integrated coordinates and velocities; all else is
-    NaN. The rows end where two in succession have none.
+    Projections change forces by less than `rtol` of the largest, if possible. A time without a solution between two that
+    have one keeps its integrated coordinates and velocities; all else is NaN. The rows end where two in succession have none.
     """
     t, q, u = trajectory.t, trajectory.q, trajectory.u
     parts: list[OutputRows] = [dynamics.report(t, q, u, project)]
@@ -34,7 +35,7 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool) -> tuple
         parts += [_unknown(parts[0], t[done], pose, u[done]), following]
         notes.append(f"no accelerations and reactions at t = {t[done]:.9g} s (NaN there): {FAILURES[status]}")
         done += 1 + len(following.t)
-    return _joined(parts), notes
+    return with_stiff_forces(dynamics, trajectory, _joined(parts), rtol), notes
 
 
 def _unknown(like: OutputRows, t: float, q: np.ndarray, u: np.ndarray) -> OutputRows:

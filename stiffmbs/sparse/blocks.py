@@ -15,16 +15,6 @@ import numpy as np
 
 from ..compile.machine.layout import QUAD
 
-CACHE_LINE = 64
-"""Size of a processor's cache line, bytes."""
-
-
-def at_a_line(count: int) -> np.ndarray:
-    """Return zeros aligned to a cache line: access to quads across two lines is far slower."""
-    longer = np.zeros(count + CACHE_LINE // 8)
-    first = -longer.ctypes.data % CACHE_LINE // 8
-    return longer[first : first + count]
-
 
 def padded(size: int) -> int:
     """Return the size rounded up to whole quads."""

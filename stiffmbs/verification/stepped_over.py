@@ -86,7 +86,7 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
         return Along(None, obstacle=str(error))
     if trajectory.outcome is Outcome.INTERRUPTED:
         return Along(None, obstacle="missed events were not searched: the limit of evaluations is reached")
-    rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
+    rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings), job.settings.rtol)
     system = job.dynamics.system
     balance = energy_balance(system, rows, trajectory.step_times)
     left = allowed - (job.evaluations() - begun)

@@ -127,3 +127,11 @@ def test_changes_after_the_last_run_have_no_effect(run_with):
 def test_a_motion_does_not_outlive_its_joint(run_with):
     with pytest.raises(stiffmbs.InputError, match=r"MOTION/1: found JOINT = 1"):
         run_with("DEACTIVATE/JOINT, ID=1\n" + RUN, "MOTION/1, JOINT=1, FUNCTION=TIME")
+
+
+def test_a_motion_by_the_integral_of_a_step_is_solved_by_dynamics(run_with):
+    """STEP integrated from 0 to its end at 1 s: half of 2 rad/s, in 1 s."""
+    motion = "MOTION/1, JOINT=1, VELOCITY, ICDISP=0.5, FUNCTION=STEP(TIME, 0, 0, 1, 2)\nVARIABLE/1, FUNCTION=AZ(20,11)"
+    found = run_with("SIMULATE/KINEMATICS, END=1, DTOUT=0.1\n", motion)
+    assert found["VARIABLE_1"][[0, -1]] == pytest.approx([0.5, 1.5], abs=1e-7)
+    assert "MOTION_1: integrals without a formula; KINEMATICS is solved as DYNAMICS" in found.notes

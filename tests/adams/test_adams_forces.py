@@ -170,3 +170,97 @@ VARIABLE/7, FUNCTION=FZ(10)
     np.testing.assert_allclose(found["VARIABLE_5"], 0.0, atol=1e-12)
     np.testing.assert_allclose(found["VARIABLE_6"], 7.0, atol=1e-12)
     np.testing.assert_allclose(found["VARIABLE_7"], -found["JOINT_1.fz"], atol=1e-9)
+
+
+ELEMENTS = r"""
+MARKER/33, PART=3, QP=0.1,0.2,0.3, REULER=40D,50D,60D
+MARKER/39, PART=3, FLOATING
+SFORCE/1, TRANS, I=21, J=31, FUNC=3-20*DM(21,31)+VR(21,31)
+SFORCE/2, ROT, ACTION, I=21, J=31, FUNC=1.5*DM(21,31)
+SPRINGDAMPER/3, TRANS, I=20, J=33, K=5, C=1, LENGTH=0.5, FORCE=2
+GFORCE/4, I=21, JFLOAT=39, RM=33, FX=1\ FY=-2*DM(21,33)\ FZ=3\ TX=0.3\ TY=0.5\ TZ=-0.7
+VFORCE/5, I=21, JFLOAT=39, FX=1\ FY=2\ FZ=-3
+BUSHING/6, I=21, J=33, K=10,20,30, KT=1,2,3, C=1,2,3, CT=0.1,0.1,0.1, FORCE=1,0,0
+VTORQUE/7, I=21, JFLOAT=39, RM=33, TX=1\ TY=2\ TZ=4
+"""
+
+
+@pytest.mark.parametrize("name", ["SFORCE(1", "SFORCE(2", "SPDP(3", "GFORCE(4", "VFORCE(5", "BUSH(6", "VTORQ(7"])
+def test_forces_follow_other_forces(name):
+    """A torque by a component of another force is that component, as a VARIABLE reports it."""
+    components = (1, 2) if name == "BUSH(6" else (1, 2, 5, 8)
+    terms = [f"{name},0,{component},33)" for component in components] + [f"{name},1,4,0)", f"{name},1,3,33)"]
+    followers = "".join(
+        f"SFORCE/{k}, ROT, ACTION, I=20, J=1, FUNC={term}\nVARIABLE/{k}, FUNC={term}\n"
+        for k, term in enumerate(terms, start=100)
+    )
+    moving = TWO.replace("QG=1,0,0", "QG=1,0.2,0.1, REULER=20D,30D,0, VX=1, WX=1, WY=2, WZ=3")
+    solution = run(moving + ELEMENTS + followers, 1e-6)
+    for k, term in enumerate(terms, start=100):
+        assert solution[f"SFORCE_{k}.tz"][0] == pytest.approx(solution[f"VARIABLE_{k}"][0], rel=1e-9, abs=1e-9), term
+
+
+PAIRS = """
+SPRINGDAMPER/8, TRANS, I=21, J=31, K=7, LENGTH=0.5
+SFORCE/9, ROT, I=20, J=33, FUNC=2*DM(21,31)
+MARKER/22, PART=2, QP=0.2,0.1,-0.3, REULER=20D,30D,40D
+MARKER/12, PART=1, QP=0.2,0.1,-0.3
+JOINT/1, SPHERICAL, I=22, J=12
+SFORCE/10, ACTION, ROT, I=22, J=12, FUNC=3
+"""
+
+
+@pytest.mark.parametrize("pair", ["31,21", "21,0", "22,12", "33,20"])
+def test_forces_follow_all_that_acts_between_two_markers(pair):
+    terms = [f"{name}({pair},22)" for name in ("FX", "FM", "TZ")] + [f"FZ({pair})"]
+    followers = "".join(
+        f"SFORCE/{k}, ROT, ACTION, I=20, J=1, FUNC={term}\nVARIABLE/{k}, FUNC={term}\n"
+        for k, term in enumerate(terms, start=100)
+    )
+    moving = TWO.replace("QG=1,0,0", "QG=1,0.2,0.1, REULER=20D,30D,0, VX=1, WX=1, WY=2, WZ=3")
+    without = "\n".join(line for line in ELEMENTS.splitlines() if "BUSHING" not in line)
+    solution = run(moving + without + PAIRS + followers, 1e-6)
+    for k, term in enumerate(terms, start=100):
+        assert solution[f"SFORCE_{k}.tz"][0] == pytest.approx(solution[f"VARIABLE_{k}"][0], rel=1e-8, abs=1e-8), term
+
+
+def test_a_block_rubs_by_the_force_that_presses_it():
+    """Mass 2 on a spring that carries its weight: the friction 0.3 m g slows it from 4 m/s."""
+    text = (
+        GRAVITY
+        + f"""PART/2, MASS=2, CM=20, IP=1,1,1, VX=4
+MARKER/20, PART=2
+MARKER/21, PART=2, REULER=90D,90D,0
+MARKER/2, PART=1, REULER=90D,90D,0
+JPRIM/1, ORIENTATION, I=20, J=1
+JPRIM/2, INPLANE, I=20, J=3
+MARKER/3, PART=1, REULER=0,90D,0
+VARIABLE/1, FUNC=SFORCE(1,0,4,0)
+SFORCE/1, TRANS, ACTION, I=20, J=1, FUNC=-1E4*(DZ(20)-{2 * G / 1e4!r})-50*VZ(20)
+SFORCE/2, TRANS, ACTION, I=20, J=2, FUNC=-0.3*VARVAL(1)*STEP(VX(20), -0.01, -1, 0.01, 1)
+"""
+    )
+    solution = run(text)
+    np.testing.assert_allclose(solution["PART_2.vx"], 4 - 0.3 * G * solution.t, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        ("SFORCE(1,0,1,0)", "found the force of SFORCE/1 in its own law"),
+        ("VARVAL(1)", "found the force of SFORCE/1 in its own law"),
+        ("SFORCE(2,0,1,0)", r"found SFORCE\(2, ...\), expected the number of a SFORCE"),
+        ("FX(21,31)", "found the force of SFORCE/1 in its own law"),
+        ("FX(20,30)", "found the force of BEAM/7 in 'FX.*expected it in a REQUEST, or that of a joint, or of SFORCE"),
+        ("BEAM(7,0,1,0)", "found BEAM in 'BEAM.*expected it in a REQUEST, or one of JOINT, JPRIM, SFORCE"),
+        ("FX(20,1)", "found no joint and no force between the markers 20 and 1"),
+        ("BUSH(6,0,8,0)", "found the torque of BUSHING/6, expected it in a REQUEST alone"),
+    ],
+)
+def test_forces_that_cannot_be_followed_are_named(law, words):
+    more = (
+        "BUSHING/6, I=20, J=31, K=10,20,30, KT=1,2,3\n"
+        "BEAM/7, I=20, J=30, LENGTH=1, AREA=1E-4, IXX=1E-9, IYY=1E-9, IZZ=1E-9, EMODULUS=1E9, GMODULUS=4E8\n"
+    )
+    with pytest.raises(stiffmbs.InputError, match=words):
+        run(f"{TWO}{more}VARIABLE/1, FUNC=SFORCE(1,0,1,0)\nSFORCE/1, TRANS, I=21, J=31, FUNC={law}", 0.01)

@@ -34,6 +34,7 @@ from .metric_datasets import GRAVITY, HEAD, TWO, G, run
         ("MARKER/22, PART=2, REULER=0,90D,0\nJPRIM/1, PERPENDICULAR, I=22, J=1", 1),
         ("GCON/1, FUNCTION=DX(21,1)+DY(21,1)", 1),
         ("GCON/1, FUNCTION=VX(21)-0.5*WZ(21)", 1),
+        ("VARIABLE/1, FUNCTION=WZ(21)\nVARIABLE/2, FUNCTION=2*VARVAL(1)\nGCON/1, FUNCTION=DX(21)+VARVAL(2)", 1),
         ("MOTION/1, I=21, J=1, X, FUNC=TIME", 1),
         pytest.param("MOTION/1, I=21, J=1, B2, FUNC=TIME", 1, marks=pytest.mark.long),
     ],
@@ -79,6 +80,24 @@ def test_a_motor_turns_many_times(kind):
     np.testing.assert_allclose(solution["MOTION_1.tz"], torque, atol=1e-5)
 
 
+@pytest.mark.parametrize(("order", "travel", "speed"), [("ACCELERATION", 0.02135, 0.065), ("VELOCITY", 0.065, 0.1)])
+def test_a_slide_is_led_by_the_integral_of_a_step(order, travel, speed):
+    """STEP from 0 at 0.2 s to 100 mm/s at 0.5 s: its integral at 1 s is 65 mm, twice integrated 21.35 mm."""
+    text = f"""millimetres
+UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND
+PART/1, GROUND
+MARKER/1, PART=1
+PART/2, MASS=2, CM=20, IP=1,1,1
+MARKER/20, PART=2
+JOINT/1, TRANSLATIONAL, I=20, J=1
+MOTION/1, JOINT=1, {order}, ICDISP=20, FUNCTION=STEP(TIME, 0.2, 0, 0.5, 100)
+END
+"""
+    solution = stiffmbs.run(read_adams(text), duration=1.0, rtol=1e-9)
+    assert solution["PART_2.z"][-1] == pytest.approx(0.02 + travel, abs=1e-8)
+    assert solution["PART_2.vz"][-1] == pytest.approx(speed, abs=1e-8)
+
+
 @pytest.mark.long
 def test_a_sleeve_is_turned_and_pushed():
     text = (
@@ -107,6 +126,14 @@ def test_three_motors_lead_the_body_123_angles():
     sign = np.sign(solution["PART_2.q0"][0] * expected[0][0])
     for k in range(4):
         np.testing.assert_allclose(solution[f"PART_2.q{k}"] * sign, expected[k], atol=1e-7)
+
+
+def test_a_sleeve_that_a_motor_turns_starts_to_slide_as_its_joint_says():
+    text = TWO + "JOINT/1, CYLINDRICAL, I=21, J=1, ICROT=20D, ICTRAN=0.1,3\nMOTION/1, JOINT=1, ROT, FUNC=7*TIME\n"
+    solution = run(text + "VARIABLE/1, FUNC=AZ(21,1)")
+    np.testing.assert_allclose(solution["VARIABLE_1"], 7 * solution.t, atol=1e-7)
+    np.testing.assert_allclose(solution["PART_2.z"], 0.1 + 3 * solution.t, atol=1e-7)
+    assert any("initial conditions of JOINT/1 are left out" in note for note in solution.notes)
 
 
 GEARS = (

@@ -202,9 +202,19 @@ def test_accelerations_are_integrated(text, expected):
         assert value == pytest.approx(expected(t), abs=1e-12)
 
 
-def test_an_acceleration_without_an_integral_is_refused():
-    with pytest.raises(InputError, match=r"MOTION/1: found 'STEP.*' as an acceleration, whose integral"):
-        made(JOINTS + "MOTION/1, JOINT=2, ACCELERATION, FUNC=STEP(TIME,0,0,1,1)")
+def test_integrals_that_are_no_formula_are_states():
+    found = made(JOINTS + "MOTION/1, JOINT=2, ACCELERATION, ICVEL=0.5, FUNC=STEP(TIME,0,0,1,1)")
+    assert found["joints"]["MOTION_1"]["position"] == "MOTION_1_displacement"
+    assert found["states"] == {
+        "MOTION_1_displacement": {"rate": "MOTION_1_velocity", "start": 0},
+        "MOTION_1_velocity": {"rate": "step(t, 0, 0, 1, 1)", "start": 0.5},
+    }
+
+
+@pytest.mark.parametrize("function", ["DX(22,1)", "JOINT(1,0,2,0)*STEP(TIME,0,0,1,1)"])
+def test_integrals_of_what_moves_are_refused(function):
+    with pytest.raises(InputError, match=r"MOTION/1: found '.*' measured in '.*', expected a function of time"):
+        made(JOINTS + f"MOTION/1, JOINT=2, ACCELERATION, FUNC={function}")
 
 
 def test_components_between_markers_are_driven():

@@ -40,3 +40,27 @@ run: {duration: 1 s}
     near, far = (stiffmbs.run(stiffmbs.read_scene(f"gravity: [0, {weight}]{text}")) for weight in (-10, -40))
     assert not any("away from the described pose" in note for note in near.notes)
     assert any("is 0.4 m away from the described pose (load)" in note for note in far.notes)
+
+
+@pytest.mark.parametrize("law", ["position: 0.3*t", "velocity: 0.3 m/s"])
+def test_drives_move_from_an_equilibrium_at_once(law):
+    """A load hangs at rest on a hook that begins to rise with 0.3 m/s."""
+    upwards = "orientation: {z: [0, 1, 0]}"
+    text = f"""
+dimensions: 3
+gravity: [0, -10, 0]
+bodies:
+  load: {{mass: 2, inertia: [1, 1, 1], position: [0, -1, 0]}}
+  hook: {{mass: 1, inertia: [1, 1, 1]}}
+joints:
+  rail: {{type: prismatic, i: {{body: load, {upwards}}}, j: {{body: hook, {upwards}}}}}
+  guide: {{type: prismatic, i: {{body: hook, {upwards}}}, j: {{body: ground, {upwards}}}}}
+  lift: {{type: drive, joint: guide, {law}}}
+forces: {{spring: {{type: spring_damper, i: load, j: hook, stiffness: 200, free_length: 1}}}}
+start: equilibrium
+run: {{duration: 1 s, points: 101, rtol: 1e-9}}
+"""
+    found = stiffmbs.run(stiffmbs.read_scene(text))
+    assert found.message == "the whole time was solved"
+    assert found["load.y"] == pytest.approx(-1.1 + 0.3 * found.time - 0.03 * np.sin(10 * found.time), abs=1e-7)
+    assert found["hook.vy"] == pytest.approx(0.3, abs=1e-9)

@@ -102,7 +102,7 @@ def _by_case(study: Study) -> np.ndarray:
         ready = time.process_time()
         found = job.integrate()
         integrated = time.process_time()
-        reported(job.dynamics, found, job.on_constraints)
+        reported(job.dynamics, found, job.on_constraints, job.settings.rtol)
         alone = integrated - ready, time.process_time() - integrated
         rows.append((*alone, solved - begun - sum(alone)))
     return np.array(rows)

@@ -130,10 +130,12 @@ def test_presolve_changes_nothing(folder):
     np.testing.assert_allclose(found["bar.b.y"], expected["bar.b.y"], atol=1e-9)
 
 
-def test_a_very_stiff_body_moves_as_a_rigid_one(folder):
+@pytest.mark.parametrize("rtol", ["1e-6", "1e-8"])
+def test_a_very_stiff_body_moves_as_a_rigid_one(folder, rtol):
+    """At 1e-6, the smallest moves onto the constraints of pin and interfaces changed the force of the pin by 400 times its value."""
     flexible = run(
         scene(folder, PIN, f"velocity: [0, {5 * LENGTH / 2}, 0]\n    omega: [0, 0, 5]", "[0, -9.81, 0]", bodies__bar__matrices="stiff.npz", run__duration="0.2",
-              bodies__bar__damping="0.1", run__rtol="1e-8")
+              bodies__bar__damping="0.1", run__rtol=rtol, run__points="201")
     )  # fmt: skip
     squares = np.array([LENGTH, WIDTH, HEIGHT]) ** 2
     inertia = (MASS / 12 * (squares.sum() - squares)).tolist()
@@ -142,12 +144,14 @@ def test_a_very_stiff_body_moves_as_a_rigid_one(folder):
     path.write_text(
         f"dimensions: 3\ngravity: [0, -9.81, 0]\nbodies:\n  bar: {{mass: {MASS}, inertia: {inertia}, center_of_mass: {centre}, omega: [0, 0, 5], "
         f"velocity: [0, {5 * LENGTH / 2}, 0], markers: {{a: {{point: [0, 15 mm, 10 mm]}}, b: {{point: [{LENGTH}, 15 mm, 10 mm]}}}}}}\n"
-        f"joints: {PIN}\nrun: {{duration: 0.2, points: 21, rtol: 1e-10}}\n"
+        f"joints: {PIN}\nrun: {{duration: 0.2, points: 201, rtol: 1e-10}}\n"
         "requests: {x: 'dx(bar.b)', y: 'dy(bar.b)'}\n"
     )
     rigid = run(load_scene(path, []))
     for name in ("x", "y"):
         np.testing.assert_allclose(flexible[f"bar.b.{name}"], rigid[name], atol=1e-6)
+    for name in ("pin.fx", "pin.fy"):  # vibrations from the start fade within 10 ms
+        np.testing.assert_allclose(flexible[name][10:], rigid[name][10:], atol=1e-3 * np.abs(rigid[name]).max())
 
 
 def test_natural_modes_of_the_clamped_bar_are_those_of_the_reduction(folder):

@@ -8,8 +8,8 @@ from click.testing import CliRunner
 from numpy.polynomial import laguerre
 
 import stiffmbs
+from stiffmbs.analyses.linearised.at_state import at_state
 from stiffmbs.analyses.linearised.modes import modes
-from stiffmbs.analyses.linearised.sides import at_state
 from stiffmbs.commands.main import main
 from stiffmbs.linear_analysis.modes import Motion
 from stiffmbs.linear_analysis.state_space import state_matrix

@@ -39,3 +39,22 @@ def test_a_force_that_vanishes_cubically_has_an_equilibrium():
 def test_a_slider_without_any_force_is_named():
     found = stiffmbs.equilibrium(slider("0"))
     assert found.free == ("b.vx",) and "no force determines b.vx" in found.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("law", "unstable"),
+    [
+        ("30*max(b.x - 0.1, 0) - 40*min(b.x - 0.1, 0)", True),
+        ("-30*max(b.x - 0.1, 0) - 40*min(b.x - 0.1, 0)", False),
+        ("-100*b.x + 2*max(b.vx, 0)", True),
+        ("-100*b.x - 2*max(b.vx, 0) - 3*min(b.vx, 0)", False),
+    ],
+)
+def test_stability_on_a_breakpoint_is_that_of_both_sides(law, unstable):
+    notes = stiffmbs.equilibrium(slider(law)).notes
+    assert any("unstable on one side of a breakpoint of a force on b.vx" in note for note in notes) == unstable, notes
+
+
+def test_dry_friction_at_rest_has_no_linearisation():
+    (note,) = stiffmbs.equilibrium(slider("-100*b.x - 5*sign(b.vx)")).notes
+    assert "not checked: a force or rate of b.vx is discontinuous" in note

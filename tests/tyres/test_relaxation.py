@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from stiffmbs import InputError
+from stiffmbs.elements.tyres.property_file import VERSIONS
 from stiffmbs.spatial import (
     AppliedTorque,
     Body,
@@ -183,3 +184,26 @@ def test_lengths_that_are_asked_for_and_not_there():
         MagicFormulaTyre(i="wheel", properties={"coefficients": without}, transient=True)
     with pytest.raises(InputError, match="found USE_MODE = 25, expected 0 to 4"):
         TyreProperties(coefficients=SMALL, use_mode=25)
+
+
+@pytest.mark.parametrize(
+    ("mode", "same", "said"),
+    [
+        (24, 14, ["nonlinear transient slip: slips lag by relaxation lengths, as with 14"]),
+        (-22, -12, ["nonlinear transient slip"]),
+        (334, 14, ["rigid ring dynamics", "contact method 3"]),
+        (104, 4, ["contact method 1"]),
+    ],
+)
+def test_digits_of_use_mode_that_are_replaced_are_noted(mode, same, said):
+    """Dynamics beyond relaxation lengths, and contact methods of MF-Tyre 6.1 by a third digit."""
+    later = {"NOMPRES": 2e5, "LONGITUDINAL_STIFFNESS": 3e5, "LATERAL_STIFFNESS": 1e5}
+    known = VERSIONS["6.1"].numbers
+    of_61 = {name: x for name, x in {**SMALL, **later}.items() if name in known}
+    file = {"coefficients": of_61, "version": "6.1"} if mode > 100 else {"coefficients": SMALL}
+    tyre, simple = (TyreProperties(**file, use_mode=each) for each in (mode, same))
+    notes = [note for note in tyre.notes() if note not in set(simple.notes())]
+    assert len(notes) == len(said) and all(words in note for words, note in zip(said, notes, strict=True))
+    assert (tyre.is_transient, tyre.in_equations()) == (simple.is_transient, simple.in_equations())
+    with pytest.raises(InputError, match="found USE_MODE = 614"):
+        TyreProperties(**file, use_mode=614)

@@ -15,9 +15,9 @@ from .command_files import with_first_argument
 if TYPE_CHECKING:
     from ..statements.dataset import Dataset
 
-STATICS = "STATICS"
-OVER_TIME = ("DYNAMICS", "KINEMATICS", "TRANSIENT")
-KINDS = ("DYNAMICS", "KINEMATICS", "TRANSIENT", STATICS, "INITIAL_CONDITIONS")
+STATICS, KINEMATICS = "STATICS", "KINEMATICS"
+OVER_TIME = ("DYNAMICS", KINEMATICS, "TRANSIENT")
+KINDS = (*OVER_TIME, STATICS, "INITIAL_CONDITIONS")
 
 
 @dataclass(frozen=True)
@@ -61,14 +61,14 @@ class Simulation:
         if not self.takes_time:
             return {}
         length = self.length(start)
-        solver = {"solver": "kinematic"} if self.kind == "KINEMATICS" else {}
+        solver = {"solver": "kinematic"} if self.kind == KINEMATICS else {}
         return {"duration": length * units.time, **self._output(length, self.between_outputs(length), units), **solver}
 
     def settings_up_to_its_end(self, units: Units) -> dict[str, Any]:
         """Return output and solver of the run, independent of its start."""
         steps = {"points": round(self.steps) + 1} if self.steps else {}
         output = {"output": self.interval * units.time} if self.interval else steps
-        return output | ({"solver": "kinematic"} if self.kind == "KINEMATICS" else {})
+        return output | ({"solver": "kinematic"} if self.kind == KINEMATICS else {})
 
     def _output(self, length: float, interval: float | None, units: Units) -> dict[str, Any]:
         if interval is None:
@@ -114,7 +114,7 @@ def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, Any] |
         between.append(simulation.between_outputs(length))
         time += length
     alike = all(
-        (simulation.kind == "KINEMATICS") == (first.kind == "KINEMATICS") and _same(interval, between[0])
+        (simulation.kind == KINEMATICS) == (first.kind == KINEMATICS) and _same(interval, between[0])
         for simulation, interval in zip(simulations, between, strict=True)
     )
     whole = replace(first, end=None, duration=time, steps=time / between[0] if between[0] else None)

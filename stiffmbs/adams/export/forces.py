@@ -14,7 +14,8 @@ from ...elements.spatial.forces.applied import AppliedForce, AppliedTorque
 from ...elements.spatial.forces.beam import Beam
 from ...elements.spatial.forces.bushing import Bushing
 from ...elements.spatial.forces.field import FieldForce
-from ...elements.spatial.forces.shared import LineForce, SpringDamper
+from ...elements.spatial.forces.line_force import LineForce
+from ...elements.spatial.forces.spring_damper import SpringDamper
 from ...elements.spatial.forces.torsion_spring import TorsionSpring
 from ...elements.spatial.joints.cylindrical import Cylindrical
 from ...elements.spatial.joints.fixed import Fixed

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from ...elements.spatial.number_format import plain
 from ...reading.files.quoted import quoted
 from ...reading.formula.text import FormulaError, parse
 from ..statements.constraints import TRANSLATIONAL, Motion
@@ -26,6 +27,8 @@ PATIENCE = 10.0
 """Time limit of symbolic integration, s."""
 LARGEST_EXPONENT = 32
 """Largest exponent in an integrand: powers of sums are expanded."""
+INTEGRALS = {"t", "pi", "sin", "cos", "exp", "sqrt", "log", "tan", "atan"}
+"""Names in integrals that formulas can evaluate."""
 
 
 @contextmanager
@@ -118,17 +121,40 @@ class Law:
         """Return the prescribed position or velocity of a drive by its field name.
 
         A velocity is prescribed directly if the motion starts at the initial pose. Otherwise it is integrated to a
-        position, as is an acceleration. `initial`: the displacement at the initial pose, m or rad.
+        position, as is an acceleration: by a formula if there is one, or by states. `initial`: the displacement at the
+        initial pose, m or rad.
         """
         order = self._motion.order
         if order == 0 or (order == 1 and (self._start is None or abs(self._start - initial) <= ROUNDING)):
             return {ORDERS[order]: self._formula()}
         start = initial if self._start is None else self._start
+        integral = self._integrated()
+        if integral is None:
+            return {"position": self._state(start)}
         terms = [number(start)] if start else []
         if order == 2 and self._velocity:
             terms.append(times(ast.Name("t"), self._velocity))
-        terms.append(parse(self._integrated()))
-        return {"position": ast.unparse(total(terms))}
+        return {"position": ast.unparse(total([*terms, integral]))}
+
+    def _state(self, start: float) -> str:
+        """Add a state of the scene for each integral without a formula, and return the name of the displacement.
+
+        Raises DatasetFault if the function measures positions, velocities or reactions.
+        """
+        function, dataset = self._motion.function, self._translation.mechanism.dataset
+        joints = {joint.name for joint in (*dataset.joints.values(), *dataset.primitives.values())}
+        for node in ast.walk(parse(self._formula())):
+            if isinstance(node, ast.Attribute) or (isinstance(node, ast.Name) and node.id in joints):
+                raise function.fault(
+                    f"found '{ast.unparse(node)}' measured in '{quoted(function.text)}', expected a function of time"
+                )
+        displacement, velocity = (f"{self._motion.name}_{what}" for what in ("displacement", "velocity"))
+        states = {displacement: {"rate": self._formula(), "start": plain(start)}}
+        if self._motion.order == 2:
+            states[velocity] = states[displacement] | {"start": plain(self._velocity)}
+            states[displacement]["rate"] = velocity
+        self._translation.mechanism.states |= states
+        return displacement
 
     def _formula(self) -> str:
         try:
@@ -137,17 +163,13 @@ class Law:
             raise self._motion.function.fault(str(error)) from None
         return ast.unparse(_WithoutInstants().visit(formula))
 
-    def _integrated(self) -> str:
-        """Return the function integrated from 0 to t, once or twice.
-
-        Raises DatasetFault if the integral is not a formula.
-        """
+    def _integrated(self) -> ast.expr | None:
+        """Return the function integrated from 0 to t, once or twice; None if the integral is not a formula."""
         import sympy as sp
 
         t, s = sp.Symbol("t", real=True), sp.Symbol("s", real=True)
-        function = self._motion.function
+        formula = self._formula()
         try:
-            formula = self._formula()
             _check_exponents(parse(formula))
             with time_limit(PATIENCE):
                 integral = sp.sympify(formula, locals={"t": t})
@@ -156,12 +178,6 @@ class Law:
                 found = sp.simplify(integral)
             parsed = parse(str(found))
         except (sp.SympifyError, ValueError, TypeError, AttributeError, ArithmeticError, RecursionError, TimeoutError):
-            parsed = None
-        names = {node.id for node in ast.walk(parsed) if isinstance(node, ast.Name)} if parsed else {"?"}
-        if parsed is None or not names <= {"t", "pi", "sin", "cos", "exp", "sqrt", "log", "tan", "atan"}:
-            order = ("", "a velocity with ICDISP", "an acceleration")[self._motion.order]
-            raise function.fault(
-                f"found '{quoted(function.text)}' as {order}, whose integral is no formula here, expected a "
-                "displacement, or a function such as a polynomial or a sine"
-            )
-        return ast.unparse(parsed)
+            return None
+        names = {node.id for node in ast.walk(parsed) if isinstance(node, ast.Name)}
+        return parsed if names <= INTEGRALS else None

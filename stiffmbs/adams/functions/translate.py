@@ -17,11 +17,13 @@ from ..scene.mechanism import Mechanism
 from ..statements.declared import Numbered
 from .adams_functions import ADAMS_FUNCTIONS
 from .expression import IF, OMITTED, parse
+from .force_laws import LAWS, force_between, force_by_law
 from .function import Function
 from .inputs import PLANTS, evaluated_name, variable_of_plant
 from .measures import (
     ANGLES_OF_AXES,
     BY_ITS_PLACE,
+    COMPONENTS,
     REACTIONS,
     angle,
     component_of,
@@ -46,19 +48,25 @@ PLAIN = {
 }  # fmt: skip
 """Functions with an equivalent in scene formulas."""
 COUPLED = (
-    "MOTION", "GCON", "COUPLER", "GEAR", "PTCV", "CVCV", "CONTACT", "SFORCE", "VFORCE", "VTORQ", "VTORQUE", "GFORCE", "SPDP", "BUSH", "BEAM", "FIELD",
-    "FX", "FY", "FZ", "FM", "TX", "TY", "TZ", "TM",
+    "MOTION", "GCON", "COUPLER", "GEAR", "PTCV", "CVCV", "CONTACT", "BEAM", "FIELD",
 )  # fmt: skip
 """Force functions that only requests may use."""
 NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 
 
 class Translation:
-    """Translator of the expressions of one dataset."""
+    """Translator of the expressions of one dataset.
+
+    Attributes
+    ----------
+    substituted : list of str
+        Labels of the forces whose laws are being substituted.
+    """
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
         self.units = mechanism.dataset.units
+        self.substituted: list[str] = []
 
     @cached_property
     def implicit_variables(self) -> frozenset[int]:
@@ -153,10 +161,14 @@ class Translation:
             return self._angle(name, arguments, function)
         if name in REACTIONS:
             return self._reaction(name, arguments, function)
+        if name in LAWS:
+            return force_by_law(name, arguments, function, self)
+        if name in COMPONENTS:
+            return force_between(name, arguments, function, self)
         if name in COUPLED:
             raise function.fault(
                 f"found {name} in '{quoted(function.text)}', a force that hangs on others at the same instant, expected it in a "
-                "REQUEST, or JOINT or JPRIM"
+                f"REQUEST, or one of {', '.join((*REACTIONS, *LAWS, *COMPONENTS))}"
             )
         if name == "INCANG":
             ends = [self.reference(function.identifier(arguments, k), function) for k in range(3)]
@@ -176,13 +188,14 @@ class Translation:
             unit = self.units.of(length=1, time=-1 if name in VELOCITIES else 0)
         if name == "VM" and seen_from:
             return ast.Call(ast.Name("sqrt"), [
-                total([power(self._relative(axis, i, j, "", seen_from, unit), 2) for axis in "xyz"])
+                total([power(self.relative(axis, i, j, "", seen_from, unit), 2) for axis in "xyz"])
             ], [])  # fmt: skip
         if name in ("VX", "VY", "VZ") and seen_from:
-            return self._relative(name[1].lower(), i, j, axes, seen_from, unit)
+            return self.relative(name[1].lower(), i, j, axes, seen_from, unit)
         return over(measured(name.lower(), i, j, axes), unit)
 
-    def _relative(self, axis: str, i: str, j: str, axes: str, frame: str, unit: float) -> ast.expr:
+    def relative(self, axis: str, i: str, j: str, axes: str, frame: str, unit: float) -> ast.expr:
+        """Return a component of the velocity of i relative to j in the frame of a marker's part."""
         u, v = {"x": ("y", "z"), "y": ("z", "x"), "z": ("x", "y")}[axis]
         velocity = measured(f"v{axis}", i, j, axes)
         turned = [

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 from ..scene.contacts import swapped
 from ..scene.forces import TORQUE
-from ..scene.joints import markers_of, rod
-from ..statements.constraints import GeneralConstraint, Motion
+from ..scene.general_constraints import rod
+from ..statements.constraints import GeneralConstraint
 from ..statements.contact import Contact
 from ..statements.curves import CurveOnCurve, PointOnCurve
 from ..statements.declared import Numbered
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
+from .acting import acting_between, has_action_only
 from .function import Function
 from .measures import COMPONENTS, component_of
 from .translate import Translation
@@ -113,44 +114,17 @@ class OutputTranslation(Translation):
 
     def between(self, component: str, i: int, j: int, axes: int, function: Function) -> ast.expr:
         """Return the total force on marker i of the elements between it and marker j, in SI units."""
-        acting = list(self._acting(i, j))
+        acting = list(acting_between(i, j, self.mechanism))
         for found, on_j in acting:
             if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
                 raise function.fault(
                     f"found the force of {found.label} on another marker than its I, expected it there"
                 )
-        if not acting and (self.mechanism.dataset.inactive or self._action_only(i, j)):
+        if not acting and (self.mechanism.dataset.inactive or has_action_only(i, j, self.mechanism)):
             return number(0.0)
         if not acting:
             raise function.fault(f"found no joint and no force between the markers {i} and {j}, expected one at least")
         return self._component(component, acting, axes, function)
-
-    def _acting(self, i: int, j: int) -> Iterator[tuple[Numbered, bool]]:
-        """Yield the elements between two markers, and whether the first marker is the element's marker j."""
-        for statements in self.mechanism.dataset.statements.values():
-            for found in statements.values():
-                first, others = self._ends(found)
-                if first == i and (not j or j in others):
-                    yield found, False
-                elif i in others and j in (0, first) and not (isinstance(found, SingleForce) and found.action_only):
-                    yield found, True
-
-    def _action_only(self, i: int, j: int) -> bool:
-        """Return True if an action-only force acts on the second of two markers, and nothing on the first."""
-        forces = self.mechanism.dataset.statements.get("SFORCE", {}).values()
-        return any(found.action_only and found.j == i and j in (0, found.i) for found in forces)
-
-    def _ends(self, found: object) -> tuple[int | None, tuple[int | None, ...]]:
-        if isinstance(found, GeneralConstraint):
-            first, *others = (*markers_of(found, self.mechanism), None)
-            return first, tuple(others)
-        if isinstance(found, VectorForce | PointOnCurve | CurveOnCurve):
-            return found.i, (found.floating,)
-        if isinstance(found, Motion) and found.joint is not None:  # acts between the markers of its joint
-            return self._ends(self.mechanism.dataset.joints.get(found.joint))
-        if isinstance(found, Numbered) and found.keyword != "REQUEST":
-            return getattr(found, "i", None), (getattr(found, "j", None),)
-        return None, ()
 
     def _component(
         self, component: str, acting: list[tuple[Numbered, bool]], axes: int, function: Function

@@ -16,7 +16,7 @@ import numpy as np
 from ...elements.spatial.number_format import plain
 from ..statements.bodies import Part, Vector
 from ..statements.changes import Key
-from ..statements.constraints import ROTATIONAL, Joint
+from ..statements.constraints import ROTATIONAL, Joint, Start
 from ..statements.dataset import Dataset
 from ..statements.geometry import IDENTITY, PRECISION
 from .mechanism import Mechanism, Place
@@ -64,8 +64,14 @@ def at_start(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _stating(dataset: Dataset) -> list[Joint]:
-    """Return the joints with initial conditions and without a motion."""
-    return [joint for joint in dataset.joints.values() if joint.start and joint.ident not in _driven(dataset)]
+    """Return the joints with initial conditions of coordinates without a motion, and only with these conditions."""
+    free = (replace(joint, start=_undriven(joint, dataset)) for joint in dataset.joints.values())
+    return [joint for joint in free if joint.start]
+
+
+def _undriven(joint: Joint, dataset: Dataset) -> tuple[Start, ...]:
+    sorts = [motion.sort for motion in dataset.motions.values() if motion.joint == joint.ident]
+    return tuple(start for start in joint.start if not {start[0], None} & {*sorts})
 
 
 def _differs(mechanism: Mechanism, joint: Joint) -> bool:
@@ -92,13 +98,9 @@ def _relative(mechanism: Mechanism, joint: Joint, sort: str, known: dict[Key, Tw
 
 def notes(dataset: Dataset) -> Iterator[str]:
     """Yield a sentence that lists the initial conditions without effect."""
-    left_out = [joint.label for joint in dataset.joints.values() if joint.start and joint.ident in _driven(dataset)]
+    left_out = [joint.label for joint in dataset.joints.values() if joint.start != _undriven(joint, dataset)]
     if left_out:
         yield f"initial conditions of {', '.join(left_out)} are left out: a MOTION says where they start"
-
-
-def _driven(dataset: Dataset) -> set[int | None]:
-    return {motion.joint for motion in dataset.motions.values()}
 
 
 def _states(part: Part) -> bool:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from ...elements.spatial.number_format import plain, quaternion, vector
-from ..functions.translate import ANGULAR_VELOCITIES as TURNING
-from ..functions.translate import VELOCITIES, Translation
+from ...reading.formula.text import parse
+from ..functions.translate import ANGULAR_VELOCITIES, VELOCITIES, Translation
 from ..statements.constraints import GeneralConstraint, Joint, Primitive
 from ..statements.geometry import Frame
 from ..statements.text import of_each
+from .general_constraints import rod
 from .mechanism import Mechanism, Place
 from .racks import rolling
 
@@ -34,6 +34,8 @@ KINDS = {
     "PERPENDICULAR": "perpendicular",
 }
 """Joints that use their two markers unchanged."""
+RATES = {name.lower() for name in (*VELOCITIES, *ANGULAR_VELOCITIES)}
+"""Measures of velocity in formulas."""
 Z_ALONG_X = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Axes with z along the x axis of the axes they are given in."""
 Z_ALONG_Y = Z_ALONG_X.T
@@ -90,39 +92,17 @@ def _general(constraint: GeneralConstraint, mechanism: Mechanism, translation: T
         *ends, length = distance
         i, j = (mechanism.place(ident, constraint, "the marker").reference for ident in ends)
         return {"type": "distance", "i": i, "j": j, "length": plain(length * mechanism.dataset.units.length)}
-    called = {name.id for node in ast.walk(constraint.function.tree) for name in _callee(node)}
-    kind = "velocity_equation" if called & {*VELOCITIES, *TURNING} else "equation"
+    formula = translation.translated(constraint.function)
+    kind = "velocity_equation" if _has_velocities(formula, mechanism) else "equation"
     reported = {} if constraint.i is None else {"i": mechanism.place(constraint.i, constraint, "I").reference}
-    return {"type": kind, **reported, "zero": translation.formula(constraint.function)}
+    return {"type": kind, **reported, "zero": ast.unparse(formula)}
 
 
-def _callee(node: ast.AST) -> Iterator[ast.Name]:
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-        yield node.func
-
-
-def rod(constraint: GeneralConstraint) -> tuple[int, int, float] | None:
-    """Return the two markers and the length of a constant-distance constraint; None for other constraints."""
-    match constraint.function.tree:
-        case ast.BinOp(
-            ast.Call(ast.Name("DM"), [ast.Constant(int() as a), ast.Constant(int() as b)]),
-            ast.Sub(),
-            ast.Constant(int() | float() as length),
-        ) if a and b and length:
-            return (b, a, length) if constraint.i == b else (a, b, length)
-    return None
-
-
-def markers_of(constraint: GeneralConstraint, mechanism: Mechanism) -> tuple[int, ...]:
-    """Return the markers in a general constraint's function; the marker of its reaction comes first."""
-    named = [
-        argument.value
-        for node in ast.walk(constraint.function.tree)
-        if isinstance(node, ast.Call)
-        for argument in node.args
-        if isinstance(argument, ast.Constant)
-        and isinstance(argument.value, int)
-        and argument.value in mechanism.dataset.markers
-    ]
-    first = [] if constraint.i is None else [constraint.i]
-    return tuple(dict.fromkeys([*first, *named]))
+def _has_velocities(formula: ast.expr, mechanism: Mechanism) -> bool:
+    """Return True if a formula measures a velocity, itself or in its variables."""
+    names, pending = set[str](), [formula]
+    while pending:
+        found = {node.id for node in ast.walk(pending.pop()) if isinstance(node, ast.Name)} - names
+        names |= found
+        pending += [parse(mechanism.variables[name]) for name in found if name in mechanism.variables]
+    return bool(names & RATES)

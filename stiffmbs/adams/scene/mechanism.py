@@ -70,6 +70,8 @@ class Mechanism:
         Variables used by functions so far, in the dataset's units.
     inputs : mapping of str to float
         Inputs set by another program or a sensor, in the dataset's units.
+    states : mapping of str to state
+        Displacements and velocities of motions, integrated from functions without a formula of the integral.
 
     Raises
     ------
@@ -83,6 +85,7 @@ class Mechanism:
         self.tables: dict[str, dict[str, Any]] = {}
         self.variables: dict[str, str] = {}
         self.inputs: dict[str, float] = {}
+        self.states: dict[str, dict[str, Any]] = {}
         self.least = min((part.mass for part in dataset.parts if part.mass > 0), default=0.0)
         self.parts = {(part.keyword, part.ident): self._weighed(part) for part in dataset.parts}
         grounds = [part for part in dataset.parts if part.ground]

@@ -59,6 +59,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         ("joints", partial(curves, mechanism)),
         ("joints", partial(motions, mechanism, translation)),
         ("states", partial(states, translation)),
+        ("states", lambda: mechanism.states),
         ("forces", Forces(mechanism, translation).all),
         ("forces", partial(contacts, mechanism, translation)),
         ("forces", partial(frictions, mechanism, translation)),

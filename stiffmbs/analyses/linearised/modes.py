@@ -23,7 +23,8 @@ from ..equilibrium import solution_of_rows
 from ..job import Runnable
 from ..settled import GROWING
 from ..start_from import StartFrom
-from .sides import AtState, Kink, at_state, linearised_at
+from .at_state import AtState, at_state
+from .sides import Kink, linearised_at
 
 AT_REST = 1e-6
 """Acceleration below which a state counts as an equilibrium, relative to gravity (to 1 m/s^2 without gravity)."""

@@ -1,64 +1,24 @@
-"""State of a linearisation, and the linearised equations on both sides of a breakpoint of forces there."""
+"""Linearised equations on both sides of a breakpoint of forces."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from ...dynamics.algebraic_states import failure
 from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
 from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...linear_analysis.tangent_space import Linearised, linearised
-from ...model.model_data import ModelData
-from ...model.settings import RunSettings
-from ...redundancy.redundancy import Redundancy
-from ..job import Runnable, prepare
-from ..start_from import StartFrom
 
 
 @dataclass(frozen=True)
-class AtState:
-    """Model at a time, s, with accelerations; the state of its dynamics has q, u and lam that satisfy the constraints."""
+class Instant:
+    """Dynamics at a time, s, with accelerations; its state has q, u and lam that satisfy the constraints."""
 
-    data: ModelData
-    redundancy: Redundancy
     dynamics: Dynamics
     t: float
     acceleration: np.ndarray
-
-
-def at_state(
-    model: Runnable,
-    settings: RunSettings | None = None,
-    at: float | None = None,
-    start_from: StartFrom | None = None,
-    **changes: Any,
-) -> AtState:
-    """Return a model at its start, or at a time of its motion, s; `start_from` and changes of settings as for `stiffmbs.run`.
-
-    Raises InputError, AssemblyError as for `stiffmbs.run`. Raises SolverError if the run does not reach that time, or
-    no accelerations are found there.
-    """
-    job = prepare(model, settings, start_from, **changes)
-    t = job.grid.start
-    state = job.dynamics.state
-    state.q[:], state.u[:] = job.start.q, job.start.u
-    if at is not None and at != t:
-        job = prepare(model, settings, start_from, **{**changes, "duration": at - t, "points": 2})
-        trajectory = job.integrate()
-        if not np.isclose(trajectory.t[-1], at):
-            raise SolverError(f"no state was found at t = {at:g} s: {trajectory.message}")
-        t, state = at, job.dynamics.state
-        state.q[:], state.u[:] = trajectory.q[-1], trajectory.u[-1]
-        job.dynamics.assemble(t)
-        job.dynamics.correct_velocities(t)
-    status, acceleration = job.dynamics.accelerate(t)
-    if status < 0:
-        raise SolverError(f"no accelerations were found at t = {t:g} s: {failure(job.dynamics, status, t)}")
-    return AtState(job.data, job.redundancy, job.dynamics, t, acceleration)
 
 
 @dataclass(frozen=True)
@@ -101,7 +61,7 @@ class Kink:
     sides: tuple[Linearised, Linearised]
 
 
-def linearised_at(found: AtState, scale: np.ndarray) -> tuple[Linearised, StateMatrix, Kink | None]:
+def linearised_at(found: Instant, scale: np.ndarray) -> tuple[Linearised, StateMatrix, Kink | None]:
     """Return the linearised equations, those of one side on a breakpoint of a force, with that breakpoint or None.
 
     Raise a SolverError if a force is discontinuous at the state, so that no linearisation exists.
@@ -113,7 +73,7 @@ def linearised_at(found: AtState, scale: np.ndarray) -> tuple[Linearised, StateM
 
 
 def _breakpoint(
-    found: AtState, state: StateMatrix, linear: Linearised, scale: np.ndarray, moves: Moves = MOVES
+    found: Instant, state: StateMatrix, linear: Linearised, scale: np.ndarray, moves: Moves = MOVES
 ) -> tuple[Kink | None, Linearised | None]:
     """Return the breakpoint of a force or rate at a state or None, and the equations of a side if they replace those there."""
     system = found.dynamics.system
@@ -189,7 +149,7 @@ def _generic_move(state: StateMatrix, scale: np.ndarray) -> np.ndarray:
     return rng.choice((-1.0, 1.0), n) * rng.uniform(0.5, 1.0, n) / np.maximum(sizes, 1.0)
 
 
-def _side(found: AtState, state: StateMatrix, linear: Linearised, z: np.ndarray) -> _Side:
+def _side(found: Instant, state: StateMatrix, linear: Linearised, z: np.ndarray) -> _Side:
     """Return the perturbed equations, with the multipliers and accelerations of the state."""
     dynamics, at, system = found.dynamics, found.dynamics.state, found.dynamics.system
     own = linear.algebraic.among_all(z[len(z) - state.n_states :, None])[:, 0]

@@ -22,8 +22,9 @@ from ...redundancy.messages.redundancy import derivative_sentences
 from ...results.channels import channels_of
 from ..job import Runnable, prepare
 from ..start_from import StartFrom
+from .at_state import AtState, at_state
 from .inputs import ForceOnBody, Parameterised, force_on
-from .sides import AtState, at_state, linearised_at
+from .sides import linearised_at
 
 PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
 """Measures of displacements and angles."""

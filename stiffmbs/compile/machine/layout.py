@@ -45,6 +45,8 @@ class Layout(dict[str, str]):
 
 QUAD = 4
 """Doubles of a SIMD vector."""
+CACHE_LINE = 64
+"""Size of a processor's cache line, bytes."""
 INTS, INDICES, FLOATS, INT = "ints", "indices", "floats", "int"
 FLOAT_CELL, INT_CELL = "float cell", "int cell"
 CELLS = {FLOAT_CELL: "float", INT_CELL: "int"}
@@ -54,6 +56,18 @@ DTYPES = {INTS: np.int64, INDICES: np.int32, FLOATS: np.float64}
 OWN = OWN_INTS, OWN_INDICES, OWN_FLOATS = "own ints", "own indices", "own floats"
 POINTERS = {INTS: INTS, INDICES: INDICES, FLOATS: FLOATS, OWN_INTS: INTS, OWN_INDICES: INDICES, OWN_FLOATS: FLOATS}
 """Kinds of arrays in compiled code, which allocates its own (`stiffmbs.compile.machine.native.memory`)."""
+
+
+def at_a_line(count: int) -> np.ndarray:
+    """Return zeros aligned to a cache line: access to quads across two lines is far slower."""
+    longer = np.zeros(count + CACHE_LINE // 8)
+    first = -longer.ctypes.data % CACHE_LINE // 8
+    return longer[first : first + count]
+
+
+def whole_lines(parts: list[np.ndarray]) -> list[np.ndarray]:
+    """Return arrays with zeros up to a whole number of cache lines."""
+    return [*parts, np.zeros(-sum(map(len, parts)) % (CACHE_LINE // 8))]
 
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from ...compile.equations import ABSENT
-from ...compile.machine.layout import arrays_of
+from ...compile.machine.layout import QUAD, arrays_of, at_a_line
 from ...compile.system import System
 from ...sparse.block_updates import pieces_of
-from ...sparse.blocks import QUAD, Blocks, at_a_line, filled_below
+from ...sparse.blocks import Blocks, filled_below
 from .joint_jacobian import Jacobian, jacobian_of
 from .native.layouts import (
     BLOCK_ELIMINATION,

@@ -9,7 +9,7 @@ from pydantic import Field, field_validator
 
 from ...reading.units import si
 from ..element import Expr, Force, Symbolic
-from .bushing import times
+from .elastic_matrix import times
 
 BEYOND = "found its ends rotated by three quarters of a revolution relative to each other, expected less; divide the beam into more elements"
 DOUBT = "rotates its ends by more than half a revolution relative to each other; divide the beam into more elements"

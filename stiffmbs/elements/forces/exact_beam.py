@@ -13,7 +13,7 @@ from ...reading.units import si
 from ..element import Expr, Symbolic
 from .beam_section import BeamSectionLaw
 from .beam_strain import BeamStrain
-from .bushing import check_symmetric, from_diagonal
+from .elastic_matrix import check_symmetric, from_diagonal
 
 _Bending = Annotated[float, Measured("bending stiffness")]
 _Forces = tuple[si.Force | None, si.Force | None, si.Torque | None]

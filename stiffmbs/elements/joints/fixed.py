@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..element import Expr, Symbolic
-from .pair import InOneTurn
+from .planar_pair import InOneTurn
 
 
 class Fixed(InOneTurn):

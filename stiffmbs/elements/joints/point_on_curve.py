@@ -16,7 +16,7 @@ from ...reading.formula.value import formula_value
 from ...reading.marker import M, Marker
 from ...reading.table import Table
 from ..element import Expr, Joint, Symbolic
-from .pair import PlanarPair
+from .planar_pair import PlanarPair
 
 TURN = 2 * math.pi
 CLOSED = 1e-9

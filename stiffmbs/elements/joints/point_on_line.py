@@ -6,7 +6,7 @@ from pydantic import Field
 
 from ...reading.marker import Marker
 from ..element import Expr, Symbolic
-from .pair import PlanarPair
+from .planar_pair import PlanarPair
 
 
 class PointOnLine(PlanarPair):

@@ -7,7 +7,7 @@ from pydantic import Field
 from ...reading.marker import Marker
 from ..element import Expr, Symbolic
 from ..forces.friction import Loads, magnitude
-from .pair import InOneTurn
+from .planar_pair import InOneTurn
 
 
 class Prismatic(InOneTurn):

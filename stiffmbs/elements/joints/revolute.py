@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..element import Matrix, Symbolic
 from ..forces.friction import Loads, magnitude
-from .pair import PlanarPair
+from .planar_pair import PlanarPair
 
 
 class Revolute(PlanarPair):

@@ -11,7 +11,7 @@ from ...reading.files.quoted import written
 from ...reading.marker import GROUND
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic
-from ..forces.bushing import C, Cc, Ct, K, Kc, Kt, check_symmetric, from_diagonal, times
+from ..forces.elastic_matrix import C, Cc, Ct, K, Kc, Kt, check_symmetric, from_diagonal, times
 from .marker import Marker
 from .orientation import Quaternion, product
 from .wrench import Pairs, along_axes, velocity

@@ -26,6 +26,7 @@ from .file_fields import (
     curve_of,
     mode_of,
     ranges_of,
+    replaced_digits,
     side_of,
     version_of,
     wrong_mode,
@@ -37,6 +38,7 @@ from .property_file import (
     VERSIONS,
     PropertyFile,
     Version,
+    digits,
     plain,
     read_property_file,
 )
@@ -44,8 +46,6 @@ from .property_file import (
 if TYPE_CHECKING:
     import numpy as np
 
-WITH_LENGTHS = 10
-"""Increment of USE_MODE for transient slips by relaxation lengths."""
 WITH_TURN_SLIP = 5
 """Last digit of USE_MODE with turn slip."""
 
@@ -88,7 +88,7 @@ class TyreProperties(Component):
                 raise ValueError(f"found no {name}, expected one")
             if not self.coefficients[name]:
                 raise ValueError(f"found {name} = 0, expected a number other than zero")
-        if self.use_mode is not None and abs(self.use_mode) not in self.formula.modes:
+        if self.use_mode is not None and not self.formula.has_mode(self.use_mode):
             raise ValueError(wrong_mode(self.use_mode, self.formula))
         for name in ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS", "NOMPRES"):
             if self.coefficients.get(name, 1.0) <= 0:
@@ -132,7 +132,17 @@ class TyreProperties(Component):
     @property
     def is_transient(self) -> bool:
         """True for slips with relaxation lengths, by USE_MODE, or by default if there are lengths."""
-        return self.has_lengths and (self.use_mode is None or abs(self.use_mode) > WITH_LENGTHS)
+        return self.has_lengths and (self.use_mode is None or self._lags)
+
+    @property
+    def _lags(self) -> bool:
+        """True if USE_MODE selects transient slips."""
+        return self.use_mode is not None and all(digits(self.use_mode)[1:])
+
+    @property
+    def _slips(self) -> int:
+        """Last digit of USE_MODE, which selects the forces; combined slip by default."""
+        return 4 if self.use_mode is None else digits(self.use_mode)[2]
 
     @property
     def has_turn_slip(self) -> bool:
@@ -142,7 +152,7 @@ class TyreProperties(Component):
     @property
     def takes_turn_slip(self) -> bool:
         """True if USE_MODE selects turn slip."""
-        return self.use_mode is not None and abs(self.use_mode) % WITH_LENGTHS == WITH_TURN_SLIP
+        return self._slips == WITH_TURN_SLIP
 
     @property
     def is_mirrored(self) -> bool:
@@ -152,9 +162,10 @@ class TyreProperties(Component):
     @property
     def one_sided(self) -> tuple[str, ...]:
         """Coefficients that are not zero and differ between a left and a right tyre."""
-        lateral = self.use_mode is None or abs(self.use_mode) % WITH_LENGTHS > 1
         has = self.coefficients.get
-        return tuple(name for name, scale in ONE_SIDED.items() if lateral and has(name, 0.0) and has(scale, 1.0))
+        return tuple(
+            name for name, scale in ONE_SIDED.items() if self._slips > 1 and has(name, 0.0) and has(scale, 1.0)
+        )
 
     @property
     def nominal_pressure(self) -> float | None:
@@ -181,10 +192,9 @@ class TyreProperties(Component):
 
     def in_equations(self) -> dict[str, Any]:
         """Return the names and values that the equations use."""
-        mode = 4 if self.use_mode is None else abs(self.use_mode) % WITH_LENGTHS
         own: dict[str, Any] = {
             "ellipse": "" if self.is_combined else "pac2002" if self.is_pac2002 else "limit",
-            "belt": self.belt or None, "mode": str(mode), "is_mirrored": self.is_mirrored, "side": self.side,
+            "belt": self.belt or None, "mode": str(self._slips), "is_mirrored": self.is_mirrored, "side": self.side,
             "deflection_load": self.deflection_load, "bottoming": self.bottoming, "formula": self.version,
         }  # fmt: skip
         if self.nominal_pressure is not None:
@@ -194,9 +204,11 @@ class TyreProperties(Component):
     def notes(self) -> Iterator[str]:
         """Yield sentences on settings that the equations do not use."""
         yield from self.remarks
-        if self.use_mode is not None and abs(self.use_mode) > WITH_LENGTHS and not self.has_lengths:
+        if self._lags and not self.has_lengths:
             missing = "LONGITUDINAL_STIFFNESS, LATERAL_STIFFNESS" if self.formula.has_pressure else "PTX1, PTY1"
             yield f"USE_MODE = {self.use_mode} asks for relaxation lengths, and there are none ({missing}): slips are those of the steady state"
+        if self.use_mode is not None:
+            yield from replaced_digits(self.use_mode, self.is_transient)
         if self.belt and not self.has_lengths:
             yield "the gyroscopic couple of the belt (QTZ1) needs relaxation lengths, and there are none: it is left out"
         if not self.is_combined:

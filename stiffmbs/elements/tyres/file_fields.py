@@ -13,7 +13,7 @@ from ...reading.files.quoted import quoted
 from ...reading.table import Table
 from ..element import Component
 from .names import AS_BEFORE, LATER, RANGES, home
-from .property_file import OF_FITTYP, OF_FORMAT, PropertyFile, Version, plain
+from .property_file import OF_FITTYP, OF_FORMAT, PropertyFile, Version, digits, plain
 
 SIDES = ("left", "right", "symmetric")
 DEEP = 0.1
@@ -135,7 +135,7 @@ def mode_of(file: PropertyFile, formula: Version) -> int | None:
     if not file.entry("USE_MODE", "MODEL"):
         return None
     mode = file.number("USE_MODE", home="MODEL")
-    if abs(mode) not in formula.modes:
+    if not formula.has_mode(mode):
         raise InputError(f"{_where(file, 'USE_MODE')}: {wrong_mode(mode, formula)}")
     return int(mode)
 
@@ -147,6 +147,19 @@ def wrong_mode(mode: float, formula: Version) -> str:
         f"found USE_MODE = {mode:g}, expected 0 to 4 for steady slip, 10 to 14 for slip with relaxation lengths{more}, or the "
         "negative of one of these for a mirrored tyre"
     )
+
+
+REPLACED = {2: "nonlinear transient slip", 3: "rigid ring dynamics"}
+"""Dynamics that relaxation lengths replace, by the second digit of USE_MODE."""
+
+
+def replaced_digits(mode: int, lags: bool) -> Iterator[str]:
+    """Yield a sentence for each digit of USE_MODE that is replaced; `lags`: there are relaxation lengths."""
+    contact, dynamics, slip = digits(mode)
+    if dynamics in REPLACED and lags:
+        yield f"USE_MODE = {mode} asks for {REPLACED[dynamics]}: slips lag by relaxation lengths, as with {10 + slip}"
+    if contact:
+        yield f"USE_MODE = {mode} asks for contact method {contact}: the contact is that of the road and of `envelope`"
 
 
 def side_of(file: PropertyFile) -> Any:

@@ -224,19 +224,23 @@ class Version:
         Numbers that are neither coefficients nor scale factors, with their dimensions.
     defaults : mapping of str to float
         Default values; numbers without one are required.
-    modes : frozenset of int
-        Values of USE_MODE without sign.
+    largest : tuple of int
+        Largest digits of USE_MODE: contact method, dynamics, slip.
     """
 
     name: str
     dimensions: Mapping[str, str]
     defaults: Mapping[str, float]
-    modes: frozenset[int]
+    largest: tuple[int, int, int]
 
     @property
     def numbers(self) -> tuple[str, ...]:
         """Names of all numbers."""
         return tuple(dict.fromkeys((*self.defaults, *self.dimensions)))
+
+    def has_mode(self, mode: float) -> bool:
+        """Return True if a USE_MODE of either sign has valid digits."""
+        return all(digit <= most for digit, most in zip(digits(mode), self.largest, strict=True)) and mode % 1 == 0
 
     @property
     def has_pressure(self) -> bool:
@@ -255,13 +259,12 @@ _OF_6 = {
     "PKY4": AS_BEFORE["PKY4"], "QSY7": AS_BEFORE["QSY7"], "PHYP1": 1.0, "QDRP1": 1.0,
 }  # fmt: skip
 """Default values; those of omitted coefficients of 6.1 have the effect of MF-Tyre 5.2, INFLPRES = 0 means NOMPRES."""
-_STEADY = (*range(5), *range(10, 15))
 VERSIONS = {
     version.name: version
     for version in (
-        Version("5.2", DIMENSIONS, _OF_5, frozenset(_STEADY)),
-        Version("6.1", DIMENSIONS_6, _OF_6, frozenset((*_STEADY, *range(20, 26), 5, 15))),
-        Version("6.2", DIMENSIONS_6, _OF_6, frozenset((*_STEADY, *range(20, 26), 5, 15))),
+        Version("5.2", DIMENSIONS, _OF_5, (0, 2, 4)),
+        Version("6.1", DIMENSIONS_6, _OF_6, (5, 3, 5)),
+        Version("6.2", DIMENSIONS_6, _OF_6, (5, 3, 5)),
     )
 }
 OF_FITTYP = {
@@ -279,3 +282,9 @@ OF_FORMAT = {
 def plain(word: Any) -> str:
     """Return a name of a version without punctuation, such as MF52 for 'MF_5.2'."""
     return "".join(letter for letter in str(word).upper() if letter.isalnum())
+
+
+def digits(mode: float) -> tuple[int, int, int]:
+    """Return contact method, dynamics and slip by the digits of a USE_MODE of either sign."""
+    hundreds, rest = divmod(int(abs(mode)), 100)
+    return hundreds, *divmod(rest, 10)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...analyses.check import Report, check
 from ...analyses.job import data_of
-from ...analyses.linearised.sides import at_state
+from ...analyses.linearised.at_state import at_state
 from ...errors import refuse_missing
 from ...reading.names import owner_of
 from ...results.channels import channels_of

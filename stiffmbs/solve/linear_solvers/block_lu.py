@@ -9,10 +9,10 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import Layout, held_once, packed_with_memory
+from ...compile.machine.layout import QUAD, Layout, at_a_line, held_once, packed_with_memory
 from ...compile.machine.routines import Routine
 from ...sparse.block_updates import updates
-from ...sparse.blocks import QUAD, Blocks, at_a_line, filled
+from ...sparse.blocks import Blocks, filled
 from ...sparse.elimination_order import EliminationOrder, nodes_in_order
 from ..ida.session import WhenNeeded
 from .fixed_order import FixedOrder, Memory, Pivoted

@@ -19,6 +19,8 @@ from ...reading.did_you_mean import did_you_mean
 DRIVER = "handling_driver"
 STEER = "handling_steer"
 ROAD = "handling_road"
+MISPLACED = 0.01
+"""Largest angle of the heading to x, rad, and distance of the wheels' centre from the x axis in wheelbases, at the start."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,7 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
     if len(tyres) != 4:
         raise InputError(f"found {len(tyres)} tyres ({', '.join(tyres) or 'none'}), expected the 4 of a car")
     places = {name: np.array(scene.point(scene.forces[name].i)) for name in tyres}
+    _check_place(scene, body, places)
     by_x = sorted(tyres, key=lambda name: -places[name][0])
     corners: dict[str, str] = {}
     for axle, pair in (("front", by_x[:2]), ("rear", by_x[2:])):
@@ -98,6 +101,19 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
         float(np.mean([place[2] for place in at.values()])),
         float(scene.bodies[body].position[0] - at["rear_left"][0]), float(centre[2]),
     )  # fmt: skip
+
+
+def _check_place(scene: Scene, body: str, places: Mapping[str, np.ndarray]) -> None:
+    """Refuse a car that does not stand where courses begin: at the origin, with its heading along x."""
+    left = np.mean([scene.initial_marker(scene.forces[name].i).axes[:, 1] for name in places], axis=0)
+    x, y, _ = np.mean([*places.values()], axis=0)
+    length = np.ptp([*places.values()], axis=0).max()
+    heading = float(np.arctan2(-left[0], left[1])) + 0.0
+    if abs(heading) > MISPLACED or abs(y) > MISPLACED * length or abs(x) > length:
+        raise InputError(
+            f"found the wheels of '{body}' about x = {x:.3g} m, y = {y:.3g} m, with a heading of {np.degrees(heading):.3g} deg from x, "
+            "expected them about the origin, within a wheelbase along x, and a heading along x: courses begin there"
+        )
 
 
 def _upright(scene: Scene, wheel: str) -> str:

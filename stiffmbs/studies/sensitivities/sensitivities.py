@@ -289,7 +289,7 @@ class DifferentiatedRun:
         if not self.success:
             raise SolverError(f"sensitivities: the run {self._trajectory.message}")
         with in_use(self._job.settings.tuning):
-            rows, gaps = reported(self._job.dynamics, self._trajectory, True)
+            rows, gaps = reported(self._job.dynamics, self._trajectory, True, self._job.settings.rtol)
         if len(rows.t) < len(self._trajectory.t) or gaps:
             raise SolverError(
                 "sensitivities: found output times without accelerations and reactions, expected them everywhere"

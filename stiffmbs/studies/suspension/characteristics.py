@@ -13,8 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ...dynamics.dynamics import Dynamics
-from ...elements.forces.spring_damper import LineSpring, Spring
-from ...elements.forces.torsion_spring import AngleSpring
+from ...elements.forces.springs import AngleSpring, LineSpring, Spring
 from ...model.model_data import ModelData
 from .axle import Axle, Wheel
 from .rig import STEER, centre, contact_at, contact_from, contact_velocity, pad

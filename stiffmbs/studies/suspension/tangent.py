@@ -14,8 +14,7 @@ import numpy as np
 
 from ...compile.quaternions import rotated
 from ...dynamics.dynamics import Dynamics
-from ...elements.forces.spring_damper import LineSpring, Spring
-from ...elements.forces.torsion_spring import AngleSpring
+from ...elements.forces.springs import AngleSpring, LineSpring, Spring
 from ...equilibria.force_balance import balance_at
 from ...equilibria.matrices import dense
 from ...equilibria.steady_motion import at_rest

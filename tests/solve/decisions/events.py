@@ -10,6 +10,7 @@ import numpy as np
 from stiffmbs.solve import (
     missing_rows,
     sampling,
+    stiff_rows,
 )
 from stiffmbs.solve.events import discontinuity, narrow_inputs
 from stiffmbs.solve.events.long_steps import LongStepLog
@@ -182,8 +183,12 @@ def gaps_in_output():
         return Record(t=t[:1], status=next(iter(missing_rows.FAILURES)))
 
     dynamics = Record(report=report, system=Record(of_body=body))
-    with patch.multiple(missing_rows, _unknown=nothing, _joined=nothing):
-        return len(missing_rows.reported(dynamics, Record(t=t, q=zeros, u=zeros), False)[1])
+    with patch.multiple(missing_rows, _unknown=nothing, _joined=nothing, with_stiff_forces=nothing):
+        return len(missing_rows.reported(dynamics, Record(t=t, q=zeros, u=zeros), False, 1e-6)[1])
+
+
+def rate_of_a_projection():
+    return stiff_rows.rates(Record(t=np.zeros(1), step_times=np.ones(1)), np.ones(1))[0]
 
 
 DECISIONS = {
@@ -204,7 +209,7 @@ DECISIONS = {
     "solve.events.native.step_bound:STRETCHED": step_bound_by_a_feature,
     "solve.events.narrow_inputs:NEAR_INPUT_END": distance_from_the_end_of_an_input,
     "solve.trajectory:SAME_TIME": first_sample,
-    "solve.missing_rows:MOST_MISSING": gaps_in_output,
+    "solve.missing_rows:MOST_MISSING": gaps_in_output, "solve.stiff_rows:STEP_PARTS": rate_of_a_projection,
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
@@ -212,6 +217,6 @@ EXPECTED = {
     "next_step.first_part": 0.0078125, "next_step.inside": 0.4, "next_step.lifted": 10, "long_steps.for_others": 594, "long_steps.for_functions": 215,
     "long_steps.from_middle": 0.0002, "narrow_inputs.most_samples": 5000, "jumps.jumps": 99, "jumps.rate_interval": 0.0001,
     "solve.events.native.step_bound:STRETCHED": 99, "solve.events.narrow_inputs:NEAR_INPUT_END": 9, "solve.trajectory:SAME_TIME": 40,
-    "solve.missing_rows:MOST_MISSING": 100,
+    "solve.missing_rows:MOST_MISSING": 100, "solve.stiff_rows:STEP_PARTS": 10,
 }  # fmt: skip
 """The decisions of the default parameters."""

@@ -10,8 +10,8 @@ from scipy.linalg import expm
 
 from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.analyses.job import Runnable, prepare
+from stiffmbs.analyses.linearised.at_state import AtState
 from stiffmbs.analyses.linearised.modes import Modes, modes
-from stiffmbs.analyses.linearised.sides import AtState
 from stiffmbs.errors import SolverError, StiffmbsError
 from stiffmbs.linear_analysis.state_space import StateMatrix
 from stiffmbs.linear_analysis.tangent_space import Linearised, linearised

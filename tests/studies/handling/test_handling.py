@@ -49,6 +49,20 @@ def test_the_metrics_of_the_car_agree_with_each_other():
     assert found["lane_change"]["passed (1 yes, 0 no)"] == 1
 
 
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"position": "[100, 3, height]"}, "about x = 99.9 m, y = 3 m, with a heading of 0 deg"),
+        ({"orientation": "{x: [-1, 0, 0], z: [0, 0, 1]}"}, "with a heading of -180 deg from x"),
+        ({"orientation": "{x: [0.6, 0.8, 0], z: [0, 0, 1]}"}, "with a heading of 53.1 deg from x"),
+    ],
+)
+def test_a_car_that_does_not_stand_where_courses_begin_is_refused(changes, said):
+    scene = stiffmbs.load_scene(CAR, [(f"bodies.chassis.{name}", value) for name, value in changes.items()])
+    with pytest.raises(stiffmbs.InputError, match=said):
+        stiffmbs.handling(scene, ["lane_change"])
+
+
 def test_a_misspelt_test_and_a_scene_that_is_no_car_are_refused():
     runner = CliRunner()
     found = runner.invoke(main, ["handling", str(CAR), "--test", "stepsteer", "--json"])

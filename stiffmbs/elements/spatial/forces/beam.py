@@ -9,7 +9,7 @@ from pydantic import Field, field_validator, model_validator
 from ....reading.fields import Measured
 from ....reading.units import si
 from ...element import Expr, Symbolic
-from ...forces.bushing import check_symmetric, stored
+from ...forces.elastic_matrix import check_symmetric, stored
 from ..elastic import NO_MATRIX, NO_ROW, Damping, Elastic, pull_back, six_rows, without_zeros
 
 Modulus = Annotated[float, Measured("pressure", above=0)]

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from ....reading.formula.field import ForceOfDeflection, TorqueOfDeflection
 from ...element import Expr, Matrix, Symbolic
-from ...forces.bushing import stored_with_laws
+from ...forces.elastic_matrix import stored_with_laws
 from ..elastic import NO_ROW, Connection, Preload, pull_back
 
 

@@ -12,7 +12,7 @@ from ....reading.units import si
 from ...element import Expr, Symbolic
 from ...forces.beam_section import BeamSectionLaw
 from ...forces.beam_strain import BeamStrain, Stretch
-from ...forces.bushing import check_symmetric
+from ...forces.elastic_matrix import check_symmetric
 from ..elastic import AS_WRITTEN, nearest, six_rows, without_zeros
 from ..marker import Marker
 from ..wrench import Pairs, along_axes, force_at, torque_on

@@ -6,7 +6,7 @@ from pydantic import Field
 
 from ....reading.units import si
 from ...element import Expr, Symbolic
-from ...forces.bushing import stored
+from ...forces.elastic_matrix import stored
 from ..elastic import NO_ROW, Connection, Preload, pull_back
 
 

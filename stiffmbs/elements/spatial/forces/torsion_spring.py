@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ...element import Expr, Symbolic
-from ...forces.torsion_spring import AngleSpring
+from ...forces.springs import AngleSpring
 from ...initial_pose import InitialPose
 from ..branches import initially_without_axis
 from ..marker import Marker

@@ -12,6 +12,7 @@ Duff and Reid, The multifrontal solution of unsymmetric sets of linear equations
 633-641.
 """
 
+from stiffmbs.compile.machine.layout import CACHE_LINE
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.compile.machine.native.factors import FULL
@@ -28,7 +29,6 @@ from stiffmbs.solve.linear_solvers.native.pair_factors import (
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
 from stiffmbs.solve.linear_solvers.native.pivoted import pivoted_view
 from stiffmbs.sparse import block_updates
-from stiffmbs.sparse.blocks import CACHE_LINE
 
 LU = list(BLOCK_LU).index("lu")
 SHAPES = len(block_updates.SHAPES)

@@ -67,7 +67,7 @@ def strain_changes(n, number, number_d, work, to):
     y, rate, p, dp = elastic(n, work, 0), elastic(n, work, 1), elastic(n, work, 2), elastic(n, work, 3)
     p_d, dp_d, e_d, of_y, row = to, elastic(n, to, 1), elastic(n, to, 2), elastic(n, to, 3), width(n)
     stiffness, damping = of_modes(n, number, STIFFNESS), of_modes(n, number, DAMPING)
-    clear(2 * row, p_d)
+    clear(3 * row, p_d)
     for i in range(rank(number)):
         b, b_d, v = shape(n, number, i), shape(n, number_d, i), stretched(n, work, i)
         changed_stretch(n, number, number_d, i, y, of_y)

@@ -1,0 +1,42 @@
+"""Elements that act between two markers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..scene.general_constraints import markers_of
+from ..scene.mechanism import Mechanism
+from ..statements.constraints import GeneralConstraint, Motion
+from ..statements.curves import CurveOnCurve, PointOnCurve
+from ..statements.declared import Numbered
+from ..statements.forces import SingleForce, VectorForce
+
+
+def acting_between(i: int, j: int, mechanism: Mechanism) -> Iterator[tuple[Numbered, bool]]:
+    """Yield the elements between two markers, and whether the first marker is the element's marker j."""
+    for statements in mechanism.dataset.statements.values():
+        for found in statements.values():
+            first, others = _ends(found, mechanism)
+            if first == i and (not j or j in others):
+                yield found, False
+            elif i in others and j in (0, first) and not (isinstance(found, SingleForce) and found.action_only):
+                yield found, True
+
+
+def has_action_only(i: int, j: int, mechanism: Mechanism) -> bool:
+    """Return True if an action-only force acts on the second of two markers, and nothing on the first."""
+    forces = mechanism.dataset.statements.get("SFORCE", {}).values()
+    return any(found.action_only and found.j == i and j in (0, found.i) for found in forces)
+
+
+def _ends(found: object, mechanism: Mechanism) -> tuple[int | None, tuple[int | None, ...]]:
+    if isinstance(found, GeneralConstraint):
+        first, *others = (*markers_of(found, mechanism), None)
+        return first, tuple(others)
+    if isinstance(found, VectorForce | PointOnCurve | CurveOnCurve):
+        return found.i, (found.floating,)
+    if isinstance(found, Motion) and found.joint is not None:  # acts between the markers of its joint
+        return _ends(mechanism.dataset.joints.get(found.joint), mechanism)
+    if isinstance(found, Numbered) and found.keyword != "REQUEST":
+        return getattr(found, "i", None), (getattr(found, "j", None),)
+    return None, ()

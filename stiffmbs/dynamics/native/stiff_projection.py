@@ -1,0 +1,63 @@
+"""Projection onto the constraints that does not change stiff forces, and the changes of forces by a projection."""
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, shifted, state_view
+from stiffmbs.compile.machine.native.evaluate import MOTION, add_entries, add_products, evaluate
+from stiffmbs.compile.machine.native.factors import DONE, factored, solve
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
+from stiffmbs.compile.machine.native.statuses import NO_CONVERGENCE, SINGULAR
+from stiffmbs.dynamics.native.block_systems import ROUNDING, largest_of, largest_open
+from stiffmbs.dynamics.native.layouts import MOST_MOVES, POSITION_TOLERANCE
+
+
+@compiled
+def _move(factors, equations, values):
+    """Return the move that closes the violations among some values."""
+    f = factors_view(factors)
+    add_products(equations_view(equations), values, f.previous, f.previous, f.b)
+    solve(f, f.b)
+    return f.b
+
+
+def project_stiffly(t, cj, positions, velocities, factors, state):
+    """Project q and u by moves with the matrix of an implicit step, cj M - f_u - f_q / cj; 0 or a negative status."""
+    s = state_view(state)
+    e = equations_view(positions)
+    add_entries(e, evaluate(s, e.matrix_set, t), cj, factors_view(factors).a)
+    if factored(factors) != DONE:
+        return SINGULAR
+    for _ in range(MOST_MOVES):
+        values = evaluate(s, MOTION, t)
+        if largest_open(s, values) <= max(POSITION_TOLERANCE, ROUNDING * largest_of(s.q, s.n_pose)):
+            move = _move(factors, velocities, values)
+            for k in range(s.n_u):
+                s.u[k] += move[k]
+            return 0
+        add_rates(s, _move(factors, positions, values), 1.0, s.q)
+        take_unit_length(s)
+    return NO_CONVERGENCE
+
+
+@compiled
+def _add_forces(s, t, q, u, n, source, row, factor, target):
+    copied(s.q, q, s.n_q)
+    copied(s.u, u, s.n_u)
+    values = evaluate(s, MOTION, t)
+    for k in range(n):
+        target[row[k]] += factor * values[source[k]]
+
+
+def force_changes(count, t, q_before, u_before, q, u, n, source, row, weight, work, changes, state):
+    """Compute the largest change of a weighted force between two states at each of `count` times.
+
+    `source`, `row`: the n entries of the forces among the values of the set ``motion``. `work`: n_u numbers.
+    """
+    s = state_view(state)
+    for k in range(count):
+        for i in range(s.n_u):
+            work[i] = 0.0
+        _add_forces(s, t[k], shifted(q_before, k * s.n_q), shifted(u_before, k * s.n_u), n, source, row, -1.0, work)
+        _add_forces(s, t[k], shifted(q, k * s.n_q), shifted(u, k * s.n_u), n, source, row, 1.0, work)
+        for i in range(s.n_u):
+            work[i] *= weight[i]
+        changes[k] = largest_of(work, s.n_u)
