@@ -139,9 +139,9 @@ class Contact(ContactLaw):
 
     i: Marker = Field(description="the point, or the circle's centre")
     j: Marker = Field(description="on the surface line, its normal pointing out of the solid, or the surface's centre")
-    radius: si.LengthOrZero = Field(0.0, description="of the circle about i, m; 0 for a point")
+    radius: si.LengthOrZero = Field(0.0, description="radius of the circle about i, m; 0 for a point")
     surface: Literal["line", "circle", "hole"] = Field("line", description="what i meets")
-    surface_radius: si.LengthOrZero = Field(0.0, description="of a circle or hole about j, m")
+    surface_radius: si.LengthOrZero = Field(0.0, description="radius of a circle or hole about j, m")
 
     @staticmethod
     def out_of(e: Symbolic) -> Matrix:

@@ -26,7 +26,7 @@ class Prismatic(InOneTurn):
     keeps_in_plane = True
 
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
-    j: Marker = Field(description="marker whose axis is the line to slide along")
+    j: Marker = Field(description="marker whose axis is the line of sliding")
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:

@@ -45,9 +45,12 @@ class CrgRoad(Road):
 
     file: AnyCrg = Field(description="the name of an OpenCRG file, in the folder of the scene")
     placed: Literal["origin", "file"] = Field(
-        "origin", description="whether the road begins at the origin along x, as OpenCRG has it, or where the file says"
+        "origin",
+        description="whether the road begins at the origin along x (OpenCRG's default), or at the position in the file",
     )
-    sections: int = Field(MOST_SECTIONS, ge=2, le=MOST_SECTIONS, description="long sections that are used at the most")
+    sections: int = Field(
+        MOST_SECTIONS, ge=2, le=MOST_SECTIONS, description="largest number of long sections that are used"
+    )
 
     _line: ReferenceLine | None = PrivateAttr(None)
 

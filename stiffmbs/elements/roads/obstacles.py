@@ -27,7 +27,7 @@ class StepRoad(Obstacle):
 
     kind = "step"
 
-    length: si.PositiveLength = Field(description="over which it rises, m")
+    length: si.PositiveLength = Field(description="length over which it rises, m")
     rise: si.Length = Field(description="height after the step, m; negative for a descent")
 
     @staticmethod

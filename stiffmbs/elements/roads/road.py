@@ -43,7 +43,8 @@ class Road(Component):
     type: str = ""
     friction: Factor | None = Field(None, description="factor on the tyre's friction, of x and y; 1 by default")
     filter_radius: si.PositiveLength | None = Field(
-        None, description="of a disc, m: the heights are those that it rolls on; those of the road by default"
+        None,
+        description="radius of a rolling disc that filters the heights of the road, m; by default no filter",
     )
 
     _cam: Cam | None = PrivateAttr(None)

@@ -100,7 +100,7 @@ class Tyre(Force):
         description="elliptical cams on which the tyre rolls over short obstacles; one point of contact by default",
     )
     slow: si.PositiveVelocity = Field(
-        1.0, description="speed below which slips are not the textbook's, m/s: see the guide on tyres"
+        1.0, description="speed below which slips are modified, m/s: see the guide on tyres"
     )
 
     @model_validator(mode="after")

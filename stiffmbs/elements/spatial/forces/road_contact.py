@@ -49,7 +49,7 @@ class RoadContact(PressedSurfaces):
         FlatRoad.model_construct(type=FlatRoad.kind),
         description="the name of a road of the scene, or a road; level at z = 0 by default",
     )
-    radius: si.LengthOrZero = Field(0.0, description="of the sphere about i, m; 0 for a point")
+    radius: si.LengthOrZero = Field(0.0, description="radius of the sphere about i, m; 0 for a point")
 
     @classmethod
     def touch(cls, e: Symbolic) -> Touch:

@@ -83,7 +83,7 @@ class SolidImpact(Impact):
     """
 
     kind = "solid_impact"
-    beyond = "found solids that overlap by a quarter of the least size of one of them, expected less: more stiffness, or a lower speed"
+    beyond = "found solids that overlap by a quarter of the least size of one of them, expected less: use a larger stiffness or a lower speed"
     forms = tuple({"i_shape": "box", "j_shape": "box", **form} for form in Impact.forms)
 
     i: Marker = Field(description="the middle of the first solid, with its axes")

@@ -39,9 +39,9 @@ class SphereContact(ContactLaw):
 
     i: Marker = Field(description="the point, or the sphere's centre")
     j: Marker = Field(description="on the plane, its z pointing out of the solid, or the surface's centre")
-    radius: si.LengthOrZero = Field(0.0, description="of the sphere about i, m; 0 for a point")
+    radius: si.LengthOrZero = Field(0.0, description="radius of the sphere about i, m; 0 for a point")
     surface: Literal["plane", "sphere", "hollow"] = Field("plane", description="what i meets")
-    surface_radius: si.LengthOrZero = Field(0.0, description="of a sphere or hollow sphere about j, m")
+    surface_radius: si.LengthOrZero = Field(0.0, description="radius of a sphere or hollow sphere about j, m")
 
     @model_validator(mode="after")
     def _plane_without_radius(self) -> SphereContact:

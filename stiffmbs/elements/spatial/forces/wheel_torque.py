@@ -15,7 +15,7 @@ class AxleForce(Force):
 
     i: Marker = Field(description="marker on the wheel, its y axis along the axle, to the left of the heading")
     j: Marker = Field(
-        description="the body that takes the opposite torque: the upright outboard, the car's body inboard"
+        description="body on which the opposite torque acts: the upright outboard, the car's body inboard"
     )
 
     def spins_with(self) -> dict[str, str]:

@@ -37,7 +37,7 @@ class ConstantVelocity(SpatialJoint):
     i: Marker = Field(description="marker of the first shaft, z along it; the reaction is reported on it")
     j: Marker = Field(description="marker of the second shaft, z along it")
     axes: Literal["same", "opposite"] | None = Field(
-        None, description="sense of the axes z when the shafts are in line; as drawn unless given"
+        None, description="sense of the axes z when the shafts are in line; by default as described"
     )
 
     def at_initial_pose(self, model: ModelData) -> Self:

@@ -30,7 +30,7 @@ class Cylindrical(SpatialJoint):
     elastic = "bushing"
     initially: ClassVar = staticmethod(initially_apart)
 
-    j: Marker = Field(description="marker whose z axis is the line to slide along and to turn about")
+    j: Marker = Field(description="marker whose z axis is the line of sliding and the axis of rotation")
 
     def spins_with(self) -> dict[str, str]:
         return {"i": "z", "j": "z"}

@@ -28,7 +28,7 @@ class Planar(SpatialJoint):
     elastic = "bushing"
     initially: ClassVar = staticmethod(initially_apart)
 
-    j: Marker = Field(description="marker whose xy plane is the one to slide on")
+    j: Marker = Field(description="marker whose xy plane is the plane of sliding")
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:

@@ -34,11 +34,11 @@ class PointOnCurve(Curve[Marker]):
     forms = (*Curve.forms, {"y": SLOT, "z": SLOT}, {"radius": CAM, "height": CAM})
 
     z: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(
-        None, description="Z(x), m, of a slot: a formula of x or a table; in the plane without it"
+        None, description="Z(x), m, of a slot: a formula of x or a table; by default in the plane"
     )
 
     height: Annotated[Formula | Table, FormulaOf(("angle",), ("angle",), "length", time=False, table=True)] | None = (
-        Field(None, description="H(theta), m, of a cam: as its radius; in the plane without it")
+        Field(None, description="H(theta), m, of a cam: as its radius; by default in the plane")
     )
 
     @field_validator("height")

@@ -30,7 +30,7 @@ class Prismatic(SpatialJoint):
     initially: ClassVar = staticmethod(initially_askew)
 
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
-    j: Marker = Field(description="marker whose z axis is the line to slide along")
+    j: Marker = Field(description="marker whose z axis is the line of sliding")
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:

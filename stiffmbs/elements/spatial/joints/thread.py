@@ -30,9 +30,9 @@ class Thread(OffsetConstraint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the thread's")
     pitch: si.LengthNotZero = Field(
-        description="advance along z in a full turn, m; below zero for a left-handed thread"
+        description="advance along z in one revolution, m; negative for a left-handed thread"
     )
-    offset: si.Length | None = Field(None, description="s where the angle is zero, m; as drawn unless given")
+    offset: si.Length | None = Field(None, description="s at angle zero, m; by default that of the initial pose")
 
     @staticmethod
     def relation(e: Symbolic) -> Expr:
