@@ -114,8 +114,8 @@ FAILURES = {
     -26: "the time asked for is outside the last step; ask for one within it",
     -27: f"IDA was given no vector for its answer: {_INSIDE}",
     -101: "the steps have shrunk to the precision of time: no solution was found beyond this instant, as where the "
-    f"motion has a pole or a mechanism locks, or {_UNDEFINED}, or the time is so late that its rounding exceeds the tolerance; "
-    "look at the last rows, end the run before, let time begin nearer to 0, or give a looser rtol",
+    f"motion has a pole or a mechanism locks, or {_UNDEFINED}, or a late time is rounded too coarsely for rtol; "
+    "look at the last rows, end the run before, or start nearer to t = 0",
 }
 """Messages for IDA's negative flags (ida.h) and for `stiffmbs.solve.ida.native.ida_loop.STALLED`, with cause and remedy."""
 
