@@ -12,6 +12,7 @@ from ..compile.machine.native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FI
 from ..compile.written_values import values_of
 from ..errors import AssemblyError
 from .algebraic_states import failure
+from .damped_assembly import damped_assembly
 from .dynamics import POSITION_TOLERANCE, Dynamics
 from .moves import Move, moves, position_words, velocity_words
 from .storage import FAILURES
@@ -94,7 +95,7 @@ def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
 def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
     """Make the described start consistent.
 
-    Positions are corrected by minimum-norm Newton moves. Velocities get the smallest correction in the mass norm,
+    Positions are corrected by minimum-norm Newton moves, or by damped ones if these do not converge. Velocities get the smallest correction in the mass norm,
     those that are not given first. Accelerations and multipliers follow from [M J^T; J 0][u'; lam] = [f; gamma].
     Raises AssemblyError when no assembled position is found (names the joint with the largest gap), the equations are
     dependent, or friction and reactions have no balance.
@@ -109,6 +110,8 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
     system, state = dynamics.system, dynamics.state
     q0, u0 = system.q.copy(), system.u.copy()
     status = dynamics.assemble(t)
+    if status in (NO_CONVERGENCE, SINGULAR) and damped_assembly(dynamics, t, q0):
+        status = 0
     if status < 0:
         raise AssemblyError(_sentence(dynamics, NO_CONVERGENCE if status == SINGULAR else status, t))
     _close_open_rates(dynamics, t)

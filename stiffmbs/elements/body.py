@@ -12,6 +12,7 @@ from pydantic import Field, field_validator
 from ..reading import given
 from ..reading.fields import DOTTED_PATTERN, Described
 from ..reading.files.quoted import written
+from ..reading.files.yaml_text import quotes_hint
 from ..reading.formula.names import PLANE
 from ..reading.handle import Handle
 from ..reading.marker import Marker, Placement
@@ -129,4 +130,6 @@ def check_names(names: Iterable[object], what: str) -> None:
     for name in names:
         if not isinstance(name, str) or not re.match(DOTTED_PATTERN, name):
             shown = "no name" if name in (None, "") else f"the name {written(name)}"
-            raise ValueError(f"found {what} with {shown}, expected letters, digits and _ not starting with a digit")
+            raise ValueError(
+                f"found {what} with {shown}, expected letters, digits and _ not starting with a digit{quotes_hint(name)}"
+            )

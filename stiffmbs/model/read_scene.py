@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -176,9 +176,18 @@ def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
     except InputError as error:
         raise InputError(f"{source}, {error}") from None
     return tuple(
-        made_scene(dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder)
-        for k, stage in enumerate(stages)
+        _stage_scene(stage, scene.stages[k].removed, f"{source}, stages.{k}") for k, stage in enumerate(stages)
     )
+
+
+def _stage_scene(stage: WrittenScene, removed: Collection[str], source: str) -> Scene:
+    """Return the scene of a stage; a fault that names an entry that it removes has a hint."""
+    try:
+        return made_scene(dict(stage.content), stage.changes, source, lambda path: None, stage.folder)
+    except InputError as error:
+        missing = next((name for name in removed if f"'{name}'" in str(error)), "")
+        hint = f": the stage removes '{missing}', so its change must also replace or remove (null) what uses it"
+        raise InputError(f"{error}{hint if missing else ''}") from None
 
 
 def _held_at_start(scene: Scene, source: str) -> Scene:

@@ -209,7 +209,9 @@ def named_entries(section: str, found: object, values: str) -> Iterator[tuple[st
         raise InputError(f"{section}: found {written(found)}, expected a mapping of names to {values}")
     for name, entry in (found or {}).items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
-            raise InputError(f"{section}: found the name {written(name)}, expected letters, digits and _")
+            raise InputError(
+                f"{section}: found the name {written(name)}, expected letters, digits and _{quotes_hint(name)}"
+            )
         yield name, entry
 
 

@@ -67,6 +67,14 @@ def test_changes_that_make_no_sense_are_refused(change, words):
         stiffmbs.read_scene(THROWN, [change])
 
 
+def test_a_stage_that_keeps_a_request_of_a_joint_that_it_removes_gets_a_hint():
+    scene = THROWN.replace("hinge: null}, requests: null", "hinge: null}")
+    with pytest.raises(
+        stiffmbs.InputError, match=r"requests\.carried: .*: the stage removes 'hinge', so its change must also"
+    ):
+        stiffmbs.read_scene(scene)
+
+
 def test_other_jobs_refuse_a_scene_with_stages():
     scene = stiffmbs.read_scene(THROWN)
     for job in (stiffmbs.modes, stiffmbs.equilibrium, stiffmbs.verify):

@@ -32,6 +32,12 @@ def test_a_marker_that_is_named_often_is_made_once():
     assert all(a is b for a, b in zip(first, again, strict=True))
 
 
+@pytest.mark.parametrize("section", ["requests: {far: dm(b, ground)}", "variables: {v: max(b.x, 0)}"])
+def test_a_request_or_variable_whose_commas_split_a_mapping_gets_a_hint(section):
+    with pytest.raises(stiffmbs.InputError, match="a formula with commas needs quotes between braces"):
+        stiffmbs.read_scene(f"bodies: {{b: {{mass: 1, inertia: 1}}}}\n{section}\n")
+
+
 @pytest.mark.parametrize("law", ["step(t, 0, 0, 3, 1.5)", "step(t, 0, 1, 3, 1.5)"])
 def test_a_formula_whose_commas_split_a_mapping_gets_a_hint(law):
     scene = f"bodies: {{b: {{mass: 1, inertia: 1}}}}\njoints:\n  m: {{type: drive, coordinate: b.x, position: {law}}}\n"

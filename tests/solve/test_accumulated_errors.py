@@ -259,3 +259,21 @@ def test_explicit_estimates_cost_less_than_a_hundredth():
     statistics = stiffmbs.run(wheel(1000), solver="projected").solver
     tried = statistics["steps"] + statistics["rejected"]
     assert 12 * tried < statistics["accelerations"] < 1.01 * 12 * tried
+
+
+@pytest.mark.parametrize("rtol, noted", [(1e-6, True), (1e-9, False)])
+def test_a_satellite_of_two_bodies_has_errors_relative_to_its_size(rtol, noted):
+    """At 7000 km from the origin rtol 1e-6 allows 7 m, and the tether of two bodies is 100 m long."""
+    pull = '["-3.986e15*{0}.x/({0}.x^2 + {0}.y^2)^1.5", "-3.986e15*{0}.y/({0}.x^2 + {0}.y^2)^1.5"]'
+    rate = np.sqrt(3.986e14 / 7e6**3)
+    scene = f"""
+bodies:
+  p: {{mass: 10, inertia: 1, position: [7000050, 0], velocity: [0, {rate * 7000050}]}}
+  q: {{mass: 10, inertia: 1, position: [6999950, 0], velocity: [0, {rate * 6999950}]}}
+joints: {{tether: {{type: distance, i: p, j: q, length: 100}}}}
+forces: {{f: {{type: force, i: p, force: {pull.format("p")}}}, g: {{type: force, i: q, force: {pull.format("q")}}}}}
+run: {{duration: {2 * np.pi / rate}, points: 101, rtol: {rtol}}}
+"""
+    solution = stiffmbs.run(stiffmbs.read_scene(scene))
+    found = [note for note in solution.notes if "of the size of its mechanism" in note]
+    assert bool(found) is noted

@@ -102,6 +102,12 @@ class Stage(Described):
         """True for a stage with a time interval."""
         return self.analysis == "dynamic" or "duration" in self.run or self.end is not None
 
+    @property
+    def removed(self) -> list[str]:
+        """Names of the entries that the stage removes from their sections."""
+        sections = [section for section in self.change.values() if isinstance(section, dict)]
+        return [name for section in sections for name, entry in section.items() if entry is None]
+
     @model_validator(mode="after")
     def _one_end(self) -> Self:
         if self.end is not None and "duration" in self.run:

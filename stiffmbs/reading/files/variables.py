@@ -14,6 +14,7 @@ from ..formula.text import UNIT, FormulaError
 from ..formula.variables import resolved
 from ..units.units import CONSTANTS, UNITS, Quantity
 from .quoted import written
+from .yaml_text import quotes_hint
 
 
 def read_variables(
@@ -30,7 +31,9 @@ def read_variables(
     formulas: dict[str, str | float] = {}
     for name, formula in found.items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
-            raise InputError(f"variables: found the name {written(name)}, expected letters, digits and _")
+            raise InputError(
+                f"variables: found the name {written(name)}, expected letters, digits and _{quotes_hint(name)}"
+            )
         if name in UNITS:
             raise InputError(f"variables.{name}: found the name of a unit, expected another: rename the variable")
         if name in (*CONSTANTS, *parameters, *tables, TIME, UNIT):

@@ -111,7 +111,8 @@ FAILURES = {
     -26: "the requested time is outside the last step; request one within it",
     -27: f"IDA was given no vector for its answer: {_INSIDE}",
     -101: "the steps have become as small as the rounding of time, so no solution was found beyond: the "
-    f"motion has a pole, the mechanism locks, or {_UNDEFINED}; see the last output rows, or use a shorter duration",
+    f"motion has a pole, the mechanism locks, {_UNDEFINED}, or a late time is rounded too coarsely for rtol; see the last output "
+    "rows, use a shorter duration, or start nearer to t = 0",
 }
 """Messages for IDA's negative flags (ida.h) and for `stiffmbs.solve.ida.native.ida_loop.STALLED`, with cause and remedy."""
 

@@ -1,0 +1,63 @@
+"""Assembly from poses that are far from closed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .dynamics import Dynamics
+
+MOST_MOVES = 200
+"""Largest number of damped moves, accepted or not."""
+NUDGE = 1e-3
+"""First displacement of all bodies, in sizes of the mechanism and rad, which leaves saddle points of the gaps."""
+CLOSE = 1e-6
+"""Largest dimensionless gap from which Newton's moves converge."""
+
+
+def damped_assembly(dynamics: Dynamics, t: float, q: np.ndarray) -> bool:
+    """Assemble the state from the pose q by the method of Levenberg and Marquardt; return False, with q kept, if it fails.
+
+    Newton's moves may increase the gaps of a mechanism that is drawn far from closed, such as a slack chain on a straight
+    line.  Each of these moves reduces the sum of their squares, with lengths in units of the mechanism's size.
+
+    References
+    ----------
+    J. Nocedal, S. J. Wright, Numerical Optimization, Springer 2006, ch. 10.3.
+    """
+    system, state = dynamics.system, dynamics.state
+    before = state.q.copy()
+    rows = np.flatnonzero(system.active & system.holonomic)
+    unit = system.per_velocity(system.size, 1.0)
+
+    def gaps_at(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the gaps and their slopes by dimensionless displacements."""
+        state.q[:] = pose
+        state.evaluate("motion", t)
+        return state.vector("motion", "C")[rows], state.matrix("motion", "J")[rows] * unit
+
+    pose = system.of_body.moved(q, NUDGE * unit * np.cos(np.arange(system.n_u) ** 2))
+    gaps, slopes = gaps_at(pose)
+    weights = 1.0 / np.maximum(np.linalg.norm(slopes, axis=1), np.finfo(float).tiny)
+    gaps, slopes, damping = weights * gaps, weights[:, None] * slopes, CLOSE
+    for _ in range(MOST_MOVES):
+        least = np.linalg.norm(slopes.T @ gaps) <= CLOSE * np.linalg.norm(gaps)
+        if least or not np.abs(gaps).max() > CLOSE:
+            break
+        gram = slopes @ slopes.T + damping * np.eye(len(rows))
+        trial = system.of_body.moved(pose, -unit * (slopes.T @ np.linalg.solve(gram, gaps)))
+        trial_gaps, trial_slopes = gaps_at(trial)
+        trial_gaps = weights * trial_gaps
+        if np.linalg.norm(trial_gaps) < np.linalg.norm(gaps):
+            pose, gaps, slopes, damping = (
+                trial,
+                trial_gaps,
+                weights[:, None] * trial_slopes,
+                max(damping / 4.0, np.finfo(float).eps),
+            )
+        else:
+            damping *= 4.0
+    state.q[:] = pose
+    if np.abs(gaps).max() <= CLOSE and dynamics.assemble(t) >= 0:
+        return True
+    state.q[:] = before
+    return False
