@@ -9,7 +9,7 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import FAILURES
-from .stiff_rows import with_stiff_forces
+from .stiff_rows import lengths_of_steps, with_stiff_forces
 from .trajectory import Trajectory
 
 MOST_MISSING = 100
@@ -37,7 +37,7 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: fl
             f"no accelerations and reactions at t = {t[done]:.9g} s: {FAILURES[status]}; they are left out there"
         )
         done += 1 + len(following.t)
-    return with_stiff_forces(dynamics, trajectory, _joined(parts), rtol), notes
+    return with_stiff_forces(dynamics, (q, u), _joined(parts), lengths_of_steps(trajectory), rtol), notes
 
 
 def _unknown(like: OutputRows, t: float, q: np.ndarray, u: np.ndarray) -> OutputRows:
