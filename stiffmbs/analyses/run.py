@@ -25,6 +25,7 @@ from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
 from ..results.solution import Solution
 from ..run_checks.growth import senseless
+from ..run_checks.lost_digits import lost_digits_sentence
 from ..run_checks.motion import motion_notes
 from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.missing_rows import reported
@@ -141,6 +142,7 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
     impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or broken
     uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job)))
+    imprecise = tuple(lost_digits_sentence(job.dynamics, rows)) if trajectory.statistics.get("jacobians") else ()
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     notes = (
         *_notes(job, trajectory, structure),
@@ -150,6 +152,7 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
         *flexible_body_notes(system, rows),
         *impossible,
         *uncertain,
+        *imprecise,
         *(undefined_values(rows, channels) if channels else ()),
     )
     headline = _headline(outcome, message, (*computed.doubts, *impossible))

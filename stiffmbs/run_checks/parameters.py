@@ -16,6 +16,8 @@ class RunCheckParameters:
 
     coarse: float = 1e-6
     """Largest rounding of coordinates, relative to a mechanism's size."""
+    lost: float = 1e-4
+    """Change of a force by the rounding of coordinates, relative to the largest force, above which a note appears."""
     stiffened: float = 0.03
     """Geometric stiffness of a flexible body, relative to its elastic stiffness, from which a note appears."""
     of_second_order: float = 110.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import FAILURES
-from .stiff_rows import with_stiff_forces
+from .stiff_rows import lengths_of_steps, with_stiff_forces
 from .trajectory import Trajectory
 
 MOST_MISSING = 100
@@ -35,7 +35,7 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: fl
         parts += [_unknown(parts[0], t[done], pose, u[done]), following]
         notes.append(f"no accelerations and reactions at t = {t[done]:.9g} s (NaN there): {FAILURES[status]}")
         done += 1 + len(following.t)
-    return with_stiff_forces(dynamics, trajectory, _joined(parts), rtol), notes
+    return with_stiff_forces(dynamics, (q, u), _joined(parts), lengths_of_steps(trajectory), rtol), notes
 
 
 def _unknown(like: OutputRows, t: float, q: np.ndarray, u: np.ndarray) -> OutputRows:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -15,54 +16,91 @@ STEP_PARTS = 10.0
 """Step of the solver relative to that of the matrix, in which unstable soft forces are small compared with inertia."""
 
 
-def with_stiff_forces(dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows, rtol: float) -> OutputRows:
+States: TypeAlias = tuple[np.ndarray, np.ndarray]
+"""Positions and velocities, one state per row."""
+
+
+def with_stiff_forces(
+    dynamics: Dynamics, states: States, rows: OutputRows, steps: np.ndarray, rtol: float
+) -> OutputRows:
     """Return rows in which projections have changed forces by less than `rtol` of the largest, if possible.
 
     The solver keeps stiff forces in equilibrium within its tolerance. The smallest move onto the constraints from there
-    changes them by any amount. Explicit steps are too short for such forces.
+    changes them by any amount.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    states : tuple of ndarrays, shapes (n, n_q), (n, n_u)
+        States before the projections, for all rows at least.
+    rows : OutputRows
+    steps : ndarray, shape (n,)
+        Lengths of the implicit steps that contain the times, s; 0 for explicit steps, which are short for all forces.
+    rtol : float
     """
-    suspects = np.flatnonzero(rows.drift > POSITION_TOLERANCE)
-    if not (len(suspects) and trajectory.statistics.get("jacobians") and len(trajectory.step_times)):
-        return rows
     with dynamics.state.unchanged():
-        allowed = rtol * np.nanmax(np.abs(np.sqrt(dynamics.system.mass) * rows.acceleration))
-        suspects = suspects[_bounds(dynamics, trajectory, rows, suspects) > allowed]
-        return _projected_again(dynamics, trajectory, rows, suspects, allowed) if len(suspects) else rows
+        while len(at := _suspects(dynamics, states, rows, steps, rtol)):
+            better = _projected_again(dynamics, states, rows, at, steps)
+            if better is None:
+                break
+            rows = better  # the largest force is less now
+    return rows
 
 
-def _bounds(dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows, at: np.ndarray) -> np.ndarray:
+def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.ndarray, rtol: float) -> np.ndarray:
+    """Return the rows whose projections may have changed a force by more than `rtol` of the largest."""
+    at = np.flatnonzero((rows.drift > POSITION_TOLERANCE) & (steps[: len(rows.t)] > 0.0))
+    allowed = rtol * np.nanmax(np.abs(np.sqrt(dynamics.system.mass) * rows.acceleration), initial=0.0)
+    for changes in (_bounds, _changes):
+        at = at[changes(dynamics, _of(states, at), rows, at) > allowed] if len(at) else at
+    return at
+
+
+def lengths_of_steps(trajectory: Trajectory) -> np.ndarray:
+    """Return the lengths of the implicit steps that contain the output times, s; zero for explicit steps."""
+    ends = np.unique(np.append(trajectory.t[:1], trajectory.step_times))
+    if len(ends) < 2 or not trajectory.statistics.get("jacobians"):
+        return np.zeros(len(trajectory.t))
+    last = np.clip(np.searchsorted(ends, trajectory.t), 1, len(ends) - 1)
+    return np.asarray(ends[last] - ends[last - 1])
+
+
+def rates(steps: np.ndarray) -> np.ndarray:
+    """Return cj, 1/s, of the matrices for states in steps of some lengths."""
+    return STEP_PARTS / steps
+
+
+def _of(states: States, at: np.ndarray) -> States:
+    return states[0][at], states[1][at]
+
+
+def _bounds(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarray) -> np.ndarray:
     """Return bounds of the changes of forces by the projections of some rows, divided by roots of inertias."""
     system, state = dynamics.system, dynamics.state
     state.q[:], state.u[:] = rows.q[at[-1]], rows.u[at[-1]]
     stiffness = stiffness_at(dynamics, float(rows.t[at[-1]]))
-    moved = np.abs(rows.q[at] - trajectory.q[at]) * np.sqrt(system.mass_by_coordinate)
-    changed = np.abs(rows.u[at] - trajectory.u[at]) * np.sqrt(system.mass)
-    return stiffness.of_positions * moved.max(axis=1) + stiffness.of_velocities * changed.max(axis=1)
+    moved = np.abs(rows.q[at] - before[0]) * np.sqrt(system.mass_by_coordinate)
+    changed = np.abs(rows.u[at] - before[1]) * np.sqrt(system.mass)
+    return np.asarray(stiffness.of_positions * moved.max(axis=1) + stiffness.of_velocities * changed.max(axis=1))
+
+
+def _changes(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarray) -> np.ndarray:
+    """Return the changes of forces by the projections of some rows, divided by roots of inertias."""
+    projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
+    return projection.force_changes(rows.t[at], before, (rows.q[at], rows.u[at]))
 
 
 def _projected_again(
-    dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows, at: np.ndarray, allowed: float
-) -> OutputRows:
-    """Return rows of which some are projected without a change of stiff forces, where that succeeds."""
+    dynamics: Dynamics, states: States, rows: OutputRows, at: np.ndarray, steps: np.ndarray
+) -> OutputRows | None:
+    """Return rows of which some are projected without a change of stiff forces; None if that changes forces no less."""
     projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
-    t, before = rows.t[at], (trajectory.q[at], trajectory.u[at])
-    changes = projection.force_changes(t, before, (rows.q[at], rows.u[at]))
-    at = at[changes > allowed]
-    if not len(at):
-        return rows
-    t, q, u = rows.t[at], trajectory.q[at].copy(), trajectory.u[at].copy()
-    steps = zip(t.tolist(), rates(trajectory, t).tolist(), q, u, strict=True)
-    done = np.array([projection.project(*each) for each in steps])
-    less = projection.force_changes(t, (trajectory.q[at], trajectory.u[at]), (q, u)) < changes[changes > allowed]
+    t, (q, u) = rows.t[at], _of(states, at)
+    each = zip(t.tolist(), rates(steps[at]).tolist(), q, u, strict=True)
+    done = np.array([projection.project(*state) for state in each])
+    less = projection.force_changes(t, _of(states, at), (q, u)) < _changes(dynamics, _of(states, at), rows, at)
     at, t, q, u = (array[done & less] for array in (at, t, q, u))
-    return _replaced(rows, at, dynamics.report(t, q, u, project=False)) if len(at) else rows
-
-
-def rates(trajectory: Trajectory, t: np.ndarray) -> np.ndarray:
-    """Return cj, 1/s, of the matrices at some times."""
-    ends = np.unique(np.append(trajectory.t[0], trajectory.step_times))
-    last = np.clip(np.searchsorted(ends, t), 1, len(ends) - 1)
-    return np.asarray(STEP_PARTS / (ends[last] - ends[last - 1]))
+    return _replaced(rows, at, dynamics.report(t, q, u, project=False)) if len(at) else None
 
 
 def _replaced(rows: OutputRows, at: np.ndarray, others: OutputRows) -> OutputRows:

@@ -18,6 +18,7 @@ from ..results.channels import channels_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
 from ..solve.settings import changed
+from ..solve.stiff_rows import States, with_stiff_forces
 from ..solve.trajectory import Ending, History, Outcome
 from .stepping import stepper_of
 
@@ -84,26 +85,28 @@ def _followed(job: Job, every: float) -> Iterator[Solution]:
     stepper = stepper_of(job, job.start, job.grid.start)
     q = np.empty((len(instants), len(job.start.q)))
     u = np.empty((len(instants), len(job.start.u)))
+    lengths = np.zeros(len(instants))
     q[0], u[0] = job.start.q, job.start.u
     told, pause, solved = time.monotonic(), every, 1
     with Ending() as ending:
         for k in range(1, len(instants)):
             stepper.advance(float(instants[k]))
-            q[k], u[k] = stepper.q, stepper.u
+            q[k], u[k], lengths[k] = stepper.q, stepper.u, stepper.length
             solved = k + 1
             begun = time.monotonic()
             if begun - told >= pause and solved < len(instants):
-                yield _so_far(job, instants[:solved], q[:solved], u[:solved], Outcome.STOPPED, STILL_SOLVING)
+                yield _so_far(job, instants[:solved], (q[:solved], u[:solved]), lengths, Outcome.STOPPED, STILL_SOLVING)
                 told = time.monotonic()
                 pause = max(every, SHARE * (told - begun))
-    yield _so_far(job, instants[:solved], q[:solved], u[:solved], ending.outcome, ending.message)
+    yield _so_far(job, instants[:solved], (q[:solved], u[:solved]), lengths, ending.outcome, ending.message)
 
 
-def _so_far(job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray, outcome: Outcome, message: str) -> Solution:
+def _so_far(job: Job, t: np.ndarray, states: States, lengths: np.ndarray, outcome: Outcome, message: str) -> Solution:
     """Return the solution at the given instants, from the start on."""
     system = job.dynamics.system
     with job.dynamics.state.unchanged():
-        rows = job.dynamics.report(t, q, u, project=True)
+        rows = job.dynamics.report(t, *states, project=True)
+        rows = with_stiff_forces(job.dynamics, states, rows, lengths, job.settings.rtol)
     channels = channels_of(job.data, system, rows)
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome, message=message, notes=(),

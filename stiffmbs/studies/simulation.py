@@ -26,6 +26,7 @@ from ..results.saved_state import TURNS, SavedState
 from ..solve.error_control.relaxation import creep_at
 from ..solve.events.restart import restarted
 from ..solve.settings import changed
+from ..solve.stiff_rows import with_stiff_forces
 from ..tuning import in_use
 from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import FollowedTurns, InputNumbers
@@ -262,7 +263,10 @@ class Simulation:
         """Return the output row of the current state."""
         dynamics = self._job.dynamics
         with dynamics.state.unchanged():
-            rows = dynamics.report(np.array([self.t]), self.q[None], self.u[None], project=True)
+            q, u = self.q[None], self.u[None]
+            rows = dynamics.report(np.array([self.t]), q, u, project=True)
+            lengths, rtol = np.array([self._stepper.length]), self._job.settings.rtol
+            rows = with_stiff_forces(dynamics, (q, u), rows, lengths, rtol)
         if not len(rows.t):
             raise AssemblyError(
                 f"no accelerations and reactions were found at t = {self.t:.9g} s: {failure(dynamics, rows.status, self.t)}"

@@ -20,6 +20,7 @@ from ..solve.ida.native_engine import NativeEngine
 from ..solve.integrator import Integrator
 from ..solve.radau.radau import radau_integrator
 from ..solve.settings import changed
+from ..solve.stiff_rows import lengths_of_steps
 from ..solve.trajectory import Grid, Outcome
 
 PART, FINEST = 0.01, 1e-12
@@ -82,10 +83,15 @@ def _finer(settings: RunSettings) -> RunSettings:
 
 
 class Stepper(Protocol):
-    """Stepper from consistent values. `q`, `u`: current state, overwritten by each step."""
+    """Stepper from consistent values.
+
+    `q`, `u`: current state, overwritten by each step. `length`: length of the implicit step that contains it, s; 0 for
+    explicit steps.
+    """
 
     q: np.ndarray
     u: np.ndarray
+    length: float
 
     def advance(self, t: float) -> None:
         """Advance to a later time. Raises SolverError if it cannot be reached."""
@@ -121,7 +127,7 @@ class ImplicitSteps:
         self._engine, self._first, self._end, self._changes = engine, t, t, self._dynamics.input_changes
         self._look_through(t)
         self._begin(start, t)
-        self._present, self.q, self.u = t, start.q.copy(), start.u.copy()
+        self._present, self.q, self.u, self.length = t, start.q.copy(), start.u.copy(), 0.0
 
     @cached_property
     def _started(self) -> StartedSteps:
@@ -148,6 +154,7 @@ class ImplicitSteps:
             if self._jumped and t <= self._end:
                 if t > just_after(self._t):
                     self._started.advance(self._t, t, self._features)
+                    self.length = t - self._t
                 self._t, self._present, self._jumped, self._ended = t, t, False, True
                 return
             self._begin(restarted(self._dynamics, self._t, self.q, self.u), self._t)
@@ -162,7 +169,7 @@ class ImplicitSteps:
             else:
                 self._t = sound(self._integrator, reached).t
         self.q[:], self.u[:] = self._integrator.split(self._engine.at(t))
-        self._present = t
+        self._present, self.length = t, self._engine.step
 
     def jump(self) -> None:
         """See `Stepper`."""
@@ -180,7 +187,7 @@ class ShortRuns:
     def __init__(self, job: Job, start: InitialValues, t: float) -> None:
         self._job, self._start, self._t = job, start, t
         self._settings, self._end = job.settings, t
-        self.q, self.u = start.q.copy(), start.u.copy()
+        self.q, self.u, self.length = start.q.copy(), start.u.copy(), 0.0
 
     def advance(self, t: float) -> None:
         """See `Stepper`."""
@@ -196,6 +203,7 @@ class ShortRuns:
             if found.outcome is not Outcome.DONE:
                 raise SolverError(found.message)
             self.restart(t, found.q[-1], found.u[-1])
+            self.length = float(lengths_of_steps(found)[-1])
 
     def jump(self) -> None:
         """See `Stepper`."""

@@ -18,6 +18,7 @@ from stiffmbs.flexible_bodies.matrices import from_archive
 from stiffmbs.flexible_bodies.read import read_flexible_body
 from stiffmbs.flexible_bodies.reduced import reduced_body
 from stiffmbs.model.flexible import _Parts
+from stiffmbs.studies.simulation import simulation
 
 from .bars import HEIGHT, LENGTH, MASS, REFERENCES, WIDTH, E, bar
 
@@ -152,6 +153,17 @@ def test_a_very_stiff_body_moves_as_a_rigid_one(folder, rtol):
         np.testing.assert_allclose(flexible[f"bar.b.{name}"], rigid[name], atol=1e-6)
     for name in ("pin.fx", "pin.fy"):  # vibrations from the start fade within 10 ms
         np.testing.assert_allclose(flexible[name][10:], rigid[name][10:], atol=1e-3 * np.abs(rigid[name]).max())
+
+
+def test_a_simulation_and_a_run_have_the_same_reactions(folder):
+    """Both project the states of one integrator, which would change the force of the pin by 100 times its value."""
+    stiff = scene(folder, PIN, "omega: [0, 0, 5]", "[0, -9.81, 0]", bodies__bar__matrices="stiff.npz", bodies__bar__damping="0.1")  # fmt: skip
+    expected = run(stiff, rtol=1e-5, duration=0.2, points=51)
+    stepped = simulation(stiff, rtol=1e-5, duration=0.3)
+    for t, force in zip(expected.t[1:], expected["pin.fy"][1:], strict=True):
+        stepped.step(t - stepped.t)
+        if t > 0.01:
+            assert stepped["pin.fy"] == pytest.approx(force, abs=1e-2 * np.abs(expected["pin.fy"][3:]).max())
 
 
 def test_natural_modes_of_the_clamped_bar_are_those_of_the_reduction(folder):

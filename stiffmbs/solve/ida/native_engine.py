@@ -227,6 +227,11 @@ class NativeEngine(Engine):
         """Return all unknowns at a time within the last step."""
         return self._ida.interpolate(t)
 
+    @property
+    def step(self) -> float:
+        """Return the length of the last step, s."""
+        return float(self._ida.cells["size"])
+
     def pause_after(self, steps: int) -> None:
         self._ida.pause_after(steps)
 

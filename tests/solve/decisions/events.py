@@ -183,12 +183,14 @@ def gaps_in_output():
         return Record(t=t[:1], status=next(iter(missing_rows.FAILURES)))
 
     dynamics = Record(report=report, system=Record(of_body=body))
-    with patch.multiple(missing_rows, _unknown=nothing, _joined=nothing, with_stiff_forces=nothing):
+    with patch.multiple(
+        missing_rows, _unknown=nothing, _joined=nothing, with_stiff_forces=nothing, lengths_of_steps=nothing
+    ):
         return len(missing_rows.reported(dynamics, Record(t=t, q=zeros, u=zeros), False, 1e-6)[1])
 
 
 def rate_of_a_projection():
-    return stiff_rows.rates(Record(t=np.zeros(1), step_times=np.ones(1)), np.ones(1))[0]
+    return stiff_rows.rates(np.ones(1))[0]
 
 
 DECISIONS = {
