@@ -18,10 +18,12 @@ from stiffmbs.analyses.warm import routines, usual_elements
 from stiffmbs.cache import entries as kept
 from stiffmbs.commands.main import main
 from stiffmbs.compile import record
+from stiffmbs.compile.compile_model import kinds_of
 from stiffmbs.compile.kind import sorted_out
 from stiffmbs.compile.machine import cache
 from stiffmbs.compile.machine import compiler as machine
 from stiffmbs.compile.machine.cache_contents import OTHERS, clear, stored
+from stiffmbs.compile.symbolic import derive
 from stiffmbs.elements.tyres.names import SAMPLE
 from stiffmbs.model import model
 from stiffmbs.model import spatial_model as spatial_model
@@ -72,6 +74,16 @@ def test_compiled_code_is_read_back(directory, monkeypatch):
     monkeypatch.setattr(machine, "_object_code", lambda *_: pytest.fail("compiled again"))
     assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
     assert len(list(cache.own_directory().iterdir())) == 1
+
+
+def test_a_kind_is_derived_once_for_its_record_and_its_rare_kernels(directory, examples, monkeypatch):
+    kinds = kinds_of(stiffmbs.load_scene(examples / "half_car.yaml"))
+    derived, usual = [], derive.derive
+    monkeypatch.setattr(derive, "derive", lambda kind: derived.append(kind) or usual(kind))
+    for made_before in (record._record_of, record._terms, record.source_of):
+        made_before.cache_clear()
+    sources = [record.source_of(kind, term_set) for term_set in ("motion", *record.RARE) for kind in kinds]
+    assert len(sources) > len(derived) == len(set(derived)) == len(kinds)
 
 
 @pytest.mark.long
