@@ -1,17 +1,12 @@
-"""Check of forces that the rounding of coordinates changes: a stiffness of 1e14 N/m is 0.01 N at a coordinate of 1 m."""
+"""Check of forces that the rounding of coordinates changes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
-from ..compile.terms import TERM_SETS
+from ..compile.rounding import lost_digits
 from ..dynamics.dynamics import Dynamics, OutputRows
 from .parameters import RUN_CHECKS
-
-ROUNDING = 2.0 * np.finfo(float).eps
-"""Four roundings, relative to a coordinate."""
 
 
 def lost_digits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
@@ -20,28 +15,9 @@ def lost_digits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
         return
     state, t = dynamics.state, float(rows.t[-1])
     state.q[:], state.u[:] = rows.q[-1], rows.u[-1]
-    name, lost = max(_losses(dynamics, t), key=lambda each: each[1], default=("", 0.0))
-    state.evaluate("motion", t)
-    straight = dynamics.system.per_velocity(1.0, 0.0) == 1.0
-    largest = float(np.abs(state.vector("motion", "f")[straight]).max(initial=0.0))
+    name, lost, largest = lost_digits(state, t)
     if lost > RUN_CHECKS.lost * largest > 0.0:
         yield (
             f"the force of '{name}' is known to about {lost:.1g} N only, as are reactions: coordinates have 16 digits, "
             f"and it is so stiff; the largest force at t = {t:.6g} s is {largest:.3g} N; use a joint, or less stiffness"
         )
-
-
-def _losses(dynamics: Dynamics, t: float) -> Iterator[tuple[str, float]]:
-    """Yield the change of the force of each element by the rounding of coordinates, N."""
-    system, state = dynamics.system, dynamics.state
-    state.evaluate("tangent", t)
-    size, width = np.append(np.abs(state.q), np.zeros(system.of_body.n_q)), system.of_body.n_u
-    at = 1 + TERM_SETS["tangent"].index("f_q")
-    for g, group in enumerate(system.groups):
-        if group.entries["f_q"] and group.kind.element.kind:
-            source, _, column = group.placed("f_q", int(system.places["tangent"][g, at]))
-            row = np.array(group.record.patterns["f_q"])[:, 0]
-            changes = (ROUNDING * np.abs(state.values["tangent"][source]) * size[column]).reshape(group.count, len(row))
-            straight = (row % width < system.of_body.linear)[:, None]
-            of_rows = changes @ (straight & (row[:, None] == np.arange(width * group.kind.n_bodies)))
-            yield from zip(group.names, of_rows.max(axis=1).tolist(), strict=True)

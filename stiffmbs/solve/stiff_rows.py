@@ -26,7 +26,7 @@ def with_stiff_forces(
     """Return rows in which projections have changed forces by less than `rtol` of the largest, if possible.
 
     The solver keeps stiff forces in equilibrium within its tolerance. The smallest move onto the constraints from there
-    changes them by any amount.
+    changes them by any amount. The state of `dynamics` is changed.
 
     Parameters
     ----------
@@ -38,12 +38,11 @@ def with_stiff_forces(
         Lengths of the implicit steps that contain the times, s; 0 for explicit steps, which are short for all forces.
     rtol : float
     """
-    with dynamics.state.unchanged():
-        while len(at := _suspects(dynamics, states, rows, steps, rtol)):
-            better = _projected_again(dynamics, states, rows, at, steps)
-            if better is None:
-                break
-            rows = better  # the largest force is less now
+    while len(at := _suspects(dynamics, states, rows, steps, rtol)):
+        better = _projected_again(dynamics, states, rows, at, steps)
+        if better is None:
+            break
+        rows = better  # the largest force is less now
     return rows
 
 
@@ -58,7 +57,8 @@ def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.nd
 
 def lengths_of_steps(trajectory: Trajectory) -> np.ndarray:
     """Return the lengths of the implicit steps that contain the output times, s; zero for explicit steps."""
-    ends = np.unique(np.append(trajectory.t[:1], trajectory.step_times))
+    ends = np.append(trajectory.t[:1], trajectory.step_times)
+    ends = ends[np.diff(ends, prepend=-np.inf) > 0.0]
     if len(ends) < 2 or not trajectory.statistics.get("jacobians"):
         return np.zeros(len(trajectory.t))
     last = np.clip(np.searchsorted(ends, trajectory.t), 1, len(ends) - 1)
