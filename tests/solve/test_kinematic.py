@@ -120,7 +120,7 @@ def test_freedoms_are_refused():
     model = Model()
     model.add("a", Body(mass=1, inertia=1))
     model.add("rail", Prismatic(i="a", j="ground"))
-    with pytest.raises(InputError, match=r"2 independent equations for 3 freedoms"):
+    with pytest.raises(InputError, match=r"2 independent equations for 3 velocities"):
         stiffmbs.run(model, solver="kinematic")
 
 
@@ -183,7 +183,7 @@ def test_a_driven_velocity_leaves_no_freedom_to_dynamics():
     model.add("b", Body(mass=1, inertia=1))
     model.add("pin", Revolute(i="b", j="a"))
     model.add("pull", stiffmbs.Drive(joint="rail", velocity="1"))
-    with pytest.raises(InputError, match=r"5 independent equations for 6 freedoms"):
+    with pytest.raises(InputError, match=r"5 independent equations for 6 velocities"):
         stiffmbs.run(model, solver="kinematic")
 
 
