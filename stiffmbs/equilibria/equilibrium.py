@@ -24,6 +24,7 @@ from ..reading.units.quantity import LARGEST
 from .force_balance import Balance, balance_at, moved, way
 from .matrices import diagonal, joined, solution, zeros
 from .parameters import EQUILIBRIA
+from .poles import passes_a_pole
 from .steady_motion import SteadyMotion, at_rest
 
 FAR = LARGEST
@@ -98,7 +99,7 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
     limits = np.concatenate(
         [system.per_velocity(EQUILIBRIA.translation * system.size, EQUILIBRIA.rotation), of_states, of_speeds]
     )
-    start, first, n = state.q.copy(), 0.0, len(known.left)
+    start, first, n, before = state.q.copy(), 0.0, len(known.left), known.largest
     faster = np.zeros(len(of_speeds))
     for count in range(1, EQUILIBRIA.most_corrections + 1):
         whole = np.append(way(system, start, state.q), faster)
@@ -116,9 +117,12 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
         if found is None:
             break
         known, first, faster = found, first or longest, faster + move[n:]
+        ends = known.balanced or (count > 1 and longest <= EQUILIBRIA.last_move * longest_of_all)
+        if ends and passes_a_pole(dynamics, t, start, way(system, start, state.q), max(before, known.largest)):
+            break
         if known.balanced:
             return _Step(known, 1.0, count)
-        if count > 1 and longest <= EQUILIBRIA.last_move * longest_of_all:
+        if ends:
             ratio = (longest / first) ** (1 / (count - 1))
             factor = np.sqrt(
                 np.clip(max(ratio / EQUILIBRIA.wanted_ratio, longest_of_all), EQUILIBRIA.shift_falls**2, 1.0)

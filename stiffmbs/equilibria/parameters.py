@@ -56,6 +56,12 @@ class EquilibriumParameters:
     """Largest number of moves to the nearest equilibrium."""
     most_halvings: int = 12
     """Largest number of halvings of such a move."""
+    halvings: int = 10
+    """Halvings of a step towards either end, at which forces are compared with those at the ends."""
+    sections: int = 25
+    """Golden sections around the largest of these forces."""
+    pole: float = 1e3
+    """Force within a step, relative to the largest at its ends, that rejects the step."""
     no_effect: float = 1e-9
     """Relative effect of a velocity on forces, rates or constraints, and residual of a linear system, that count as zero;
     also the rank tolerance of spins."""

@@ -144,3 +144,21 @@ def test_the_command_tells_that_there_is_none(few_moves, tmp_path):
     told = CliRunner().invoke(main, ["equilibrium", str(scene), "--json"])
     assert told.exit_code == 1
     assert json.loads(told.stdout)["status"] == "stopped" and "stone.fy" in json.loads(told.stdout)["message"]
+
+
+@pytest.mark.parametrize("pull, expected", [(14.8, 0.3212346895), (14.83, None), (16.0, None), (100.0, None)])
+def test_a_plate_beyond_pull_in_has_no_equilibrium_on_the_far_side_of_the_electrode(pull, expected):
+    """Electrostatic force F/(1 - x)^2 on a spring of 100 N/m: pull-in at x = 1/3, F = 400/27 (Senturia 2001, ch. 6)."""
+    scene = f"""
+bodies: {{plate: {{mass: 1, inertia: 1}}}}
+joints: {{rail: {{type: prismatic, i: plate, j: ground}}}}
+forces:
+  spring: {{type: bushing, i: plate, j: ground, stiffness: [100, 0, 0]}}
+  pull: {{type: force, i: plate, force: ["{pull}/(1 - plate.x)^2", 0]}}
+"""
+    if expected is None:
+        with pytest.raises(SolverError, match="no equilibrium was found: the largest imbalance"):
+            stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+    else:
+        found = stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+        assert found.channels["plate.x"] == pytest.approx(expected, abs=1e-8)
