@@ -29,7 +29,7 @@ INSTEAD = {
     "at a glance": "scan",
     "at hand": "current, available",
     "creep": "constraint drift",
-    "lightness": "inverse mass",
+    "inverse_mass": "inverse mass",
     "dearer": "more expensive",
     "straight coordinates": "coordinates whose rate is a velocity",
     "stepped over": "missed event",

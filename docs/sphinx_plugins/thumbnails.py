@@ -19,7 +19,7 @@ from PIL import Image, ImageOps
 import stiffmbs
 from stiffmbs.show.drawing.deformed import largest_stress
 from stiffmbs.show.drawing.derive import drawing_of
-from stiffmbs.show.drawing.film import Pace, pictures
+from stiffmbs.show.drawing.film import Playback, pictures
 from stiffmbs.show.drawing.picture import Shown
 from stiffmbs.show.drawing.poses import poses_of
 from stiffmbs.show.drawing.view import view_named
@@ -46,7 +46,7 @@ def film(
     duration = float(solution.time[-1] - solution.time[0])
     seen = view_named(view, drawing.dimensions, drawing.gravity)
     return pictures(
-        drawing, poses, seen, Pace(duration / LENGTH, RATE), Shown(names=False, forces=False, clock=False), ()
+        drawing, poses, seen, Playback(duration / LENGTH, RATE), Shown(names=False, forces=False, clock=False), ()
     )
 
 

@@ -70,8 +70,8 @@ class ListedStatement:
 
     def __str__(self) -> str:
         what = f"{self.statement}, {self.argument}" if self.argument else self.statement
-        told = f" ({' '.join(self.arguments)})" if self.arguments else self.reason and f", {self.reason}"
-        return f"{self.file}, line {self.line}, {what}: {self.fate}{told}"
+        detail = f" ({' '.join(self.arguments)})" if self.arguments else self.reason and f", {self.reason}"
+        return f"{self.file}, line {self.line}, {what}: {self.fate}{detail}"
 
     def as_dict(self) -> dict[str, Any]:
         """Return an entry of ``statements`` of ``stiffmbs check --json``."""
@@ -94,10 +94,12 @@ def listed_statements(path: str | Path) -> tuple[ListedStatement, ...]:
     _, found, _ = all_statements(text)
     solids = _solids(found)
     listed = [entry for one in found for entry in _statement(one, source_name(path), faults, solids, found)]
-    beside = command_file(path)
-    if beside is not None:
-        read = partial(other_commands, beside)
-        listed += _commands(file_text(beside, ENCODING), beside.name, {key_of(one) for one in found}, read)
+    commands_file = command_file(path)
+    if commands_file is not None:
+        read = partial(other_commands, commands_file)
+        listed += _commands(
+            file_text(commands_file, ENCODING), commands_file.name, {key_of(one) for one in found}, read
+        )
     return tuple(listed)
 
 

@@ -60,13 +60,13 @@ def convert_file(path: str | Path) -> str:
 
 def command_file(path: str | Path) -> Path | None:
     """Return the command file of a dataset file; None if there is none."""
-    beside = Path(path).with_suffix(COMMANDS)
-    return None if beside.stem == STANDARD_INPUT or not os.path.isfile(beside) else beside
+    commands_file = Path(path).with_suffix(COMMANDS)
+    return None if commands_file.stem == STANDARD_INPUT or not os.path.isfile(commands_file) else commands_file
 
 
-def other_commands(beside: Path, name: str) -> str:
-    """Read the command file named by FILE/COMMAND, relative to the folder of the file `beside`."""
-    path = beside.parent / name
+def other_commands(commands_file: Path, name: str) -> str:
+    """Read the command file named by FILE/COMMAND, relative to the folder of the file `commands_file`."""
+    path = commands_file.parent / name
     return file_text(path if path.suffix else path.with_suffix(COMMANDS), ENCODING)
 
 
@@ -101,33 +101,33 @@ def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Datas
 
 def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
     """Load a dataset file with the changes and simulations of its command file, if any."""
-    beside = command_file(path)
+    commands_file = command_file(path)
     text, source = file_text(path, ENCODING, ZERO_BYTE), source_name(path)
-    if beside is None:
+    if commands_file is None:
         return _scene(text, source)
     try:
         known = {key_of(statement) for statement in all_statements(checked(text, source, ZERO_BYTE))[1]}
-        asked = read_commands(file_text(beside, ENCODING), known, partial(other_commands, beside))
+        asked = read_commands(file_text(commands_file, ENCODING), known, partial(other_commands, commands_file))
     except DatasetFault as fault:
-        raise InputError(f"{beside}, {fault}") from None
+        raise InputError(f"{commands_file}, {fault}") from None
     first = asked.segments[0].changes if asked.segments else asked.changes
     try:
         dataset, found = _scene(text, source, first)
     except CommandFault as fault:
-        raise InputError(f"{beside}, {fault}") from None
-    told = [*first.notes(beside.name), *asked.notes]
+        raise InputError(f"{commands_file}, {fault}") from None
+    reported = [*first.notes(commands_file.name), *asked.notes]
     if asked.segments:
 
         def read(segment: Segment) -> tuple[Dataset, dict[str, Any]]:
             return _scene(text, source, segment.changes)
 
         try:
-            added = followed(asked.segments, (dataset, found), read, beside.name)
+            added = followed(asked.segments, (dataset, found), read, commands_file.name)
         except DatasetFault as fault:
-            raise InputError(f"{beside}, {fault}") from None
-        told = [*added.pop("notes"), *told]
+            raise InputError(f"{commands_file}, {fault}") from None
+        reported = [*added.pop("notes"), *reported]
         found |= added
-    notes = [*found.get("notes", ()), *told]
+    notes = [*found.get("notes", ()), *reported]
     return dataset, found | ({"notes": notes} if notes else {})
 
 

@@ -51,8 +51,8 @@ def followed(
     ]
     if integrated and any(segment.simulation.kind == KINEMATICS for segment in segments):
         found = followed([_by_dynamics(segment) for segment in segments], described, read, source)
-        told = f"{', '.join(integrated)}: integrals without a formula; KINEMATICS is solved as DYNAMICS"
-        return found | {"notes": [*found["notes"], told]}
+        note = f"{', '.join(integrated)}: integrals without a formula; KINEMATICS is solved as DYNAMICS"
+        return found | {"notes": [*found["notes"], note]}
     first = segments[0].simulation
     if first.kind == STATICS:
         refuse_velocities(first.line, dataset)
@@ -92,7 +92,7 @@ def _staged(
         if segment.changes != before.changes:
             now = read(segment)
             stage |= _changed(known, now, segment)
-            notes += [f"from simulation {k} on {told}" for told in segment.changes.told_since(before.changes, source)]
+            notes += [f"from simulation {k} on {note}" for note in segment.changes.notes_since(before.changes, source)]
             known = now
         if watched and simulation.end is not None:
             stage["end"] = simulation.end * units.time

@@ -69,7 +69,7 @@ def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
 
 
 @contextmanager
-def told_faults(system: System) -> Iterator[None]:
+def reported_faults(system: System) -> Iterator[None]:
     """Replace an error that a faulty function caused by an AssemblyError with the message of that fault."""
     try:
         yield
@@ -205,7 +205,7 @@ def prepare(
     dynamics = found.dynamics()
     LOGGER.info("assembling %s", found.data.name)
     before = FoundBefore(found.data, found.settings, found.start_from)
-    with told_faults(dynamics.system), in_use(found.settings.tuning):
+    with reported_faults(dynamics.system), in_use(found.settings.tuning):
         start = before.get("start", lambda: _start(found.data, dynamics, found.grid.start, found.start_from))
         if before.name:
             dynamics.place(start.q, start.u, start.lam)
@@ -251,7 +251,7 @@ def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
 
 def start_of_job(job: Job) -> InitialValues:
     """Return the start of a job after a parameter change; errors as for `run`."""
-    with told_faults(job.dynamics.system):
+    with reported_faults(job.dynamics.system):
         job.dynamics.return_to_start()
         return _start(job.data, job.dynamics, job.grid.start, job.start_from)
 
@@ -309,5 +309,5 @@ def examined(
     with in_use(chosen.tuning):
         refuse_far_away(system)
     system = started_from(system, data, state)
-    with told_faults(system), in_use(chosen.tuning):
+    with reported_faults(system), in_use(chosen.tuning):
         return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), state)

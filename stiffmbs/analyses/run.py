@@ -35,8 +35,8 @@ from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, up_to_a_fault, with_elements
+from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
 from .start_from import StartFrom
-from .taken_again import Computed, on_exact_constraints, rerun_after_missed_events
 
 
 @takes_settings

@@ -118,7 +118,7 @@ def _moving(dynamics: Dynamics, start: InitialValues, velocities: str, t: float)
     """Return a start with the current velocities made consistent in its pose; `velocities` names them in the error."""
     state = dynamics.state
     status = min(dynamics.correct_velocities(t), 0)
-    state.count_anew(t)
+    state.restart_counters(t)
     acceleration = start.acceleration
     if status == 0:
         status, acceleration = dynamics.accelerate(t)

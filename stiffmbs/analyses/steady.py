@@ -138,7 +138,7 @@ def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) ->
 
 def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray | None:
     """Return the eigenvalues of perturbations of the steady motion, or None if they cannot be computed."""
-    from ..linear_analysis.stability import eigenvalues_beside
+    from ..linear_analysis.stability import eigenvalues_about
     from .settled import MOST_FOR_EIGENVALUES
 
     if dynamics.system.n_u > MOST_FOR_EIGENVALUES:
@@ -146,7 +146,7 @@ def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray
     state = dynamics.state
     state.q[:], state.u[:] = found.q, found.u
     dynamics.accelerate(t)
-    return eigenvalues_beside(dynamics, t, found.motion, found.acceleration)
+    return eigenvalues_about(dynamics, t, found.motion, found.acceleration)
 
 
 def _stability(values: np.ndarray | None, n_u: int) -> str:

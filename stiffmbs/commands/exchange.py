@@ -66,14 +66,14 @@ def _as_dataset(
     from ..model.spatial_scene import SpatialScene
     from ..robots.load import load_robot
 
-    beside = output.with_suffix(COMMANDS)
-    refuse_own_input("-o", path, beside)
+    commands = output.with_suffix(COMMANDS)
+    refuse_own_input("-o", path, commands)
     if coordinates and Path(path).suffix.lower() in ROBOTS:
         scene = load_robot(path, changes, coordinates=dict(map(_coordinate, coordinates)))
     else:
         scene = load_scene(path, changes)
     spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
-    return {output: dataset_text(spatial, path), beside: command_text(spatial)}
+    return {output: dataset_text(spatial, path), commands: command_text(spatial)}
 
 
 def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
@@ -137,8 +137,8 @@ def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, 
     if as_json:
         from ..show.summary import json_line
 
-        told = {"results": results, "listing": listing, "tolerance": tolerance, "within": not far}
-        click.echo(json_line({**told, "differences": [one.as_dict() for one in found]}))
+        printed = {"results": results, "listing": listing, "tolerance": tolerance, "within": not far}
+        click.echo(json_line({**printed, "differences": [one.as_dict() for one in found]}))
     else:
         for one in found:
             mark = "  more than the tolerance" if one in far else ""
@@ -195,5 +195,5 @@ def fmu(scene: str, output: Path | None, outputs: tuple[str, ...], as_json: bool
     with refusing(scene, as_json):
         refuse_own_input("-o", scene, target)
         names = build_fmu(scene, target, outputs)
-    told = f"fmu: {target}, {len(names)} outputs"
-    click.echo(json_line({"scene": scene, "output": str(target), "outputs": list(names)}) if as_json else told)
+    printed = f"fmu: {target}, {len(names)} outputs"
+    click.echo(json_line({"scene": scene, "output": str(target), "outputs": list(names)}) if as_json else printed)

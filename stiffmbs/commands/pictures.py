@@ -129,30 +129,30 @@ def animate(
 
     Exit status: 0 done, 1 stopped early (the part that was solved is shown) or not written, 2 the input is wrong.
     """
-    from ..show.drawing.animate import check_animation, check_pace, traced, write_animation
-    from ..show.drawing.film import Pace
+    from ..show.drawing.animate import check_animation, check_playback, traced, write_animation
+    from ..show.drawing.film import Playback
     from ..show.drawing.picture import Shown
     from ..show.drawing.view import check_view
 
-    path, pace = output or file_beside(scene, ".html"), Pace(speed, rate)
+    path, playback = output or file_beside(scene, ".html"), Playback(speed, rate)
     with refusing(scene, as_json, path):
         check_animation(path)
-        check_pace(pace)
+        check_playback(playback)
         check_view(view)
         for read in (scene, *map(str, results)):
             refuse_own_input("-o", read, path)
         loaded = load_scene(scene, changes_of(options))
         traced(loaded, traces)
         runs = loaded_runs(results) if results else {"": solve_scene(scene, loaded, False)}
-        write_animation(path, loaded, runs, view, pace, Shown(names, forces), traces)
+        write_animation(path, loaded, runs, view, playback, Shown(names, forces), traces)
     first = next(iter(runs.values()))
-    told = {
+    printed = {
         "scene": scene,
         "output": str(path),
         "runs": list(runs),
         "time": {"start": float(first.time[0]), "end": float(first.time[-1])},
     }
-    click.echo(json.dumps(told) if as_json else f"animation: {path}")
+    click.echo(json.dumps(printed) if as_json else f"animation: {path}")
     sys.exit(0 if all(run.outcome.name == "DONE" for run in runs.values()) else Status.FAILED)
 
 
@@ -217,8 +217,8 @@ def _live(
 
 
 def _tell(source: str, figure: Figure, output: Path | None, as_json: bool) -> None:
-    told = {"source": source, "output": str(output or "window"), "channels": list(figure.y), "against": figure.x}
-    click.echo(json.dumps(told) if as_json else f"plot: {told['output']}")
+    printed = {"source": source, "output": str(output or "window"), "channels": list(figure.y), "against": figure.x}
+    click.echo(json.dumps(printed) if as_json else f"plot: {printed['output']}")
 
 
 def _show_window() -> None:

@@ -52,7 +52,7 @@ class Process(click.Group):
             try:
                 status = _status(lambda: super(Process, self).main(*arguments, **{**options, "standalone_mode": False}))
             finally:
-                written = _flushed(told=status != 0)
+                written = _flushed(reported=status != 0)
         if closed:
             _tell("standard output is closed: nothing is shown")
         sys.exit(status or (0 if written and not closed else Status.FAILED))
@@ -115,17 +115,17 @@ def _with_standard_files() -> bool:
     return closed
 
 
-def _flushed(told: bool) -> bool:
+def _flushed(reported: bool) -> bool:
     """Flush standard output and return True on success; otherwise discard it, so that Python does not retry.
 
-    `told`: true if a failure was already reported: an unwritable buffer fails here a second time.
+    `reported`: true if a failure was already reported: an unwritable buffer fails here a second time.
     """
     try:
         sys.stdout.flush()
     except BrokenPipeError:
         pass
     except OSError as error:
-        if not told:
+        if not reported:
             _tell(f"standard output: cannot be written ({error.strerror})")
     except ValueError:
         return True

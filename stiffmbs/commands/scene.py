@@ -98,8 +98,8 @@ def start_of(scene: Scene, state: str | None, at: float | None, changes: list[tu
     from ..results.saved_state import read_state
 
     found = read_state(state, at)
-    told = any(path == "run.start" for path, _ in changes)
-    return {"start_from": found, "start": scene.run.start if told else found.t}
+    start_given = any(path == "run.start" for path, _ in changes)
+    return {"start_from": found, "start": scene.run.start if start_given else found.t}
 
 
 def solve_scene(path: str, scene: Scene, verified: bool, **start: Any) -> Solution:

@@ -134,8 +134,8 @@ def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple
         with in_file(scene):
             found = road_loads(loaded, runs)
     stopped = {name: each.message for name, each in runs.items() if not each.success}
-    told = {"scene": scene, "status": "stopped" if stopped else "done", "message": "; ".join(stopped.values())}
-    click.echo(json.dumps({**told, "loads": found.as_dict()}) if as_json else road_loads_text(scene, found))
+    printed = {"scene": scene, "status": "stopped" if stopped else "done", "message": "; ".join(stopped.values())}
+    click.echo(json.dumps({**printed, "loads": found.as_dict()}) if as_json else road_loads_text(scene, found))
     for name, message in stopped.items():
         click.echo(f"stiffmbs: {name}: {message}", err=True)
     if stopped:
@@ -202,9 +202,9 @@ def handling(
                 parameters=dict(parameters),
             )
     written = output is None or is_written(output, lambda: write_handling(output, found))
-    told = found.as_dict(scene)
-    click.echo(json.dumps(told) if as_json else handling_text(scene, found))
-    sys.exit(0 if written and told["status"] == "done" else Status.FAILED)
+    printed = found.as_dict(scene)
+    click.echo(json.dumps(printed) if as_json else handling_text(scene, found))
+    sys.exit(0 if written and printed["status"] == "done" else Status.FAILED)
 
 
 @click.command(short_help="Curves of a tyre; conversion of property files.")
@@ -259,11 +259,11 @@ def tyre(
     if output is not None:
         written = is_written(output, lambda: write_sheet(output, tyre_figure(title, curves))) and written
     notes = list(properties.notes())
-    told = {
+    printed = {
         "file": file, "version": properties.version, "camber": sweep.camber,
         "curves": [curve.as_dict() for curve in curves], "states": found, "notes": notes,
     }  # fmt: skip
-    click.echo(json.dumps(told) if as_json else tyre_text(title, curves, found, notes))
+    click.echo(json.dumps(printed) if as_json else tyre_text(title, curves, found, notes))
     sys.exit(0 if written else Status.FAILED)
 
 

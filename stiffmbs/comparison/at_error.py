@@ -82,8 +82,8 @@ class Row:
     def as_dict(self, measure: str) -> dict[str, Any]:
         """Return a row of ``stiffmbs compare --json``; a failed run has a message, and None as error and time."""
         found = {"solver": self.solver, "setting": self.setting, "error": _finite(self.errors.get(measure, np.nan))}
-        told = {"message": self.message} if self.message else {}
-        return {**found, "seconds": _finite(self.seconds), "steps": self.steps, **told}
+        stated = {"message": self.message} if self.message else {}
+        return {**found, "seconds": _finite(self.seconds), "steps": self.steps, **stated}
 
 
 def _finite(value: float) -> float | None:

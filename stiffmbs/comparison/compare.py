@@ -156,7 +156,7 @@ def measured(swept: Iterator[Point], plan: Plan, tell: Tell) -> tuple[list[Point
     points: list[Point] = []
     try:
         points.extend(swept)
-        take_turns(points, _told(plan.repeats, tell))
+        take_turns(points, _reported(plan.repeats, tell))
     except KeyboardInterrupt:
         if not points:
             raise
@@ -164,7 +164,7 @@ def measured(swept: Iterator[Point], plan: Plan, tell: Tell) -> tuple[list[Point
     return points, False
 
 
-def _told(repeats: int, tell: Tell) -> Iterator[int]:
+def _reported(repeats: int, tell: Tell) -> Iterator[int]:
     for k in range(repeats):
         tell(f"timing, round {k + 1} of {repeats}")
         yield k

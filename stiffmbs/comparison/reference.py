@@ -90,10 +90,10 @@ class Reference:
     def sentences(self) -> list[str]:
         """Return sentences on the agreement of the two integrators, and on the channels that are not compared."""
         agree = ", ".join(f"{self.agreement[name]:.1e} {MEASURES[name].unit} ({name})" for name in self.agreement)
-        told = [f"reference: {self.names[0]} and {self.names[1]} agree within {agree}"]
+        stated = [f"reference: {self.names[0]} and {self.names[1]} agree within {agree}"]
         if self.left_out:
-            told.append(f"not compared, as rigid bodies do not determine them: {listed(self.left_out)}")
-        return [*told, *self.notes]
+            stated.append(f"not compared, as rigid bodies do not determine them: {listed(self.left_out)}")
+        return [*stated, *self.notes]
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ BETTER = "*"
 """Mark of a time at which all settings of a solver are more accurate than required."""
 NO_TIME = "-"
 BETTER_WORDS = f"{BETTER} more accurate at every setting: the time of the fastest"
-BESIDE, FIRST, EACH = 4, 16, 28
+COLUMNS, FIRST, EACH = 4, 16, 28
 """Number of solvers side by side at most; characters of the first column, and of a solver's."""
 Say = Callable[[str], None]
 
@@ -54,8 +54,8 @@ def _show_measured(comparison: Comparison, console: Console, say: Say) -> None:
     say(
         f"{comparison.name or 'model'}: error in {comparison.measure} ({unit}), median time of the integration (ms), steps"
     )
-    beside = max(1, min(BESIDE, (console.width - FIRST) // EACH))
-    for table in measured_tables(comparison, beside):
+    columns = max(1, min(COLUMNS, (console.width - FIRST) // EACH))
+    for table in measured_tables(comparison, columns):
         console.print(table)
     for sentence in failures(comparison.rows):
         say(sentence)
@@ -85,7 +85,7 @@ def _show_over(comparison: ComparisonOver, console: Console, say: Say) -> None:
             say(f"{comparison.parameter} = {one.value:.4g}: {one.message}")
 
 
-def measured_tables(comparison: Comparison, beside: int) -> Iterator[Table]:
+def measured_tables(comparison: Comparison, columns: int) -> Iterator[Table]:
     """Yield tables with a line for each setting and several solvers side by side, grouped by the kind of setting."""
     from rich.table import Table
 
@@ -93,7 +93,7 @@ def measured_tables(comparison: Comparison, beside: int) -> Iterator[Table]:
     for row in comparison.rows:
         of_solver.setdefault(row.solver, {})[row.setting] = row
     resolved = comparison.reference.resolved(comparison.measure)
-    for names in _together(of_solver, beside):
+    for names in _together(of_solver, columns):
         table = Table()
         table.add_column("setting", no_wrap=True)
         for name in names:
@@ -105,13 +105,13 @@ def measured_tables(comparison: Comparison, beside: int) -> Iterator[Table]:
         yield table
 
 
-def _together(of_solver: dict[str, dict[str, Row]], beside: int) -> Iterator[list[str]]:
+def _together(of_solver: dict[str, dict[str, Row]], columns: int) -> Iterator[list[str]]:
     """Yield the names of solvers whose rows share a table."""
     kinds: dict[str, list[str]] = {}
     for name, rows in of_solver.items():
         kinds.setdefault(next(iter(rows)).partition(" ")[0], []).append(name)
     for names in kinds.values():
-        yield from (names[k : k + beside] for k in range(0, len(names), beside))
+        yield from (names[k : k + columns] for k in range(0, len(names), columns))
 
 
 def _cells(row: Row | None, measure: str, resolved: float) -> list[str]:

@@ -94,8 +94,8 @@ def conclusion_over(comparison: ComparisonOver) -> str:
     """Return the ranges in which each kind of integrator is faster."""
     racing, choosing = _sides(comparison.entries)
     times = [at for at in comparison.at if at is not None]
-    told = [*_crossing_sentences(comparison), *_choices(times, racing, choosing)]
-    return f"at an error of {comparison.error:g} {MEASURES[comparison.measure].unit} " + "; ".join(told)
+    sentences = [*_crossing_sentences(comparison), *_choices(times, racing, choosing)]
+    return f"at an error of {comparison.error:g} {MEASURES[comparison.measure].unit} " + "; ".join(sentences)
 
 
 def _crossing_sentences(comparison: ComparisonOver) -> Iterator[str]:

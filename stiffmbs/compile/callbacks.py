@@ -30,7 +30,7 @@ class Callback:
     """
 
     def __init__(self, function: PythonFunction) -> None:
-        self.name, self._function, self._way = function.name, function.function, function.derivatives
+        self.name, self._function, self._method = function.name, function.function, function.derivatives
         self._raised: BaseException | None = None
         self.calls = 0
         self._given = b""
@@ -83,7 +83,7 @@ class Callback:
         return values
 
     def _by(self, x: np.ndarray, k: int, count: int) -> np.ndarray:
-        if self._way == "complex_step":
+        if self._method == "complex_step":
             moved = x.astype(complex)
             moved[k] += 1j * COMPLEX_STEP
             return self._value(moved, count).imag / COMPLEX_STEP

@@ -55,7 +55,7 @@ class Group:
     has_law: bool = field(init=False)
 
     def __post_init__(self) -> None:
-        behind, end = self.first_behind, self.index.shape[1]
+        behind, end = self.first_trailing, self.index.shape[1]
         has_inputs = self.kind.holds("formula", "table")
         vars(self).update(
             count=len(self.names),
@@ -69,7 +69,7 @@ class Group:
         )
 
     @property
-    def first_behind(self) -> int:
+    def first_trailing(self) -> int:
         """First column of `index` for coordinates after those of the bodies."""
         return 2 * self.kind.n_bodies + 1 + self.kind.n_joints
 
@@ -121,5 +121,5 @@ class Group:
         width = self.of_body.n_q if axis == "q" else self.of_body.n_u
         body, offset = own // width, own % width
         behind = own - width * self.kind.n_bodies
-        first = self.index[:, np.where(behind < 0, 2 * body + (axis == "u"), self.first_behind + behind)]
+        first = self.index[:, np.where(behind < 0, 2 * body + (axis == "u"), self.first_trailing + behind)]
         return first + np.where(behind < 0, offset, 0)

@@ -48,7 +48,7 @@ class KindRecord:
     - `joint_equations`: number of equations of each joint that it refers to.
     - `counted`: for each turn counter of one element, the slot of the referenced joint and its coordinate; None for
       other angles.
-    - `laws`: law of each argument: a function of `stiffmbs.compile.law_zones`, or ``table`` and the index of its
+    - `laws`: law of each argument: a function of `stiffmbs.compile.law_intervals`, or ``table`` and the index of its
       offset.
     - `patterns`: (row, column) of the entries of each term in the element's own block.
     - `sources`: kernel source of each common term set; absent if the kind contributes nothing.

@@ -141,7 +141,7 @@ class State:
         self.load(term_set)
         self._evaluate(t, SETS.index(term_set), self._at)
 
-    def count_anew(self, t: float) -> None:
+    def restart_counters(self, t: float) -> None:
         """Reset the turn counters to their current angles."""
         term = self.system.term("position", "continuous_angle")
         if len(term.row):

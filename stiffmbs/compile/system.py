@@ -142,8 +142,8 @@ class System:
 
     def per_coordinate(self, linear: float, angular: float) -> np.ndarray:
         """Return one number for centre-of-mass coordinates, and another for all other coordinates, shape (n_q,)."""
-        behind = np.full(self.n_q - self.n_pose, angular)
-        return np.append(self._per_body(self.of_body.n_q, linear, angular), behind)
+        trailing = np.full(self.n_q - self.n_pose, angular)
+        return np.append(self._per_body(self.of_body.n_q, linear, angular), trailing)
 
     @cached_property
     def straight(self) -> tuple[np.ndarray, np.ndarray]:
@@ -335,8 +335,8 @@ class System:
         return {}
 
     @cached_property
-    def known_zones(self) -> dict[str, Any]:
-        """Cache of the intervals of laws (`stiffmbs.compile.law_zones`), and the numbers of their tables."""
+    def known_intervals(self) -> dict[str, Any]:
+        """Cache of the intervals of laws (`stiffmbs.compile.law_intervals`), and the numbers of their tables."""
         return {}
 
     def term(self, term_set: str, name: str) -> Term:

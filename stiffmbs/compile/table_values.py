@@ -76,8 +76,8 @@ def ends_of(data: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
     at_ends = (3 * a * h + 2 * b) * h + c
     periodic = bool(data[1])
     before = np.append(at_ends[-1] if periodic else c[0], at_ends)
-    behind = np.append(c, c[0] if periodic else at_ends[-1])
-    return x, value_of(data, x), before, behind
+    after = np.append(c, c[0] if periodic else at_ends[-1])
+    return x, value_of(data, x), before, after
 
 
 def parts_of(table: Table) -> tuple[np.ndarray, np.ndarray]:
@@ -153,10 +153,10 @@ def _akima_slopes(chords: np.ndarray) -> np.ndarray:
     m[-2] = 2 * m[-3] - m[-4]
     m[-1] = 2 * m[-2] - m[-3]
     change = np.abs(np.diff(m))
-    ahead, behind = change[2:], change[:-2]
-    both = ahead + behind
+    ahead, after = change[2:], change[:-2]
+    both = ahead + after
     defined = both > UNDEFINED * both.max()
     slopes = 0.5 * (m[3:] + m[:-3])
     before, after = m[1:-2], m[2:-1]
-    slopes[defined] = (before + behind / np.where(defined, both, 1.0) * (after - before))[defined]
+    slopes[defined] = (before + after / np.where(defined, both, 1.0) * (after - before))[defined]
     return np.asarray(slopes)

@@ -125,7 +125,7 @@ class Dynamics:
         counters, states = system.term("acceleration", "angle_rate"), system.term("acceleration", "rate")
         source, row = np.append(counters.source, states.source), np.append(counters.row, states.row)
         moving = ~np.isin(row, algebraic)
-        self._behind = source[moving].astype(np.int64), row[moving].astype(np.int64)
+        self._trailing = source[moving].astype(np.int64), row[moving].astype(np.int64)
         self._n_output = system.n_values("output")
         self._potential = np.array(system.term("output", "potential").source, dtype=np.int64)
         self._power = np.array(system.term("output", "power").source, dtype=np.int64)
@@ -138,8 +138,8 @@ class Dynamics:
             "algebraic": algebraic,
             "algebraic_scale": system.state_scales[system.algebraic],
             "algebraic_before": np.zeros(len(algebraic)),
-            "behind_source": self._behind[0],
-            "behind_row": self._behind[1],
+            "trailing_source": self._trailing[0],
+            "trailing_row": self._trailing[1],
             "turned_for_output": for_output[~np.isin(for_output, system.turned("acceleration"))].astype(np.int64),
         }
         large = system.of_body.dimensions == 3 and self.lu_updates > WORTH_ELIMINATING
@@ -151,7 +151,7 @@ class Dynamics:
                 "positions": self._positions.equations_table, "position_factors": self._positions.factors_table,
                 "velocities": self._velocities.equations_table, "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table, "acceleration_factors": self._accelerations.factors_table,
-                **self._lists, "n_behind": len(self._behind[1]), "n_algebraic": len(algebraic),
+                **self._lists, "n_trailing": len(self._trailing[1]), "n_algebraic": len(algebraic),
                 "n_turned_for_output": len(self._lists["turned_for_output"]),
                 "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
                 "eliminates": eliminates,
@@ -272,7 +272,7 @@ class Dynamics:
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Return q' at a state whose accelerations were just computed; that of an algebraic state is zero."""
         rates = self.system.of_body.position_rates(q, self.system.followed * u)
-        source, row = self._behind
+        source, row = self._trailing
         if len(row):
             rates[row] = self.state.values["acceleration"][source]
         return rates

@@ -18,7 +18,7 @@ from .moves import Move, moves, position_words, velocity_words
 from .storage import FAILURES
 from .turns import take_nearest_turns
 
-MOST_TOLD = 3
+MOST_LISTED = 3
 """Bodies with the largest moves that the note of a run names."""
 
 
@@ -52,20 +52,20 @@ class InitialValues:
         return self._changed(self._levels())
 
     def _levels(self) -> str:
-        levels = [words(self.moved, self.size, MOST_TOLD) for words in (position_words, velocity_words)]
+        levels = [words(self.moved, self.size, MOST_LISTED) for words in (position_words, velocity_words)]
         return " and ".join(filter(None, levels))
 
     def as_asked_by(self, names: Sequence[str]) -> InitialValues:
         """Replace the moves by a note, where joints that hold at the start only require them."""
-        told = f"to satisfy {', '.join(names)} at the start, assembly changed {self._levels() or 'nothing'}"
-        return replace(self, moved=(), notes=(*self.notes, told))
+        sentence = f"to satisfy {', '.join(names)} at the start, assembly changed {self._levels() or 'nothing'}"
+        return replace(self, moved=(), notes=(*self.notes, sentence))
 
     def position_sentence(self, most: int) -> str:
         """Return a sentence on the bodies that were moved, the first `most` by name, or an empty string."""
         return self._changed(position_words(self.moved, self.size, most))
 
-    def _changed(self, told: str) -> str:
-        return f"to satisfy the joints at the start, assembly changed {told}{self._too_far()}" if told else ""
+    def _changed(self, sentence: str) -> str:
+        return f"to satisfy the joints at the start, assembly changed {sentence}{self._too_far()}" if sentence else ""
 
     @property
     def moved_far(self) -> tuple[Move, ...]:
@@ -119,7 +119,7 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
     if status < 0:
         raise AssemblyError(_sentence(dynamics, status, t))
     if system.n_counters:
-        state.count_anew(t)
+        state.restart_counters(t)
     status, acceleration = dynamics.accelerate(t)
     if status < 0 and system.forces_by_reactions:  # the magnitude of a reaction has no derivative at zero
         state.lam[: system.n_c] = np.max(system.mass)  # of the heaviest body at 1 m/s^2
@@ -136,14 +136,14 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
 def _close_open_rates(dynamics: Dynamics, t: float) -> None:
     """Fit velocities that are not given to J u + C_t = 0 by the smallest change in the mass norm."""
     system, state = dynamics.system, dynamics.state
-    ways = np.flatnonzero(system.open_rates)
-    if not len(ways):
+    free_rates = np.flatnonzero(system.open_rates)
+    if not len(free_rates):
         return
     state.evaluate("motion", t)
     rows = np.flatnonzero(system.active)
-    by_energy = state.matrix("motion", "J")[np.ix_(rows, ways)] / np.sqrt(system.mass[ways])
+    by_energy = state.matrix("motion", "J")[np.ix_(rows, free_rates)] / np.sqrt(system.mass[free_rates])
     follow, *_ = np.linalg.lstsq(by_energy, -state.vector("motion", "V")[rows], rcond=None)
-    state.u[ways] += follow / np.sqrt(system.mass[ways])
+    state.u[free_rates] += follow / np.sqrt(system.mass[free_rates])
 
 
 def _sentence(dynamics: Dynamics, status: int, t: float) -> str:

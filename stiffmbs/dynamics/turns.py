@@ -97,7 +97,7 @@ def _take_nearest_turns(dynamics: Dynamics, t: float, angles: Sequence[CountedAn
     def sums(products: np.ndarray) -> np.ndarray:
         return np.bincount(element, products, len(angles) + 1)[:-1]
 
-    state.count_anew(t)
+    state.restart_counters(t)
     within = state.q[places]
     left = violations()
     state.q[places] = within + TURN

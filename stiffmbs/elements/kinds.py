@@ -123,8 +123,8 @@ def any_of(kinds: Kinds) -> Any:
         return kinds[kind].model_validate(found, context=context)
 
     def schema(schema_of: Callable[[type[Element]], JsonSchema]) -> JsonSchema:
-        ways = {kind: schema_of(element) for kind, element in kinds.items()}
-        mapping = {kind: way["$ref"] for kind, way in ways.items()}
-        return {"discriminator": {"mapping": mapping, "propertyName": "type"}, "oneOf": list(ways.values())}
+        schemas = {kind: schema_of(element) for kind, element in kinds.items()}
+        mapping = {kind: each["$ref"] for kind, each in schemas.items()}
+        return {"discriminator": {"mapping": mapping, "propertyName": "type"}, "oneOf": list(schemas.values())}
 
     return Annotated[Any, ReadBy(read, schema)]

@@ -21,7 +21,7 @@ from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from ..reading.units.quantity import LARGEST
-from .force_balance import Balance, balance_at, moved, way
+from .force_balance import Balance, balance_at, displacement, moved
 from .matrices import diagonal, joined, solution, zeros
 from .parameters import EQUILIBRIA
 from .poles import passes_a_pole
@@ -102,13 +102,15 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
     start, first, n, before = state.q.copy(), 0.0, len(known.left), known.largest
     faster = np.zeros(len(of_speeds))
     for count in range(1, EQUILIBRIA.most_corrections + 1):
-        whole = np.append(way(system, start, state.q), faster)
+        whole = np.append(displacement(system, start, state.q), faster)
         move = newton_move(dynamics, shift, known, whole)
         if (
             count == 1 and not system.states and not known.left @ np.nan_to_num(move[:n], posinf=FAR, neginf=-FAR) >= 0
         ):  # towards an unstable equilibrium
             break
-        longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))
+        longest, longest_of_all = (
+            float(np.max(np.abs(displacement) / limits, initial=0.0)) for displacement in (move, whole + move)
+        )
         if longest_of_all > 1.0:
             return _Step(None, max(2.0, float(np.sqrt(longest_of_all))), count)
         if count > 1 and longest > EQUILIBRIA.diverging_move * longest_of_all:
@@ -118,7 +120,7 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
             break
         known, first, faster = found, first or longest, faster + move[n:]
         ends = known.balanced or (count > 1 and longest <= EQUILIBRIA.last_move * longest_of_all)
-        if ends and passes_a_pole(dynamics, t, start, way(system, start, state.q), max(before, known.largest)):
+        if ends and passes_a_pole(dynamics, t, start, displacement(system, start, state.q), max(before, known.largest)):
             break
         if known.balanced:
             return _Step(known, 1.0, count)

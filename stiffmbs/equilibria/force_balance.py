@@ -64,7 +64,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     """
     state, system = dynamics.state, dynamics.system
     motion.put(dynamics, t)
-    state.count_anew(t)
+    state.restart_counters(t)
     status, acceleration = dynamics.accelerate(t)
     if status < 0:
         raise SolverError(f"no equilibrium was found: {failure(dynamics, status, t)}")
@@ -84,7 +84,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     most_passed_on = np.inf if unloaded else EQUILIBRIA.passed_on * largest
     passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), most_passed_on)
     negligible = system.mass * system.per_velocity(system.size, 1.0) * EQUILIBRIA.slowest**2
-    left = system.mass * _beside_the_constraints(dynamics, acceleration - steady, jacobian)
+    left = system.mass * _off_the_constraints(dynamics, acceleration - steady, jacobian)
     found = Balance(
         left,
         lam,
@@ -104,7 +104,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     return replace(found, speeds=found_speeds(dynamics, motion, forces_by_velocity(dynamics)))
 
 
-def _beside_the_constraints(dynamics: Dynamics, acceleration: np.ndarray, jacobian: Matrix) -> np.ndarray:
+def _off_the_constraints(dynamics: Dynamics, acceleration: np.ndarray, jacobian: Matrix) -> np.ndarray:
     """Remove accelerations that constraints impose, such as those of a drive that accelerates at the start."""
     asked, mass = jacobian @ acceleration, dynamics.system.mass
     if np.all(np.abs(asked) <= EQUILIBRIA.no_effect * (abs(jacobian) @ np.abs(acceleration))):
@@ -161,7 +161,7 @@ def _position_rates(dynamics: Dynamics) -> Matrix:
     return term_matrix(dynamics, "Z") + matrix_of(system, np.ones(len(q)), q, u, (system.n_q, system.n_u))
 
 
-def way(system: System, start: np.ndarray, there: np.ndarray) -> np.ndarray:
+def displacement(system: System, start: np.ndarray, there: np.ndarray) -> np.ndarray:
     """Return the displacement between two poses, followed by the changes of states."""
     return np.append(system.move(start, there), (there - start)[system.first_state :])
 

@@ -41,7 +41,7 @@ def with_found_spins(dynamics: Dynamics, motion: SteadyMotion, by_velocity: Matr
         return motion
     effects = dense(abs(by_velocity).max(axis=0)).ravel()
     depends = effects[motion.spinning] > EQUILIBRIA.no_effect * np.max(effects, initial=0.0)
-    return replace(motion, found=np.flatnonzero(depends & ~motion.told_by_rolling(dynamics)))
+    return replace(motion, found=np.flatnonzero(depends & ~motion.fixed_by_rolling(dynamics)))
 
 
 def found_speeds(dynamics: Dynamics, motion: SteadyMotion, by_velocity: Matrix) -> FoundSpeeds:

@@ -130,7 +130,7 @@ class SteadyMotion:
         direction: np.ndarray = self.velocity / np.linalg.norm(self.velocity)
         return direction
 
-    def told_by_rolling(self, dynamics: Dynamics) -> np.ndarray:
+    def fixed_by_rolling(self, dynamics: Dynamics) -> np.ndarray:
         """Return a mask of the spins that a rolling constraint determines."""
         _, across = self._rolling(dynamics)
         return np.asarray(np.linalg.norm(across, axis=0) > EQUILIBRIA.no_effect)
@@ -147,7 +147,7 @@ class SteadyMotion:
         state.u[:] = 0.0 if self.is_rest else self.carried(dynamics)
         if len(self.spinning):
             state.evaluate("motion", t)
-            rolls = self.told_by_rolling(dynamics)
+            rolls = self.fixed_by_rolling(dynamics)
             spins = np.where(rolls, 0.0, self.spins)
             if rolls.any():
                 _, across = self._rolling(dynamics)

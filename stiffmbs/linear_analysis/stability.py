@@ -18,7 +18,7 @@ from .tangent_space import linearised
 
 STIFFNESS_ROUNDING = 2 * float(np.finfo(float).eps)
 """Error of w^2, relative to the sum of all contributions to a motion's stiffness."""
-BESIDE_IMBALANCE = 100.0
+IMBALANCE_FACTOR = 100.0
 """Factor on the w^2 that the residual of the forces could cause."""
 LEAST_SHIFT = 1e-14
 """Smallest shift, relative to the largest w^2 of a single body."""
@@ -68,8 +68,8 @@ def lowest(stiffness: Matrix, jacobian: Matrix, mass: np.ndarray, scale: np.ndar
     inertia = np.sum(shapes * (mass[:, None] * shapes), axis=0)
     sizes = np.abs(shapes)
     rounding = STIFFNESS_ROUNDING * np.sum(sizes * (abs(stiffness) @ sizes), axis=0)
-    beside = BESIDE_IMBALANCE * (np.abs(left) / scale) @ sizes**2
-    none = (rounding + beside) / np.where(inertia > 0, inertia, np.inf) + of_eigenvalues
+    of_imbalance = IMBALANCE_FACTOR * (np.abs(left) / scale) @ sizes**2
+    none = (rounding + of_imbalance) / np.where(inertia > 0, inertia, np.inf) + of_eigenvalues
     real = np.abs(squares.imag) <= CLOSE * np.abs(squares) + none
     return Lowest(squares[real].real, shapes[:, real], none[real])
 
@@ -129,7 +129,7 @@ def _largest_of_inverse(
     return found
 
 
-def eigenvalues_beside(
+def eigenvalues_about(
     dynamics: Dynamics, t: float, motion: SteadyMotion, acceleration: np.ndarray
 ) -> np.ndarray | None:
     """Return the eigenvalues about a steady motion, 1/s; None if coefficients are not constant in the comoving frame.

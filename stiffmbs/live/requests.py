@@ -82,9 +82,9 @@ def _modes(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: 
 
 
 def _verify(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
-    told = verdict(verify(solver.scene(request.text, request.numbers), watch=watch))
-    notes = [f"- {note}" for note in told.to_check] or ["Nothing to check."]
-    return {"status": told.status, "text": "\n".join([told.headline, told.digits_words, *notes])}
+    judged = verdict(verify(solver.scene(request.text, request.numbers), watch=watch))
+    notes = [f"- {note}" for note in judged.to_check] or ["Nothing to check."]
+    return {"status": judged.status, "text": "\n".join([judged.headline, judged.digits_words, *notes])}
 
 
 def _compare(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:

@@ -147,9 +147,9 @@ def shown(found: Solved, channels: Sequence[str]) -> dict[str, Any]:
     wanted = [name for name in channels if name in solution.channels] or list(figure) or ["energy.total"]
     poses = poses_of(scene, solution.time, solution.channels)
     page = page_data(drawing_of(scene, along=poses), {"": poses}, solution, wanted, only=wanted, level=Z_BEST_SPEED)
-    told = verdict(solution)
+    judged = verdict(solution)
     return {
-        "status": told.status, "message": told.headline, "notes": list(told.to_check), "digits": told.digits_words,
+        "status": judged.status, "message": judged.headline, "notes": list(judged.to_check), "digits": judged.digits_words,
         "lines": [f"{label}: {line}" for label, line in solver_lines(solution.solver)], "page": page,
         "parameters": parameters_of(scene), "name": solution.name, "end": float(solution.time[-1]),
     }  # fmt: skip

@@ -99,12 +99,12 @@ class Worker:
     def _answer(self, message: dict[str, Any], number: int) -> dict[str, Any]:
         if message.get("allow"):
             self._solver.allow()
-        told = time.monotonic()
+        reported = time.monotonic()
 
         def tell(progress: dict[str, Any]) -> None:
-            nonlocal told
-            if time.monotonic() - told > BETWEEN:
-                told = time.monotonic()
+            nonlocal reported
+            if time.monotonic() - reported > BETWEEN:
+                reported = time.monotonic()
                 self._send({"number": number, "status": "progress", **progress})
 
         def watch(t: float) -> None:

@@ -127,17 +127,17 @@ class Scene(ModelData):
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
     """Return the notes of a scene, and of the roads and tyres of a model."""
-    told: dict[str, list[str]] = {}
+    of_parts: dict[str, list[str]] = {}
     for name, element in model.forces.items():
         components = (component for _, component in element.parts(Component))
         for note in (*element.own_notes(), *(note for component in components for note in component.notes())):
-            told.setdefault(note, []).append(name)
+            of_parts.setdefault(note, []).append(name)
     own = list(model.notes) if isinstance(model, Scene) else []
     if model.dimensions == 3 and len(model.forces) > 1:
         from .mounted_tyres import mounted_alike
 
         own += mounted_alike(model.bodies, model.forces)
-    return (*own, *(f"{', '.join(names)}: {note}" for note, names in told.items()))
+    return (*own, *(f"{', '.join(names)}: {note}" for note, names in of_parts.items()))
 
 
 def scene_class(dimensions: int) -> type[Scene]:

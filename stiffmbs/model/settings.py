@@ -141,7 +141,7 @@ class RunSettings(Described):
         return self
 
     @model_validator(mode="after")
-    def _told_apart(self) -> RunSettings:
+    def _distinguished(self) -> RunSettings:
         """Refuse output points whose spacing is below the rounding error of the time."""
         if self.duration < SHORTEST:
             raise ValueError(f"duration: found {self.duration:.3g} s, expected {SHORTEST:.0e} s or more")

@@ -117,7 +117,7 @@ class _Mirror:
             seen = {"body": (), "point": (), "axes": (0, 1, 2)}.get(condition, (2,))
             if not (in_plane and all(self._sign(axes[:, k]) for k in seen)):
                 return False
-        return all(self._keeps_value(element, field, way) for field, way in (element.reflected or {}).items())
+        return all(self._keeps_value(element, field, rule) for field, rule in (element.reflected or {}).items())
 
     def _placed(self, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
         """Return the point and the axes of a marker in ground axes."""
@@ -134,30 +134,30 @@ class _Mirror:
             return -1.0
         return 1.0 if self._zero(direction[self._normal], 1.0) else 0.0
 
-    def _keeps_value(self, element: Any, field: str, way: str) -> bool:
+    def _keeps_value(self, element: Any, field: str, rule: str) -> bool:
         """Return True if a field of `Element.reflected` has no antisymmetric components."""
         value = getattr(element, field)
         if value is None:
             return True
-        if way == "joint":
+        if rule == "joint":
             return self._keeps_coordinate(element.joint)
         forces = self._signs_of_axes(self._axes(element))
-        match way:
+        match rule:
             case "vector":
                 return _even(value, forces)
             case "rotations":
                 return _even(value, -forces)
         turns = -self._signs_of_axes(self._placed(element.j)[1])
         signs = np.concatenate([forces, turns])
-        match way:
+        match rule:
             case "components":
                 return _even(value, signs)
             case "matrix":
                 return all(_even(row, sign * signs) for row, sign in zip(value, signs, strict=True))
             case "x" | "y" | "z":
-                return bool(forces[AXES.index(way)] > 0)
+                return bool(forces[AXES.index(rule)] > 0)
             case "about x" | "about y" | "about z":
-                return bool(turns[AXES.index(way[-1])] > 0)
+                return bool(turns[AXES.index(rule[-1])] > 0)
         return False
 
     def _axes(self, element: Any) -> np.ndarray:

@@ -20,7 +20,7 @@ from ..compile.system import System
 from ..model.model_data import ModelData
 from .merged_bodies import MergedBodies, merge
 from .spinning_bodies import AXES, SpinningBodies, name_of_angle, spinning
-from .subsystems import behind_bodies, mechanisms, part_of
+from .subsystems import mechanisms, part_of, trailing_coordinates
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -135,7 +135,7 @@ class Part:
     - `bodies`: numbers of the bodies in the whole model.
     - `parent`: number in `system` of the body that carries each of them.
     - `poses`: poses of the bodies on their parents.
-    - `behind`: coordinates of the whole model that the part's rotation counters and states represent.
+    - `trailing`: coordinates of the whole model that the part's rotation counters and states represent.
     - `kept`: the corresponding coordinates of the part.
     """
 
@@ -143,7 +143,7 @@ class Part:
     bodies: np.ndarray
     parent: np.ndarray
     poses: BodyFixedPoses
-    behind: np.ndarray
+    trailing: np.ndarray
     kept: np.ndarray
     spins: tuple[Spin, ...]
 
@@ -151,18 +151,18 @@ class Part:
         """Return the coordinates and velocities of the part's bodies, from consistent ones of the whole model."""
         of, first = np.unique(self.parent, return_index=True)
         assert len(of) == len(self.system.bodies)
-        behind, rates = np.zeros(self.system.n_q - self.system.n_pose), u.reshape(-1, self.system.of_body.n_u)
-        behind[self.kept - self.system.n_pose] = q[self.behind]
+        trailing, rates = np.zeros(self.system.n_q - self.system.n_pose), u.reshape(-1, self.system.of_body.n_u)
+        trailing[self.kept - self.system.n_pose] = q[self.trailing]
         places = q[: self.system.of_body.n_q * len(rates)].reshape(len(rates), -1)
         places, rates = places[self.bodies], rates[self.bodies]
         if self.poses.moved:
             places, rates = self.poses.inverse().carried(places, rates)
-        return np.concatenate([places[first].ravel(), behind]), rates[first].ravel()
+        return np.concatenate([places[first].ravel(), trailing]), rates[first].ravel()
 
     def put(self, q: np.ndarray, u: np.ndarray, into_q: np.ndarray, into_u: np.ndarray) -> None:
         """Write the states of the bodies of the whole model, one state per row, from those of the part."""
         n_q, n_u, count = self.system.of_body.n_q, self.system.of_body.n_u, len(self.system.bodies)
-        into_q[:, self.behind] = q[:, self.kept]
+        into_q[:, self.trailing] = q[:, self.kept]
         if self._is_whole and len(into_u[0]) == n_u * count:  # nothing to select, which is slow for thousands of rows
             into_q[:, : n_q * count], into_u[:] = q[:, : n_q * count], u
             self._turn(into_q[:, : n_q * count].reshape(len(q), count, n_q), into_u.reshape(len(u), count, n_u), q)
@@ -199,16 +199,18 @@ def may_be_apart(system: System) -> bool:
     return 1 < len(mechanisms(system)) <= MOST_APART
 
 
-def parts_of(model: ModelData, whole: System, way: np.ndarray | None, alike: Alike | None = None) -> tuple[Part, ...]:
+def parts_of(
+    model: ModelData, whole: System, travel: np.ndarray | None, alike: Alike | None = None
+) -> tuple[Part, ...]:
     """Return the mechanisms to solve in place of a compiled model; empty if none replaces it.
 
-    `whole`: with its redundant equations marked. `way` of shape (n_u,): initial velocities times the duration of the
+    `whole`: with its redundant equations marked. `travel` of shape (n_u,): initial velocities times the duration of the
     run; None to keep all spins in the quaternions. `alike`: return the sets of mechanisms to solve together, given
     their body numbers in the whole model. By default all are solved together.
     """
     held = {joint for joint, _ in whole.equations} - {joint for (joint, _), on in zip(whole.equations, whole.active, strict=True) if not on}  # fmt: skip
     merged = merge(model, held)
-    spun = None if way is None else spinning(merged or model, _turns(merged, whole, way))
+    spun = None if travel is None else spinning(merged or model, _turns(merged, whole, travel))
     system = _compiled(spun or merged, whole) if spun or merged else whole  # type: ignore[arg-type]
     found = mechanisms(system) if alike else []
     if alike and 1 < len(found) <= MOST_APART:
@@ -223,9 +225,9 @@ def parts_of(model: ModelData, whole: System, way: np.ndarray | None, alike: Ali
     return tuple(_part(bodies, system, whole, merged, spun) for bodies in found)
 
 
-def _turns(merged: MergedBodies | None, whole: System, way: np.ndarray) -> dict[str, np.ndarray]:
+def _turns(merged: MergedBodies | None, whole: System, travel: np.ndarray) -> dict[str, np.ndarray]:
     """Return the angular displacement of each solved body about its principal axes."""
-    of_bodies = way.reshape(len(whole.bodies), -1)[:, whole.of_body.linear :]
+    of_bodies = travel.reshape(len(whole.bodies), -1)[:, whole.of_body.linear :]
     turns = dict(zip(whole.bodies, of_bodies, strict=True))
     if merged is None or merged.dimensions == 2:
         return turns
@@ -253,9 +255,9 @@ def _part(
 ) -> Part:
     own = part_of(system, bodies)
     number = {name: k for k, name in enumerate(own.bodies)}
-    of_whole, of_part = behind_bodies(whole), behind_bodies(own)
+    of_whole, of_part = trailing_coordinates(whole), trailing_coordinates(own)
     shared = sorted(of_part.keys() & of_whole.keys(), key=of_part.__getitem__)
-    behind, kept = (np.array([of[key] for key in shared], dtype=np.int64) for of in (of_whole, of_part))
+    trailing, kept = (np.array([of[key] for key in shared], dtype=np.int64) for of in (of_whole, of_part))
     spins = tuple(
         Spin(number[name], AXES.index(axis), of_part[name_of_angle(name), None])
         for name, axis in (spun.axes if spun else {}).items()
@@ -263,13 +265,13 @@ def _part(
     )
     poses = BODY_FIXED_POSES[whole.of_body.dimensions]
     if merged is None:
-        return Part(own, bodies, np.arange(len(bodies)), poses.none(len(bodies)), behind, kept, spins)
+        return Part(own, bodies, np.arange(len(bodies)), poses.none(len(bodies)), trailing, kept, spins)
     carried = [(k, *merged.members[name]) for k, name in enumerate(whole.bodies) if merged.members[name][0] in number]
     numbers = np.array([k for k, _, _ in carried])
     parent = np.array([number[name] for _, name, _ in carried])
     at_initial_pose = whole.q[: whole.n_pose].reshape(len(whole.bodies), -1)[numbers]
     placed = poses.of([place for _, _, place in carried]).like(at_initial_pose, parent)
-    return Part(own, numbers, parent, placed, behind, kept, spins)
+    return Part(own, numbers, parent, placed, trailing, kept, spins)
 
 
 class Spin(NamedTuple):

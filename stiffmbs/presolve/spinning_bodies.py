@@ -131,8 +131,8 @@ class _Demand(NamedTuple):
         """Return True if the body may spin about a principal axis."""
         if self.what in (REFUSED, BODY):
             return self.what == BODY
-        beside = np.abs(np.delete(np.array(self.placed.point), axis)).max()
-        on_axis = self.what.startswith(ALONG) or beside <= ALIKE * size
+        off_axis = np.abs(np.delete(np.array(self.placed.point), axis)).max()
+        on_axis = self.what.startswith(ALONG) or off_axis <= ALIKE * size
         return bool(on_axis and (self.what == POINT or self._tilt(axis) <= ALIKE))
 
     def _tilt(self, axis: int) -> float:

@@ -47,7 +47,7 @@ def counters_of(system: System) -> dict[tuple[str, int], int]:
     }
 
 
-def behind_bodies(system: System) -> dict[tuple[str, int | None], int]:
+def trailing_coordinates(system: System) -> dict[tuple[str, int | None], int]:
     """Return the coordinates of rotation counters and states by name; a state has no number."""
     return {**counters_of(system)} | {(name, None): system.first_state + k for k, name in enumerate(system.states)}
 
@@ -86,16 +86,16 @@ def part_of(system: System, bodies: np.ndarray) -> System:
     of_body = system.of_body
     q, u = ((width * bodies[:, None] + np.arange(width)).ravel() for width in (of_body.n_q, of_body.n_u))
     counters = [group.counters[inside].ravel() for group, inside in chosen]
-    behind = np.concatenate([np.empty(0, dtype=np.int64), *counters, system.first_state + own_states])
-    new_behind = np.full(system.n_q, -1)
-    new_behind[behind] = len(q) + np.arange(len(behind))
+    trailing = np.concatenate([np.empty(0, dtype=np.int64), *counters, system.first_state + own_states])
+    new_trailing = np.full(system.n_q, -1)
+    new_trailing[trailing] = len(q) + np.arange(len(trailing))
     return replace(
         system,
         bodies=tuple(system.bodies[k] for k in bodies),
         states=tuple(system.states[k] for k in own_states), state_scales=system.state_scales[own_states],
         algebraic=system.algebraic[own_states], sampling=system.sampling[own_states],
-        q=system.q[np.append(q, behind)], u=system.u[u], open_rates=system.open_rates[u], mass=system.mass[u], followed=system.followed[u], principal_axes=system.principal_axes[bodies],
-        groups=tuple(_part(group, inside, place, new_row, new_behind) for group, inside in chosen if inside.any()),
+        q=system.q[np.append(q, trailing)], u=system.u[u], open_rates=system.open_rates[u], mass=system.mass[u], followed=system.followed[u], principal_axes=system.principal_axes[bodies],
+        groups=tuple(_part(group, inside, place, new_row, new_trailing) for group, inside in chosen if inside.any()),
         equations=tuple(system.equations[row] for row in rows),
         holonomic=system.holonomic[rows], active=system.active[rows],
     )  # fmt: skip
@@ -106,14 +106,14 @@ def _rows(group: Group, inside: np.ndarray) -> np.ndarray:
     return (group.first_row + count * np.flatnonzero(inside)[:, None] + np.arange(count)).ravel()
 
 
-def _part(group: Group, inside: np.ndarray, place: np.ndarray, new_row: np.ndarray, new_behind: np.ndarray) -> Group:
+def _part(group: Group, inside: np.ndarray, place: np.ndarray, new_row: np.ndarray, new_trailing: np.ndarray) -> Group:
     index, end = group.index[inside].copy(), 2 * group.kind.n_bodies
     numbers = place[group.bodies[inside]]
-    joints, ground = end + 1 + group.kind.n_joints, group.of_body.n_q * place[-1] + np.sum(new_behind >= 0)
+    joints, ground = end + 1 + group.kind.n_joints, group.of_body.n_q * place[-1] + np.sum(new_trailing >= 0)
     index[:, 0:end:2] = np.where(numbers == place[-1], ground, group.of_body.n_q * numbers)
     index[:, 1:end:2] = group.of_body.n_u * numbers
     index[:, end + 1 : joints] = new_row[index[:, end + 1 : joints]]
-    index[:, joints:] = new_behind[index[:, joints:]]
+    index[:, joints:] = new_trailing[index[:, joints:]]
     rows = _rows(group, inside)
     return replace(
         group,

@@ -45,8 +45,8 @@ def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
         if group.entries["inertia"]:  # of flexible bodies, whose coordinates are coupled by elasticity and inertia
             for body in group.bodies.ravel().tolist():
                 around.pop(body, None)
-    ways = dict(_free_ways(dynamics, list(around), t))
-    if not ways:
+    motions = dict(_free_motions(dynamics, list(around), t))
+    if not motions:
         return []
     q = state.q.copy()
     step = (
@@ -55,9 +55,9 @@ def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
         * system.per_velocity(system.size, 1.0)
     )
     state.q[:] = system.of_body.moved(q, step)
-    also = dict(_free_ways(dynamics, list(ways), t)) if dynamics.assemble(t) >= 0 else {}
+    also = dict(_free_motions(dynamics, list(motions), t)) if dynamics.assemble(t) >= 0 else {}
     state.q[:] = q
-    always = {body: free for body, free in ways.items() if len(free) == len(also.get(body, ()))}
+    always = {body: free for body, free in motions.items() if len(free) == len(also.get(body, ()))}
     found = [_classified(dynamics, body, free, around[body], t) for body, free in always.items()]
     return [freedom for freedom in found if freedom]
 
@@ -104,8 +104,8 @@ def _held(dynamics: Dynamics, body: int, free: np.ndarray, t: float) -> tuple[li
     scale = dynamics.system.per_velocity(dynamics.system.size, 1.0)[: dynamics.system.of_body.n_u]
     names, loose = held(stiffnesses(state, t).get(body, {}), free, scale)
     q = state.q.copy()
-    for way in loose:
-        state.q[:] = screwed(dynamics.system, q, body, REDUNDANCY.further * scale * way)
+    for free_motion in loose:
+        state.q[:] = screwed(dynamics.system, q, body, REDUNDANCY.further * scale * free_motion)
         more, loose = held(stiffnesses(state, t).get(body, {}), loose, scale)
         names = list(dict.fromkeys([*names, *more]))
         state.q[:] = q
@@ -118,7 +118,7 @@ def _others_of_forces(system: System) -> dict[str, set[int]]:
     return {name: set(bodies) for g in groups for name, bodies in zip(g.names, g.bodies.tolist(), strict=True)}
 
 
-def _free_ways(dynamics: Dynamics, bodies: list[int], t: float) -> Iterator[tuple[int, np.ndarray]]:
+def _free_motions(dynamics: Dynamics, bodies: list[int], t: float) -> Iterator[tuple[int, np.ndarray]]:
     """Yield bodies with motions that no joint prevents, and these motions as rows, in sizes and rad."""
     system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
@@ -133,17 +133,17 @@ def _free_ways(dynamics: Dynamics, bodies: list[int], t: float) -> Iterator[tupl
         np.add.at(J, (row, term.column[own] % width), value[own])
         if not np.all(np.isfinite(J)):
             continue
-        _, values, ways = np.linalg.svd(J)
-        free = ways[values <= REDUNDANCY.dependent * values[0]]
+        _, values, motions = np.linalg.svd(J)
+        free = motions[values <= REDUNDANCY.dependent * values[0]]
         if len(free):
             yield body, free
 
 
-def _motion(ways: np.ndarray, linear: int) -> str:
+def _motion(motions: np.ndarray, linear: int) -> str:
     """Return the type of some motions (rows of velocities)."""
-    if len(ways) > 1:
+    if len(motions) > 1:
         return "move"
-    turning = ways[0, linear:]
+    turning = motions[0, linear:]
     if np.linalg.norm(turning) < REDUNDANCY.takes_part:
         return "slide"
     return "turn"
@@ -202,20 +202,22 @@ def _moves(state: State, body: int) -> np.ndarray:
     return np.array([of_body.position_rates(q, unit) for unit in np.eye(of_body.n_u)]).T
 
 
-def held(stiffness: dict[str, np.ndarray], ways: np.ndarray, scale: np.ndarray) -> tuple[list[str], np.ndarray]:
+def held(stiffness: dict[str, np.ndarray], motions: np.ndarray, scale: np.ndarray) -> tuple[list[str], np.ndarray]:
     """Return the forces that are stiff against motions of a body, and the motions without stiffness.
 
-    `stiffness`: of each force, as from `stiffnesses`. `ways` of shape (ways, n_u): independent motions, in units of
+    `stiffness`: of each force, as from `stiffnesses`. `motions` of shape (n, n_u): independent motions, in units of
     `scale`. `scale` of shape (n_u,): units of displacements, m and rad.
     """
     scaled = {name: scale[:, None] * K * scale for name, K in stiffness.items()}
     largest = max((np.abs(K).max() for K in scaled.values()), default=0.0)
-    names = [name for name, K in scaled.items() if np.abs(K @ ways.T).max() > REDUNDANCY.stiffness_rounding * largest]
+    names = [
+        name for name, K in scaled.items() if np.abs(K @ motions.T).max() > REDUNDANCY.stiffness_rounding * largest
+    ]
     if not names:
-        return [], ways
-    _, values, free = np.linalg.svd(sum(scaled[name] for name in names) @ ways.T)
-    values = np.pad(values, (0, len(ways) - len(values)))
-    return names, free[values <= REDUNDANCY.stiffness_rounding * largest] @ ways
+        return [], motions
+    _, values, free = np.linalg.svd(sum(scaled[name] for name in names) @ motions.T)
+    values = np.pad(values, (0, len(motions) - len(values)))
+    return names, free[values <= REDUNDANCY.stiffness_rounding * largest] @ motions
 
 
 def screwed(system: System, q: np.ndarray, body: int, twist: np.ndarray) -> np.ndarray:

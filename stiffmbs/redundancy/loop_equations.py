@@ -112,7 +112,7 @@ class LoopEquations:
             pose = self.pose(self.moved(pose.q, step * min(1.0, REDUNDANCY.longest_step / max(length, 1e-300))), t)
             if length < 1e-14 * len(C):
                 break
-        self.state.count_anew(t)
+        self.state.restart_counters(t)
         return pose
 
     def _places(self, name: str) -> tuple[np.ndarray, ...]:

@@ -42,7 +42,7 @@ def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid
     held = _held_by_bushings(data, system)
     sentences = []
     for name in controllers:
-        for direction in (moved for way in found.of(name) for moved in found.elsewhere(way, held)):
+        for direction in (moved for own in found.of(name) for moved in found.elsewhere(own, held)):
             if _lies_in(direction, everything) and not _lies_in(direction, undriven()):
                 needed = [drive for drive in drives if not _lies_in(direction, found.space(rows[drive]))]
                 sentences.append(_sentence(name, needed or drives))
@@ -143,14 +143,14 @@ class _Directions:
             for k, change in enumerate(samples - samples[:1]):
                 np.add.at(changes[k], column[moving], change[moving])
             changes /= self._scale
-            _, values, ways = np.linalg.svd(changes, full_matrices=False)
-            yield from ways[values > REDUNDANCY.rounding * np.max(np.abs(samples), initial=np.finfo(float).tiny)]
+            _, values, directions = np.linalg.svd(changes, full_matrices=False)
+            yield from directions[values > REDUNDANCY.rounding * np.max(np.abs(samples), initial=np.finfo(float).tiny)]
 
-    def elsewhere(self, way: np.ndarray, held: dict[int, set[int]]) -> Iterator[np.ndarray]:
+    def elsewhere(self, own: np.ndarray, held: dict[int, set[int]]) -> Iterator[np.ndarray]:
         """Yield a direction, and its variants with the force moved to a body connected by a bushing."""
-        yield way
+        yield own
         width, ground = self.system.of_body.n_u, len(self.system.bodies)
-        parts = (way * self._scale).reshape(ground, width)
+        parts = (own * self._scale).reshape(ground, width)
         acted = [*np.flatnonzero(np.abs(parts).max(axis=1) > REDUNDANCY.rounding)]
         for body in (*acted, *([ground] if len(acted) == 1 else [])):
             for other in held.get(int(body), ()):

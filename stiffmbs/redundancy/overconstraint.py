@@ -180,17 +180,17 @@ def _remedy(
     remedies: list[tuple[LoopJoint, ...]], elastic: tuple[LoopJoint, ...], chosen: list[Choice], what: str
 ) -> str:
     """Return a sentence on changes that make reactions statically determinate or determined by stiffness."""
-    ways = [f"with {kinds}" for kinds in _replaced(chosen)]
+    options = [f"with {kinds}" for kinds in _replaced(chosen)]
     left_out = [joint.name for joint, *more in remedies if not more and not joint.element.elastic]
-    if left_out or not (ways or elastic):
-        ways.append(f"without {_one_of(left_out) if left_out else listed([joint.name for joint in remedies[0]])}")
-    told = [f"{', or '.join(ways)}, {what} are statically determinate"] if ways else []
+    if left_out or not (options or elastic):
+        options.append(f"without {_one_of(left_out) if left_out else listed([joint.name for joint in remedies[0]])}")
+    sentences = [f"{', or '.join(options)}, {what} are statically determinate"] if options else []
     if elastic:
-        told.append(
+        sentences.append(
             f"with {_elastic_words(elastic)}, stiffness determines {what}; a single elastic joint parallel to rigid ones "
             "carries no load"
         )
-    return "; ".join(told)
+    return "; ".join(sentences)
 
 
 def _elastic_words(elastic: Sequence[LoopJoint]) -> str:

@@ -101,8 +101,8 @@ class SparseMatrix:
         except RuntimeError:
             return None
         signs = factors.U.diagonal()
-        told = np.array_equal(factors.perm_r, factors.perm_c) and np.all(np.isfinite(signs))
-        return int(np.sum(signs < 0.0)) if told else None
+        is_known = np.array_equal(factors.perm_r, factors.perm_c) and np.all(np.isfinite(signs))
+        return int(np.sum(signs < 0.0)) if is_known else None
 
     def _dense_gram(self, shift: float) -> np.ndarray:
         A = self.dense()

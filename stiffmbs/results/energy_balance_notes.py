@@ -69,7 +69,7 @@ FINER = ("rtol", "max_step", "step")
 """Settings that shorten steps."""
 PER_TOLERANCE = 100.0
 """Missing part of the exchanged energy that is accepted, in relative tolerances, if that is more than `BROKEN`."""
-TOLD = 1e-6
+REPORTED = 1e-6
 """Part of the exchanged energy above which work between output instants is reported."""
 CERTAIN = 3.0
 """Ratio of missing energy to the resolution of the quadrature, such as its end corrections, above which it counts."""
@@ -94,7 +94,7 @@ def balance_words(balance: Balance, start: float) -> str:
 
 def unresolved_work(balance: Balance) -> str:
     """Return a note on the work between output times that their values do not resolve, or an empty string."""
-    if balance.keeps_energy or balance.between <= max(TOLD * balance.scale, balance.imbalance):
+    if balance.keeps_energy or balance.between <= max(REPORTED * balance.scale, balance.imbalance):
         return ""
     return f"between output times {balance.between:.2g} J of work is not resolved; use 'points: steps' or --verify"
 

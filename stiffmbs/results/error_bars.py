@@ -103,7 +103,7 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> float:
     fall, rise = (values[k - 1] - values[k]) / before, (values[k + 1] - values[k]) / after
     bend = np.minimum((rise - fall) / (after - before), -np.finfo(float).tiny)  # a flat peak has no curvature
     slope = fall - bend * before
-    around = [values[np.clip(k + beside, 0, len(values) - 1)] for beside in (-2, -1, 1, 2)]
+    around = [values[np.clip(k + offset, 0, len(values) - 1)] for offset in (-2, -1, 1, 2)]
     top = np.minimum(slope**2 / (-4 * bend), values[k] - np.nanmin(around, axis=0))  # limit at jumps
     shown = float(np.nanmax(values)) - highest
     reached = values[k] - highest

@@ -160,8 +160,8 @@ class Instant(Mapping[str, np.ndarray]):
         if name in CONTINUOUS_ANGLES:
             return self._continuous_angle(term, i, j)
         if name == "vr":
-            way = minus(i.point, j.point)
-            return dot(way, minus(i.velocity, j.velocity)) / math.sqrt(dot(way, way))
+            offset = minus(i.point, j.point)
+            return dot(offset, minus(i.velocity, j.velocity)) / math.sqrt(dot(offset, offset))
         level = LEVELS.get(name[:-1])
         if level is None:
             raise NotCompiledError

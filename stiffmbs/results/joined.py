@@ -99,13 +99,13 @@ def _values(solution: Solution, channel: str, requested: Iterable[str]) -> np.nd
     return np.full(len(solution.time), np.nan if there else 0.0)
 
 
-def _notes(told: Sequence[Sequence[str]]) -> tuple[str, ...]:
+def _notes(of_runs: Sequence[Sequence[str]]) -> tuple[str, ...]:
     """Return each sentence once, with the numbers of its runs unless all have it."""
-    all_of_them = dict.fromkeys(sentence for sentences in told for sentence in sentences)
+    all_of_them = dict.fromkeys(sentence for sentences in of_runs for sentence in sentences)
     found = []
     for sentence in all_of_them:
-        runs = [str(k) for k, sentences in enumerate(told, start=1) if sentence in sentences]
-        place = "" if len(runs) == len(told) else f"run{'s' if len(runs) > 1 else ''} {', '.join(runs)}: "
+        runs = [str(k) for k, sentences in enumerate(of_runs, start=1) if sentence in sentences]
+        place = "" if len(runs) == len(of_runs) else f"run{'s' if len(runs) > 1 else ''} {', '.join(runs)}: "
         found.append(place + sentence)
     return tuple(found)
 

@@ -35,8 +35,8 @@ MAGNITUDES = {f"{kind}m": between for kind, between in VECTORS.items()}
 
 
 def _distance_rate(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
-    way = i.point - j.point
-    return np.einsum("nk,nk->n", way, i.velocity - j.velocity) / np.linalg.norm(way, axis=1)
+    offset = i.point - j.point
+    return np.einsum("nk,nk->n", offset, i.velocity - j.velocity) / np.linalg.norm(offset, axis=1)
 
 
 def _az(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:

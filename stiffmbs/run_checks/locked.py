@@ -16,20 +16,20 @@ from .motion import some_instants
 from .parameters import RUN_CHECKS
 
 
-def locked(dynamics: Dynamics, redundancy: Redundancy, way: Trajectory) -> tuple[int, str] | None:
+def locked(dynamics: Dynamics, redundancy: Redundancy, solved: Trajectory) -> tuple[int, str] | None:
     """Return the number of valid outputs (at least the start) and a sentence on the violation after them, or None."""
     equations = dynamics.system.equations
-    velocity = unfollowed(dynamics, way)
+    velocity = unfollowed(dynamics, solved)
     if velocity is not None:
         output, row, gap = velocity
         joint, equation = equations[row]
         return max(1, output), (
-            f"stopped before t = {way.t[output]:.6g} s: joint '{joint}' (equation {equation}) is violated there by a velocity of "
+            f"stopped before t = {solved.t[output]:.6g} s: joint '{joint}' (equation {equation}) is violated there by a velocity of "
             f"{gap:.3g}: the mechanism locks, or the other joints do not allow a prescribed velocity"
         )
     others = unproven(redundancy)
     rows = tuple(row for row in others if dynamics.system.holonomic[row])
-    position = departure(dynamics, rows, way) if rows else None
+    position = departure(dynamics, rows, solved) if rows else None
     if position is None:
         return None
     output, t, row = position
@@ -45,7 +45,7 @@ Unfollowed = tuple[int, int, float]
 """First output at which a velocity equation does not hold, its row, and the violation, m/s or rad/s."""
 
 
-def unfollowed(dynamics: Dynamics, way: Trajectory) -> Unfollowed | None:
+def unfollowed(dynamics: Dynamics, solved: Trajectory) -> Unfollowed | None:
     """Return the violation at the first output at which a nonholonomic equation does not hold, or None.
 
     The relaxed formulation lets velocities drift if multipliers grow without bound. Holonomic equations cannot remain
@@ -54,15 +54,15 @@ def unfollowed(dynamics: Dynamics, way: Trajectory) -> Unfollowed | None:
     rows = np.flatnonzero(dynamics.system.active & ~dynamics.system.holonomic)
     if not len(rows):
         return None
-    outputs = some_instants(len(way.t))  # a mechanism that has locked violates its drive at later outputs too
-    seen = _first(dynamics, rows, way, outputs)
+    outputs = some_instants(len(solved.t))  # a mechanism that has locked violates its drive at later outputs too
+    seen = _first(dynamics, rows, solved, outputs)
     if seen is None:
         return None
     before = outputs[max(int(np.searchsorted(outputs, seen[0])) - 1, 0)]
-    return _first(dynamics, rows, way, np.arange(before, seen[0] + 1))
+    return _first(dynamics, rows, solved, np.arange(before, seen[0] + 1))
 
 
-def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.ndarray) -> Unfollowed | None:
+def _first(dynamics: Dynamics, rows: np.ndarray, solved: Trajectory, outputs: np.ndarray) -> Unfollowed | None:
     """Return the largest violation of some equations at the first of some outputs at which one is too large."""
     system, state = dynamics.system, dynamics.state
     V, J = system.term("motion", "V"), system.term("motion", "J")
@@ -70,13 +70,13 @@ def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.nd
     row, column, source = J.row[used], J.column[used], J.source[used]
     violations, coefficients = np.empty((len(outputs), len(V.source))), np.empty((len(outputs), len(source)))
     for k, output in enumerate(outputs.tolist()):
-        state.q[:], state.u[:] = way.q[output], way.u[output]
-        state.evaluate("motion", float(way.t[output]))
+        state.q[:], state.u[:] = solved.q[output], solved.u[output]
+        state.evaluate("motion", float(solved.t[output]))
         values = state.values["motion"]
         violations[k], coefficients[k] = values[V.source], values[source]
     gaps, sizes = np.zeros((2, len(outputs), system.n_c))
     gaps[:, V.row] = np.abs(violations)
-    np.add.at(sizes.T, row, np.abs(coefficients * way.u[outputs][:, column]).T)
+    np.add.at(sizes.T, row, np.abs(coefficients * solved.u[outputs][:, column]).T)
     excess = (gaps - np.maximum(RUN_CHECKS.unfollowed_part * sizes, RUN_CHECKS.unfollowed_velocity))[:, rows]
     wrong = np.flatnonzero(np.any(excess > 0, axis=1))
     if not len(wrong):
@@ -86,7 +86,7 @@ def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.nd
     return int(outputs[k]), worst, float(gaps[k, worst])
 
 
-def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> tuple[int, float, int] | None:
+def departure(dynamics: Dynamics, rows: Sequence[int], solved: Trajectory) -> tuple[int, float, int] | None:
     """Return the last output before a violation of dropped rows where the others hold, its time, s, and row; or None.
 
     Poses between outputs are interpolated. A pose is assembled if the violation of dropped rows exceeds that due to
@@ -98,9 +98,9 @@ def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> tuple
     place[row] = source
     left_out, kept = place[list(rows)], place[system.active & system.holonomic]
     allowed, assemblies = LEFT_OPEN * min(1.0, system.size), 0
-    for output, t, q in _poses(dynamics, way):
+    for output, t, q in _poses(dynamics, solved):
         state.q[:] = q
-        state.count_anew(t)
+        state.restart_counters(t)
         state.evaluate("position", t)
         values = np.abs(state.values["position"])
         gaps = values[left_out]
@@ -114,14 +114,14 @@ def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> tuple
     return None
 
 
-def _poses(dynamics: Dynamics, way: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
+def _poses(dynamics: Dynamics, solved: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
     """Yield poses at outputs and on Hermite interpolants between them: number of the output before, time, s, pose."""
     of_body, bodies = dynamics.system.of_body, dynamics.system.of_body.n_q * len(dynamics.system.bodies)
-    count = 1 + RUN_CHECKS.poses // len(way.t)
+    count = 1 + RUN_CHECKS.poses // len(solved.t)
     parts = np.arange(1, count + 1) / count
-    for k in range(len(way.t) - 1):
-        h, q = way.t[k + 1] - way.t[k], way.q[k]
-        move = of_body.move(q[:bodies], way.q[k + 1][:bodies])
+    for k in range(len(solved.t) - 1):
+        h, q = solved.t[k + 1] - solved.t[k], solved.q[k]
+        move = of_body.move(q[:bodies], solved.q[k + 1][:bodies])
         for s in parts:
-            step = (3 - 2 * s) * s**2 * move + s * (1 - s) * h * ((1 - s) * way.u[k] - s * way.u[k + 1])
-            yield k, float(way.t[k] + s * h), of_body.moved(q, step)
+            step = (3 - 2 * s) * s**2 * move + s * (1 - s) * h * ((1 - s) * solved.u[k] - s * solved.u[k + 1])
+            yield k, float(solved.t[k] + s * h), of_body.moved(q, step)

@@ -33,7 +33,7 @@ def motion_notes(
     if rows.lam.size:
         yield from singular_passage_sentence(dynamics, rows, rtol, again)
     if dynamics.system.n_counters:
-        yield from lost_turns_sentence(dynamics, rows)
+        yield from missed_revolutions_sentence(dynamics, rows)
     if dynamics.system.of_body.dimensions == 3 and (angles := joint_angles(dynamics.system)) is not None:
         yield from angles.uncertain(rows)
     if dynamics.system.has_limits:
@@ -79,7 +79,7 @@ APART_FROM_COUNTERS = Routine(
 )
 
 
-def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
+def missed_revolutions_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     """Yield a sentence on the angle that differs most from the counter of its turns, if the turn is uncertain."""
     system, state = dynamics.system, dynamics.state
     solved = np.flatnonzero(~np.isnan(rows.position_violation))

@@ -26,7 +26,7 @@ class SingularPose(NamedTuple):
     poses: tuple[str, ...]
 
 
-class PosesOnTheWay:
+class PosesBetween:
     """Poses of a motion and their distances from singular ones.
 
     The distance is the smallest singular value of J of the joints in loops, relative to the largest such value in the
@@ -45,7 +45,7 @@ class PosesOnTheWay:
         self._scale = system.per_velocity(1.0, system.size)
         self._known: dict[int, float] = {}
 
-    def at(self, t: np.ndarray, q: np.ndarray) -> PosesOnTheWay:
+    def at(self, t: np.ndarray, q: np.ndarray) -> PosesBetween:
         """Return other poses of the same motion, with its usual singular value."""
         others = copy(self)
         others.usual = self.usual
@@ -82,11 +82,11 @@ class PosesOnTheWay:
             return slice(k, k)
         return slice(self._sound_from(k, -1) + 1, self._sound_from(k, 1))
 
-    def _sound_from(self, k: int, way: int) -> int:
+    def _sound_from(self, k: int, sense: int) -> int:
         """Return the first regular pose after k in strides that double."""
         stride = 1
         while 0 <= k < len(self._t) and self.distance(k) < RUN_CHECKS.nearly_singular:
-            k, stride = k + way * stride, 2 * stride
+            k, stride = k + sense * stride, 2 * stride
         return max(-1, min(k, len(self._t)))
 
     def nearest(self, start: float, end: float) -> SingularPose | None:
@@ -153,7 +153,7 @@ def singular_passage_sentence(
     dips = deepest_dips(rows.log_determinant)
     if not dips:
         return
-    poses = PosesOnTheWay(dynamics.system, rows.t, rows.q)
+    poses = PosesBetween(dynamics.system, rows.t, rows.q)
     if not poses.usual:
         return
     first, *others = [np.linspace(rows.t[k - 1], rows.t[k + 1], RUN_CHECKS.dip_instants) for k in sorted(dips)]
@@ -190,13 +190,13 @@ def _least(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarray:
     return at - slope * slope / (4 * bend)
 
 
-def _nearest(poses: PosesOnTheWay, dense: OutputRows, stretches: list[np.ndarray]) -> tuple[float, SingularPose | None]:
+def _nearest(poses: PosesBetween, dense: OutputRows, stretches: list[np.ndarray]) -> tuple[float, SingularPose | None]:
     """Return the smallest distance from a singular pose within some intervals, and the pose."""
     within = poses.at(dense.t, dense.q)
     return min((_nearest_within(within, dense, stretch) for stretch in stretches), key=lambda found: found[0])
 
 
-def _nearest_within(poses: PosesOnTheWay, dense: OutputRows, stretch: np.ndarray) -> tuple[float, SingularPose | None]:
+def _nearest_within(poses: PosesBetween, dense: OutputRows, stretch: np.ndarray) -> tuple[float, SingularPose | None]:
     """Return the distance from a singular pose within an interval, and the pose."""
     inside = np.flatnonzero((dense.t >= stretch[0]) & (dense.t <= stretch[-1]))
     if not len(inside):

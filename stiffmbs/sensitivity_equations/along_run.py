@@ -234,9 +234,9 @@ class Touches:
         if not len(resting):
             return
         n, row = self._recorder.equations.n, segment.rows[-1]
-        for numbers, way in zip(self._directions, s, strict=True):
-            size = MOVED / max(float(np.abs(way).max()), 1.0)
-            whole, half = (self._bend(row[0], row[2 : 2 + n], way, numbers, part * size) for part in (1.0, 0.5))
+        for numbers, dy in zip(self._directions, s, strict=True):
+            size = MOVED / max(float(np.abs(dy).max()), 1.0)
+            whole, half = (self._bend(row[0], row[2 : 2 + n], dy, numbers, part * size) for part in (1.0, 0.5))
             if np.any((half > KINKED * whole) & (whole > NOTICED * (1.0 + np.abs(row[2 + n :]).max()))):
                 name = writer(self._dynamics.system, "event_function", int(resting[0]))
                 raise SolverError(
@@ -244,7 +244,7 @@ class Touches:
                     "and that a parameter moves it off: the motion is not differentiable there; expected an event that crosses it or "
                     "stays clear of it"
                 )
-            off = [self._off_differences(row[0], row[2 : 2 + n], way, numbers, part * size) for part in (1.0, 0.5)]
+            off = [self._off_differences(row[0], row[2 : 2 + n], dy, numbers, part * size) for part in (1.0, 0.5)]
             if np.any((off[1] > STEADY * off[0]) & (size * off[0] > NOTICED * (1.0 + np.abs(row[2 + n :]).max()))):
                 name = writer(self._dynamics.system, "event_function", int(resting[0]))
                 raise SolverError(
@@ -253,15 +253,15 @@ class Touches:
                     "with breakpoints that cancel"
                 )
 
-    def _off_differences(self, t: float, y: np.ndarray, way: np.ndarray, numbers: Numbers, size: float) -> np.ndarray:
+    def _off_differences(self, t: float, y: np.ndarray, dy: np.ndarray, numbers: Numbers, size: float) -> np.ndarray:
         """Return the error of the derivatives of forces along a change of state and numbers, beyond rounding of differences."""
         lam = self._recorder.equations.at["lam"]
         solved = lam != ABSENT
-        before, after = (self._with_numbers(t, y, way, numbers, part, self._forces) for part in (-size, size))
+        before, after = (self._with_numbers(t, y, dy, numbers, part, self._forces) for part in (-size, size))
         self._take(t, y)
         direction = Direction(self._dynamics.state, "motion", numbers)
-        direction.q[:], direction.u[:] = self._recorder.split(way)
-        direction.lam[solved] = way[lam[solved]]
+        direction.q[:], direction.u[:] = self._recorder.split(dy)
+        direction.lam[solved] = dy[lam[solved]]
         direction.evaluate(t)
         found = np.concatenate([direction.vector(name) for name in FORCES])
         system, values = self._dynamics.system, self._dynamics.state.values["motion"]
@@ -276,13 +276,13 @@ class Touches:
         self._dynamics.state.evaluate("motion", t)
         return np.concatenate([self._dynamics.state.vector("motion", name) for name in FORCES])
 
-    def _bend(self, t: float, y: np.ndarray, way: np.ndarray, numbers: Numbers, size: float) -> np.ndarray:
+    def _bend(self, t: float, y: np.ndarray, dy: np.ndarray, numbers: Numbers, size: float) -> np.ndarray:
         """Return the second difference of the rates along a change of state and numbers."""
-        found = [self._with_numbers(t, y, way, numbers, part, self._all_rates) for part in (-size, 0.0, size)]
+        found = [self._with_numbers(t, y, dy, numbers, part, self._all_rates) for part in (-size, 0.0, size)]
         return np.asarray(np.abs(found[0] - 2 * found[1] + found[2]))
 
     def _with_numbers(
-        self, t: float, y: np.ndarray, way: np.ndarray, numbers: Numbers, part: float,
+        self, t: float, y: np.ndarray, dy: np.ndarray, numbers: Numbers, part: float,
         evaluated: Callable[[float, np.ndarray], np.ndarray],
     ) -> np.ndarray:  # fmt: skip
         """Return a function of the state after a part of a change of state and numbers."""
@@ -291,7 +291,7 @@ class Touches:
         try:
             for g, own in kept.items():
                 groups[g].numbers[:] = own + part * numbers.of_groups[g]
-            return evaluated(t, y + part * way)
+            return evaluated(t, y + part * dy)
         finally:
             for g, own in kept.items():
                 groups[g].numbers[:] = own
@@ -338,8 +338,8 @@ class Touches:
         here = self._value(t, y, event)
         if not abs(here) <= margin:
             return False
-        way = np.sign(slope) * tolerance / margin
-        near, far = (self._change(t, y, way, -here, size) for size in (2 * margin, 2 * FURTHER * margin))
+        dy = np.sign(slope) * tolerance / margin
+        near, far = (self._change(t, y, dy, -here, size) for size in (2 * margin, 2 * FURTHER * margin))
         return bool(np.any((near > LINEAR * far) & (near > 0)))
 
     def _slope(self, t: float, y: np.ndarray, event: int, moves: np.ndarray) -> np.ndarray:
@@ -356,9 +356,9 @@ class Touches:
         self._dynamics.state.evaluate("event_function", t)
         return float(self._dynamics.state.values["event_function"][event])
 
-    def _change(self, t: float, y: np.ndarray, way: np.ndarray, to_zero: float, size: float) -> np.ndarray:
+    def _change(self, t: float, y: np.ndarray, dy: np.ndarray, to_zero: float, size: float) -> np.ndarray:
         """Return the difference between the rates on both sides of the breakpoint."""
-        one, other = (np.concatenate(list(self._rates(t, y + (to_zero + side * size) * way))) for side in (-1, 1))
+        one, other = (np.concatenate(list(self._rates(t, y + (to_zero + side * size) * dy))) for side in (-1, 1))
         return np.asarray(np.abs(other - one))
 
     def _rates(self, t: float, y: np.ndarray) -> Iterator[np.ndarray]:

@@ -158,7 +158,7 @@ class Recorder(Integrator):
         self.dynamics.state.q[:], self.dynamics.state.u[:] = self.split(y)
         return self.dynamics.accelerate(t)[1].copy()
 
-    def _anew(
+    def _restarted(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
     ) -> tuple[InitialValues, float]:
         """Return consistent values for the segment; the engine does not restart by itself."""

@@ -64,12 +64,12 @@ def _title(name: str, one: Tested) -> str:
     units = {
         each.name: DIMENSIONS.get(each.metadata["dimension"], ("", ""))[1] for each in fields(TESTS[name].parameters)
     }
-    told = [
+    values = [
         f"{key.replace('_', ' ')} {_number(value)} {units[key] if units[key] != '1' else ''}".rstrip()
         for key, value in one.parameters.items()
         if value is not None
     ]
-    return f"{TESTS[name].title} ({', '.join(told)})"
+    return f"{TESTS[name].title} ({', '.join(values)})"
 
 
 def _number(value: object) -> str:

@@ -68,8 +68,8 @@ def _of_report(report: Report) -> str:
         ("reactions without a unique value", ", ".join(report.not_unique) or "none"),
         ("unknowns", f"{report.unknowns[0]}, solved for {report.unknowns[1]}"),
     ]  # fmt: skip
-    told = [("", sentence) for sentence in (*report.inconsistencies, *report.presolve, *report.messages)]
-    return _page(report.name, "", _table(("", ""), [*rows, *told]))
+    sentences = [("", sentence) for sentence in (*report.inconsistencies, *report.presolve, *report.messages)]
+    return _page(report.name, "", _table(("", ""), [*rows, *sentences]))
 
 
 def _of_solution(solution: Solution) -> str:
@@ -81,10 +81,10 @@ def _of_solution(solution: Solution) -> str:
         (name, solution.unit(name), *(f"{found[key]:.6g}" for key in ("first", "last", "min", "max")))
         for name, found in ranges.items()
     ]
-    told = "".join(f"<p>{escape(sentence)}</p>" for sentence in (solution.message, *solution.notes))
+    sentences = "".join(f"<p>{escape(sentence)}</p>" for sentence in (solution.message, *solution.notes))
     drawable = find_spec("matplotlib") is not None and solution.figure is not None and len(solution.time) > 1
     figure = _picture(drawn(solution, solution.figure)) if drawable else ""
-    return _page(solution.name, told + figure, _table(("channel", "unit", "first", "last", "min", "max"), rows))
+    return _page(solution.name, sentences + figure, _table(("channel", "unit", "first", "last", "min", "max"), rows))
 
 
 def escape(text: str) -> str:

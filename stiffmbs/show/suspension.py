@@ -104,8 +104,8 @@ def _words(found: KinematicsAndCompliance) -> list[str]:
     vehicle = found.vehicle
     if not vehicle.wheelbase or vehicle.height is None or vehicle.front is None:
         return ["no wheelbase and height of the centre of mass: without anti-dive, anti-lift, anti-squat"]
-    told = f"wheelbase {vehicle.wheelbase:.4g} m, centre of mass at {vehicle.height:.4g} m"
-    return [f"{told}; assumed: {', '.join(vehicle.assumed)}" if vehicle.assumed else told]
+    sentence = f"wheelbase {vehicle.wheelbase:.4g} m, centre of mass at {vehicle.height:.4g} m"
+    return [f"{sentence}; assumed: {', '.join(vehicle.assumed)}" if vehicle.assumed else sentence]
 
 
 def _columns(found: KinematicsAndCompliance) -> tuple[str, ...]:
@@ -175,8 +175,8 @@ def kc_section(found: KinematicsAndCompliance) -> Section:
         Table(("at the described heights", *columns), tuple(measure_rows(found))),
         Table(("slope there", *columns), tuple(slope_rows(found))),
     )
-    told = f"Left and right differ by at most {found.asymmetry():.1e}, relative to their curves."
-    sentences = (found.message, *_words(found), *((told,) if len(found.axle.wheels) == 2 else ()))
+    sentence = f"Left and right differ by at most {found.asymmetry():.1e}, relative to their curves."
+    sentences = (found.message, *_words(found), *((sentence,) if len(found.axle.wheels) == 2 else ()))
     return Section(f"Kinematics and compliance: {found.axle.title}", sentences, tables, (kc_figure(found),))
 
 
@@ -243,5 +243,5 @@ def road_loads_section(found: RoadLoads) -> Section:
     rows = [
         (name, *(f"{peak.value:.5g} at {peak.time:.4g} s" for peak in peaks)) for name, peaks in found.peaks.items()
     ]
-    told = f"Largest forces and torques of bushings in their own axes (N, N m), over {', '.join(found.loads)}."
-    return Section("Road loads", (told,), (Table(("bushing", *COMPONENTS), tuple(rows)),))
+    sentence = f"Largest forces and torques of bushings in their own axes (N, N m), over {', '.join(found.loads)}."
+    return Section("Road loads", (sentence,), (Table(("bushing", *COMPONENTS), tuple(rows)),))

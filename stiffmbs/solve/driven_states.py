@@ -68,17 +68,17 @@ class _Along:
         """
         self._evaluations += 1
         if self._evaluations % CONTROL.enough_steps == 0:
-            self._look_at_pace(t)
+            self._check_mean_step(t)
         if not self._go_to(t, values):
             return np.full(len(values), np.nan)
         state = self._dynamics.state
         return self._dynamics.position_rates(state.q, state.u)[self._places]
 
-    def _look_at_pace(self, t: float) -> None:
-        way, self._looked_at = t - self._looked_at, t
-        if (self._end - t) * CONTROL.enough_steps > CHATTERING.too_many * max(way, 0.0):
+    def _check_mean_step(self, t: float) -> None:
+        covered, self._looked_at = t - self._looked_at, t
+        if (self._end - t) * CONTROL.enough_steps > CHATTERING.too_many * max(covered, 0.0):
             raise SolverError(
-                f"stopped at t = {t:.9g} s: the states could not be integrated: the last {CONTROL.enough_steps} evaluations covered only {way:.3g} s; "
+                f"stopped at t = {t:.9g} s: the states could not be integrated: the last {CONTROL.enough_steps} evaluations covered only {covered:.3g} s; "
                 "expected smoother rates, or inputs with less rounding"
             )
 

@@ -116,12 +116,12 @@ class Integrator:
                     self._masked.note(t, q, u, self.steps(), reached.fired)
                 if t >= stops[0]:  # min(2*t, 1) still rises at its breakpoint; its later branch holds after it
                     t = just_after(t)
-                ready, t = self._anew(q, u, before, t, self._ahead(reached, stops[0]), chattering)
+                ready, t = self._restarted(q, u, before, t, self._ahead(reached, stops[0]), chattering)
                 yield from self._at_once(before, t, grid)
                 self._events += before < stops[0]
                 self._breakpoints += before >= stops[0]
 
-    def _anew(
+    def _restarted(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
     ) -> tuple[InitialValues | None, float]:
         """Restart at t from a state reached at `before`, past events within `ahead`.
@@ -129,7 +129,7 @@ class Integrator:
         Return consistent values to start from, or None if the engine has restarted, and their time.
         """
         self.engine.leave_out(self._masked.steps)
-        begun = self.engine.begin_anew(q, u, t, ahead)
+        begun = self.engine.begin_restart(q, u, t, ahead)
         if begun is None:
             return self._consistent(q, u, before, t, ahead)
         state = self.dynamics.state

@@ -189,7 +189,7 @@ class _Motion:
         before = Instant(self.t, self.q, self.u, self.a, self._turning)
         state.q[self._dynamics.system.first_state :] = states_after(self._dynamics, before, t)
         state.q[self._counters] = self.q[self._counters] + (t - self.t) / 2 * (self._turning + turning)
-        state.count_anew(t)
+        state.restart_counters(t)
         self._status, acceleration = self._dynamics.accelerate(t)
         if self._status == 0:
             self.t, self.q, self.u, self.a = t, state.q.copy(), state.u.copy(), acceleration

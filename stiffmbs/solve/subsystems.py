@@ -71,10 +71,10 @@ def presolved(
     implicit = traits.implicit and (
         not traits.switches or decided(partial(_begins_implicit, dynamics, start, grid, settings))
     )
-    way = (grid.end - grid.start) * start.u if implicit else None
+    travel = (grid.end - grid.start) * start.u if implicit else None
     at_rest = _set_modes_to_rest(model, dynamics, start) if traits.implicit else {}
     together = partial(alike, dynamics, start, (grid.start, grid.end), implicit)
-    parts = parts_of(model, dynamics.system, way, together if grid.times is not None else None)
+    parts = parts_of(model, dynamics.system, travel, together if grid.times is not None else None)
     subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
     if traits.implicit:
         for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:

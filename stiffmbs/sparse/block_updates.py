@@ -110,14 +110,14 @@ def _targets(blocks: Blocks, k: int) -> Iterator[Target]:
     """Yield the targets of supernode k: later columns from the diagonal down, later rows right of the diagonal."""
     down, right = (int(start) for start in blocks.starts[2 * k : 2 * k + 2])
     down_at, right_at = blocks.down_at[k], blocks.right_at[k]
-    below, beside = blocks.below[k], blocks.right[k]
-    for b in beside:
+    below, right_of = blocks.below[k], blocks.right[k]
+    for b in right_of:
         runs = _runs(blocks, [a for a in below if a >= b], down_at, blocks.down_at[b], down)
         yield Target(
             k, DOWN, int(blocks.starts[2 * b]), blocks.down_width[b], right + right_at[b], blocks.sizes[b], runs
         )
     for a in below:
-        runs = _runs(blocks, [b for b in beside if b > a], right_at, blocks.right_at[a], right)
+        runs = _runs(blocks, [b for b in right_of if b > a], right_at, blocks.right_at[a], right)
         yield Target(
             k, RIGHT, int(blocks.starts[2 * a + 1]), blocks.right_width[a], down + down_at[a], blocks.sizes[a], runs
         )

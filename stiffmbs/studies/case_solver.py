@@ -145,8 +145,8 @@ class CaseSolver:
             return Row(case, "error", str(error)[:MOST_WORDS], nothing, dict(self._files))
         if solution.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
-        told = "; ".join([*([] if done else [solution.message]), *self._undefined(outputs, done), *solution.notes])
-        return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs, dict(self._files))
+        sentences = "; ".join([*([] if done else [solution.message]), *self._undefined(outputs, done), *solution.notes])
+        return Row(case, "done" if done else "stopped", sentences[:MOST_WORDS], outputs, dict(self._files))
 
     def _undefined(self, outputs: Sequence[float | np.ndarray], done: bool) -> Iterator[str]:
         """Yield a sentence for each output number of a completed run that is not finite, such as log(0)."""

@@ -87,17 +87,17 @@ def _followed(job: Job, every: float) -> Iterator[Solution]:
     u = np.empty((len(instants), len(job.start.u)))
     lengths = np.zeros(len(instants))
     q[0], u[0] = job.start.q, job.start.u
-    told, pause, solved = time.monotonic(), every, 1
+    reported, pause, solved = time.monotonic(), every, 1
     with Ending() as ending:
         for k in range(1, len(instants)):
             stepper.advance(float(instants[k]))
             q[k], u[k], lengths[k] = stepper.q, stepper.u, stepper.length
             solved = k + 1
             begun = time.monotonic()
-            if begun - told >= pause and solved < len(instants):
+            if begun - reported >= pause and solved < len(instants):
                 yield _so_far(job, instants[:solved], (q[:solved], u[:solved]), lengths, Outcome.STOPPED, STILL_SOLVING)
-                told = time.monotonic()
-                pause = max(every, SHARE * (told - begun))
+                reported = time.monotonic()
+                pause = max(every, SHARE * (reported - begun))
     yield _so_far(job, instants[:solved], (q[:solved], u[:solved]), lengths, ending.outcome, ending.message)
 
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..analyses.job import Job, Runnable, data_of, prepare
 from ..analyses.renumber import renumberable
+from ..analyses.rerun import DRIFTED, exactly, relaxed
 from ..analyses.start_from import StartFrom, started_from, state_to_start_from
-from ..analyses.taken_again import CREPT, exactly, relaxed
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
 from ..errors import AssemblyError, ChannelError, InputError, SolverError
@@ -23,7 +23,7 @@ from ..results.frames import own_are_principal
 from ..results.instant import Instant
 from ..results.joint_angles import joint_angles
 from ..results.saved_state import TURNS, SavedState
-from ..solve.error_control.relaxation import creep_at
+from ..solve.error_control.relaxation import drift_at
 from ..solve.events.restart import restarted
 from ..solve.settings import changed
 from ..solve.stiff_rows import with_stiff_forces
@@ -162,7 +162,7 @@ class Simulation:
         self._steps += 1
         with in_use(self._job.settings.tuning):
             if self._relaxed and (self._steps % LOOK == 0 or self._steps & (self._steps - 1) == 0):
-                self._advance_without_creep(end)
+                self._advance_without_drift(end)
             else:
                 self._advance(end)
         self.t = end
@@ -185,15 +185,15 @@ class Simulation:
             self._go_on_with(self._steps_of(self._job, self.q, self.u), relaxed=True)
             self._stepper.advance(end)
 
-    def _advance_without_creep(self, end: float) -> None:
+    def _advance_without_drift(self, end: float) -> None:
         """Advance to a later time; if relaxed constraints drift, repeat this with exact ones and keep these."""
         q, u = self.q, self.u
         self._stepper.advance(end)
         dynamics, settings = self._job.dynamics, self._job.settings
         with dynamics.state.unchanged():
             dynamics.state.q[:] = self._stepper.q
-            creep = creep_at(dynamics, end, self._stepper.u, settings)
-        if creep > CREPT:
+            drift = drift_at(dynamics, end, self._stepper.u, settings)
+        if drift > DRIFTED:
             with suppress(SolverError):  # in a singular pose, which only relaxed constraints pass
                 exact = self._steps_of(exactly(self._job), q, u)
                 exact.advance(end)

@@ -17,9 +17,9 @@ from ..results.scales import kind_of
 from ..results.solution import Solution
 from ..solve.settings import traits_of
 from .divergence import Divergence, distance, divergence
+from .missed_events import Along, DenseSamples, SteppedOver, beyond, poses_of
 from .parameters import VERIFICATION
 from .solve_again import Again
-from .stepped_over import Along, DenseSamples, SteppedOver, beyond, poses_of
 
 
 @dataclass(frozen=True)

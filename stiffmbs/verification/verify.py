@@ -7,7 +7,7 @@
    first two differ. It shows the order of convergence.
 
 All of these may miss events within one step. The run is therefore searched for them
-(`stiffmbs.verification.stepped_over`). If the scene has force laws or events in the state, it is solved again with
+(`stiffmbs.verification.missed_events`). If the scene has force laws or events in the state, it is solved again with
 another longest step:
 
 4. As 1, with several times as many steps, or with steps that resolve the events found by the search.
@@ -40,9 +40,9 @@ from ..solve.trajectory import Outcome, ProgressCallback
 from ..tuning import in_use
 from .diagnostics import Comparison, by_luck, diagnostics, step_diagnostics
 from .divergence import distance, divergence
+from .missed_events import Along, DenseSamples, SteppedOver, dense_samples, looked_along, more_instants
 from .parameters import VERIFICATION
 from .solve_again import Again, levels_of, other_integrators, shorter_step, solve_again, tolerances
-from .stepped_over import Along, DenseSamples, SteppedOver, dense_samples, looked_along, more_instants
 
 
 @takes_settings

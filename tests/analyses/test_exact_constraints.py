@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.analyses import taken_again
+from stiffmbs.analyses import rerun
 from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.run import solved
 from stiffmbs.elements.planar_kinds import FORCES
@@ -37,9 +37,7 @@ def test_nothing_is_taken_again_where_multipliers_are_as_large_as_weights():
 
 def test_a_run_that_exact_constraints_do_not_bring_as_far_is_kept_and_doubted(monkeypatch):
     job = prepare(pulled(1e6), **HOW)
-    monkeypatch.setattr(
-        taken_again, "exactly", lambda job: replace(job, grid=replace(job.grid, times=job.grid.times[:2]))
-    )
+    monkeypatch.setattr(rerun, "exactly", lambda job: replace(job, grid=replace(job.grid, times=job.grid.times[:2])))
     solution = solved(job)
     assert len(solution.t) == 101
     assert any(

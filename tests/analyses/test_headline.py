@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.analyses import taken_again
+from stiffmbs.analyses import rerun
 from stiffmbs.solve.trajectory import IN_DOUBT, Outcome
 
 FOUR_BAR = """
@@ -27,14 +27,14 @@ GROWS = "gravity: [0, 0]\nbodies: {b: {mass: 1, inertia: 1, position: [1, 0]}}\n
 
 def test_constraint_drift_that_stays_is_in_the_headline(monkeypatch):
     """The run with exact constraints is cut, as where a mechanism locks."""
-    exactly = taken_again.exactly
+    exactly = rerun.exactly
 
     def cut(job):
         grid = replace(job.grid, end=0.1, times=job.grid.times[job.grid.times <= 0.1])
         return replace(exactly(job), grid=grid)
 
-    monkeypatch.setattr(taken_again, "exactly", cut)
-    monkeypatch.setattr(taken_again, "CREPT", 1e-9)
+    monkeypatch.setattr(rerun, "exactly", cut)
+    monkeypatch.setattr(rerun, "DRIFTED", 1e-9)
     scene = stiffmbs.read_scene(FOUR_BAR.replace("1e7", "1e2"))
     solution = stiffmbs.run(scene, solver="bdf", duration=3, points=61)
     assert any("constraint drift" in note and "may be wrong" in note for note in solution.notes)

@@ -20,7 +20,7 @@ from stiffmbs.results.error_bars import ErrorBar
 from stiffmbs.results.scales import scales
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Grid
-from stiffmbs.verification.stepped_over import more_instants
+from stiffmbs.verification.missed_events import more_instants
 from stiffmbs.verification.verify import verified
 
 from .error_control import bushing_in_place, scene

@@ -6,7 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs.analyses.job import prepare
 from stiffmbs.compile.compile_model import compile_model
-from stiffmbs.compile.law_zones import zones_of
+from stiffmbs.compile.law_intervals import intervals_of
 from tests.stress.case import Outcome
 from tests.stress.families.events import within_one_step
 from tests.stress.fuzzers import contacts
@@ -35,32 +35,34 @@ forces: {{f: {{type: force, i: b, force: ["{law}", 0]}}}}
 """)
 
 
-def edges(table):
-    zones = zones_of(compile_model(pushed(table)))
-    assert zones.first.tolist() == [0, len(zones.edges)] and len(zones.overlap) == len(zones.edges)
-    return zones.edges, zones.period[0]
+def breakpoints(table):
+    intervals = intervals_of(compile_model(pushed(table)))
+    assert intervals.first.tolist() == [0, len(intervals.breakpoints)] and len(intervals.overlap) == len(
+        intervals.breakpoints
+    )
+    return intervals.breakpoints, intervals.period[0]
 
 
 def test_a_smooth_table_has_few_zones_and_a_bump_one_of_its_own():
     x = np.linspace(0, 2 * np.pi, 361)
-    smooth, _ = edges(f"{{table: {np.column_stack([x, np.cos(x)]).tolist()}}}")
+    smooth, _ = breakpoints(f"{{table: {np.column_stack([x, np.cos(x)]).tolist()}}}")
     assert len(smooth) < 15
-    bump, _ = edges("{table: [[0, 0], [15, 0], [15.05, -1000], [15.1, 0], [30, 0]], lines: true}")
+    bump, _ = breakpoints("{table: [[0, 0], [15, 0], [15.05, -1000], [15.1, 0], [30, 0]], lines: true}")
     assert bump.tolist() == [0, 15, 15.05, 15.1, 30]
 
 
 def test_zones_follow_numbers_that_change_in_place():
     system = compile_model(pushed("{table: [[0, 0], [1, 1], [2, 0]], lines: true}"))
-    before = zones_of(system)
-    assert zones_of(system) is before
+    before = intervals_of(system)
+    assert intervals_of(system) is before
     (group,) = system.groups
     group.numbers[group.numbers == 1.0] = 1.5
-    assert before.edges.tolist() == [0, 1, 2] and zones_of(system).edges.tolist() != [0, 1, 2]
+    assert before.breakpoints.tolist() == [0, 1, 2] and intervals_of(system).breakpoints.tolist() != [0, 1, 2]
 
 
 def test_a_reciprocal_has_no_edge_where_its_usual_arguments_turn_round():
     """1/(1 + x^2) and 1/cos(x) have their extremum at 1: whether it passes an edge there is left to rounding."""
-    found = zones_of(compile_model(pushed("{table: [[0, 0], [1, 1]]}", "1/(1 + b.x^2)"))).edges
+    found = intervals_of(compile_model(pushed("{table: [[0, 0], [1, 1]]}", "1/(1 + b.x^2)"))).breakpoints
     assert np.abs(np.abs(found) - 1).min() > 0.4
 
 
@@ -69,8 +71,8 @@ STOP = "{lines: true, table: [[-1, 0], [0, 0], [0.01, 1e6]]}"
 
 
 def overlap_at_zero(table, law="p(b.x)"):
-    zones = zones_of(compile_model(pushed(table, law)))
-    return zones.overlap[np.flatnonzero(zones.edges == 0)[0]]
+    intervals = intervals_of(compile_model(pushed(table, law)))
+    return intervals.overlap[np.flatnonzero(intervals.breakpoints == 0)[0]]
 
 
 def test_zones_overlap_where_the_law_goes_on_smoothly():
@@ -104,7 +106,7 @@ def test_functions_far_from_their_edges_are_looked_at_once_a_step():
 
 
 def test_a_periodic_table_repeats_its_zones():
-    found, period = edges("{table: [[0, 0], [0.9, 0], [0.95, 1], [1, 0]], lines: true, ends: periodic}")
+    found, period = breakpoints("{table: [[0, 0], [0.9, 0], [0.95, 1], [1, 0]], lines: true, ends: periodic}")
     assert period == 1 and found.tolist() == [0, 0.9, 0.95]
 
 
@@ -221,15 +223,15 @@ def test_a_peak_is_seen_that_lies_before_another_place_of_its_zones(rtol):
     assert found == pytest.approx(np.sqrt(1 + 2 * size * width * np.pi / 4), abs=0.01)
 
 
-@pytest.mark.parametrize(("zones", "turns"), [(8, True), (9, False)])
-def test_a_periodic_table_of_few_zones_turns(zones, turns):
+@pytest.mark.parametrize(("intervals", "turns"), [(8, True), (9, False)])
+def test_a_periodic_table_of_few_zones_turns(intervals, turns):
     """Its features are long beside the period, as those of a sine are; features of a table of more zones bound steps by themselves."""
-    heights = [(-1) ** k * k for k in range(zones)]
+    heights = [(-1) ** k * k for k in range(intervals)]
     table = {"lines": True, "ends": "periodic", "table": [[k, float(y)] for k, y in enumerate([*heights, heights[0]])]}
-    found = zones_of(compile_model(pushed(table, velocity=1.0)))
-    assert len(found.edges) == zones
+    found = intervals_of(compile_model(pushed(table, velocity=1.0)))
+    assert len(found.breakpoints) == intervals
     assert found.turns.tolist() == [0] * turns
-    assert found.radians.tolist() == pytest.approx([2 * np.pi / zones] * turns)
+    assert found.radians.tolist() == pytest.approx([2 * np.pi / intervals] * turns)
 
 
 TEETH = "{lines: true, ends: periodic, table: [[0, 0], [0.7, 0], [0.85, 1], [1, 0]]}"

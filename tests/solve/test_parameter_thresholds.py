@@ -18,7 +18,7 @@ from stiffmbs.errors import SolverError
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import cost, kinematic
 from stiffmbs.solve.error_control.precision import governed_by_rounding, too_fine
-from stiffmbs.solve.error_control.relaxation import creep_of_positions, creep_of_velocities, refuse_drift
+from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities, refuse_drift
 from stiffmbs.solve.error_control.stability_limit import (
     STABILITY_LIMIT,
     CubicFit,
@@ -148,12 +148,12 @@ def largest_drift():
 
 def longest_chain_without_less_relaxation():
     settings = RunSettings(duration=1.0)
-    creep = [creep_of_velocities(settings, SimpleNamespace(bodies=range(n))) for n in range(1, 500)]
+    creep = [drift_of_velocities(settings, SimpleNamespace(bodies=range(n))) for n in range(1, 500)]
     return count_while(lambda each: each == creep[0], creep)
 
 
 def relaxation_at_a_loose_tolerance():
-    loose, usual = (creep_of_positions(RunSettings(duration=1.0, rtol=rtol)) for rtol in (0.1, 1e-8))
+    loose, usual = (drift_of_positions(RunSettings(duration=1.0, rtol=rtol)) for rtol in (0.1, 1e-8))
     return round(loose / usual)
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.analyses import taken_again
-from stiffmbs.compile.law_zones import Zones, zones_of
+from stiffmbs.analyses import rerun
+from stiffmbs.compile.law_intervals import Intervals, intervals_of
 from stiffmbs.solve.events import event_functions as event_watch
 from tests.stress.fuzzers import contacts
 
@@ -39,8 +39,8 @@ def no_search(monkeypatch):
     """Nothing within a step is looked for: all edges are out of reach."""
 
     def far_away(system):
-        count = len(zones_of(system).period)
-        return Zones(
+        count = len(intervals_of(system).period)
+        return Intervals(
             np.arange(count + 1),
             np.full(count, 1e300),
             np.zeros(count),
@@ -51,7 +51,7 @@ def no_search(monkeypatch):
             count,
         )
 
-    monkeypatch.setattr(event_watch, "zones_of", far_away)
+    monkeypatch.setattr(event_watch, "intervals_of", far_away)
 
 
 def told(solution):
@@ -72,7 +72,7 @@ def test_what_steps_pass_over_is_told_and_the_run_taken_again(no_search, scene, 
 
 
 def test_what_is_not_taken_again_is_said(no_search, monkeypatch):
-    monkeypatch.setattr(taken_again, "ROUNDS", 0)
+    monkeypatch.setattr(rerun, "ROUNDS", 0)
     found = stiffmbs.run(stiffmbs.read_scene(BUMP), duration=1.0, points=11, solver="projected", scheme="dopri5")
     (note,) = told(found)
     assert found["ball.vx"][-1] == pytest.approx(10, abs=1e-6)

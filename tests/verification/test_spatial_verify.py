@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 import stiffmbs
-from stiffmbs.analyses import taken_again
+from stiffmbs.analyses import rerun
 from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.renumber import with_numbers
 from stiffmbs.commands.main import main
@@ -51,7 +51,7 @@ def nearly_a_parallelogram():
 
 @pytest.mark.long
 def test_another_branch_is_told_with_time_and_poses(monkeypatch):
-    monkeypatch.setattr(taken_again, "CREPT", np.inf)  # exact constraints see the micron at any tolerance
+    monkeypatch.setattr(rerun, "DRIFTED", np.inf)  # exact constraints see the micron at any tolerance
     found = stiffmbs.verify(nearly_a_parallelogram())
     (told,) = [note for note in found.notes if "another branch" in note]
     upright = 1 - 2 * (found["crank0.q1"] ** 2 + found["crank0.q3"] ** 2)

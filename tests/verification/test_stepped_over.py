@@ -10,7 +10,7 @@ from stiffmbs.analyses.run import solved
 from stiffmbs.elements.planar_kinds import FORCES
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.verification import verify as module
-from stiffmbs.verification.stepped_over import looked_along
+from stiffmbs.verification.missed_events import looked_along
 
 from ..conftest import EXAMPLES
 

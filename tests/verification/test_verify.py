@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import Body, Marker, Model, Prismatic, SpringDamper
-from stiffmbs.analyses import taken_again
+from stiffmbs.analyses import rerun
 from stiffmbs.commands.main import main
 from stiffmbs.results.error_bars import between, error_bar
 from stiffmbs.show.force_table import with_bar
@@ -184,7 +184,7 @@ def nearly_a_parallelogram():
 
 @pytest.mark.long
 def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(monkeypatch):
-    monkeypatch.setattr(taken_again, "CREPT", np.inf)  # exact constraints see the micron at any tolerance
+    monkeypatch.setattr(rerun, "DRIFTED", np.inf)  # exact constraints see the micron at any tolerance
     found = stiffmbs.verify(nearly_a_parallelogram(), duration=3.0, rtol=1e-5)
     (told,) = [note for note in found.notes if "another branch" in note]
     flat = found.time[np.argmax(np.abs(np.sin(found["v0.angle"])) < 0.2)]

@@ -110,8 +110,8 @@ def _points(joint: Curve[Any]) -> np.ndarray:
     value, off = joint.radius if closed else joint.y, getattr(joint, "height" if closed else "z", None)
     ends = "periodic" if closed else "not-a-knot"
     along, across = _columns(value, ends)
-    beside, height = (along, np.zeros(len(along))) if off is None else _columns(off, ends)
-    if not np.array_equal(beside, along):
+    abscissae, height = (along, np.zeros(len(along))) if off is None else _columns(off, ends)
+    if not np.array_equal(abscissae, along):
         raise Refusal("found two tables of a curve with different arguments, expected the same")
     if not closed:
         return np.column_stack([along, across, height])

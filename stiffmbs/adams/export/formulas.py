@@ -144,13 +144,13 @@ class Functions:
 
     def _curve(self, name: str, table: Table, argument: str, clamped: bool = False) -> str:
         """Return a table that continues with the slope of its end, where Adams would follow a parabola."""
-        way, ident = self._numbering.spline(name, table)
-        if way == "INTERP":  # its spline has LINEAR_EXTRAPOLATE
+        interpolation, ident = self._numbering.spline(name, table)
+        if interpolation == "INTERP":  # its spline has LINEAR_EXTRAPOLATE
             return f"INTERP({argument},1,{ident})"
         if clamped:
-            return f"{way}({argument},0,{ident},0)"
+            return f"{interpolation}({argument},0,{ident},0)"
         first, last = (f"({number(table.table[end][0])})" for end in (0, -1))
-        inside = f"{way}(MAX({first},MIN({last},{argument})),0,{ident},0)"
+        inside = f"{interpolation}(MAX({first},MIN({last},{argument})),0,{ident},0)"
         low, high = (f"({number(slope)})" for slope in end_slopes(table))
         return f"({inside}+{low}*MIN({argument}-{first},0)+{high}*MAX({argument}-{last},0))"
 

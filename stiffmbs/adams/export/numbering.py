@@ -100,16 +100,16 @@ class Numbering:
 
         Raises Refusal if Adams has no such interpolation, or the table has too few points.
         """
-        way = table.ends if table.interpolation == "spline" or table.ends == "periodic" else table.interpolation
-        if way is None or way not in CURVES:
-            raise Refusal(f"found the table {name} ({way or 'natural'}), expected akima, lines, or ends: not-a-knot")
-        if len(table.table) < FEWEST_POINTS and way != "lines":
+        method = table.ends if table.interpolation == "spline" or table.ends == "periodic" else table.interpolation
+        if method is None or method not in CURVES:
+            raise Refusal(f"found the table {name} ({method or 'natural'}), expected akima, lines, or ends: not-a-knot")
+        if len(table.table) < FEWEST_POINTS and method != "lines":
             raise Refusal(
                 f"found a curve through {len(table.table)} points, expected {FEWEST_POINTS} or more, or straight lines"
             )
         if name not in self._splines:
             self._splines[name] = len(self._splines) + 1, table
-        return CURVES[way], self._splines[name][0]
+        return CURVES[method], self._splines[name][0]
 
     def statements(self) -> Iterator[str]:
         """Yield the statements of parts, markers and splines."""

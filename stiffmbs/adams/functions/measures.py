@@ -39,9 +39,9 @@ def angle(name: str, mechanism: Mechanism, i: Place, j: Place) -> ast.expr:
 
 def included_angle(first: str, vertex: str, second: str) -> ast.expr:
     """Return the angle at a marker between the directions to two others, 0 to pi."""
-    ways = [[measured(f"d{axis}", end, vertex, "") for axis in "xyz"] for end in (first, second)]
+    components = [[measured(f"d{axis}", end, vertex, "") for axis in "xyz"] for end in (first, second)]
     lengths = product(measured("dm", first, vertex, ""), measured("dm", second, vertex, ""))
-    return call("acos", bounded(quotient(total([product(a, b) for a, b in zip(*ways, strict=True)]), lengths)))
+    return call("acos", bounded(quotient(total([product(a, b) for a, b in zip(*components, strict=True)]), lengths)))
 
 
 def bounded(cosine: ast.expr) -> ast.expr:
@@ -70,8 +70,8 @@ def reaction(joint: Primitive, component: str, on_j: bool, axes: Place | None, m
     if axes is None or (axes.body == "ground" and not axes.name):
         return vector["xyz".index(along)]
     tip = mechanism.tip(axes, along)
-    ways = (measured(f"d{axis}", tip, axes.reference, "") for axis in "xyz")
-    return total([product(part, way) for part, way in zip(vector, ways, strict=True)])
+    components = (measured(f"d{axis}", tip, axes.reference, "") for axis in "xyz")
+    return total([product(part, part_of_axis) for part, part_of_axis in zip(vector, components, strict=True)])
 
 
 def _vector(joint: Primitive, letter: str, on_j: bool, mechanism: Mechanism) -> list[ast.expr]:

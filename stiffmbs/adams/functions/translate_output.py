@@ -129,20 +129,20 @@ class OutputTranslation(Translation):
     def _component(
         self, component: str, acting: list[tuple[Numbered, bool]], axes: int, function: Function
     ) -> ast.expr:
-        way = self.reference(axes, function) if axes else ""
+        axes_name = self.reference(axes, function) if axes else ""
         parts = [(found, element, on_j) for found, on_j in acting for element in self._elements(found, component)]
         if component[1] == "M" and len(parts) > 1:
             of_axes = [power(self._component(component[0] + axis, acting, axes, function), 2) for axis in "XYZ"]
             return call("sqrt", total(of_axes))
-        terms = [self._term(component, found, element, on_j, way) for found, element, on_j in parts]
+        terms = [self._term(component, found, element, on_j, axes_name) for found, element, on_j in parts]
         return total(terms) if terms else number(0.0)
 
     @staticmethod
-    def _term(component: str, found: Numbered, element: str, on_j: bool, way: str) -> ast.expr:
+    def _term(component: str, found: Numbered, element: str, on_j: bool, axes_name: str) -> ast.expr:
         """Return the force of one element on marker I or J; a floating marker coincides with I."""
         floats = isinstance(found, VectorForce | PointOnCurve | CurveOnCurve) and on_j
         owner = name_of(element + (".j" if on_j and not floats else ""))
-        value = call(component.lower(), owner, *([name_of(way)] if way else []))
+        value = call(component.lower(), owner, *([name_of(axes_name)] if axes_name else []))
         return times(value, -1.0) if floats and component[1] != "M" else value
 
     @staticmethod

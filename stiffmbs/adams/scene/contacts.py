@@ -88,8 +88,8 @@ def _middle(shape: Shape, contact: Contact, mechanism: Mechanism) -> str:
     half = {BOX: shape.sizes, CYLINDER: (0.0, 0.0, *shape.sizes[1:])}.get(shape.sort)
     if half is None:
         return place.reference
-    way = place.initial.axes @ np.array(half) / 2 * mechanism.dataset.units.length
-    return mechanism.moved(place, f"{place.name}_middle_of_{contact.name}", way).reference
+    offset = place.initial.axes @ np.array(half) / 2 * mechanism.dataset.units.length
+    return mechanism.moved(place, f"{place.name}_middle_of_{contact.name}", offset).reference
 
 
 def _law(contact: Contact, units: Units) -> dict[str, float]:

@@ -17,7 +17,7 @@ from ..statements.curves import CurveOnCurve, FirstContact, PointOnCurve
 from ..statements.declared import Numbered
 from ..statements.geometry import Frame
 from ..statements.text import of_each
-from .laid_curves import LaidCurve, laid_curve
+from .fitted_curves import FittedCurve, fitted_curve
 from .mechanism import Mechanism
 
 TOUCH, OTHER, LEVEL = "_touch", "_other", "_plane"
@@ -53,7 +53,7 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
 
 def _on_curve(one: PointOnCurve, mechanism: Mechanism) -> dict[str, Any]:
     i, j = mechanism.place(one.i, one, "I"), mechanism.place(one.axes, one, "RM")
-    curve = laid_curve(one, one.curve, j, mechanism)
+    curve = fitted_curve(one, one.curve, j, mechanism)
     start = _ground_point(one.start, one, mechanism)
     apart = 0.0 if start is None else float(np.linalg.norm(start - i.initial.point))
     if apart > ELSEWHERE * curve.size:
@@ -70,9 +70,9 @@ def _ground_point(start: FirstContact | None, user: Numbered, mechanism: Mechani
     return found
 
 
-def _curves(pair: CurveOnCurve, mechanism: Mechanism) -> tuple[LaidCurve, LaidCurve]:
+def _curves(pair: CurveOnCurve, mechanism: Mechanism) -> tuple[FittedCurve, FittedCurve]:
     first, second = (
-        laid_curve(pair, number, mechanism.place(axes, pair, name), mechanism)
+        fitted_curve(pair, number, mechanism.place(axes, pair, name), mechanism)
         for number, axes, name in zip(pair.curves, pair.axes, ("IRM", "JRM"), strict=True)
     )
     for number, curve in zip(pair.curves, (first, second), strict=True):
@@ -132,7 +132,7 @@ class Touching:
     size: float
 
 
-def first_touch(first: LaidCurve, second: LaidCurve, near: tuple[np.ndarray | None, np.ndarray | None]) -> Touching:
+def first_touch(first: FittedCurve, second: FittedCurve, near: tuple[np.ndarray | None, np.ndarray | None]) -> Touching:
     """Return the contact point of two curves, or the point where they nearly touch.
 
     Contact needs coincident points and parallel tangents; as drawn, curves may be apart or cross. If a point `near` a
@@ -143,24 +143,24 @@ def first_touch(first: LaidCurve, second: LaidCurve, near: tuple[np.ndarray | No
     curves = _Sampled(first), _Sampled(second)
     size = min(curve.size for curve in curves)
     s, t = (curve.parameters_near(point) for curve, point in zip(curves, near, strict=True))
-    (a, a_way), (b, b_way) = curves[0](s), curves[1](t)
+    (a, a_tangent), (b, b_tangent) = curves[0](s), curves[1](t)
     apart = np.linalg.norm(a[:, None, :] - b[None, :, :], axis=2)
-    crossed = 1 - (a_way @ b_way.T) ** 2
+    crossed = 1 - (a_tangent @ b_tangent.T) ** 2
     k, m = np.unravel_index(int(np.argmin(apart**2 + size**2 * crossed)), apart.shape)
 
     def missed(at: np.ndarray) -> np.ndarray:
-        (a, a_way), (b, b_way) = curves[0](at[:1]), curves[1](at[1:])
-        return np.concatenate([(a - b)[0], size * np.cross(a_way, b_way)[0]])
+        (a, a_tangent), (b, b_tangent) = curves[0](at[:1]), curves[1](at[1:])
+        return np.concatenate([(a - b)[0], size * np.cross(a_tangent, b_tangent)[0]])
 
     found = least_squares(missed, [s[k], t[m]], xtol=1e-14, ftol=1e-14, gtol=1e-14).x
-    (a, _), (b, b_way) = curves[0](found[:1]), curves[1](found[1:])
-    return Touching((a[0] + b[0]) / 2, b_way[0], float(np.linalg.norm(a[0] - b[0])), size)
+    (a, _), (b, b_tangent) = curves[0](found[:1]), curves[1](found[1:])
+    return Touching((a[0] + b[0]) / 2, b_tangent[0], float(np.linalg.norm(a[0] - b[0])), size)
 
 
 class _Sampled:
     """Points and unit tangents of a curve over x, or over the angle of a closed curve, in ground axes at the start."""
 
-    def __init__(self, curve: LaidCurve) -> None:
+    def __init__(self, curve: FittedCurve) -> None:
         from scipy.interpolate import CubicSpline
 
         self._curve = curve
@@ -176,11 +176,11 @@ class _Sampled:
 
     def __call__(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         value, slope = self._law(s), self._law(s, 1)
-        flat, ways = (s, value), (np.ones_like(s), slope)
+        flat, tangents = (s, value), (np.ones_like(s), slope)
         if self._curve.closed:
             c, d = np.cos(s), np.sin(s)
-            flat, ways = (value * c, value * d), (slope * c - value * d, slope * d + value * c)
+            flat, tangents = (value * c, value * d), (slope * c - value * d, slope * d + value * c)
         axes = self._curve.initial.axes[:, :2]
-        along = np.column_stack(ways) @ axes.T
+        along = np.column_stack(tangents) @ axes.T
         point = self._curve.initial.point + np.column_stack(flat) @ axes.T
         return point, along / np.linalg.norm(along, axis=1)[:, None]

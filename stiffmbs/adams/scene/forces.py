@@ -105,7 +105,7 @@ class Forces:
         i, j = self._mechanism.ends(force)
         ends = f"({force.i},{force.j},{force.j})"
         length, time = self._units.length, self._units.time
-        ways = [(f"D{axis}{ends}", length) for axis in "XYZ"] + [
+        displacements = [(f"D{axis}{ends}", length) for axis in "XYZ"] + [
             (f"A{axis}({force.i},{force.j})", 1.0) for axis in "XYZ"
         ]
         rates = [(f"V{axis}{ends[:-1]},{force.j})", length / time) for axis in "XYZ"]
@@ -115,7 +115,7 @@ class Forces:
             terms = [repr(plain(force.preload[row] + sum(map(mul, force.stiffness[row], force.length))))]
             terms += [
                 f"{-factor!r} * ({self._measured(force, text, unit)})"
-                for factors, measures in ((force.stiffness[row], ways), (force.damping[row], rates))
+                for factors, measures in ((force.stiffness[row], displacements), (force.damping[row], rates))
                 for factor, (text, unit) in zip(factors, measures, strict=True)
                 if factor
             ]

@@ -124,9 +124,9 @@ class _Rubbing:
         load = self._sum(
             ("REACTION_FORCE", self._across("F")), ("BENDING_MOMENT", f"{self._across('T')}/{self._overlap()}")
         )
-        mu, way = self._of_magnitude(speed), self._direction(speed)
-        force = f"-(({mu})*({load}) + {self._preload(f.force)}*({way}))*{along}/{speed}"
-        torque = f"-({f.pin!r}*({mu})*({load}) + {self._preload(f.torque)}*({way}))*{about}/{speed}"
+        mu, direction = self._of_magnitude(speed), self._direction(speed)
+        force = f"-(({mu})*({load}) + {self._preload(f.force)}*({direction}))*{along}/{speed}"
+        torque = f"-({f.pin!r}*({mu})*({load}) + {self._preload(f.torque)}*({direction}))*{about}/{speed}"
         return self._force([None, None, force], f.name) | self._torque([None, None, torque], f.name + TORQUE)
 
     def _ball(self) -> dict[str, Any]:
@@ -174,8 +174,8 @@ class _Rubbing:
             return repr(f.overlap)
         length = self._mechanism.dataset.units.length
         first = initial_displacement(TRANSLATIONAL, *self._places) / length
-        way = f"(DZ({self._joint.i},{self._joint.j},{self._joint.j}) - ({first!r}))"
-        return f"({f.overlap!r} {'+' if f.growth > 0 else '-'} {way})"
+        direction = f"(DZ({self._joint.i},{self._joint.j},{self._joint.j}) - ({first!r}))"
+        return f"({f.overlap!r} {'+' if f.growth > 0 else '-'} {direction})"
 
     def _turning(self, axis: str, along: int | None = None) -> str:
         i, j = self._joint.i, self._joint.j

@@ -30,7 +30,7 @@ def set_in_motion(mechanism: Mechanism) -> Dataset:
     """Return the dataset with joint initial velocities assigned to parts without velocities."""
     dataset = mechanism.dataset
     known = {key: _stated(mechanism, part) for key, part in mechanism.parts.items() if _states(part)}
-    told = set(known)
+    reported = set(known)
     waiting = [joint for joint in _stating(dataset) if any(velocity is not None for _, _, velocity in joint.start)]
     while waiting:
         joint = next((joint for joint in waiting if any(key in known for key in _joined(mechanism, joint))), waiting[0])
@@ -38,11 +38,11 @@ def set_in_motion(mechanism: Mechanism) -> Dataset:
         if not any(key in known for key in _joined(mechanism, joint)):  # assumed at rest
             at_rest = _joined(mechanism, joint)[1]
             known[at_rest] = np.zeros(3), np.zeros(3)
-            told.add(at_rest)
+            reported.add(at_rest)
         _move(mechanism, joint, known)
     statements = {keyword: dict(numbered) for keyword, numbered in dataset.statements.items()}
     for key, twist in known.items():
-        if key not in told:
+        if key not in reported:
             statements[key[0]][key[1]] = _moving(mechanism, mechanism.parts[key], twist)
     return replace(dataset, statements=statements)
 

@@ -120,9 +120,9 @@ class Mechanism:
         """
         return self.moved(place, f"{place.name}_{axis}", place.initial.axes[:, "xyz".index(axis)]).reference
 
-    def moved(self, place: Place, name: str, way: np.ndarray) -> Place:
+    def moved(self, place: Place, name: str, offset: np.ndarray) -> Place:
         """Add a marker: another one translated on its body by a vector in ground axes (m) at the start."""
-        seen = place.initial.axes.T @ way
+        seen = place.initial.axes.T @ offset
         found = Place(
             place.body, name, *(Frame(seen, IDENTITY).within(frame) for frame in (place.on_body, place.initial))
         )

@@ -32,7 +32,7 @@ def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
     """
     i, j = mechanism.ends(joint)
     outward = _outward(joint, i, j)
-    off = joint.diameter / 2 - float(_beside(i, j) @ outward)
+    off = joint.diameter / 2 - float(_offset(i, j) @ outward)
     carried = _carried(joint, i, j, mechanism)
     if carried is not None:
         hinge, guide, seat = carried
@@ -86,7 +86,7 @@ def _axis(i: Place, j: Place) -> np.ndarray | None:
     return np.asarray(axis / np.linalg.norm(axis))
 
 
-def _beside(i: Place, j: Place) -> np.ndarray:
+def _offset(i: Place, j: Place) -> np.ndarray:
     """Return the common normal from the pinion's axis to the rack's line, m; from marker I if the axis is unknown."""
     along, axis, gap = j.initial.axes[:, 2], _axis(i, j), j.initial.point - i.initial.point
     gap = gap - (gap @ along) * along
@@ -99,7 +99,7 @@ def _crosses(joint: Joint, gap: np.ndarray) -> bool:
 
 def _outward(joint: Joint, i: Place, j: Place) -> np.ndarray:
     """Return the unit vector from the pinion's axis to the rack."""
-    gap = _beside(i, j)
+    gap = _offset(i, j)
     if not _crosses(joint, gap):
         return np.asarray(gap / np.linalg.norm(gap))
     axis, along = _axis(i, j), float(i.initial.axes[:, 0] @ j.initial.axes[:, 2])
@@ -117,7 +117,7 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
         if joint.kind != "RACKPIN":
             continue
         i, j = mechanism.ends(joint)
-        gap, radius = _beside(i, j), abs(joint.diameter) / 2
+        gap, radius = _offset(i, j), abs(joint.diameter) / 2
         distance = float(np.linalg.norm(gap))
         if _crosses(joint, gap):
             yield (

@@ -144,9 +144,9 @@ def _between_markers(motion: Motion, mechanism: Mechanism, translation: Translat
     component = motion.component
     drive = {"type": "drive", "i": i.reference, "j": j.reference}
     if component in COMPONENTS[:3]:
-        way = f"d{component.lower()}({i.reference}, {j.reference}, {j.reference})"
+        displacement = f"d{component.lower()}({i.reference}, {j.reference}, {j.reference})"
         initial = float(relative.point[COMPONENTS[:3].index(component)])
-        return {**drive, "coordinate": way, **Law(motion, translation, TRANSLATIONAL).over_time(initial)}
+        return {**drive, "coordinate": displacement, **Law(motion, translation, TRANSLATIONAL).over_time(initial)}
     A = relative.axes  # Rx(b1) Ry(b2) Rz(b3): AX gives b1, and AZ of J against I gives -b3
     angle, initial = {
         "B1": (f"ax({i.reference}, {j.reference})", float(np.arctan2(-A[1, 2], A[2, 2]))),

@@ -96,22 +96,22 @@ class Changes:
         off = {key: line for key, line in self.inactive.items() if key not in before.inactive}
         return Changes(altered, off)
 
-    def told_since(self, before: Changes, source: str) -> list[str]:
+    def notes_since(self, before: Changes, source: str) -> list[str]:
         """Return one sentence for each change after earlier ones."""
         on = [f"{name}/{ident}" for name, ident in before.inactive if (name, ident) not in self.inactive]
-        told = [f"{', '.join(on)} {'are' if len(on) > 1 else 'is'} active again by {source}"] if on else []
-        return [*self.since(before).notes(source), *told]
+        sentences = [f"{', '.join(on)} {'are' if len(on) > 1 else 'is'} active again by {source}"] if on else []
+        return [*self.since(before).notes(source), *sentences]
 
     def notes(self, source: str) -> list[str]:
         """Return one sentence for each kind of change."""
-        told = []
+        sentences = []
         if self.inactive:
             labels = ", ".join(f"{name}/{ident}" for name, ident in self.inactive)
-            told.append(f"{labels} {'are' if len(self.inactive) > 1 else 'is'} inactive by {source}, and left out")
+            sentences.append(f"{labels} {'are' if len(self.inactive) > 1 else 'is'} inactive by {source}, and left out")
         if self.altered:
             labels = ", ".join(f"{name}/{ident}" if ident else name for name, ident in self.altered)
-            told.append(f"{labels} {'are' if len(self.altered) > 1 else 'is'} as {source} says")
-        return told
+            sentences.append(f"{labels} {'are' if len(self.altered) > 1 else 'is'} as {source} says")
+        return sentences
 
 
 def _ends(found: Arguments) -> tuple[int, int]:

@@ -54,13 +54,13 @@ def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length
         raise found.fault(f"found REULER and {given[0]}, expected one or the other", found.line(given[0]))
     if angles is not None:
         return Frame(point, euler_313(*angles))
-    ways = {name: np.array(found.numbers(name, 3)) * length - point for name in given}
-    for name, way in ways.items():
-        if not np.linalg.norm(way) > 0:
+    offsets = {name: np.array(found.numbers(name, 3)) * length - point for name in given}
+    for name, offset in offsets.items():
+        if not np.linalg.norm(offset) > 0:
             raise found.fault(f"found {name} at {origin}, expected a point apart from it", found.line(name))
-    if not ways:
+    if not offsets:
         return Frame(point, IDENTITY)
-    x, z = ways.get(x_point), ways.get(z_point)
+    x, z = offsets.get(x_point), offsets.get(z_point)
     axes = _from_x(x, z) if "USEXP" in found and x is not None else _from_z(z, x)
     if axes is None:
         raise found.fault(f"found {' and '.join(given)} on one line with {origin}, expected a point off that line")

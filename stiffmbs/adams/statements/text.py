@@ -50,9 +50,9 @@ def raise_all(faults: Sequence[DatasetFault]) -> None:
     if not faults:
         return
     first, *others = faults
-    told = [first.reason, *map(str, others[: MOST_LISTED - 1])]
+    sentences = [first.reason, *map(str, others[: MOST_LISTED - 1])]
     more = f"; and {len(faults) - MOST_LISTED} more" if len(faults) > MOST_LISTED else ""
-    raise DatasetFault(first.line, first.label, "; ".join(told) + more)
+    raise DatasetFault(first.line, first.label, "; ".join(sentences) + more)
 
 
 _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:/\s*((?:\w+(?=\s*(?:[,\x00]|\Z)))?))?\s*(.*)", re.DOTALL)

@@ -157,8 +157,8 @@ def _is_bounded(given: Input, node: ast.expr, low: np.ndarray, high: np.ndarray)
 
 def _is_pole(value: Values, low: float, high: float, size: float) -> bool:
     """Return True if values grow towards the time on either side."""
-    for at, way in ((low, -1.0), (high, 1.0)):
-        far, near = value(at + way * FARTHER_SIDE * size), value(at + way * NEARER_SIDE * size)
+    for at, sense in ((low, -1.0), (high, 1.0)):
+        far, near = value(at + sense * FARTHER_SIDE * size), value(at + sense * NEARER_SIDE * size)
         if far is not None and near is not None and abs(near) > GROWS * abs(far) > 0.0:
             return True
     return False

@@ -57,8 +57,8 @@ def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels:
         size = size or _size(found.value)
         middle = (low + high) / 2
         around = _around(levels, found, values(middle), middle, low, high) & ~_stays(found.value, levels, size)
-        one_way = (found.slope[0] > 0) | (found.slope[1] < 0)
-        settled = around & (one_way | (high - low <= shortest))
+        monotonic = (found.slope[0] > 0) | (found.slope[1] < 0)
+        settled = around & (monotonic | (high - low <= shortest))
         yield np.array([low[settled], high[settled]])
         open_ones = around & ~settled
         if np.count_nonzero(open_ones) > MANY_STRETCHES:

@@ -123,7 +123,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         "argument": symbols.arguments,
     }  # fmt: skip
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
-    first_state = len(e.by_q.ways) - len(e.states)  # states are given: reactions and projections do not act on them
+    first_state = len(e.by_q.slopes) - len(e.states)  # states are given: reactions and projections do not act on them
     entries["C_x"] = [entry for entry in entries["C_q"] if entry.column >= first_state]
     entries["C_q"] = [entry for entry in entries["C_q"] if entry.column < first_state]
     entries["G_mu"] = [entry for entry in entries["G_mu"] if entry.row < first_state]
@@ -199,7 +199,7 @@ def _rates(
     e: SymbolicElement, rates: sp.Matrix, states: Sequence[sp.Symbol], joint_lam: Sequence[sp.Symbol]
 ) -> dict[str, Sequence[Entry | LateEntry]]:
     """Return the rates of states and their derivatives, in the rows of the states."""
-    rows = [len(e.by_q.ways) - len(e.states) + e.states.index(state) for state in states]
+    rows = [len(e.by_q.slopes) - len(e.states) + e.states.index(state) for state in states]
     terms = {"rate": rates, "rate_q": e.by_q.matrix(rates), "rate_u": e.by_u.matrix(rates)}
     terms["rate_lam"] = e.by(rates, joint_lam) if joint_lam else sp.zeros(0, 0)
     return {name: [replace(entry, row=rows[entry.row]) for entry in _entries(matrix)] for name, matrix in terms.items()}
@@ -225,7 +225,7 @@ def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
 
 def _of_algebraic(kind: Kind, e: SymbolicElement, entries: Sequence[Entry | LateEntry]) -> list[Entry | LateEntry]:
     """Return the entries of a matrix in the columns of algebraic states."""
-    first = len(e.by_q.ways) - len(e.states)
+    first = len(e.by_q.slopes) - len(e.states)
     return [entry for entry in entries if entry.column - first in kind.algebraic]
 
 
@@ -240,7 +240,7 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
 
 def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
     """Return the counted angles and their rates, in rows after the bodies' coordinates."""
-    first = len(e.by_q.ways)
+    first = len(e.by_q.slopes)
     rates, bounded = sp.Matrix([e.rate(angle) for angle in e.angles]), [away_from_pole(angle, e) for angle in e.angles]
     of_rates = {"angle_rate": rates, "Z": e.by_u.matrix(rates), "Z_q": e.by_q.matrix(rates)}
     entries = {

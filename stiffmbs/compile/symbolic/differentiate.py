@@ -12,7 +12,7 @@ import sympy as sp
 
 from .nonsmooth import NonsmoothBase
 
-Way = tuple[sp.Symbol, sp.Expr]
+Slope = tuple[sp.Symbol, sp.Expr]
 """Symbol that depends on a coordinate or velocity, and its derivative by that."""
 
 

@@ -12,7 +12,7 @@ import sympy as sp
 from ...elements.element import IN_EQUATIONS
 from ...errors import InputError
 from .continuous_angle import ContinuousAngle, counter
-from .differentiate import Derivatives, Way
+from .differentiate import Derivatives, Slope
 from .logarithm import PlanarLogarithm, SpatialLogarithm, logarithm
 from .read import read
 from .relative_rotation import RelativeRotation, ShortestRotation, product
@@ -37,30 +37,30 @@ class Variables:
     """Coordinates or velocities of an element, by which expressions are differentiated."""
 
     element: SymbolicElement
-    ways: list[list[Way]]
+    slopes: list[list[Slope]]
 
     def matrix(self, column: Iterable[sp.Expr]) -> sp.Matrix:
         """Return the matrix of derivatives of a column."""
-        rows = [[self.derivative(x, k) for k in range(len(self.ways))] for x in column]
-        return sp.Matrix(len(rows), len(self.ways), [entry for row in rows for entry in row])
+        rows = [[self.derivative(x, k) for k in range(len(self.slopes))] for x in column]
+        return sp.Matrix(len(rows), len(self.slopes), [entry for row in rows for entry in row])
 
     def work(self, pairs: Iterable[Work]) -> sp.Matrix:
         """Return the generalised force: the column of sums of efforts times derivatives of their quantities."""
         known = list(pairs)
-        return sp.Matrix([self._change(known, way) for way in self.ways])
+        return sp.Matrix([self._change(known, of_row) for of_row in self.slopes])
 
     def derivative(self, x: sp.Expr, k: int) -> sp.Expr:
         """Return the derivative by one variable."""
-        return self._change([(sp.Integer(1), x)], self.ways[k])
+        return self._change([(sp.Integer(1), x)], self.slopes[k])
 
     def of(self, x: sp.Expr) -> list[int]:
         """Return the variables that an expression depends on."""
-        return [k for k, way in enumerate(self.ways) if self.element.depends(x, (symbol for symbol, _ in way))]
+        return [k for k, of_row in enumerate(self.slopes) if self.element.depends(x, (symbol for symbol, _ in of_row))]
 
-    def _change(self, pairs: list[Work], way: list[Way]) -> sp.Expr:
+    def _change(self, pairs: list[Work], of_row: list[Slope]) -> sp.Expr:
         """Return the sum of efforts times derivatives by one variable; shared parts are named."""
         partial, changes = self.element.derivatives.partial, []
-        for symbol, much in way:
+        for symbol, much in of_row:
             parts = ((effort, partial(x, symbol)) for effort, x in pairs)
             whole = sp.Add(*(_product(effort, part) for effort, part in parts if part is not sp.S.Zero))
             if whole is not sp.S.Zero:
@@ -174,8 +174,8 @@ class SymbolicElement:
     def _accelerations(self) -> dict[sp.Symbol, sp.Expr]:
         """Rates of the symbols in `velocities` due to accelerations."""
         rates: dict[sp.Symbol, sp.Expr] = {}
-        for a, way in zip(self.a, self.by_u.ways, strict=True):
-            for symbol, much in way:
+        for a, of_row in zip(self.a, self.by_u.slopes, strict=True):
+            for symbol, much in of_row:
                 rates[symbol] = rates.get(symbol, sp.Integer(0)) + a * much
         return {symbol: self.named(rate) for symbol, rate in rates.items()}
 
@@ -240,13 +240,13 @@ class SymbolicElement:
     @cached_property
     def by_q(self) -> Variables:
         """Coordinates of the bodies, then states; turn counters follow them."""
-        of_states: list[list[Way]] = [[(symbol, sp.Integer(1))] for symbol in self.states]
-        return Variables(self, [*(way for frame in self.frames for way in frame.by_coordinate), *of_states])
+        of_states: list[list[Slope]] = [[(symbol, sp.Integer(1))] for symbol in self.states]
+        return Variables(self, [*(of_row for frame in self.frames for of_row in frame.by_coordinate), *of_states])
 
     @cached_property
     def by_u(self) -> Variables:
         """Velocities of the bodies."""
-        return Variables(self, [way for frame in self.frames for way in frame.by_velocity])
+        return Variables(self, [of_row for frame in self.frames for of_row in frame.by_velocity])
 
     def reaction(self, joint: ReferredJoint, on: Any) -> dict[str, sp.Expr]:
         """Return the reaction of a joint on one of its bodies about the joint's point, by component: -J^T lam."""
@@ -293,9 +293,9 @@ class SymbolicElement:
         """Return the integral of a law from 0 to x, for a potential; None if there is no simple one."""
         return integral(law, x)
 
-    def common_normal(self, way: Any, axes: Any, first: Any, second: Any) -> sp.Matrix:
+    def common_normal(self, offset: Any, axes: Any, first: Any, second: Any) -> sp.Matrix:
         """Return the unit normal between two solids, each a sum of ellipsoids."""
-        return self.named(common_normal(way, axes, first, second))
+        return self.named(common_normal(offset, axes, first, second))
 
     def at_extremum(self, function: Callable[[list[sp.Symbol]], Any], at: Any) -> sp.Expr:
         """Return a function of variables at its extremum over them."""

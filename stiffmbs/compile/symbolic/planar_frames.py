@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from ..bodies import PLANE
-from .differentiate import Way
+from .differentiate import Slope
 
 
 @dataclass(frozen=True)
@@ -54,12 +54,12 @@ class BodyFrame:
         return list(zip(self.q, self.u, strict=True))
 
     @property
-    def by_coordinate(self) -> list[list[Way]]:
+    def by_coordinate(self) -> list[list[Slope]]:
         """Symbols that depend on each coordinate, with their derivatives."""
         return [[(q, sp.Integer(1))] for q in self.q]
 
     @property
-    def by_velocity(self) -> list[list[Way]]:
+    def by_velocity(self) -> list[list[Slope]]:
         """Symbols that depend on each velocity, with their derivatives."""
         return [[(u, sp.Integer(1))] for u in self.u]
 

@@ -106,8 +106,8 @@ def _read(x: sp.Basic, note: Callable[[sp.Expr], None]) -> Any:
 
 def _by_others(x: sp.Function, note: Callable[[sp.Expr], None]) -> sp.Expr:
     """Rewrite a function by others that kernels support."""
-    for way in () if isinstance(x, AppliedUndef) else BY_OTHERS:
-        written = x.rewrite(way)
+    for other in () if isinstance(x, AppliedUndef) else BY_OTHERS:
+        written = x.rewrite(other)
         functions = (part for part in sp.preorder_traversal(written) if isinstance(part, sp.Function | sp.Max | sp.Min))
         if not written.has(sp.I) and all(isinstance(part, (*KNOWN, *NONSMOOTH)) or _is_own(part) for part in functions):
             return _read(written, note)

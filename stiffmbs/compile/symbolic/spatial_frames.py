@@ -18,7 +18,7 @@ from typing import Any
 import sympy as sp
 
 from ..bodies import SPACE
-from .differentiate import Derivatives, Way
+from .differentiate import Derivatives, Slope
 from .relative_rotation import product
 
 
@@ -140,7 +140,7 @@ class SpatialBodyFrame:
         return sp.Matrix([[-p1, -p2, -p3], [p0, -p3, p2], [p3, p0, -p1], [-p2, p1, p0]]) / 2
 
     @cached_property
-    def by_coordinate(self) -> list[list[Way]]:
+    def by_coordinate(self) -> list[list[Slope]]:
         """Symbols that depend on each coordinate, with their derivatives."""
         e0, e1, e2, e3 = self._e
         E = sp.Matrix([[-e1, e0, -e3, e2], [-e2, e3, e0, -e1], [-e3, -e2, e1, e0]])
@@ -152,7 +152,7 @@ class SpatialBodyFrame:
         return straight + turning
 
     @cached_property
-    def by_velocity(self) -> list[list[Way]]:
+    def by_velocity(self) -> list[list[Slope]]:
         """Symbols that depend on each velocity, with their derivatives."""
         straight = [[(v, sp.Integer(1))] for v in self.u[:3]]
         turning = [

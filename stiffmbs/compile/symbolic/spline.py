@@ -55,18 +55,18 @@ class CommonNormalSlope(sp.Function):  # type: ignore[misc]
 
 
 def common_normal(
-    way: Sequence[sp.Expr],
+    offset: Sequence[sp.Expr],
     axes: Sequence[sp.Expr],
     first: Sequence[Sequence[sp.Expr]],
     second: Sequence[Sequence[sp.Expr]],
 ) -> sp.Matrix:
     """Return the unit normal from the second solid to the first, in the second one's axes.
 
-    `way`: vector from the centre of the second solid to that of the first, m. `axes`: rotation matrix from the axes of
+    `offset`: vector from the centre of the second solid to that of the first, m. `axes`: rotation matrix from the axes of
     the first solid to those of the second, by rows. `first`, `second`: squared semi-axes of the ellipsoids whose
     Minkowski sum is the solid, m^2.
     """
-    pose = [*way, *axes, *_all_three(first), *_all_three(second)]
+    pose = [*offset, *axes, *_all_three(first), *_all_three(second)]
     return sp.Matrix([CommonNormal(sp.Integer(k), *pose) for k in range(3)])
 
 

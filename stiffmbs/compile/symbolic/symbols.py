@@ -26,7 +26,7 @@ from .referred import ReferredJoint, SymbolicComponent, measure, own_coordinate
 from .spline import Spline, python_law
 
 NARROW: dict[type[sp.Basic], str] = {
-    getattr(sp, name): function.zones for name, function in FUNCTIONS.items() if function.zones
+    getattr(sp, name): function.intervals for name, function in FUNCTIONS.items() if function.intervals
 }
 """Functions with narrow features where their argument is steep, and the names of their intervals."""
 
@@ -44,7 +44,7 @@ INTERNAL = re.compile(
 
 @dataclass(frozen=True)
 class Law:
-    """Table or function with breakpoints (`stiffmbs.compile.law_zones`) whose argument depends on the state.
+    """Table or function with breakpoints (`stiffmbs.compile.law_intervals`) whose argument depends on the state.
 
     `of`: name of its intervals (``turn`` for the argument of a sine) and, for ``table``, the index of its offset in
     the element's numbers, else 0.

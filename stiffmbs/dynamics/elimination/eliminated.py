@@ -183,29 +183,29 @@ def pin_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any
     gamma, pins = system.term("acceleration", "gamma"), _pins(joints, system, kept)
     if not pins or sum(joints.sizes) < system.n_c or not np.array_equal(np.sort(gamma.row), np.arange(system.n_c)):
         return None
-    beside = [(k, later) for k, below in enumerate(joints.below) for later in below]
-    meeting = [_shared(pins[k], pins[later]) for k, later in beside]
+    adjacent = [(k, later) for k, below in enumerate(joints.below) for later in below]
+    meeting = [_shared(pins[k], pins[later]) for k, later in adjacent]
     if max(map(len, meeting), default=0) > 1:
         return None
-    mass, number = system.mass.reshape(-1, 3), {both: m for m, both in enumerate(beside)}
+    mass, number = system.mass.reshape(-1, 3), {both: m for m, both in enumerate(adjacent)}
     starts = list(accumulate(map(len, joints.below), initial=0))
     lists = {
         "pin": [*_rows(joints, pins, gamma.source[np.argsort(gamma.row)], len(mass))],
         "inverse": [1.0 / mass[side.body] if side else NOTHING for sides in pins for side in (*sides, None)[:2]],
         "product": [
             PinProduct(8 * k + 4 * own, 8 * later + 4 * other)
-            for (k, later), found in zip(beside, meeting, strict=True)
+            for (k, later), found in zip(adjacent, meeting, strict=True)
             for own, other in found or [(0, 0)]
         ],
         "mass": [
-            mass[pins[k][found[0][0]].body] if found else NOTHING for (k, _), found in zip(beside, meeting, strict=True)
+            mass[pins[k][found[0][0]].body] if found else NOTHING for (k, _), found in zip(adjacent, meeting, strict=True)
         ],
-        "start": starts, "later": [later for _, later in beside],
+        "start": starts, "later": [later for _, later in adjacent],
         "update": [number[pair] for below in joints.below for pair in combinations(below, 2)],
-        **{name: np.zeros(4 * len(beside)) for name in ("beside", "scaled")},
+        **{name: np.zeros(4 * len(adjacent)) for name in ("adjacent", "scaled")},
         **{name: np.zeros(width * len(pins)) for name, width in (("w", 8), ("block", 4), ("diagonal", 2), ("x", 2))},
     }  # fmt: skip
-    return {**arrays_of(PIN_ELIMINATION, lists), "n": len(pins), "n_beside": len(beside)}
+    return {**arrays_of(PIN_ELIMINATION, lists), "n": len(pins), "n_adjacent": len(adjacent)}
 
 
 def _pins(joints: Joints, system: System, kept: np.ndarray) -> list[list[Side]]:

@@ -160,7 +160,7 @@ def _section(u: np.ndarray, heights: np.ndarray) -> Table:
     """Return the heights of a long section, constant beyond its ends."""
     import numpy as np
 
-    beside = (u[1] - u[0]) * np.arange(1, LEVEL + 1)
-    at = np.concatenate([u[0] - beside[::-1], u, u[-1] + beside])
+    outside = (u[1] - u[0]) * np.arange(1, LEVEL + 1)
+    at = np.concatenate([u[0] - outside[::-1], u, u[-1] + outside])
     z = np.concatenate([np.full(LEVEL, heights[0]), heights, np.full(LEVEL, heights[-1])])
     return table_of(at, z)

@@ -26,7 +26,7 @@ CONVERGED = 1e-9
 """Largest error along the line before the last Newton iteration, m."""
 WIDEST = 1.4
 """Largest angle between the line and its mean direction, rad, so that u is a function of the position along it."""
-BESIDE = 11
+SAMPLES_ACROSS = 11
 """Number of positions across the road at which convergence is tested."""
 
 
@@ -104,9 +104,9 @@ def _try_it(line: ReferenceLine, u: np.ndarray, v: np.ndarray, source: str) -> N
 
     x, y = (_spline(*np.array(table.table).T) for table in (line.x, line.y))
     dx, dy, ddx, ddy = x.derivative(), y.derivative(), x.derivative(2), y.derivative(2)
-    beside = np.linspace(v[0], v[-1], BESIDE)
+    across = np.linspace(v[0], v[-1], SAMPLES_ACROSS)
     scale = np.hypot(dx(u), dy(u))
-    px, py = x(u)[:, None] - beside * (dy(u) / scale)[:, None], y(u)[:, None] + beside * (dx(u) / scale)[:, None]
+    px, py = x(u)[:, None] - across * (dy(u) / scale)[:, None], y(u)[:, None] + across * (dx(u) / scale)[:, None]
     at = np.array(line.guess.table).T
     inside = np.clip(line.direction[0] * px + line.direction[1] * py, at[0, 0], at[0, -1])
     guess = _spline(*at)
@@ -122,7 +122,7 @@ def _try_it(line: ReferenceLine, u: np.ndarray, v: np.ndarray, source: str) -> N
     if not np.all(away <= CONVERGED):
         k, side = np.unravel_index(int(np.argmax(np.where(np.isfinite(away), away, np.inf))), away.shape)
         raise InputError(
-            f"{source}: found no single nearest point of the reference line at u = {u[k]:g} m, v = {beside[side]:g} m: "
+            f"{source}: found no single nearest point of the reference line at u = {u[k]:g} m, v = {across[side]:g} m: "
             "expected a road that is narrower than its bends"
         )
 

@@ -26,7 +26,7 @@ BETWEEN = 8
 """Subdivisions of a step at which the profile of a short road is sampled, for its edges."""
 MOST = 40000
 """Largest number of points of a profile."""
-BESIDE = 1.5
+MARGIN = 1.5
 """Distance from a profile, in radii, at which the disc no longer touches it."""
 
 
@@ -73,8 +73,8 @@ def rolled(table: Table, shape: Shape) -> Table:
 
 def rolled_profile(heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], shape: Shape) -> Table:
     """Return the filtered heights of a profile given by a function, level outside its extent; errors as `rolled`."""
-    beside = BESIDE * _reach(shape)
-    x, centre = _centres(heights, (extent[0] - beside, extent[1] + beside), shape)
+    around_it = MARGIN * _reach(shape)
+    x, centre = _centres(heights, (extent[0] - around_it, extent[1] + around_it), shape)
     return table_of(x, centre - _height(shape))
 
 
@@ -96,8 +96,8 @@ def _centres(
     parts = min(max(MOST // count, 1), BETWEEN)
     x, step = np.linspace(first, last, count * parts + 1, retstep=True)
     margin = int(np.floor(radius / step))
-    beside = step * np.arange(1, margin + 1)
-    around = heights(np.concatenate([first - beside[::-1], x, last + beside]))
+    around_it = step * np.arange(1, margin + 1)
+    around = heights(np.concatenate([first - around_it[::-1], x, last + around_it]))
     disc = _disc(step * np.arange(-margin, margin + 1), shape)
     centre = grey_dilation(around, footprint=np.ones(len(disc)), structure=disc, mode="nearest")
     return x[::parts], centre[margin : margin + len(x) : parts]

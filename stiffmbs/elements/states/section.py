@@ -43,9 +43,9 @@ def _read(found: object, context: Context) -> StateEntry:
 
 
 def _schema(schema_of: Callable[[type[Any]], JsonSchema]) -> JsonSchema:
-    *ways, pid = (schema_of(kind) for kind in dict.fromkeys(KINDS.values()))
+    *schemas, pid = (schema_of(kind) for kind in dict.fromkeys(KINDS.values()))
     within = {"type": "object", "additionalProperties": False, "properties": {"pid": pid}, "required": ["pid"]}
-    return {"anyOf": [*ways, within]}
+    return {"anyOf": [*schemas, within]}
 
 
 AnyState = Annotated[Any, ReadBy(_read, _schema)]
@@ -71,9 +71,9 @@ def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
     try:
         TopologicalSorter(needs).prepare()
     except CycleError as error:
-        way = error.args[1][::-1]
+        loop = error.args[1][::-1]
         raise ValueError(
-            f"states.{way[0]}: found an output that depends on itself at once ({' -> '.join(way)}), expected a state in the loop"
+            f"states.{loop[0]}: found an output that depends on itself at once ({' -> '.join(loop)}), expected a state in the loop"
         ) from None
 
 

@@ -44,8 +44,10 @@ def _neighbours(line: Line) -> list[list[np.ndarray]]:
     """Return for each node the points from half way to its neighbours, in its axes, for drawings."""
     points = [node.point for node in line.nodes]
     half = [(a + b) / 2 for a, b in itertools.pairwise(points)]
-    ways = [[*half[max(k - 1, 0) : k], point, *half[k : k + 1]] for k, point in enumerate(points)]
-    return [[node.axes.T @ (p - node.point) for p in way] for node, way in zip(line.nodes, ways, strict=True)]
+    polylines = [[*half[max(k - 1, 0) : k], point, *half[k : k + 1]] for k, point in enumerate(points)]
+    return [
+        [node.axes.T @ (p - node.point) for p in polyline] for node, polyline in zip(line.nodes, polylines, strict=True)
+    ]
 
 
 def _numbers(vector: Any) -> list[float]:

@@ -37,15 +37,15 @@ def set_value(scene: dict[str, Any], path: str, value: object) -> None:
     """
     if path in (scene.get("parameters") or {}):
         path = f"parameters.{path}"
-    *ways, last = _keys(scene, path)
+    *parents, last = _keys(scene, path)
     place: Any = scene
-    for k, way in enumerate(ways):
+    for k, parent in enumerate(parents):
         if isinstance(place, dict):
-            place = place.setdefault(way, {})
-        elif isinstance(place, list) and way.isdigit() and int(way) < len(place):
-            place = place[int(way)]
+            place = place.setdefault(parent, {})
+        elif isinstance(place, list) and parent.isdigit() and int(parent) < len(place):
+            place = place[int(parent)]
         else:
-            raise InputError(f"--set {path}: found no '{'.'.join(ways[: k + 1])}' in the scene")
+            raise InputError(f"--set {path}: found no '{'.'.join(parents[: k + 1])}' in the scene")
     if isinstance(place, dict) and last:
         place[last] = value
     elif isinstance(place, list) and last.isdigit() and int(last) < len(place):

@@ -84,23 +84,23 @@ class Mirror:
         return state.model_copy(update=changed)
 
     def _field(self, element: Element, name: str, where: str) -> Any:
-        value, way = getattr(element, name), (element.reflected or {}).get(name, "same")
+        value, rule = getattr(element, name), (element.reflected or {}).get(name, "same")
         match value:
             case MarkerReference():
-                return self._marker(value, way)
+                return self._marker(value, rule)
             case (MarkerReference(), *_):
-                return tuple(self._marker(marker, way) for marker in value)
+                return tuple(self._marker(marker, rule) for marker in value)
             case None | bool() | str():
                 return value
-        return self._image(value, self._signs(element, way), way in ALONG_AXES)
+        return self._image(value, self._signs(element, rule), rule in ALONG_AXES)
 
-    def _signs(self, element: Element, way: str) -> Any:
+    def _signs(self, element: Element, rule: str) -> Any:
         """Return the sign of a field, or the signs of its components."""
-        if way == "same":
+        if rule == "same":
             return 1.0
         forces, along = self._axes(element)
         rotations = self.frame.rotation_signs  # independent of the `axes` of a bushing
-        match way:
+        match rule:
             case "vector":
                 return forces
             case "rotations":
@@ -112,11 +112,11 @@ class Mirror:
             case "pitch":
                 return forces[-1] * rotations[-1]
             case "x" | "y" | "z":
-                return forces["xyz".index(way)]
+                return forces["xyz".index(rule)]
             case "about x" | "about y" | "about z":
-                return rotations["xyz".index(way[-1])]
+                return rotations["xyz".index(rule[-1])]
         sign = 1.0
-        for joint in way.split():
+        for joint in rule.split():
             sign *= self._coordinate(getattr(element, joint))
         return sign
 
@@ -183,10 +183,10 @@ class Mirror:
                 return value if signs == 1.0 else signs * value or 0.0
         return value
 
-    def _marker(self, marker: MarkerReference, way: str) -> Any:
-        """Return the mirror image of a marker on the part; `way` is the axis whose direction matters, if any."""
-        if way in ("x", "y", "z") and self._own(marker) and self.frame.signs["xyz".index(way)] < 0:
-            marker = self.frame.half_turned(self._placed(marker), way)
+    def _marker(self, marker: MarkerReference, rule: str) -> Any:
+        """Return the mirror image of a marker on the part; `rule` is the axis whose direction matters, if any."""
+        if rule in ("x", "y", "z") and self._own(marker) and self.frame.signs["xyz".index(rule)] < 0:
+            marker = self.frame.half_turned(self._placed(marker), rule)
         if marker.body in (*self.mounts, GROUND) or marker.marker is not None or not self.inside(marker):
             return marker
         return marker if marker.placement() is None else self.frame.mirror().placed(marker)

@@ -48,11 +48,11 @@ class Curve:
         points = np.stack([x, y], axis=1)
         s = fine[cKDTree(curve(fine)).query(points)[1]]
         for _ in range(3):  # Newton's iteration for the foot of the perpendicular
-            way, tangent = points - curve(s), curve(s, 1)
-            slope = np.sum(tangent**2 - way * curve(s, 2), axis=1)
-            s = np.clip(s + np.sum(way * tangent, axis=1) / np.maximum(slope, 0.1), self.s[0], self.s[-1])
-        way, tangent = points - curve(s), curve(s, 1)
-        return s, tangent[:, 0] * way[:, 1] - tangent[:, 1] * way[:, 0]
+            offset, tangent = points - curve(s), curve(s, 1)
+            slope = np.sum(tangent**2 - offset * curve(s, 2), axis=1)
+            s = np.clip(s + np.sum(offset * tangent, axis=1) / np.maximum(slope, 0.1), self.s[0], self.s[-1])
+        offset, tangent = points - curve(s), curve(s, 1)
+        return s, tangent[:, 0] * offset[:, 1] - tangent[:, 1] * offset[:, 0]
 
 
 def curve_through(points: np.ndarray, closed: bool = False) -> Curve:

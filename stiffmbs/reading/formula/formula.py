@@ -123,11 +123,11 @@ class Formula:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Formula) and all(
-            getattr(self, part) == getattr(other, part) for part in ("text", "values", "tables", "_told")
+            getattr(self, part) == getattr(other, part) for part in ("text", "values", "tables", "_identity")
         )
 
     @property
-    def _told(self) -> str:
+    def _identity(self) -> str:
         return ast.unparse(self.tree)
 
     def __hash__(self) -> int:

@@ -69,7 +69,7 @@ class FormulaFunction:
     poles : bool
         True if it is unbounded within its domain.
     zones : str
-        Its intervals in `stiffmbs.compile.law_zones`, which resolve narrow features.
+        Its intervals in `stiffmbs.compile.law_intervals`, which resolve narrow features.
     turns : bool
         True if it is periodic in its argument.
     in_numbers : bool
@@ -86,7 +86,7 @@ class FormulaFunction:
     breakpoints: Breakpoints = ()
     domain: tuple[float, float] = EVERYWHERE
     poles: bool = False
-    zones: str = ""
+    intervals: str = ""
     turns: bool = False
     in_numbers: bool = False
 
@@ -145,12 +145,12 @@ FUNCTIONS: dict[str, FormulaFunction] = {
     "tan": _smooth(math.tan, np.tan, poles=True, turns=True),
     "asin": _smooth(math.asin, np.arcsin, domain=(-1.0, 1.0)),
     "acos": _smooth(math.acos, np.arccos, domain=(-1.0, 1.0)),
-    "atan": _smooth(math.atan, np.arctan, zones="atan"),
-    "sinh": _smooth(math.sinh, np.sinh, poles=True, zones="exp"),
-    "cosh": _smooth(math.cosh, np.cosh, poles=True, zones="exp"),
-    "tanh": _smooth(math.tanh, np.tanh, zones="tanh"),
+    "atan": _smooth(math.atan, np.arctan, intervals="atan"),
+    "sinh": _smooth(math.sinh, np.sinh, poles=True, intervals="exp"),
+    "cosh": _smooth(math.cosh, np.cosh, poles=True, intervals="exp"),
+    "tanh": _smooth(math.tanh, np.tanh, intervals="tanh"),
     "asinh": _smooth(math.asinh, np.arcsinh, derivative="1/sqrt(1 + x^2)"),
-    "exp": _smooth(math.exp, np.exp, poles=True, zones="exp"),
+    "exp": _smooth(math.exp, np.exp, poles=True, intervals="exp"),
     "log": _smooth(math.log, np.log, domain=(0.0, math.inf)),
     "sqrt": FormulaFunction(
         ONE, of_root, partial(real_power, exponent=0.5), np.sqrt, symbolic="sympy.sqrt", enclosure="sqrt",

@@ -49,8 +49,8 @@ def resolved(formulas: Mapping[str, str | float], known: Collection[str]) -> dic
 
     def resolve(name: str, within: tuple[str, ...]) -> ast.expr:
         if name in within:
-            way = " -> ".join((*within[within.index(name) :], name))
-            raise FormulaError(f"{name}: found a variable that depends on itself ({way}), expected one that does not")
+            loop = " -> ".join((*within[within.index(name) :], name))
+            raise FormulaError(f"{name}: found a variable that depends on itself ({loop}), expected one that does not")
         if name not in trees:
             try:
                 tree = _in_place(parse(str(formulas[name])), units)

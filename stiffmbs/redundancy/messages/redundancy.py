@@ -38,7 +38,7 @@ def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> 
     `near_start`: true if it is known near the start only, as formulas or tables are involved.
     """
     what_then = f"and {STOPS_WHERE}" if near_start else "which does not change the motion"
-    yield f"{case.reason}; a run leaves out {_given_way(case)}, {what_then}"
+    yield f"{case.reason}; a run leaves out {_omitted(case)}, {what_then}"
     if case.indeterminate:
         shared = ["their sum is unique"] if case.shared else []
         directed = "; ".join([*directed_words(case.indeterminate), *shared])
@@ -48,7 +48,7 @@ def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> 
     yield case.remedy
 
 
-def _given_way(case: Overconstraint) -> str:
+def _omitted(case: Overconstraint) -> str:
     """List the dropped equations by joint."""
     of_joint: dict[str, list[str]] = {}
     for joint, equation in case.redundant:
@@ -122,7 +122,7 @@ def note_sentences(redundancy: Redundancy) -> Iterator[str]:
     """Yield the sentences of a run: dropped equations, and channels without a unique value."""
     for case in overconstraints(redundancy):
         where = f"; the run {STOPS_WHERE}" if known_near_start(case, redundancy) else ""
-        yield f"{case.reason}; left out: {_given_way(case)}{where}"
+        yield f"{case.reason}; left out: {_omitted(case)}{where}"
     if redundancy.indeterminate:
         words = channel_words(redundancy.indeterminate)
         yield f"rigid bodies do not determine {words}: the values shown are one possible solution"
@@ -150,7 +150,7 @@ def directed_words(parts: Sequence[Indeterminate]) -> Iterator[str]:
     alike: dict[Direction, list[str]] = {}
     for part in parts:
         for direction in part.directions:
-            if len(direction.vector) == 3 and not _told_by_channels(part, direction):
+            if len(direction.vector) == 3 and not _shown_by_channels(part, direction):
                 alike.setdefault(direction, []).append(part.element)
     for direction, elements in alike.items():
         where = f"{'perpendicular to' if direction.across else 'along'} {_axis(direction.vector)} of {direction.axes}"
@@ -170,7 +170,7 @@ def _axis(vector: Sequence[float]) -> str:
     return f"({', '.join(f'{part:.4g}' for part in vector)})"
 
 
-def _told_by_channels(part: Indeterminate, direction: Direction) -> bool:
+def _shown_by_channels(part: Indeterminate, direction: Direction) -> bool:
     """Return True if the components without a unique value are as few as the directions."""
     components = [name for name in part.channels if name.rpartition(".")[2].startswith(direction.quantity[0])]
     return len(components) <= (2 if direction.across else 1)

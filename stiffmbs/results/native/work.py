@@ -11,9 +11,9 @@ def _slope(t, power, k, count, apart):
         return (power[right] - power[here]) / (t[right] - t[here])
     if k == count - 1:
         return (power[here] - power[left]) / (t[here] - t[left])
-    before, behind = t[here] - t[left], t[right] - t[here]
-    rise, following = (power[here] - power[left]) / before, (power[right] - power[here]) / behind
-    return (rise * behind + following * before) / (before + behind)
+    before, after = t[here] - t[left], t[right] - t[here]
+    rise, following = (power[here] - power[left]) / before, (power[right] - power[here]) / after
+    return (rise * after + following * before) / (before + after)
 
 
 @compiled

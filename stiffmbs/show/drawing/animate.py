@@ -17,7 +17,7 @@ from ...results.files import refuse_path, write_text, written_whole
 from ...results.solution import Solution
 from ..page.data import moving_page, page_data
 from .derive import drawing_of
-from .film import Pace, need_encoder, pictures, write_gif, write_mp4
+from .film import Playback, need_encoder, pictures, write_gif, write_mp4
 from .picture import Shown
 from .poses import placed, poses_of
 from .scene_graph import Anchor
@@ -39,9 +39,9 @@ def check_animation(path: Path) -> None:
     need_encoder(path)
 
 
-def check_pace(pace: Pace) -> None:
+def check_playback(playback: Playback) -> None:
     """Check that speed and picture rate are positive."""
-    for option, value in (("--speed", pace.speed), ("--rate", pace.rate)):
+    for option, value in (("--speed", playback.speed), ("--rate", playback.rate)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{option}: found {value:g}, expected a number greater than 0")
 
@@ -62,13 +62,13 @@ def traced(data: ModelData, names: Sequence[str]) -> list[Anchor]:
 
 
 def write_animation(
-    path: Path, data: ModelData, runs: Mapping[str, Solution], view: str = "", pace: Pace = Pace(),  # noqa: B008
+    path: Path, data: ModelData, runs: Mapping[str, Solution], view: str = "", playback: Playback = Playback(),  # noqa: B008
     shown: Shown = Shown(), traces: Sequence[str] = (),  # noqa: B008
 ) -> None:  # fmt: skip
     """Write an animation of runs of a model, drawn over each other; the file is complete or not written at all.
 
     The name of the file ends in .gif, .mp4 or .html. The runs have their names in the legend, and the first one is
-    drawn in full colors. `view`, `pace` and `shown` are options of a film; a page can be rotated by hand. `traces` are
+    drawn in full colors. `view`, `playback` and `shown` are options of a film; a page can be rotated by hand. `traces` are
     markers or bodies whose paths are drawn. InputError if a run belongs to another model, or a marker is unknown.
     """
     poses = {name: poses_of(data, run.time, run.channels) for name, run in runs.items()}
@@ -81,8 +81,8 @@ def write_animation(
         write_text(path, page)
         return
     seen = view_named(view, drawing.dimensions, drawing.gravity)
-    frames = pictures(drawing, poses, seen, pace, shown, anchors)
-    written_whole(path, lambda part: FILMS[path.suffix](part, frames, pace.rate))
+    frames = pictures(drawing, poses, seen, playback, shown, anchors)
+    written_whole(path, lambda part: FILMS[path.suffix](part, frames, playback.rate))
 
 
 def animate(
@@ -119,13 +119,13 @@ def animate(
     InputError, AssemblyError
         As for `stiffmbs.run`, and for a file that cannot be written.
     """
-    pace = Pace(speed, rate)
+    playback = Playback(speed, rate)
     check_animation(Path(path))
-    check_pace(pace)
+    check_playback(playback)
     check_view(view)
     data = data_of(model)
     traced(data, traces)
     if runs is None:
         runs = run(data, **changes)
     found = {"": runs} if isinstance(runs, Solution) else runs
-    write_animation(Path(path), data, found, view, pace, Shown(names, forces), traces)
+    write_animation(Path(path), data, found, view, playback, Shown(names, forces), traces)

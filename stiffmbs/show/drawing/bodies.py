@@ -191,9 +191,9 @@ def _planar(points: np.ndarray, thick: float) -> Shapes:
 def _spatial(points: np.ndarray, thick: float) -> Shapes:
     """Return a rod through points on a line, or else rods: a triangle of three points, a star of more."""
     spread = points - points.mean(axis=0)
-    _, widths, ways = np.linalg.svd(spread, full_matrices=False)
+    _, widths, directions = np.linalg.svd(spread, full_matrices=False)
     if len(widths) < 2 or widths[1] < 0.5 * thick:
-        along = spread @ ways[0]
+        along = spread @ directions[0]
         a, b = points[np.argmin(along)], points[np.argmax(along)]
         return _with_edges(_rod(a, b, 0.5 * thick))
     ends = [(k, (k + 1) % 3) for k in range(3)] if len(points) == 3 else [(k, -1) for k in range(len(points))]

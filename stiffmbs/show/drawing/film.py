@@ -16,7 +16,7 @@ from ...errors import InputError
 from ..style import COLORS
 from .painted import extent, painted
 from .picture import Shown, empty_sheet, explain, paint, prepare, widened, write_names
-from .poses import Poses, followed_body, seen_from, way_of
+from .poses import Poses, followed_body, path_of, seen_from
 from .scene_graph import Anchor, Drawing
 from .view import View
 
@@ -26,7 +26,7 @@ FAINT = 0.4
 
 
 @dataclass(frozen=True)
-class Pace:
+class Playback:
     """Time scale and picture rate of a film.
 
     `speed`: seconds of the model per second of the film. `rate`: pictures per second of the film.
@@ -65,7 +65,7 @@ def _ffmpeg() -> str | None:
 
 
 def pictures(
-    drawing: Drawing, runs: Mapping[str, Poses], view: View, pace: Pace, shown: Shown, traces: Sequence[Anchor]
+    drawing: Drawing, runs: Mapping[str, Poses], view: View, playback: Playback, shown: Shown, traces: Sequence[Anchor]
 ) -> Iterator[np.ndarray]:
     """Yield the pictures of a film, shape (height, width, 3), bytes.
 
@@ -76,7 +76,7 @@ def pictures(
 
     known = {name: poses.resampled(poses.time) for name, poses in runs.items()}
     first = next(iter(known.values()))
-    instants = pace.instants(first.time[0], max(poses.time[-1] for poses in known.values()))
+    instants = playback.instants(first.time[0], max(poses.time[-1] for poses in known.values()))
     largest = shown.longest(drawing, first)
     body = followed_body(drawing, first)
     corners = [
@@ -102,7 +102,7 @@ def pictures(
             artists += write_names(axes, drawing, samples[0], k, view)
         clock.set_text(f"t = {instants[k]:.3f} s" if shown.clock else "")
         if body:
-            along = view.seen(way_of(body, samples[0])[k][None])[0]
+            along = view.seen(path_of(body, samples[0])[k][None])[0]
             prepare(axes, low + along[:2], high + along[:2])
         canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[:, :, :3].copy()

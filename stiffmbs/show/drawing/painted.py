@@ -33,7 +33,7 @@ SYMBOLS_BEFORE = 0.03
 """Distance of symbols in front of the bodies around them, relative to the size."""
 FOREMOST = 0.004
 """Distance of lines in front of faces at the same place, relative to the size."""
-FLOOR_BEHIND, SHADOW = 1e3, 0.07
+FLOOR_DEPTH, SHADOW = 1e3, 0.07
 """Distance of the floor below all else, relative to the size, and opacity of one shadow."""
 LONGEST_ARROW = 0.22
 """Length of the longest force arrow, relative to the size."""
@@ -81,7 +81,7 @@ def painted(drawing: Drawing, poses: Poses, k: int, view: View, longest: float =
 def _shadows(drawing: Drawing, poses: Poses, k: int, view: View) -> Iterator[Patch]:
     """Yield faint shadows of the bodies on a level floor, over the floor and below all else."""
     for points in shadows(drawing, poses, k):
-        yield Patch(view.seen(points)[:, :2], -FLOOR_BEHIND * drawing.size / 2, face="#000000", opacity=SHADOW)
+        yield Patch(view.seen(points)[:, :2], -FLOOR_DEPTH * drawing.size / 2, face="#000000", opacity=SHADOW)
 
 
 def _wider(drawing: Drawing, owner: str) -> float:
@@ -96,7 +96,7 @@ def _part(drawing: Drawing, part: Part, poses: Poses, k: int, view: View) -> Ite
     nearer = np.zeros(3)
     nearer[2] = 0.0 if part.role == "body" or drawing.dimensions == 2 else SYMBOLS_BEFORE * drawing.size
     if part.role == "floor":
-        nearer[2] = -FLOOR_BEHIND * drawing.size
+        nearer[2] = -FLOOR_DEPTH * drawing.size
     for solid in part.solids:
         seen = view.seen(origin + poses.vertices(solid, k) @ axes.T) + nearer
         colors: str | list[str] = face
@@ -148,9 +148,9 @@ def _link(drawing: Drawing, link: Link, poses: Poses, k: int, view: View) -> Ite
 
 def stretched(profile: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Return a profile stretched from one point to another, shape (n, 3)."""
-    way = end - start
-    first, second = across(way)
-    return start + profile[:, :1] * way + profile[:, 1:2] * first + profile[:, 2:3] * second
+    vector = end - start
+    first, second = across(vector)
+    return start + profile[:, :1] * vector + profile[:, 1:2] * first + profile[:, 2:3] * second
 
 
 def _loads(drawing: Drawing, poses: Poses, k: int, view: View, longest: float) -> Iterator[Patch]:
@@ -164,19 +164,19 @@ def _loads(drawing: Drawing, poses: Poses, k: int, view: View, longest: float) -
             continue
         origin, axes = poses.pose(anchor.body, k)
         start = view.seen((origin + axes @ anchor.point)[None])[0]
-        way = view.seen(force[None] / np.linalg.norm(force))[0][:2]
+        vector = view.seen(force[None] / np.linalg.norm(force))[0][:2]
         color = LOAD_NOT_UNIQUE if drawing.marks.get(name) else LOAD
-        yield from _arrow(start[:2], way * length, color, drawing.size, drawing.unit)
+        yield from _arrow(start[:2], vector * length, color, drawing.size, drawing.unit)
 
 
-def _arrow(start: np.ndarray, way: np.ndarray, color: str, size: float, unit: float) -> Iterator[Patch]:
-    length = float(np.linalg.norm(way))
+def _arrow(start: np.ndarray, vector: np.ndarray, color: str, size: float, unit: float) -> Iterator[Patch]:
+    length = float(np.linalg.norm(vector))
     if length < 1e-6 * size:
         return
     head = min(0.35 * length, HEAD * unit)
-    along = way / length
+    along = vector / length
     side = np.array([-along[1], along[0]])
-    tip, neck = start + way, start + way - along * head
+    tip, neck = start + vector, start + vector - along * head
     front = 1e3 * size
     yield Patch(np.array([start, neck]), front, edge=color, width=2.2)
     yield Patch(np.array([tip, neck + 0.45 * head * side, neck - 0.45 * head * side]), front, face=color)

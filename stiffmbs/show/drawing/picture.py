@@ -159,7 +159,7 @@ def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) 
 
 def _free_place(point: np.ndarray, box: np.ndarray, taken: Sequence[np.ndarray], unit: float) -> np.ndarray:
     """Return the place next to a point with the least overlap with the names written so far."""
-    ways = [
+    directions = [
         (1, 0.8),
         (-1, 0.8),
         (1, -0.8),
@@ -171,7 +171,7 @@ def _free_place(point: np.ndarray, box: np.ndarray, taken: Sequence[np.ndarray],
         (1.4, -2.4),
         (-1.4, -2.4),
     ]
-    places = [point + np.array([x * (box[0] / 2 + unit), y * (box[1] / 2 + unit)]) for x, y in ways]
+    places = [point + np.array([x * (box[0] / 2 + unit), y * (box[1] / 2 + unit)]) for x, y in directions]
     return min(places, key=lambda place: sum(_overlap(place, box, other) for other in taken))
 
 

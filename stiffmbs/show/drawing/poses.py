@@ -164,18 +164,18 @@ def followed_body(drawing: Drawing, poses: Poses) -> str:
     """Return the body that the view follows, or an empty string."""
     if drawing.heaviest not in poses.points:
         return ""
-    way = way_of(drawing.heaviest, poses)
-    return drawing.heaviest if np.nanmax(np.linalg.norm(way, axis=1)) > FAR * drawing.size else ""
+    travelled = path_of(drawing.heaviest, poses)
+    return drawing.heaviest if np.nanmax(np.linalg.norm(travelled, axis=1)) > FAR * drawing.size else ""
 
 
-def way_of(body: str, poses: Poses) -> np.ndarray:
+def path_of(body: str, poses: Poses) -> np.ndarray:
     """Return the displacement of a body from its first position, shape (n, 3), m."""
     return np.asarray(poses.points[body] - poses.points[body][0])
 
 
 def seen_from(body: str, drawing: Drawing, poses: Poses) -> Poses:
     """Return the poses relative to a body's displacement, without its rotation."""
-    way = way_of(body, poses)
+    travelled = path_of(body, poses)
     modal = {name for part in drawing.parts for solid in part.solids for name in solid.modes}
-    points = {name: p if name in modal else p - way for name, p in poses.points.items()}
+    points = {name: p if name in modal else p - travelled for name, p in poses.points.items()}
     return Poses(poses.time, points, poses.orientations, poses.forces)

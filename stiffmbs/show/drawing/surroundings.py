@@ -78,11 +78,11 @@ def _floor(drawing: Drawing, poses: Poses) -> Part | None:
     level = low[up] if drawing.gravity[up] < 0 else high[up]
     if not np.isfinite([*low, *high]).all():
         return None
-    beside = CHOSEN.margin * max(drawing.size, float((high - low).max()))
+    border = CHOSEN.margin * max(drawing.size, float((high - low).max()))
     step = _round(max(CHOSEN.lines * drawing.size, float((high - low).max()) / 40))
     first, second = (k for k in range(3) if k != up)
     ends = [
-        (step * math.floor((low[k] - beside) / step), step * math.ceil((high[k] + beside) / step))
+        (step * math.floor((low[k] - border) / step), step * math.ceil((high[k] + border) / step))
         for k in (first, second)
     ]
     counts = [round((b - a) / step) + 1 for a, b in ends]
@@ -125,8 +125,8 @@ def _road(road: Road, wheels: list[str], drawing: Drawing, poses: Poses) -> Part
     path = path[np.isfinite(path).all(axis=1)]
     if not len(path):
         return None
-    beside = CHOSEN.margin * drawing.size
-    low, high = path.min(axis=0) - beside, path.max(axis=0) + beside
+    border = CHOSEN.margin * drawing.size
+    low, high = path.min(axis=0) - border, path.max(axis=0) + border
     x = _along(road, float(low[0]), float(high[0]), drawing.size)
     y = np.linspace(low[1], high[1], CHOSEN.across)
     points = np.zeros((len(x), len(y), 3))

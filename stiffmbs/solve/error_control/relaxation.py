@@ -44,7 +44,7 @@ class RelaxationParameters:
 RELAXATION = tuned("relaxation", RelaxationParameters())
 
 
-class Creep(NamedTuple):
+class Drift(NamedTuple):
     """Constraint drift of the velocities of a run, in units of their tolerances.
 
     Attributes
@@ -87,22 +87,22 @@ def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
     positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
     C_q, J = state.values["motion"][positions.source], state.values["motion"][velocities.source]
     of_positions = np.bincount(positions.row, C_q * C_q, minlength=system.n_c)
-    of_velocities = np.bincount(velocities.row, J * J * lightness(dynamics)[velocities.column], minlength=system.n_c)
-    creep = creep_of_positions(settings), creep_of_velocities(settings, system)
-    state.relax(creep[0] * of_positions, creep[1] * of_velocities)
+    of_velocities = np.bincount(velocities.row, J * J * inverse_mass(dynamics)[velocities.column], minlength=system.n_c)
+    found = drift_of_positions(settings), drift_of_velocities(settings, system)
+    state.relax(found[0] * of_positions, found[1] * of_velocities)
 
 
-def creep_of_positions(settings: RunSettings) -> float:
+def drift_of_positions(settings: RunSettings) -> float:
     """Return E_mu of a row of C_q with a single entry 1."""
     return RELAXATION.of_positions * _factor(settings)
 
 
-def creep_of_velocities(settings: RunSettings, system: System) -> float:
+def drift_of_velocities(settings: RunSettings, system: System) -> float:
     """Return E_lam of a row of J with a single entry 1, for an inverse mass of 1."""
     return RELAXATION.of_velocities * _factor(settings) * min(1.0, (RELAXATION.short_chain / len(system.bodies)) ** 2)
 
 
-def lightness(dynamics: Dynamics) -> np.ndarray:
+def inverse_mass(dynamics: Dynamics) -> np.ndarray:
     """Return the inverse masses and moments of inertia that relaxations use, shape (n_u,)."""
     return dynamics.kept("relaxation", None, lambda: 1 / _heaviest(dynamics.system))
 
@@ -119,17 +119,17 @@ def _heaviest(system: System) -> np.ndarray:
     return system.per_velocity(mass, inertia + mass * system.size**2)
 
 
-def creeps(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, limit: float) -> bool:
-    """Return True if the drift of a run may exceed `limit` tolerances; an inexpensive bound of `creep_of`."""
+def drifts(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, limit: float) -> bool:
+    """Return True if the drift of a run may exceed `limit` tolerances; an inexpensive bound of `drift_of`."""
     least = float(absolute_tolerances(system, settings)[system.n_q :].min())
     before, firsts = trajectory.u[: len(rows.t)], range(0, len(rows.t), CACHED)
     off = max([float(np.abs(before[k : k + CACHED] - rows.u[k : k + CACHED]).max()) for k in firsts])
     return not max(off, _slip(system, rows, settings)) <= limit * least
 
 
-def creep_of(
+def drift_of(
     system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, breakpoints: np.ndarray
-) -> Creep:
+) -> Drift:
     """Return the constraint drift of a run whose output states were projected onto the constraints.
 
     Parameters
@@ -156,15 +156,15 @@ def creep_of(
         release(rows.u, trajectory.u)
     joint = system.equations[int(np.abs(rows.lam[row]).argmax())][0]
     at_end = _slip(system, rows, settings) / float(absolute.min())
-    return Creep(total / count, at_end, system.name_of(velocity, system.of_body.velocities), joint)
+    return Drift(total / count, at_end, system.name_of(velocity, system.of_body.velocities), joint)
 
 
 def _slip(system: System, rows: OutputRows, settings: RunSettings) -> float:
     """Return the velocity drift expected from the multipliers of the last output time."""
-    return creep_of_velocities(settings, system) * float(np.abs(rows.lam[-1]).max()) / float(system.mass.max())
+    return drift_of_velocities(settings, system) * float(np.abs(rows.lam[-1]).max()) / float(system.mass.max())
 
 
-def creep_at(dynamics: Dynamics, t: float, u: np.ndarray, settings: RunSettings) -> float:
+def drift_at(dynamics: Dynamics, t: float, u: np.ndarray, settings: RunSettings) -> float:
     """Project velocities u onto the constraints at the current positions; return the largest change, in tolerances."""
     state, system = dynamics.state, dynamics.system
     state.u[:] = u
@@ -182,7 +182,7 @@ def refuse_drift(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, set
     system = dynamics.system
     if settings.formulation == "SI2" and system.n_c and np.all(system.holonomic[system.active]):
         dynamics.state.q[:] = q
-        if (drift := creep_at(dynamics, t, u, settings)) > RELAXATION.refused:
+        if (drift := drift_at(dynamics, t, u, settings)) > RELAXATION.refused:
             raise SolverError(
                 f"stopped at t = {t:.9g} s: constraint drift: velocities violate the constraints by {drift:.2g} tolerances"
                 f"{suspect(dynamics, t, q, u)}"

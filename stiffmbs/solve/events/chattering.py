@@ -80,8 +80,8 @@ class Chattering:
             self._mark = since, before
             return
         self._mark = t, steps
-        pace = (t - since) / (steps - before)
-        if self._end - t > CHATTERING.steps_ahead * pace:
+        mean_step = (t - since) / (steps - before)
+        if self._end - t > CHATTERING.steps_ahead * mean_step:
             raise SolverError(
                 f"stopped at t = {t:.9g} s: the last {steps - before} steps covered only {t - since:.3g} s, and the rest of the run would take "
                 f"at least {CHATTERING.steps_ahead:.0e} more; look for a singularity: a force that divides by "

@@ -49,7 +49,7 @@ class _Side(NamedTuple):
     rates: np.ndarray
 
 
-class _Beside:
+class _Around:
     """States near a given state.
 
     `dynamics`: its state becomes that of the last evaluation. `t`: s. `q`, `u` of shapes (n_q,), (n_u,).
@@ -98,7 +98,7 @@ class _Beside:
         BY_VELOCITIES.short_call(self.t, reach, at_q, at_u, along_u, self._count, address(found), self._table)
         return found != 0.0
 
-    def at_zero(self, reach: float, event_function: int) -> _Beside:
+    def at_zero(self, reach: float, event_function: int) -> _Around:
         """Return the states near the zero of an event function, by bisection between moves of -reach and reach."""
         low, high = -reach, reach
         above = self.values(high)[event_function] > 0.0
@@ -113,7 +113,7 @@ class _Beside:
             x + size * np.maximum(1.0, np.abs(x)) * part
             for x, part in zip((self.q, self.u), self._direction, strict=True)
         )
-        return _Beside(self._dynamics, self.t, q, u)
+        return _Around(self._dynamics, self.t, q, u)
 
 
 def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
@@ -122,13 +122,13 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
     `t`: s. `q`, `u` of shapes (n_q,), (n_u,).
     """
     with dynamics.state.unchanged():
-        beside = _Beside(dynamics, t, q, u)
-        crossed = beside.crossed()
+        around = _Around(dynamics, t, q, u)
+        crossed = around.crossed()
         if not len(crossed):
             return crossed
         far, near = (
             float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-            for a, b in (beside.sides(size) for size in (JUMP.larger_move, SEARCH.precision))
+            for a, b in (around.sides(size) for size in (JUMP.larger_move, SEARCH.precision))
         )
     return crossed if near > max(JUMP.jumps * far, SEARCH.precision) else crossed[:0]
 
@@ -142,20 +142,20 @@ def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
     """
     reach = JUMP.larger_move if reach is None else reach
     with dynamics.state.unchanged():
-        beside = _Beside(dynamics, t, q, u)
-        back = beside.crossed(reach)
+        around = _Around(dynamics, t, q, u)
+        back = around.crossed(reach)
         if len(back):  # the rates of others do not depend on forces
-            back = back[beside.follow_velocities(reach)[back]]
-        for way in _ahead_first(beside, reach, back) if len(back) else ():
-            back = back[_returns(beside.side(way * reach), back)]
+            back = back[around.follow_velocities(reach)[back]]
+        for sense in _ahead_first(around, reach, back) if len(back) else ():
+            back = back[_returns(around.side(sense * reach), back)]
             if not len(back):
                 return back
-        return np.array([k for k in back if _slides(beside, reach, k)], dtype=int)
+        return np.array([k for k in back if _slides(around, reach, k)], dtype=int)
 
 
-def _ahead_first(beside: _Beside, reach: float, crossed: np.ndarray) -> tuple[float, float]:
+def _ahead_first(around: _Around, reach: float, crossed: np.ndarray) -> tuple[float, float]:
     """Return both signs of a move, first that to the side of the state: a motion through the zero leaves it there."""
-    here, there = (beside.values(way * reach)[crossed[0]] for way in (0.0, 1.0))
+    here, there = (around.values(sense * reach)[crossed[0]] for sense in (0.0, 1.0))
     return (1.0, -1.0) if here * there > 0.0 else (-1.0, 1.0)
 
 
@@ -169,13 +169,13 @@ def _driven_back(sides: tuple[_Side, _Side], event_functions: np.ndarray) -> np.
     return np.logical_and(*(_returns(side, event_functions) for side in sides))
 
 
-def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
+def _slides(around: _Around, reach: float, event_function: int) -> bool:
     """Return True if the motion returns to the zero of an event function from both sides, with discontinuous rates.
 
     The zero is a sliding surface only if the event function is continuous.  A discontinuous one, such as the load of a
     damper at a kink of its road, changes its sign at a surface of another event function.
     """
-    at_zero = beside.at_zero(reach, event_function)
+    at_zero = around.at_zero(reach, event_function)
     values, rates = [], []
     for size in (JUMP.larger_move, SEARCH.precision):
         sides = at_zero.sides(size)

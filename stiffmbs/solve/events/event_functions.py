@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.inputs.features import NO_FEATURES, InputFeatures
-from ...compile.law_zones import zones_of
+from ...compile.law_intervals import intervals_of
 from ...compile.machine.layout import fill
 from ...compile.state import State
 from ...compile.system import System
@@ -43,16 +43,16 @@ class EventSearch:
         self._cells = self.table.view(EVENT_SEARCH.cells)[0]
         if not n:
             return  # no search: its arrays are not read
-        zones = zones_of(system)
-        self._overlap = zones.overlap.copy()
+        intervals = intervals_of(system)
+        self._overlap = intervals.overlap.copy()
         weight = (-1.0) ** np.arange(NODES)
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
-        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "zone_low", "zone_high", "apart")  # fmt: skip
+        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "interval_low", "interval_high", "apart")  # fmt: skip
         self._arrays = {
-            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(zones.turns), "turn": zones.turns, "radians": zones.radians, "lands": self._lands, "kinked": zones.kinks, "n_zoned": zones.zoned,
+            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "n_with_intervals": intervals.zoned,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
-            "first_edge": zones.first, "edges": zones.edges, "overlap": self._overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
+            "first_breakpoint": intervals.first, "breakpoints": intervals.breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": WHOLE, "weight": weight,
             **_calls(system), "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
@@ -61,9 +61,9 @@ class EventSearch:
     def end_steps_at_kinks(self) -> None:
         """End steps at the kinks of tables from now on."""
         if self.n:
-            zones = zones_of(self._system)
-            self._lands[:] = zones.kinks
-            self._overlap[np.repeat(zones.kinks, np.diff(zones.first)) > 0] = 0.0
+            intervals = intervals_of(self._system)
+            self._lands[:] = intervals.kinks
+            self._overlap[np.repeat(intervals.kinks, np.diff(intervals.first)) > 0] = 0.0
 
     def begin(self) -> None:
         """Forget the last step before a restart of the integrator."""

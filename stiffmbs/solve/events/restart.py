@@ -101,7 +101,7 @@ def _take(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: b
 
 def _at_hand(dynamics: Dynamics, t: float) -> InitialValues:
     state = dynamics.state
-    state.count_anew(t)
+    state.restart_counters(t)
     status, acceleration = dynamics.accelerate(t)
     _go_on(dynamics, status, t)
     return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam.copy(), (), dynamics.system.size)

@@ -153,7 +153,7 @@ class AdaptiveRun:
                 self._store_rows()
                 return status
         if status == AT_EVENT and work.t < self._grid.end:
-            event_function = self._start_anew()
+            event_function = self._restart()
             self._events += 1
             self._chattering.note_event(work.t, self._start.q, self._start.u, event_function)
         return status
@@ -180,10 +180,10 @@ class AdaptiveRun:
         self._store_rows()
         self.work.t = min(just_after(breakpoint), self._grid.end)
         before = self.work.u.copy()
-        self._start_anew()
+        self._restart()
         self._jumps.note(breakpoint, self._start.u - before)
 
-    def _start_anew(self) -> int:
+    def _restart(self) -> int:
         """Restart from consistent values at the current time; return the event function of an event there, or -1."""
         work = self.work
         self._start = restarted(self._dynamics, work.t, work.q, work.u, self._settings.projection)

@@ -60,30 +60,32 @@ class Rounding:
         If the elimination loses digits, the LU replaces it. The run ends if accelerations jump with the rounding of
         coordinates and govern the steps. The sentence names the acceleration and the suspect element.
         """
-        pace = self._soon.pace(work)
-        if pace and work.eliminates and self._loses_digits(work, pace):
+        mean_step = self._soon.mean_step(work)
+        if mean_step and work.eliminates and self._loses_digits(work, mean_step):
             work.eliminates = False
-        pace = self._later.pace(work)
-        return self._jumping(work, pace) if pace and self._end - work.t > CHATTERING.too_many * pace else ""
+        mean_step = self._later.mean_step(work)
+        return (
+            self._jumping(work, mean_step) if mean_step and self._end - work.t > CHATTERING.too_many * mean_step else ""
+        )
 
-    def _loses_digits(self, work: Integration, pace: float) -> bool:
+    def _loses_digits(self, work: Integration, mean_step: float) -> bool:
         """Return True if errors of the elimination are large enough to shorten the steps."""
         found, off = np.empty(len(work.u)), []
-        for t in self._along(work, ROUNDING.within * pace, ROUNDING.few):
+        for t in self._along(work, ROUNDING.within * mean_step, ROUNDING.few):
             if ATTEMPT.call(t, address(found), address(self._dynamics.eliminated.table)):
                 off.append(np.abs(found - self._dynamics.accelerate(t)[1]))
         self._dynamics.forget_pivots()
-        return bool(off) and bool(np.any(pace * np.max(off, axis=0) > ENDS.harmful * self._tolerance(work)))
+        return bool(off) and bool(np.any(mean_step * np.max(off, axis=0) > ENDS.harmful * self._tolerance(work)))
 
-    def _jumping(self, work: Integration, pace: float) -> str:
+    def _jumping(self, work: Integration, mean_step: float) -> str:
         """Return a sentence on the acceleration whose jumps govern the steps, or an empty string."""
-        jumps, tolerance = self._jumps(work, ROUNDING.within * pace), self._tolerance(work)
+        jumps, tolerance = self._jumps(work, ROUNDING.within * mean_step), self._tolerance(work)
         k = int(np.argmax(jumps / tolerance))
-        if not jumps[k] * pace > ENDS.harmful * tolerance[k]:
+        if not jumps[k] * mean_step > ENDS.harmful * tolerance[k]:
             return ""
         likely = suspect(self._dynamics, work.t, work.q.copy(), work.u.copy())
         return (
-            f"rounding errors limit the steps ({CONTROL.enough_steps} steps cover {CONTROL.enough_steps * pace:.3g} s): rounding of the coordinates changes "
+            f"rounding errors limit the steps ({CONTROL.enough_steps} steps cover {CONTROL.enough_steps * mean_step:.3g} s): rounding of the coordinates changes "
             f"{acceleration_name(self._dynamics.system, k)} by {jumps[k]:.2g}{likely}; expected constraints that are either exactly "
             "redundant or clearly independent, or solver bdf"
         )
@@ -116,10 +118,10 @@ class _Stretch:
     def __init__(self, start: float, apart: int) -> None:
         self._t, self._steps, self._apart = start, 0, apart
 
-    def pace(self, work: Integration) -> float:
+    def mean_step(self, work: Integration) -> float:
         """Return the mean step length since the last check, s, or 0 if the next is not due."""
-        taken, way = work.count("steps") - self._steps, work.t - self._t
+        taken, covered = work.count("steps") - self._steps, work.t - self._t
         if taken < self._apart:
             return 0.0
         self._t, self._steps = work.t, work.count("steps")
-        return way / taken
+        return covered / taken

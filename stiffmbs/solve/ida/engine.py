@@ -64,7 +64,7 @@ class Engine(ABC):
         """Start by one compiled call that finds these values; return False, without a start, if it does not apply."""
         return False
 
-    def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
+    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
         """Restart at consistent values after a state and events within `ahead` (s); None if not applicable."""
         return None
 

@@ -24,7 +24,7 @@ from .session import Session
 from .statistics import Statistics, Status, failure_sentence
 
 if TYPE_CHECKING:
-    from .starting.after_event import StartsAnew
+    from .starting.after_event import EventRestarts
     from .starting.starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)", level=SHORT)
@@ -114,8 +114,8 @@ class NativeIda(Connection):
         super().__init__(equations, state, matrix, np.arange(n) if reported is None else reported, session, formula)
         self._statistics = Statistics(session.libraries, self.memory)
         self._flag, self.begun = 0, False
-        self._pace = min(max(LOOP.most_items // n, 1), LOOP.most_steps)
-        self._look = self._usual_pace = self._pace
+        self._batch = min(max(LOOP.most_items // n, 1), LOOP.most_steps)
+        self._look = self._usual_batch = self._batch
         self._trace = np.empty((0, 2 + 2 * n))
         self._set_tolerances(rtol, atol)
         self.ask("IDASetMaxStep", max_step)
@@ -140,7 +140,7 @@ class NativeIda(Connection):
 
     def pause_after(self, steps: int) -> None:
         """Make `advance` and `steps` return after this number of steps at the latest."""
-        self._pace = min(self._usual_pace, steps)
+        self._batch = min(self._usual_batch, steps)
 
     def keep_steps(self, kept: bool, places: np.ndarray = AT_THE_END) -> None:
         """Enable or disable storage of time, order, y and y' of each step for `kept_steps`, and of y at places within it."""
@@ -185,7 +185,7 @@ class NativeIda(Connection):
 
     def forget(self) -> None:
         """Reset counters, history and pivots, as before the first start."""
-        self.begun, self._look = False, self._usual_pace
+        self.begun, self._look = False, self._usual_batch
         self.ask("IDAReInit", 0.0, self.y_vector, self.yp_vector)  # resets IDA's counters
         self._statistics.forget()
         super().forget()
@@ -241,20 +241,20 @@ class NativeIda(Connection):
         self.ask("IDASetStopTime", stop)
         derivatives = 0 if yp_out is None else address(yp_out)
         self._flag = self.run(
-            ADVANCE, len(times), address(times), stop, min(self._pace, self._look), address(y_out), derivatives
+            ADVANCE, len(times), address(times), stop, min(self._batch, self._look), address(y_out), derivatives
         )
         return int(self.cells["served"]), self._status()
 
     def advance_past(
-        self, anew: StartsAnew, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
+        self, event_restarts: EventRestarts, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
     ) -> tuple[int, Status]:
-        """Integrate as `advance` towards the first of some stops, and to later ones if `anew` can restart there."""
+        """Integrate as `advance` towards the first of some stops, and to later ones if `event_restarts` can restart there."""
         times = np.ascontiguousarray(times, dtype=float)
         self._check_rows(y_out, len(times))
-        most = min(self._pace, self._look)
+        most = min(self._batch, self._look)
         at_times, at_stops, at_rows = addresses(times, stops, y_out)
         self._flag = self.run(
-            ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, anew.table
+            ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, event_restarts.table
         )
         return int(self.cells["served"]), self._status()
 
@@ -266,7 +266,7 @@ class NativeIda(Connection):
         self._check_rows(y_out, len(t_out))
         self.ask("IDASetStopTime", stop)
         self._flag = self.run(
-            STEPS, min(self._pace, self._look, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data
+            STEPS, min(self._batch, self._look, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data
         )
         return int(self.cells["served"]), self._status()
 

@@ -28,7 +28,7 @@ from .statistics import Status
 
 if TYPE_CHECKING:
     from ...dynamics.initial import InitialValues
-    from .starting.after_event import Begun, Restarts, StartsAnew
+    from .starting.after_event import Begun, EventRestarts, Restarts
     from .starting.starts import Starts
 
 
@@ -101,11 +101,11 @@ class NativeEngine(Engine):
         self._take_up(self._starts, t)
         return True
 
-    def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
-        if self._starts is None or self._starts_anew is None:
+    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
+        if self._starts is None or self._event_restarts is None:
             return None
         self._ida.error_norm.filter_always(self._order.held)
-        found = self._starts_anew.begin((q, u), t, ahead, self._ida.begun, self._order.order)
+        found = self._event_restarts.begin((q, u), t, ahead, self._ida.begun, self._order.order)
         if found:
             self._take_up(self._starts, found.t)
         return found
@@ -149,14 +149,14 @@ class NativeEngine(Engine):
 
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
         status, served, passed = Status.GOING, 0, 0
-        anew = self._starts_anew if len(stops) > 1 else None
-        if anew is None or not (anew.may_pass and self._ida.may_pass):
-            anew, stops = None, stops[:1]
+        event_restarts = self._event_restarts if len(stops) > 1 else None
+        if event_restarts is None or not (event_restarts.may_pass and self._ida.may_pass):
+            event_restarts, stops = None, stops[:1]
         times = times[: times.searchsorted(stops[-1], side="right")]
         while status is Status.GOING:
             times, stops = times[served:], stops[passed:]
             rows = allocated(len(times), self._width)
-            served, status, passed = self._advance(anew, times, stops, rows)
+            served, status, passed = self._advance(event_restarts, times, stops, rows)
             *earlier, last = list(blocks(served)) or [slice(0, 0)]
             for block in earlier:
                 yield self._reached(times[block], rows[block], Status.GOING)
@@ -166,17 +166,17 @@ class NativeEngine(Engine):
                 self._adapt(stops[passed])
 
     def _advance(
-        self, anew: StartsAnew | None, times: np.ndarray, stops: Sequence[float], rows: np.ndarray
+        self, event_restarts: EventRestarts | None, times: np.ndarray, stops: Sequence[float], rows: np.ndarray
     ) -> tuple[int, Status, int]:
-        """Integrate to the first stop, or beyond by `anew`; return output times served, status, stops passed."""
-        if anew is None:
+        """Integrate to the first stop, or beyond by `event_restarts`; return output times served, status, stops passed."""
+        if event_restarts is None:
             return *self._ida.advance(times, stops[0], rows), 0
         before = self._ida.history.count
-        served, status = self._ida.advance_past(anew, times, np.array(stops), self._order.order, rows)
-        passed, steps = anew.passed
+        served, status = self._ida.advance_past(event_restarts, times, np.array(stops), self._order.order, rows)
+        passed, steps = event_restarts.passed
         if passed:
-            self._stiffness, self._newton = anew.starts.found()
-            self._order.begin(anew.t, before + steps, float(np.sqrt(self._stiffness.of_positions)))
+            self._stiffness, self._newton = event_restarts.starts.found()
+            self._order.begin(event_restarts.t, before + steps, float(np.sqrt(self._stiffness.of_positions)))
         return served, status, passed
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
@@ -217,11 +217,11 @@ class NativeEngine(Engine):
         return self._make_starts()
 
     @cached_property
-    def _starts_anew(self) -> StartsAnew | None:
-        from .starting.after_event import StartsAnew
+    def _event_restarts(self) -> EventRestarts | None:
+        from .starting.after_event import EventRestarts
 
         least = NEWTON.precision / self._rtol
-        return StartsAnew(self._starts, self._dynamics, least) if self._starts else None
+        return EventRestarts(self._starts, self._dynamics, least) if self._starts else None
 
     def at(self, t: float) -> np.ndarray:
         """Return all unknowns at a time within the last step."""

@@ -83,14 +83,14 @@ class BlockLU(FixedOrder):
         """Return the memory of the compiled routines, given the address of N_VGetArrayPointer."""
         with_pivots = Pivoted(self.n, self.rows, self.columns, self.order).memory(array_of)
         blocks = self.blocks
-        beside = [self.parts * right + own for right, own in zip(blocks.right_width, blocks.widths, strict=True)]
-        scratch = max([*beside, *blocks.down_width, *(2 * QUAD * size for size in blocks.sizes)])
+        widths = [self.parts * right + own for right, own in zip(blocks.right_width, blocks.widths, strict=True)]
+        scratch = max([*widths, *blocks.down_width, *(2 * QUAD * size for size in blocks.sizes)])
         arrays = {
             **self._plan, "array_of": array_of, "factors": with_pivots.arrays["factors"],
             "with_pivots": np.array([with_pivots.content.ctypes.data]), "kept": with_pivots,
             "x": at_a_line(blocks.node_starts[-1]), "scratch": at_a_line(scratch),
             "order": np.zeros(max(blocks.sizes), dtype=np.int64),
-            "unit": np.eye(QUAD), "behind": np.triu(np.ones((QUAD, QUAD)), 1),
+            "unit": np.eye(QUAD), "above": np.triu(np.ones((QUAD, QUAD)), 1),
             **{name: np.zeros(self.n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},
         }  # fmt: skip
         content = packed_with_memory(BLOCK_LU, arrays)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 import numpy as np
 
 from ...compile.equations import Equations
-from ...compile.law_zones import zones_of
+from ...compile.law_intervals import intervals_of
 from ...compile.machine.layout import fill, packed
 from ...compile.state import State
 from ...model.settings import RunSettings
@@ -147,7 +147,7 @@ class Radau:
         number[imaginary] = np.arange(len(imaginary))
         events = functions = system.n_event_functions
         compute = connection.event_functions
-        if zones_of(system).kinks.any():
+        if intervals_of(system).kinks.any():
             functions, compute = connection.watch.n, connection.event_functions_and_places
         efforts = condensed_efforts(equations)
         n_efforts, n_all = efforts["n_efforts"], n + efforts["n_efforts"]

@@ -229,8 +229,8 @@ def mean_deceleration(time: np.ndarray, speed: np.ndarray) -> float:
     first, second = (_first(time, speed[0] - speed, (1 - part) * speed[0]) for part in (0.8, 0.1))
     if not np.isfinite(second):
         raise InputError(f"found a lowest speed of {speed.min():.3g} m/s, expected {0.1 * speed[0]:.3g} m/s or less")
-    way = np.interp(second, time, distance) - np.interp(first, time, distance)
-    return float((0.8**2 - 0.1**2) * speed[0] ** 2 / (2 * way))
+    braking_distance = np.interp(second, time, distance) - np.interp(first, time, distance)
+    return float((0.8**2 - 0.1**2) * speed[0] ** 2 / (2 * braking_distance))
 
 
 def yaw_rate_ratio(

@@ -12,7 +12,7 @@ from stiffmbs import InputError
 from stiffmbs.commands.main import main
 from stiffmbs.show.drawing.animate import traced
 from stiffmbs.show.drawing.derive import drawing_of
-from stiffmbs.show.drawing.film import Pace, _ffmpeg, pictures
+from stiffmbs.show.drawing.film import Playback, _ffmpeg, pictures
 from stiffmbs.show.drawing.picture import Shown
 from stiffmbs.show.drawing.poses import Poses, followed_body, poses_of
 from stiffmbs.show.drawing.view import view_named
@@ -87,12 +87,12 @@ def test_other_runs_are_faint_and_under_the_first():
     drawing = drawing_of(scene)
     view = view_named("", 2, drawing.gravity)
     one, both = (
-        next(pictures(drawing, runs, view, Pace(rate=5), Shown(False, False), []))
+        next(pictures(drawing, runs, view, Playback(rate=5), Shown(False, False), []))
         for runs in ({"a": poses}, {"a": poses, "b": poses})
     )
     assert (np.ptp(one.astype(int), axis=2) > 40).sum() > 1000
     shifted = Poses(poses.time, {"bar": poses.points["bar"] - [0, 0.3, 0]}, poses.orientations)
-    apart = next(pictures(drawing, {"a": poses, "b": shifted}, view, Pace(rate=5), Shown(False, False), []))
+    apart = next(pictures(drawing, {"a": poses, "b": shifted}, view, Playback(rate=5), Shown(False, False), []))
     orange = (apart[:, :, 0].astype(int) - apart[:, :, 2] > 60).sum()
     assert orange > (both[:, :, 0].astype(int) - both[:, :, 2] > 60).sum() + 500
 
@@ -207,5 +207,7 @@ def test_a_film_goes_with_a_mechanism_that_travels(speed):
     poses = poses_of(scene, solution.time, solution.channels)
     drawing = drawing_of(scene)
     assert followed_body(drawing, poses) == ("box" if speed else "")
-    *_, last = pictures(drawing, {"": poses}, view_named("", 2, drawing.gravity), Pace(rate=5), Shown(False, False), [])
+    *_, last = pictures(
+        drawing, {"": poses}, view_named("", 2, drawing.gravity), Playback(rate=5), Shown(False, False), []
+    )
     assert (np.ptp(last.astype(int), axis=2) > 40).sum() > 10_000

@@ -14,7 +14,7 @@ from stiffmbs.solve import (
 )
 from stiffmbs.solve.error_control.native import accumulated_errors
 from stiffmbs.solve.error_control.newton import Stiffness, newton_tolerance
-from stiffmbs.solve.error_control.relaxation import creep_of_positions, creep_of_velocities
+from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
 from stiffmbs.solve.explicit.native import (
     runge_kutta,
@@ -231,8 +231,8 @@ DECISIONS = {
     "accumulation.halved_apart": lambda: count_while(lambda k: not runge_kutta.is_halved(Record(steps=k)), range(1000)),
     "accumulation.faster": faster_velocity,
     "accumulated_errors.tolerances": largest_accumulated_error,
-    "relaxation.of_positions": lambda: creep_of_positions(RunSettings(duration=1.0, rtol=1e-8)),
-    "relaxation.of_velocities": lambda: creep_of_velocities(RunSettings(duration=1.0, rtol=1e-8), Record(bodies=[0])),
+    "relaxation.of_positions": lambda: drift_of_positions(RunSettings(duration=1.0, rtol=1e-8)),
+    "relaxation.of_velocities": lambda: drift_of_velocities(RunSettings(duration=1.0, rtol=1e-8), Record(bodies=[0])),
     "relaxation.check_interval": lambda: first_check_of_drift("refuse_drift", range(0, 5000, 50)),
     "divergence.followed_steps": lambda: first_check_of_drift("refuse_beyond_sense", range(0, 300_000, 5000)),
     "explicit_steps.enough_steps": steps_that_rounding_governs,

@@ -79,7 +79,7 @@ def refined_at_an_extremum():
 
 
 def time_past_an_event():
-    s, m = Record(q=np.zeros(1), n_q=1), Record(n_behind=0)
+    s, m = Record(q=np.zeros(1), n_q=1), Record(n_trailing=0)
     replaced = {
         "_go": nothing,
         "evaluate": lambda *_: np.zeros(1),

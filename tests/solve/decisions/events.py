@@ -43,14 +43,14 @@ def largest_part_of_an_interval():
     def passes(k):
         return searched(
             n_event_functions=0,
-            first_edge=np.array([0, 2]),
+            first_breakpoint=np.array([0, 2]),
             value_before=np.zeros(1),
             m=np.array([0.01 * k]),
             value_after=np.array([0.02 * k]),
         )
 
     with interpreted(ida_events, _narrowest=lambda *_: 1.0):
-        return count_while(lambda k: ida_events._within_zones(passes(k)), range(1, 200))
+        return count_while(lambda k: ida_events._within_intervals(passes(k)), range(1, 200))
 
 
 def span_with_many_signs():
@@ -149,7 +149,7 @@ def smallest_jump():
 
         states = Record(crossed=lambda: np.array([0]), sides=pair)
         dynamics = Record(state=Record(unchanged=nullcontext))
-        with patch.object(discontinuity, "_Beside", lambda *_: states):
+        with patch.object(discontinuity, "_Around", lambda *_: states):
             return len(discontinuity.jumping(dynamics, 0.0, None, None)) > 0
 
     return count_while(is_jump, range(1, 1000))
@@ -159,7 +159,7 @@ def interval_of_rates():
     found = []
     beside = Record(_count=1, u=np.zeros(1), _at=(), _there=np.zeros(1), _table=0, t=0.0)
     with patch.object(discontinuity, "SIDE", Record(short_call=lambda t, size, interval, *_: found.append(interval))):
-        discontinuity._Beside.side(beside, 1.0)
+        discontinuity._Around.side(beside, 1.0)
     return found[0]
 
 

@@ -66,7 +66,7 @@ def factor_after_a_rejection(exponent):
     return lengths[0]
 
 
-def distance_behind_an_event():
+def distance_beyond_an_event():
     found = []
     with interpreted(explicit_events, _taken_to_event=lambda *given: found.append(given[-1]) or -1):
         explicit_events._ended_at_event(stepping(), scheme(), None, None)
@@ -319,7 +319,7 @@ DECISIONS = {
     "explicit_ends.close": largest_uncertain_pivot,
     "explicit_ends.harmful": largest_harmless_change,
     "explicit_ends.shorter": step_before_a_bifurcation,
-    "explicit_events.behind": distance_behind_an_event,
+    "explicit_events.beyond": distance_beyond_an_event,
     "explicit_events.most_retaken": steps_to_an_event,
     "explicit_first_step.part": first_length,
     "explicit_first_step.short": lambda: first_length(0.0),
@@ -355,7 +355,7 @@ DECISIONS = {
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
     "explicit_checks.now_and_then": 100, "explicit_ends.close": 10, "explicit_ends.harmful": 30, "explicit_ends.shorter": 0.55,
-    "explicit_events.behind": 1e-10, "explicit_events.most_retaken": 8, "explicit_first_step.part": 0.01, "explicit_first_step.short": 1e-06,
+    "explicit_events.beyond": 1e-10, "explicit_events.most_retaken": 8, "explicit_first_step.part": 0.01, "explicit_first_step.short": 1e-06,
     "explicit_first_step.small": 67, "explicit_first_step.farthest": 40, "explicit_rounding.few": 4, "explicit_rounding.within": 0.01,
     "explicit_rounding.instants": 64, "explicit_rounding.jumps": 3, "explicit_rounding.part": 48, "explicit_steps.safety": 0.9,
     "explicit_steps.smallest_error": 0.009, "explicit_steps.largest_factor": 10, "explicit_steps.least_factor": 0.2,

@@ -63,18 +63,18 @@ def test_a_compiled_start_leaves_the_same_numbers(name, examples):
 
 
 @pytest.mark.parametrize("name", ["half_car", "bouncing_ball", "cam_follower"])
-@pytest.mark.parametrize("starts", [("begin_anew", None), ("begin_anew", None, "begin_at", False)])
+@pytest.mark.parametrize("starts", [("begin_restart", None), ("begin_restart", None, "begin_at", False)])
 def test_a_run_of_compiled_starts_is_the_run_of_starts_by_python(name, starts, examples, monkeypatch):
     job = prepare(stiffmbs.load_scene(examples / f"{name}.yaml"), solver="bdf", duration=1.0)
     job.integrate()
-    done, begin_anew = [], NativeEngine.begin_anew
+    done, begin_restart = [], NativeEngine.begin_restart
 
     def noted(*arguments):
-        done.append(begin_anew(*arguments))
+        done.append(begin_restart(*arguments))
         return done[-1]
 
     monkeypatch.setattr(NativeIda, "may_pass", False)
-    monkeypatch.setattr(NativeEngine, "begin_anew", noted)
+    monkeypatch.setattr(NativeEngine, "begin_restart", noted)
     found = job.integrate()
     assert len(done) > 1 and all(done)
     for name, outcome in zip(starts[::2], starts[1::2], strict=True):
@@ -91,18 +91,18 @@ def test_what_was_counted_before_a_start_that_is_left_to_python_counts_once(exam
     job.integrate()
     expected = job.integrate().statistics
     engine = Integrator(job.dynamics, job.settings).engine
-    begin_anew = NativeEngine.begin_anew
+    begin_restart = NativeEngine.begin_restart
 
     def without_end(*arguments):
         scales = engine._starts._kept[0]["f_q_scale"]
         kept, scales[:] = scales.copy(), 0.0  # the stiffness is infinite
-        found = begin_anew(*arguments)
+        found = begin_restart(*arguments)
         scales[:] = kept
         assert found is None
         return found
 
     monkeypatch.setattr(NativeIda, "may_pass", False)
-    monkeypatch.setattr(NativeEngine, "begin_anew", without_end)
+    monkeypatch.setattr(NativeEngine, "begin_restart", without_end)
     assert {**job.integrate().statistics, "seconds": 0} == {**expected, "seconds": 0}
 
 

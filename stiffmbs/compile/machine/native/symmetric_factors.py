@@ -130,10 +130,10 @@ def _inverse(code: Code, number: Value) -> Value:
     return code.put_value("float", f"fdiv double 1.0, {number.text}")
 
 
-def _next_inverse(code: Code, pivot: Value, beside: Value, diagonal: Value) -> Value:
+def _next_inverse(code: Code, pivot: Value, off_diagonal: Value, diagonal: Value) -> Value:
     """Return the inverse of the next pivot from a 2 x 2 determinant, so that both divisions run in parallel."""
     product = code.put_value("float", f"fmul {pivot.typed}, {diagonal.text}")
-    inverse = _inverse(code, minus_product(code, product, beside, beside))
+    inverse = _inverse(code, minus_product(code, product, off_diagonal, off_diagonal))
     return code.put_value("float", f"fmul {pivot.typed}, {inverse.text}")
 
 

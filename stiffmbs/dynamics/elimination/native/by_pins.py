@@ -41,13 +41,13 @@ def _assemble(r, e, values):
         own[0], own[1], own[2] = xx, xy, yy
         diagonal[0], diagonal[1] = xx, yy
         rhs[0], rhs[1] = x, y
-    for k in range(e.n_beside):
+    for k in range(e.n_adjacent):
         product, m = product_of(e.product, k), shifted(e.mass, 3 * k)
-        v, w, beside = shifted(e.w, product.first), shifted(e.w, product.second), shifted(e.beside, 4 * k)
+        v, w, adjacent = shifted(e.w, product.first), shifted(e.w, product.second), shifted(e.adjacent, 4 * k)
         p, s, a, b = v[0] * m[0], v[1] * m[1], v[2] * m[2], v[3] * m[2]
         wa, wb = w[2], w[3]
         xx, yy = plus_product(p * w[0], a, wa), plus_product(s * w[1], b, wb)
-        beside[0], beside[1], beside[2], beside[3] = xx, a * wb, b * wa, yy
+        adjacent[0], adjacent[1], adjacent[2], adjacent[3] = xx, a * wb, b * wa, yy
 
 
 @compiled
@@ -76,7 +76,7 @@ def _factored(r, e):
         x[0], x[1] = x0 * first, x1 * second
         end = e.start[k + 1]
         for m in range(e.start[k], end):
-            o, scaled, later = shifted(e.beside, 4 * m), shifted(e.scaled, 4 * m), e.later[m]
+            o, scaled, later = shifted(e.adjacent, 4 * m), shifted(e.scaled, 4 * m), e.later[m]
             into, rhs = shifted(e.block, 4 * later), shifted(e.x, 2 * later)
             o00, o01 = o[0], o[1]
             o10, o11 = plus_product(o[2], -lower, o00), plus_product(o[3], -lower, o01)
@@ -90,7 +90,7 @@ def _factored(r, e):
             into[0], into[1], into[2] = d0, d1, d2
             rhs[0], rhs[1] = b0, b1
             for n in range(m + 1, end):
-                o, into = shifted(e.beside, 4 * n), shifted(e.beside, 4 * e.update[at])
+                o, into = shifted(e.adjacent, 4 * n), shifted(e.adjacent, 4 * e.update[at])
                 o10, o11 = o[2] - lower * o[0], o[3] - lower * o[1]
                 into[0] += s00 * o[0] + s10 * o10
                 into[1] += s00 * o[1] + s10 * o11

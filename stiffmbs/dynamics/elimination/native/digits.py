@@ -4,7 +4,7 @@ from stiffmbs.compile.machine.native.access import compiled
 
 LOST = 1e-6
 """Least pivot relative to its diagonal entry; smaller ones require the LU with pivoting."""
-SMALL, TOGETHER, BESIDE = 1e-2, 1e-9, 1e-5
+SMALL, TOGETHER, RELATIVE = 1e-2, 1e-9, 1e-5
 """Relative size below which a pivot counts as small, bound for all small pivots together, and the same relative to the
 best earlier value.  Along closed loops, losses of digits multiply; in trees, the smallest pivot counts."""
 
@@ -16,4 +16,4 @@ def keeps_digits(r, pivot, diagonal):
         return True
     part = pivot / diagonal
     r.kept = min(r.kept, part) if r.trees else r.kept * part
-    return part > LOST and r.kept > max(TOGETHER, BESIDE * r.most_kept)
+    return part > LOST and r.kept > max(TOGETHER, RELATIVE * r.most_kept)

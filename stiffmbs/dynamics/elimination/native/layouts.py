@@ -7,9 +7,9 @@ from typing import NamedTuple
 from stiffmbs.compile.machine.layout import FLOATS, INDICES, INT, INTS, Layout
 
 PIN_ELIMINATION = Layout({
-    "n": INT, "n_beside": INT, "pin": INDICES, "inverse": FLOATS, "w": FLOATS, "product": INDICES, "mass": FLOATS,
+    "n": INT, "n_adjacent": INT, "pin": INDICES, "inverse": FLOATS, "w": FLOATS, "product": INDICES, "mass": FLOATS,
     "start": INDICES, "later": INDICES, "update": INDICES,
-    "block": FLOATS, "diagonal": FLOATS, "beside": FLOATS, "scaled": FLOATS, "x": FLOATS,
+    "block": FLOATS, "diagonal": FLOATS, "adjacent": FLOATS, "scaled": FLOATS, "x": FLOATS,
 })  # fmt: skip
 """Matrix and factors of planar revolute joints in the order of elimination (`stiffmbs.dynamics.elimination.eliminated`).  The
 rows of `pin` are `Pin`, `inverse` holds the inverse masses of both bodies.  Off-diagonal blocks are

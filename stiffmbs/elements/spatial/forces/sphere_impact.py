@@ -42,22 +42,22 @@ class SphereImpact(Impact):
     radius: si.PositiveLength = Field(description="of the sphere, m")
 
     @classmethod
-    def way(cls, e: Symbolic) -> list[Expr]:
+    def offset(cls, e: Symbolic) -> list[Expr]:
         """Return the vector from the nearest point of the solid to the sphere's centre, along the axes of j."""
         raise NotImplementedError
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
         """Return the contact at the nearest point."""
-        way = cls.way(e)
-        distance = e.named(length(*way))
-        normal = e.named(along_axes([part / distance for part in way], e.j.axes))
+        offset = cls.offset(e)
+        distance = e.named(length(*offset))
+        normal = e.named(along_axes([part / distance for part in offset], e.j.axes))
         return [Touch(distance - e.radius, e.i.point - e.radius * normal, normal)]
 
     @classmethod
     def limits(cls, e: Symbolic) -> Sequence[Expr]:
         """Return the distance of the centre from the solid, less a thousandth of the radius."""
-        return (length(*cls.way(e)) - e.radius / 1000,)
+        return (length(*cls.offset(e)) - e.radius / 1000,)
 
 
 class SphereSphereImpact(SphereImpact):
@@ -73,7 +73,7 @@ class SphereSphereImpact(SphereImpact):
     other_radius: si.PositiveLength = Field(description="of the sphere about j, m")
 
     @classmethod
-    def way(cls, e: Symbolic) -> list[Expr]:
+    def offset(cls, e: Symbolic) -> list[Expr]:
         """Return the vector from the centre of j to that of i, along the axes of j."""
         return e.named(seen_from(e.i.point, e.j))
 
@@ -99,7 +99,7 @@ class SphereBoxImpact(SphereImpact):
     z: si.PositiveLength = Field(description="along z, m")
 
     @classmethod
-    def way(cls, e: Symbolic) -> list[Expr]:
+    def offset(cls, e: Symbolic) -> list[Expr]:
         """Return the vector from the nearest point of the box to the sphere's centre, along the axes of j."""
         from sympy import sign
 
@@ -123,7 +123,7 @@ class SphereCylinderImpact(SphereImpact):
     cylinder_length: si.PositiveLength = Field(description="m")
 
     @classmethod
-    def way(cls, e: Symbolic) -> list[Expr]:
+    def offset(cls, e: Symbolic) -> list[Expr]:
         """Return the vector from the nearest point of the cylinder to the sphere's centre, along the axes of j."""
         from sympy import sign
 

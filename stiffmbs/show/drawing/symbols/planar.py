@@ -40,10 +40,10 @@ def _anchor(d: Draft, other: Site) -> None:
     site = d.grounded()
     if site is None:
         return
-    way = other.in_ground - site.in_ground
-    if np.linalg.norm(way) < 1e-9 * d.size:
+    offset = other.in_ground - site.in_ground
+    if np.linalg.norm(offset) < 1e-9 * d.size:
         return
-    y = way / np.linalg.norm(way)
+    y = offset / np.linalg.norm(offset)
     axes = np.column_stack([np.cross(y, [0.0, 0.0, 1.0]), y, [0.0, 0.0, 1.0]])
     d.put(_front(site.along_ground().with_axes(axes), d, 0), "ground", *hatched(d.u, 1.2, 0.0))
 

@@ -20,12 +20,12 @@ event_search_view = view_of("EventSearch", EVENT_SEARCH)
 
 
 @compiled
-def zone(w, k, value):
+def interval(w, k, value):
     """Return the number of breakpoints of event function k below a value."""
-    first, end = w.first_edge[k], w.first_edge[k + 1]
+    first, end = w.first_breakpoint[k], w.first_breakpoint[k + 1]
     turns = 0
     if w.period[k] > 0.0:
-        around = floor((value - w.edges[first]) / w.period[k])
+        around = floor((value - w.breakpoints[first]) / w.period[k])
         if not abs(around) < 1e15:
             return 0
         turns = int(around)
@@ -34,7 +34,7 @@ def zone(w, k, value):
     high = end
     while low < high:
         middle = (low + high) // 2
-        if w.edges[middle] < value:
+        if w.breakpoints[middle] < value:
             low = middle + 1
         else:
             high = middle
@@ -42,37 +42,37 @@ def zone(w, k, value):
 
 
 @compiled
-def edge(w, k, number):
+def breakpoint_of(w, k, number):
     """Return the breakpoint between the intervals `number` and `number` + 1 of function k, or the first or last one."""
-    first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
+    first, count = w.first_breakpoint[k], w.first_breakpoint[k + 1] - w.first_breakpoint[k]
     if w.period[k] > 0.0:
         turns = number // count
-        return w.edges[first + number - turns * count] + turns * w.period[k]
-    return w.edges[first + min(max(number, 0), count - 1)]
+        return w.breakpoints[first + number - turns * count] + turns * w.period[k]
+    return w.breakpoints[first + min(max(number, 0), count - 1)]
 
 
 @compiled
 def place(w, k, value):
     """Return 2 n in the interval n of function k, and 2 n + 1 on the breakpoint between the intervals n and n + 1."""
-    number = zone(w, k, value)
-    return 2 * number + (1 if value == edge(w, k, number) else 0)
+    number = interval(w, k, value)
+    return 2 * number + (1 if value == breakpoint_of(w, k, number) else 0)
 
 
 @compiled
 def overlap(w, k, number):
     """Return the overlap of the adjacent intervals `number` and `number` + 1 of function k."""
-    first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
+    first, count = w.first_breakpoint[k], w.first_breakpoint[k + 1] - w.first_breakpoint[k]
     return w.overlap[first + (number % count if w.period[k] > 0.0 else min(max(number, 0), count - 1))]
 
 
 @compiled
 def beyond(w, k, value, one, other, least):
     """Return True if a value is outside two intervals of a function by more than their overlap and `least`."""
-    here, low, high = zone(w, k, value), min(one, other), max(one, other)
+    here, low, high = interval(w, k, value), min(one, other), max(one, other)
     if here > high:
-        return value - edge(w, k, high) > max(least, overlap(w, k, high))
+        return value - breakpoint_of(w, k, high) > max(least, overlap(w, k, high))
     if here < low:
-        return edge(w, k, low - 1) - value > max(least, overlap(w, k, low - 1))
+        return breakpoint_of(w, k, low - 1) - value > max(least, overlap(w, k, low - 1))
     return False
 
 
@@ -122,7 +122,7 @@ def _bound(start, start_rate, end, end_rate, missed, side):
 @compiled
 def reaches(w, k, start, start_rate, end, end_rate, missed):
     """Return True if an event function may change sign, or another one leave the intervals at the ends of the step."""
-    one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
+    one, other = interval(w, k, w.value_before[k]), interval(w, k, w.value_after[k])
     if abs(one - other) > 1 or (w.lands[k] and beyond(w, k, w.value_after[k], one, one, 0.0)):
         return True
     low, high = (
@@ -130,14 +130,14 @@ def reaches(w, k, start, start_rate, end, end_rate, missed):
         _bound(start, start_rate, end, end_rate, missed, 1),
     )
     if k < w.n_event_functions:
-        return zone(w, k, low) != one or zone(w, k, high) != one
+        return interval(w, k, low) != one or interval(w, k, high) != one
     return beyond(w, k, low, one, other, 0.0) or beyond(w, k, high, one, other, 0.0)
 
 
 @compiled
 def turned(w, q_before, q_after, most):
     """Return True if a body, or the argument of a sine, has rotated by more than `most`."""
-    if w.n_zoned == 0:
+    if w.n_with_intervals == 0:
         return False
     farthest = turned_arguments(w, w.value_before, w.value_after)
     for k in range(w.n_angles):
@@ -226,7 +226,7 @@ def _note_apart(w, h):
         start_rate, end_rate = h * w.rate_before[k], h * w.rate_after[k]
         missed = abs(w.m[k] - cubic(start, start_rate, end, end_rate, LOOKED_AT))
         beyond = abs(end - start) + abs(start_rate) + abs(end_rate) + SEARCH.unknown * missed
-        below, above = min(start, end) - beyond - w.zone_low[k], w.zone_high[k] - max(start, end) - beyond
+        below, above = min(start, end) - beyond - w.interval_low[k], w.interval_high[k] - max(start, end) - beyond
         w.apart[k] = min(below, above)
 
 
@@ -234,7 +234,7 @@ def _note_apart(w, h):
 def suspicious(w, h, q_before, q_after):
     """Return True if values and rates at both ends of a step of length h, and values at `LOOKED_AT`, allow an event.
 
-    `note_zones` has noted the intervals at its start, and the kernels with a function near a breakpoint.
+    `note_intervals` has noted the intervals at its start, and the kernels with a function near a breakpoint.
     """
     if turned(w, q_before, q_after, SEARCH.turned):
         return True

@@ -13,11 +13,11 @@ LONG_STEPS = Layout({
 space for rows (0 for none), stored rows, usual step."""
 
 EVENT_SEARCH = Layout({
-    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "overlap": FLOATS, "period": FLOATS,
+    "n": INT, "n_event_functions": INT, "masked": INTS, "first_breakpoint": INTS, "breakpoints": FLOATS, "overlap": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
-    "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS, "n_calls": INT, "call": INTS, "near": INTS,
-    "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "n_turns": INT, "turn": INTS, "radians": FLOATS, "lands": INTS, "kinked": INTS, "n_zoned": INT,
+    "interval_low": FLOATS, "interval_high": FLOATS, "apart": FLOATS, "n_calls": INT, "call": INTS, "near": INTS,
+    "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "n_turns": INT, "turn": INTS, "radians": FLOATS, "lands": INTS, "kinked": INTS, "n_with_intervals": INT,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
     "least": FLOAT_CELL, "duration": FLOAT_CELL, "longest": FLOAT_CELL, "target": FLOAT_CELL, "passage": FLOAT_CELL, "first": FLOAT_CELL, "under_way": INT_CELL, "begins": FLOAT_CELL, "narrow": INT_CELL, "passed": FLOAT_CELL, "unresolved": INT_CELL, "fastest": INT_CELL, "first_unresolved": FLOAT_CELL,
 })  # fmt: skip

@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_len
 from stiffmbs.dynamics.native.consistent import consistent_accelerations
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
-from stiffmbs.solve.explicit.native.stages import add_rates_behind
+from stiffmbs.solve.explicit.native.stages import add_trailing_rates
 
 
 @compiled
@@ -108,7 +108,7 @@ def _go(s, m, ahead, q):
     """Extrapolate the positions and states in q linearly by a time, which may be negative."""
     copied(s.q, q, s.n_q)
     add_rates(s, s.u, ahead, s.q)
-    add_rates_behind(s, m, ahead, s.q)
+    add_trailing_rates(s, m, ahead, s.q)
     take_unit_length(s)
 
 
@@ -130,7 +130,7 @@ def moved_past(s, m, t, most, count, q, values):
     Returns the time, 0 with the state unchanged for none.  Memory: `q` for positions, `values` for event functions.
     """
     copied(q, s.q, s.n_q)
-    if m.n_behind > 0:
+    if m.n_trailing > 0:
         evaluate(s, ACCELERATION, t)
     _go(s, m, -most, q)  # at the state itself, rounding decides the signs
     copied(values, evaluate(s, SWITCH, t - most), count)

@@ -21,12 +21,12 @@ from stiffmbs.solve.events.native.bounds import (
     beyond,
     cubic,
     fastest_turn,
+    interval,
     left_out,
     note_unresolved,
     noted_rates,
     reaches,
     turned_arguments,
-    zone,
 )
 from stiffmbs.solve.events.native.parameters import BISECTIONS, SEARCH
 
@@ -118,8 +118,8 @@ def _extremum(start, start_rate, end, end_rate, which):
 @compiled
 def _visits(w, k, value, low, high):
     """Return True if the value of a function at `high` is an event; it was in the initial interval up to `low`."""
-    one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
-    here = zone(w, k, value)
+    one, other = interval(w, k, w.value_before[k]), interval(w, k, w.value_after[k])
+    here = interval(w, k, value)
     if here != one and not 0.0 <= w.left_high[k] <= high:
         w.left_low[k], w.left_high[k] = low, high  # the stored one may be after a return
     if k < w.n_event_functions:
@@ -141,11 +141,11 @@ def _visits_extremum(w, s, begun, h, k, low, place, part):
             return True
         apart = min(apart, place - low, low + part - place)
         before = _values(w, s, begun, h, place - apart)[k]
-        behind = _values(w, s, begun, h, place + apart)[k]
-        curved = before - 2.0 * here + behind
+        after = _values(w, s, begun, h, place + apart)[k]
+        curved = before - 2.0 * here + after
         if curved == 0.0 or not isfinite(curved):
             return False
-        place += min(max(0.5 * apart * (before - behind) / curved, -apart), apart)
+        place += min(max(0.5 * apart * (before - after) / curved, -apart), apart)
         apart *= 0.1
     return False
 
@@ -153,7 +153,7 @@ def _visits_extremum(w, s, begun, h, k, low, place, part):
 @compiled
 def _seen_at_end(w, k):
     """Return True if an event function has changed sign at the end of the step; it may have changed earlier, too."""
-    return k < w.n_event_functions and zone(w, k, w.value_before[k]) != zone(w, k, w.value_after[k])
+    return k < w.n_event_functions and interval(w, k, w.value_before[k]) != interval(w, k, w.value_after[k])
 
 
 @compiled
@@ -193,11 +193,11 @@ def _first_within(w, s, begun, h, low, part):
 @compiled
 def _change(w, s, begun, h, k):
     """Return the place at which a function leaves its initial interval."""
-    here = zone(w, k, w.value_before[k])
+    here = interval(w, k, w.value_before[k])
     low, high = w.left_low[k], w.left_high[k]
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        if zone(w, k, _values(w, s, begun, h, middle)[k]) != here:
+        if interval(w, k, _values(w, s, begun, h, middle)[k]) != here:
             high = middle
         else:
             low = middle

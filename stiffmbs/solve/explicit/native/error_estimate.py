@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.events.native.bounds import event_search_view, zone
+from stiffmbs.solve.events.native.bounds import event_search_view, interval
 from stiffmbs.solve.explicit.native.parameters import CONTROL
 from stiffmbs.solve.explicit.native.stages import add_stages, load_state
 
@@ -64,7 +64,7 @@ def _sees_other_laws(x, h):
     at_end = evaluate(s, SWITCH, t)
     others = 0
     for k in range(w.n):
-        if zone(w, k, w.m[k]) != zone(w, k, at_end[k]):
+        if interval(w, k, w.m[k]) != interval(w, k, at_end[k]):
             others += 1
     return others > 0
 

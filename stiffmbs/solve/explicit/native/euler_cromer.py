@@ -12,7 +12,7 @@ from stiffmbs.dynamics.native.block_systems import (
 )
 from stiffmbs.dynamics.native.layouts import MOST_MOVES
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.explicit.native.stages import add_rates_behind
+from stiffmbs.solve.explicit.native.stages import add_trailing_rates
 
 
 @compiled
@@ -25,7 +25,7 @@ def _step(s, m, t, h, project, tolerance):
     for k in range(s.n_u):
         s.u[k] += h * acceleration[k]
     add_rates(s, s.u, h, s.q)
-    add_rates_behind(s, m, h, s.q)
+    add_trailing_rates(s, m, h, s.q)
     take_unit_length(s)
     for k in range(s.n_q):
         if not isfinite(s.q[k]):

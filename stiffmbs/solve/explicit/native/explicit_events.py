@@ -26,7 +26,7 @@ from stiffmbs.solve.events.native.from_zero import (
     leaves_zero,
     note_sides,
 )
-from stiffmbs.solve.events.native.nearby import note_zones
+from stiffmbs.solve.events.native.nearby import note_intervals
 from stiffmbs.solve.events.native.parameters import BISECTIONS, EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, keep_row
 from stiffmbs.solve.explicit.native.attempt import arrive, attempt
@@ -35,7 +35,7 @@ from stiffmbs.solve.explicit.native.interpolant import interpolated, prepare
 from stiffmbs.solve.explicit.native.parameters import CONTROL, LOCATION
 from stiffmbs.solve.explicit.native.stages import explicit_view, load_state, scheme_view, weighted
 
-AT_ANOTHER_LAW, IN_ANOTHER_ZONE = range(1, 3)
+AT_ANOTHER_LAW, IN_ANOTHER_INTERVAL = range(1, 3)
 """End of a step: an event, at which integrators restart, or a breakpoint of a law, where they continue."""
 RETRIED, NO_EVENT, TURNED_TOO_FAR = range(1, 4)
 """Outcomes of a search other than 0, a step to an event."""
@@ -186,7 +186,7 @@ def _event_within(x, c, s, m, changed):
     _note_start(x, s, w, small)
     _note_rates(x, s, x.y, shifted(x.k, c.stages * x.n), x.t, -small, w.value_after, w.rate_after)
     _look_within(x, c, s)
-    note_zones(w)
+    note_intervals(w)
     if not suspicious(w, h, x.y_before, x.y):
         return 0.0
     if _stages_have_changed(x, c, s, changed):
@@ -262,7 +262,7 @@ def _go_past(x, c, ahead):
 
 
 @compiled
-def _taken_to_change(x, c, s, m, high, behind):
+def _taken_to_change(x, c, s, m, high, beyond):
     """Repeat the step until it ends just before the first sign change of an event function.
 
     The first estimate comes from the interpolant of a step across the event, later ones from steps that end there.
@@ -274,9 +274,9 @@ def _taken_to_change(x, c, s, m, high, behind):
         if status < 0:
             return status
         first = _first_change(x, c, s, high)
-        if not changed and first <= x.span + 2.0 * behind:
+        if not changed and first <= x.span + 2.0 * beyond:
             return 0
-        status = retaken(x, c, s, m, max(first - behind, 0.5 * first))
+        status = retaken(x, c, s, m, max(first - beyond, 0.5 * first))
         if status < 0:
             return status
         changed = _changed(x, _values(x, s, x.y, x.t))
@@ -286,7 +286,7 @@ def _taken_to_change(x, c, s, m, high, behind):
 
 
 @compiled
-def _taken_to_event(x, c, s, m, h, behind):
+def _taken_to_event(x, c, s, m, h, beyond):
     """Repeat the step up to its first event; 0, a negative status, `RETRIED`, `NO_EVENT` or `TURNED_TOO_FAR`."""
     w = event_search_view(x.watch)
     copied(w.value_after, _values(x, s, x.y, x.t), w.n)
@@ -296,7 +296,7 @@ def _taken_to_event(x, c, s, m, h, behind):
     changed = _changed(x, w.value_after)
     if changed:
         _note_changed(x, w.value_after)
-        status = _taken_to_change(x, c, s, m, h, behind)
+        status = _taken_to_change(x, c, s, m, h, beyond)
         if status != 0:
             return status
         h = x.span
@@ -309,8 +309,8 @@ def _taken_to_event(x, c, s, m, h, behind):
     if within == h:
         return RETRIED
     if _any_found(x):
-        return _taken_to_change(x, c, s, m, within, behind)
-    return retaken(x, c, s, m, max(within - behind, 0.5 * within))
+        return _taken_to_change(x, c, s, m, within, beyond)
+    return retaken(x, c, s, m, max(within - beyond, 0.5 * within))
 
 
 def end_at_event(explicit):
@@ -327,8 +327,8 @@ def end_at_event(explicit):
 @compiled
 def _ended_at_event(x, c, s, m):
     h = x.span
-    behind = max(LOCATION.behind * h, INDISTINCT * abs(x.t))
-    status = _taken_to_event(x, c, s, m, h, behind)
+    beyond = max(LOCATION.beyond * h, INDISTINCT * abs(x.t))
+    status = _taken_to_event(x, c, s, m, h, beyond)
     w = event_search_view(x.watch)
     if status == NO_EVENT:
         _note_repeats(x, w, 0)
@@ -349,8 +349,8 @@ def _ended_at_event(x, c, s, m):
         if shorter >= x.shortest:
             return _gone_back(x, c, shorter)
     _note_repeats(x, w, 1)
-    _go_past(x, c, _way_past(x, c, s, 2.0 * behind, max(SEARCH.difference * h, x.shortest)))
-    x.at_event = IN_ANOTHER_ZONE if _goes_on(x, s) else AT_ANOTHER_LAW
+    _go_past(x, c, _way_past(x, c, s, 2.0 * beyond, max(SEARCH.difference * h, x.shortest)))
+    x.at_event = IN_ANOTHER_INTERVAL if _goes_on(x, s) else AT_ANOTHER_LAW
     return 0
 
 

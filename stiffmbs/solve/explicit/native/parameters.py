@@ -72,7 +72,7 @@ class LocationParameters:
     Source: as for `stiffmbs.solve.events.native.parameters.EventSearchParameters`.
     """
 
-    behind: float = 1e-10
+    beyond: float = 1e-10
     """Distance from an event to the end of a step, relative to the step."""
     most_retaken: int = 8
     """Largest number of steps to one event."""

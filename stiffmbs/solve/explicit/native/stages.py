@@ -54,11 +54,11 @@ def accelerated(eliminates, eliminated, s, m, t, target):
 
 
 @compiled
-def add_rates_behind(s, m, factor, target):
+def add_trailing_rates(s, m, factor, target):
     """Add factor * the rates of revolution counters and states, after accelerations at the current state."""
     values = floats(s.values[ACCELERATION])
-    for k in range(m.n_behind):
-        target[m.behind_row[k]] += factor * values[m.behind_source[k]]
+    for k in range(m.n_trailing):
+        target[m.trailing_row[k]] += factor * values[m.trailing_source[k]]
 
 
 @compiled
@@ -77,7 +77,7 @@ def rates(x, s, m, stage, t):
     add_rates(s, s.u, 1.0, k)
     x.accelerations += 1
     status = accelerated(x.eliminates, x.eliminated, s, m, t, shifted(k, s.n_q))
-    add_rates_behind(s, m, 1.0, k)
+    add_trailing_rates(s, m, 1.0, k)
     return status
 
 

@@ -10,7 +10,7 @@ from stiffmbs.solve.events.native.bounds import event_search_view
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, keep_sides, note_sides
 from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
 from stiffmbs.solve.explicit.native.parameters import FIRST_STEP
-from stiffmbs.solve.explicit.native.stages import add_rates_behind, load_state, rates
+from stiffmbs.solve.explicit.native.stages import add_trailing_rates, load_state, rates
 
 
 @compiled
@@ -22,9 +22,9 @@ def start_steps(x, c, s, m):
     for i in range(s.n_q):
         k[i] = 0.0
     add_rates(s, s.u, 1.0, k)
-    if m.n_behind > 0:
+    if m.n_trailing > 0:
         evaluate(s, ACCELERATION, x.t)
-        add_rates_behind(s, m, 1.0, k)
+        add_trailing_rates(s, m, 1.0, k)
     if x.n_event_functions > 0:
         copied(x.signs, evaluate(s, SWITCH, x.t), x.n_event_functions)
         if at_zero(x.signs, x.n_event_functions) > 0:

@@ -10,8 +10,9 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.solve.events.native.bounds import (
     LOOKED_AT,
-    edge,
+    breakpoint_of,
     event_search_view,
+    interval,
     longest_by_turns,
     note_unresolved,
     noted_rates,
@@ -20,7 +21,6 @@ from stiffmbs.solve.events.native.bounds import (
     suspicious,
     time_of_difference,
     turned_arguments,
-    zone,
 )
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
@@ -96,7 +96,7 @@ def _go_on(c, w, s):
 @compiled
 def _look_ahead(c, w, s):
     """Make the next step resolve the intervals of laws, and end before an event, if breakpoints are near."""
-    if w.n_turns == 0 or w.n_zoned == 0 or w.longest == float("inf"):
+    if w.n_turns == 0 or w.n_with_intervals == 0 or w.longest == float("inf"):
         return
     ahead = min(w.longest, LARGEST_GROWTH * c.size)
     go_ahead(c, s, ahead)
@@ -104,8 +104,8 @@ def _look_ahead(c, w, s):
     if note_near(w, ahead, w.row, s.q):
         event = near_an_event(w, ahead, w.row, s.q)
         _look_at_middle(c, w, s, ahead)
-        if w.n_zoned > w.n_event_functions:
-            ahead = _resolve_zones(c, w, s, ahead)
+        if w.n_with_intervals > w.n_event_functions:
+            ahead = _resolve_intervals(c, w, s, ahead)
         if event:
             _aim(c, w, s, ahead)
     load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
@@ -119,11 +119,11 @@ def _look_at_middle(c, w, s, ahead):
 
 
 @compiled
-def _within_zones(w):
+def _within_intervals(w):
     """Return True if laws pass at most a fraction of their intervals in either part of a step."""
     beyond = 0
     for k in range(w.n_event_functions, w.n):
-        if w.first_edge[k] == w.first_edge[k + 1] or not w.near[w.call[k]]:
+        if w.first_breakpoint[k] == w.first_breakpoint[k + 1] or not w.near[w.call[k]]:
             continue
         start, middle, end = w.value_before[k], w.m[k], w.value_after[k]
         narrowest = min(_narrowest(w, k, start, middle), _narrowest(w, k, start, end))
@@ -134,13 +134,13 @@ def _within_zones(w):
 @compiled
 def _narrowest(w, k, start, end):
     """Return the narrowest interval of function k between two values that is wider than its distance from the start."""
-    number, last = zone(w, k, start), zone(w, k, end)
-    way = 1 if last > number else -1
+    number, last = interval(w, k, start), interval(w, k, end)
+    sense = 1 if last > number else -1
     narrowest = min(_width(w, k, number), _width(w, k, last))
-    left = min(abs(last - number), w.first_edge[k + 1] - w.first_edge[k])
+    left = min(abs(last - number), w.first_breakpoint[k + 1] - w.first_breakpoint[k])
     for _ in range(left):
-        near = edge(w, k, number if way > 0 else number - 1)
-        number += way
+        near = breakpoint_of(w, k, number if sense > 0 else number - 1)
+        number += sense
         width = _width(w, k, number)
         if width > abs(near - start):
             narrowest = min(narrowest, width)
@@ -150,16 +150,16 @@ def _narrowest(w, k, start, end):
 @compiled
 def _width(w, k, number):
     """Return the width of an interval; infinite for the outer ones."""
-    if w.period[k] == 0.0 and not 0 < number < w.first_edge[k + 1] - w.first_edge[k]:
+    if w.period[k] == 0.0 and not 0 < number < w.first_breakpoint[k + 1] - w.first_breakpoint[k]:
         return float("inf")
-    return edge(w, k, number) - edge(w, k, number - 1)
+    return breakpoint_of(w, k, number) - breakpoint_of(w, k, number - 1)
 
 
 @compiled
-def _resolve_zones(c, w, s, most):
+def _resolve_intervals(c, w, s, most):
     """Limit the next step so that the extrapolated motion passes each interval of a law in several steps."""
     ahead = most
-    while ahead > w.least and not _within_zones(w):
+    while ahead > w.least and not _within_intervals(w):
         ahead *= LOOKED_AT
         w.longest = max(ahead, w.least)
         copied(w.value_after, w.m, w.n)
@@ -201,7 +201,7 @@ def _passes_smoothly(w, h):
     others = 0
     for k in range(w.n):
         if w.found[k]:
-            number = zone(w, k, w.value_before[k])
+            number = interval(w, k, w.value_before[k])
             smooth = min(overlap(w, k, number - 1), overlap(w, k, number))
             farthest = max(
                 abs(w.value_after[k] - w.value_before[k]), h * max(abs(w.rate_before[k]), abs(w.rate_after[k]))

@@ -43,14 +43,14 @@ STEP_WIDTH = len(STEP)
 START = Layout({
     "dynamics": INTS, "ida": INT, "error_norm": INTS, "n_watched": INT, "rate": FLOATS, "leader": INTS,
     "n_q": INT, "q_of": INTS, "q_at": INTS, "n_u": INT, "u_of": INTS, "u_at": INTS,
-    "creep": FLOATS, "n_position_entries": INT, "position_source": INTS, "position_row": INTS, "position_creep": FLOAT_CELL,
-    "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "lightness": FLOATS, "velocity_creep": FLOAT_CELL,
+    "relaxations": FLOATS, "n_position_entries": INT, "position_source": INTS, "position_row": INTS, "position_drift": FLOAT_CELL,
+    "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "inverse_mass": FLOATS, "velocity_drift": FLOAT_CELL,
     "n_sets": INT, "at_relaxations": INTS, "sums": FLOATS,
     "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "f_q_scale": FLOATS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS, "f_u_scale": FLOATS,
     "soft": FLOAT_CELL, "loosest": FLOAT_CELL, "tightest": FLOAT_CELL, "growth": FLOAT_CELL,
     "of_positions": FLOAT_CELL, "of_velocities": FLOAT_CELL, "newton": FLOAT_CELL,
     "n_counters": INT, "counter": INTS, "count": INTS, "counts": INTS,
-    "set_newton": INT, "start_anew": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
+    "set_newton": INT, "reinitialise": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
 })  # fmt: skip
 """Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): independent coordinates and velocities, and their
 positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
@@ -63,7 +63,7 @@ RESTART = Layout({
 """Restart of IDA after a jump of inputs (`stiffmbs.solve.ida.starting.native.start`), with the state between calls, and revolution
 counters with their angles."""
 
-ANEW = Layout({
+EVENT_RESTART = Layout({
     "start": INTS, "n_event_functions": INT, "first_limit": INT, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
     "reach": FLOAT_CELL, "along_q": FLOATS, "along_u": FLOATS, "q": FLOATS, "u": FLOATS, "values": FLOATS, "found": INTS,
     "t": FLOAT_CELL, "jump": FLOAT_CELL, "meets": INT_CELL,

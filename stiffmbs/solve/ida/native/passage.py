@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.access import address_of, compiled, equatio
 from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate, load
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.solve.events.native.bounds import zone
+from stiffmbs.solve.events.native.bounds import interval
 from stiffmbs.solve.events.native.parameters import NEXT_STEP, SEARCH
 from stiffmbs.solve.ida.native.ida_memory import array_of
 
@@ -71,7 +71,7 @@ def _another_side(c, w, s, ahead, count):
     values = evaluate(s, SWITCH, c.returned + ahead)
     others = 0
     for k in range(count):
-        others += zone(w, k, values[k]) != zone(w, k, w.value_before[k])
+        others += interval(w, k, values[k]) != interval(w, k, w.value_before[k])
     return others > 0
 
 

@@ -15,12 +15,12 @@ from ...error_control.native.parameters import POLISHING
 from ...events.discontinuity import JUMP, VELOCITY_JUMP, direction_of
 from ...events.native.parameters import INDISTINCT
 from ..connection import Connection
-from ..native.layouts import ANEW, RESTART
+from ..native.layouts import EVENT_RESTART, RESTART
 from .starts import Starts, integers
 
-_ANEW = Routine(
+_EVENT_RESTART = Routine(
     "stiffmbs.solve.ida.starting.native.breakpoints",
-    "anew",
+    "restarted_at_event",
     "int32(float64, float64, int64, int64, int64*)",
     level=SHORT,
 )
@@ -39,12 +39,12 @@ class Begun(NamedTuple):
     meets: bool
 
 
-class StartsAnew:
+class EventRestarts:
     """Compiled restarts within a run.
 
     `starts`: compiled starts of IDA. `least`: least part of the error tolerance that may remain in states within long
     steps. `may_pass`: true if one call may pass several breakpoints: no event functions, and no forces that depend on
-    multipliers. `table`: address of the memory of compiled code (`stiffmbs.solve.ida.native.layouts.ANEW`).
+    multipliers. `table`: address of the memory of compiled code (`stiffmbs.solve.ida.native.layouts.EVENT_RESTART`).
     """
 
     def __init__(self, starts: Starts, dynamics: Dynamics, least: float) -> None:
@@ -61,8 +61,8 @@ class StartsAnew:
             "q": np.empty(system.n_q), "u": np.empty(system.n_u), "values": np.empty(n), "found": np.empty(n, dtype=np.int64),
         }  # fmt: skip
         self.starts, self._kept = starts, values
-        self._table = packed(ANEW, values)
-        self._cells, self.table = self._table.view(ANEW.cells)[0], self._table.ctypes.data
+        self._table = packed(EVENT_RESTART, values)
+        self._cells, self.table = self._table.view(EVENT_RESTART.cells)[0], self._table.ctypes.data
         self.may_pass = not n and not len(system.term("acceleration", "f_lam").row)
 
     def begin(
@@ -75,7 +75,7 @@ class StartsAnew:
         there are no consistent values or a force is beyond its limits.
         """
         self._state.q[:], self._state.u[:] = state
-        if _ANEW.short_call(t, ahead, counted, highest_order, self.table) < 0:
+        if _EVENT_RESTART.short_call(t, ahead, counted, highest_order, self.table) < 0:
             return None
         cells = self._cells
         return Begun(float(cells["t"]), float(cells["jump"]), bool(cells["meets"]))

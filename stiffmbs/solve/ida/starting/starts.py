@@ -16,7 +16,7 @@ from ....model.settings import RunSettings
 from ...error_control.error_test import ErrorControl
 from ...error_control.native.parameters import NEWTON
 from ...error_control.newton import RowSums, Stiffness, row_sums_of
-from ...error_control.relaxation import creep_of_positions, creep_of_velocities, lightness
+from ...error_control.relaxation import drift_of_positions, drift_of_velocities, inverse_mass
 from ..connection import Connection
 from ..native.layouts import START
 from ..statistics import Statistics
@@ -28,7 +28,7 @@ _START = Routine(
     "stiffmbs.solve.ida.starting.native.start", "start", "int32(float64, int64, int64, int64*)", level=SHORT
 )
 FUNCTIONS = {
-    "set_newton": "IDASetNonlinConvCoef", "start_anew": "IDAReInit", "set_first_step": "IDASetInitStep",
+    "set_newton": "IDASetNonlinConvCoef", "reinitialise": "IDAReInit", "set_first_step": "IDASetInitStep",
     "set_growth": "IDASetEtaFixedStepBounds", "set_highest_order": "IDASetMaxOrd",
 }  # fmt: skip
 OF_STIFFNESS = "of_positions", "of_velocities"
@@ -52,7 +52,7 @@ class Starts:
         values: dict[str, Any] = {
             "dynamics": dynamics.table, "ida": connection.table, "error_norm": connection.error_norm.table, "n_watched": connection.watch.n,
             "rate": np.zeros(system.n_q), "sums": np.zeros(system.n_u),
-            **_places(equations), **_creeping(dynamics, settings), **_stiff(dynamics), **statistics.arrays,
+            **_places(equations), **_relaxing(dynamics, settings), **_stiff(dynamics), **statistics.arrays,
             "soft": NEWTON.soft, "loosest": control.newton or NEWTON.loosest,
             "tightest": control.newton or max(NEWTON.negligible, NEWTON.precision / settings.rtol), "growth": control.growth,
             **{name: connection.address(function) for name, function in FUNCTIONS.items()},
@@ -96,17 +96,17 @@ def _places(equations: Equations) -> dict[str, Any]:
     return found
 
 
-def _creeping(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
+def _relaxing(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
     """Return the entries that determine relaxations, and the positions of relaxations in each term set."""
     system = dynamics.system
     positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
     return {
-        "creep": dynamics.state.relaxations,
+        "relaxations": dynamics.state.relaxations,
         "n_position_entries": len(positions.row), "position_source": integers(positions.source), "position_row": integers(positions.row),
-        "position_creep": creep_of_positions(settings),
+        "position_drift": drift_of_positions(settings),
         "n_velocity_entries": len(velocities.row), "velocity_source": integers(velocities.source), "velocity_row": integers(velocities.row),
-        "velocity_creep": creep_of_velocities(settings, system),
-        "lightness": np.ascontiguousarray(lightness(dynamics)[velocities.column]) if system.n_c else np.empty(0),
+        "velocity_drift": drift_of_velocities(settings, system),
+        "inverse_mass": np.ascontiguousarray(inverse_mass(dynamics)[velocities.column]) if system.n_c else np.empty(0),
         "n_sets": len(SETS), "at_relaxations": integers(np.array([system.constants(term_set)["E_mu"] for term_set in SETS])),
     }  # fmt: skip
 

@@ -112,7 +112,7 @@ def _eliminated(s, f):
 
 
 @compiled
-def factored_anew(factors, kept):
+def refactored(factors, kept):
     """Search for pivots of the matrix in the table of factors, which is temporarily scaled; return the outcome."""
     f = factors_view(factors)
     for p in range(f.a_start[f.n]):
@@ -132,7 +132,7 @@ def setup(solver, matrix):
     if known.ready and _eliminated(known, factors_view(known.factors)):
         return int32(OK)
     known.ready = 0
-    outcome = factored_anew(known.factors, known.weight)
+    outcome = refactored(known.factors, known.weight)
     if outcome == DONE and not _list_memory(table, factors_view(known.factors)):
         outcome = FULL
     known.last_flag = outcome  # returned by SUNLinSolLastFlag

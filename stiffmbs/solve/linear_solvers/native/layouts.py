@@ -26,7 +26,7 @@ BLOCK_LU = Layout({
     "parts": INT, "n_nodes": INT, "size": INTS, "start": INTS, "down_width": INTS, "right_width": INTS, "node_start": INTS, "place": INTS,
     "n_lu": INT, "lu": OWN_FLOATS, "slot": INDICES, "update_end": INTS, "update": INDICES,
     "down_at": INTS, "down_x": INTS, "right_at": INTS, "right_x": INTS, "x": FLOATS, "scratch": FLOATS,
-    "order": INTS, "unit": FLOATS, "behind": FLOATS, "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS,
+    "order": INTS, "unit": FLOATS, "above": FLOATS, "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS,
     "pivot": FLOATS, "tried": FLOATS, "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
 })  # fmt: skip
 """Linear solver by dense blocks (`stiffmbs.solve.linear_solvers.native.block_lu`).  `with_pivots` holds the address of the
@@ -34,4 +34,4 @@ table of `PIVOTED` that replaces inaccurate blocks; `compile_pivots` is the C fu
 of its routines in the next two cells.  `ready` is 1 if the counts are of this run.  `pivoted` is 1 for current factors
 with pivoting, `waits` the number of further ones, `serves` that of factorisations covered by the last trial, `refused`
 that of failed trials.  `refined` is 1 if solutions are refined; `panels` is the start of the factors.  `order` holds
-the pivot rows of a supernode; `unit` and `behind` are the rows of an identity matrix and of ones above its diagonal."""
+the pivot rows of a supernode; `unit` and `above` are the rows of an identity matrix and of ones above its diagonal."""

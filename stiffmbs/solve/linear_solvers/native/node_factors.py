@@ -83,7 +83,7 @@ def _triangular(s, d, stride, t, width, size, first):
         s.pivot[first + k] = pivot
         inverse = spread(1.0 / pivot)
         own, within = k - k % 4, 4 * (k % 4)
-        set_quad(s.scratch, own, product_of(product_of(quad(line, own), inverse), quad(s.behind, within)))
+        set_quad(s.scratch, own, product_of(product_of(quad(line, own), inverse), quad(s.above, within)))
         for at in range(own + 4, stride, 4):
             part = product_of(quad(line, at), inverse)
             set_quad(s.scratch, at, part)

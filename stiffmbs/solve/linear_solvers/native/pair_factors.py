@@ -53,7 +53,7 @@ def _triangular(s, d, stride, t, width, size, first):
             part = quad(line, at)
             part = plus_product(product_of(part, real), times_i(part), imaginary)
             if at == own:
-                set_quad(s.scratch, own, product_of(part, quad(s.behind, 4 * (within + 1))))
+                set_quad(s.scratch, own, product_of(part, quad(s.above, 4 * (within + 1))))
             else:
                 set_quad(s.scratch, at, part)
                 set_quad(line, at, part)

@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.native.factors import DONE, FULL
 from stiffmbs.compile.machine.native.factors import solve as solve_factors
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import CONTENT, FAILED, OK, RECOVERABLE
-from stiffmbs.solve.linear_solvers.native.fixed_order import factored_anew
+from stiffmbs.solve.linear_solvers.native.fixed_order import refactored
 from stiffmbs.solve.linear_solvers.native.layouts import PIVOTED
 
 pivoted_view = view_of("Pivoted", PIVOTED)
@@ -15,7 +15,7 @@ pivoted_view = view_of("Pivoted", PIVOTED)
 def setup(solver, matrix):
     """Set up the linear solver (SUNLinSolSetup)."""
     s = pivoted_view(ints(solver[CONTENT]))
-    s.last_flag = factored_anew(s.factors, s.weight)  # returned by SUNLinSolLastFlag
+    s.last_flag = refactored(s.factors, s.weight)  # returned by SUNLinSolLastFlag
     if s.last_flag == DONE:
         return int32(OK)
     return int32(FAILED if s.last_flag == FULL else RECOVERABLE)

@@ -28,7 +28,7 @@ def block(pull: str) -> Model:
     return model
 
 
-def _creep(solution: Solution, part: float) -> float:
+def _drift(solution: Solution, part: float) -> float:
     """Against the speed at which smooth friction holds the pull: mu tanh(v/v_s) = part mu, relative to v_s."""
     return float(np.max(np.abs(solution["block.vx"][1:] / CREEP - np.arctanh(part))[len(solution.t) // 10 :]))
 
@@ -57,7 +57,7 @@ CASES = (
     *(
         simulation(
             f"block held at {part:g} of what friction holds", "speed against the creep of smooth friction, relative to v_s",
-            partial(block, str(part)), partial(_creep, part=part), 1e-3, duration=10.0, points=101, rtol=1e-6,
+            partial(block, str(part)), partial(_drift, part=part), 1e-3, duration=10.0, points=101, rtol=1e-6,
         )
         for part in (0.0, 0.5, 0.9, 0.999)
     ),

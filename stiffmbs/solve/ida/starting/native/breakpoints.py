@@ -11,7 +11,7 @@ from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past
 from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
-from stiffmbs.solve.ida.native.layouts import ANEW
+from stiffmbs.solve.ida.native.layouts import EVENT_RESTART
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
 from stiffmbs.solve.ida.starting.native.start import (
@@ -67,7 +67,7 @@ def _same_offsets(s, b, e):
 
 
 @compiled
-def _started_behind(w, b, c, t):
+def _restarted_at_breakpoint(w, b, c, t):
     """Restart at t from IDA's current state; a negative number, with IDA unchanged, leaves the restart to Python."""
     m = dynamics_view(b.dynamics)
     s = state_view(m.state)
@@ -75,7 +75,7 @@ def _started_behind(w, b, c, t):
     _take_state(s, b, e, array_of(c, c.y), array_of(c, c.yp))
     if back_with_jump(w, s, m, t) < 0 or w.jump > w.largest_jump:
         return UNFINISHED
-    counted_anew(w, s, t)
+    restart_counters(w, s, t)
     if not _same_offsets(s, b, e):
         return UNFINISHED
     if accelerated(s, m, t) < 0 or prepared(b, s, m, e, c, t) < 0:
@@ -90,7 +90,7 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
 
     Returns at a stop that Python has to handle; the table holds the number of stops passed.
     """
-    w = anew_view(table)
+    w = event_restart_view(table)
     b = start_view(w.start)
     c = native_ida_view(ida)
     clear_call(c)
@@ -108,7 +108,7 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
         same = t + w.indistinct * abs(t)
         if same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
             return int32(flag)
-        if _started_behind(w, b, c, t) < 0:
+        if _restarted_at_breakpoint(w, b, c, t) < 0:
             return int32(flag)
         call_int(b.set_highest_order, (c.memory, int32(highest_order)))
         w.t = t
@@ -116,7 +116,7 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
         w.steps_before = c.recorded
 
 
-anew_view = view_of("Anew", ANEW)
+event_restart_view = view_of("EventRestart", EVENT_RESTART)
 
 
 @compiled
@@ -159,7 +159,7 @@ def back_with_jump(w, s, m, t):
 
 
 @compiled
-def counted_anew(w, s, t):
+def restart_counters(w, s, t):
     """Set the revolution counters to the exact angles that they count."""
     if w.n_counted > 0:
         values = evaluate(s, POSITION, t)
@@ -167,31 +167,31 @@ def counted_anew(w, s, t):
             s.q[w.counted_row[k]] = values[w.counted_source[k]]
 
 
-def anew(t, ahead, counted, highest_order, table):
+def restarted_at_event(t, ahead, counted, highest_order, table):
     """Project the current state, move it past simultaneous events, and start IDA; OK or a negative number.
 
     A negative number means that nothing was started, and Python determines the reason.
     """
-    w = anew_view(table)
+    w = event_restart_view(table)
     b = start_view(w.start)
     m = dynamics_view(b.dynamics)
     s = state_view(m.state)
     c = native_ida_view(ints(b.ida))
     if back_with_jump(w, s, m, t) < 0:
         return int32(UNFINISHED)
-    behind = t
+    after = t
     if ahead > 0.0:
-        behind += moved_past(s, m, t, ahead, w.n_event_functions, w.q, w.values)
-    counted_anew(w, s, behind)
-    if accelerated(s, m, behind) < 0 or _beyond_limits(w, s, behind):
+        after += moved_past(s, m, t, ahead, w.n_event_functions, w.q, w.values)
+    restart_counters(w, s, after)
+    if accelerated(s, m, after) < 0 or _beyond_limits(w, s, after):
         return int32(UNFINISHED)
-    if prepared(b, s, m, equations_view(c.equations), c, behind) < 0:
+    if prepared(b, s, m, equations_view(c.equations), c, after) < 0:
         return int32(UNFINISHED)
     if counted:
         keep_counters(b, c)
-    if begun(b, c, behind) < 0:
+    if begun(b, c, after) < 0:
         return int32(UNFINISHED)
     call_int(b.set_highest_order, (c.memory, int32(highest_order)))
-    w.t = behind
-    w.meets = _meets(w, s, m, behind) if w.n_event_functions > 0 else 0
+    w.t = after
+    w.meets = _meets(w, s, m, after) if w.n_event_functions > 0 else 0
     return int32(OK)

@@ -22,7 +22,7 @@ from stiffmbs.dynamics.native.consistent import consistent_accelerations, to_con
 from stiffmbs.dynamics.native.layouts import MOST_MOVES, POSITION_TOLERANCE
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import event_search_view
-from stiffmbs.solve.explicit.native.stages import add_rates_behind
+from stiffmbs.solve.explicit.native.stages import add_trailing_rates
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_loop import clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
@@ -65,20 +65,20 @@ def _relax(w, s, t):
         return
     values = evaluate(s, MOTION, t)
     for k in range(2 * s.n_c):
-        w.creep[k] = 0.0
-    of_velocities = shifted(w.creep, s.n_c)
+        w.relaxations[k] = 0.0
+    of_velocities = shifted(w.relaxations, s.n_c)
     for k in range(w.n_position_entries):
         entry = values[w.position_source[k]]
-        w.creep[w.position_row[k]] += entry * entry
+        w.relaxations[w.position_row[k]] += entry * entry
     for k in range(w.n_velocity_entries):
         entry = values[w.velocity_source[k]]
-        of_velocities[w.velocity_row[k]] += entry * entry * w.lightness[k]
+        of_velocities[w.velocity_row[k]] += entry * entry * w.inverse_mass[k]
     for k in range(s.n_c):
-        w.creep[k] *= w.position_creep
-        of_velocities[k] *= w.velocity_creep
+        w.relaxations[k] *= w.position_drift
+        of_velocities[k] *= w.velocity_drift
     for k in range(w.n_sets):
         if s.values[k] != 0:
-            copied(shifted(floats(s.values[k]), w.at_relaxations[k]), w.creep, 2 * s.n_c)
+            copied(shifted(floats(s.values[k]), w.at_relaxations[k]), w.relaxations, 2 * s.n_c)
 
 
 @compiled
@@ -110,7 +110,7 @@ def _look_at_stiffness(w, s, t):
 def begun(w, c, t):
     """Start IDA at the prepared unknowns, as `stiffmbs.solve.ida.ida.NativeIda.begin`; OK or a negative flag."""
     call_int(w.set_newton, (c.memory, w.newton))
-    flag = call_int(w.start_anew, (c.memory, t, c.y, c.yp))
+    flag = call_int(w.reinitialise, (c.memory, t, c.y, c.yp))
     call_int(w.set_first_step, (c.memory, 0.0))
     call_int(w.set_growth, (c.memory, 1.0, w.growth))
     norm = error_norm_view(w.error_norm)
@@ -146,7 +146,7 @@ def prepared(w, s, m, e, c, t):
     for k in range(s.n_q):
         w.rate[k] = 0.0
     add_rates(s, s.u, 1.0, w.rate)
-    add_rates_behind(s, m, 1.0, w.rate)
+    add_trailing_rates(s, m, 1.0, w.rate)
     _relax(w, s, t)
     _look_at_stiffness(w, s, t)
     if not isfinite(w.of_positions + w.of_velocities):
@@ -170,7 +170,7 @@ def start(t, counted, highest_order, table):
     m = dynamics_view(w.dynamics)
     s = state_view(m.state)
     c = native_ida_view(ints(w.ida))
-    if m.n_behind > 0:
+    if m.n_trailing > 0:
         evaluate(s, ACCELERATION, t)
     if prepared(w, s, m, equations_view(c.equations), c, t) < 0:
         return int32(UNFINISHED)

@@ -26,7 +26,7 @@ from ..results.error_bars import Fine
 from ..results.frames import from_own_axes
 from ..results.scales import ROUNDING, kind_of
 from ..results.solution import Solution
-from ..run_checks.singular_poses import PosesOnTheWay
+from ..run_checks.singular_poses import PosesBetween
 from ..solve.events.narrow_inputs import NARROW_INPUTS
 from ..solve.events.restart import restarted
 from ..solve.missing_rows import reported
@@ -91,12 +91,12 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     balance = energy_balance(system, rows, trajectory.step_times)
     left = allowed - (job.evaluations() - begun)
     stretches = tuple(_stepped_over(job, rows, trajectory.step_times, left))
-    if not _same_way(first, rows.t, rows.kinetic):
+    if not _same_motion(first, rows.t, rows.kinetic):
         return Along(None, elsewhere=stretches)
     return Along(balance, may_be_missing(system, balance, rows, job.settings), stretches)
 
 
-def _same_way(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
+def _same_motion(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
     """Return True if a run with more output times has the same kinetic energies."""
     at = np.minimum(np.searchsorted(t, first.time), len(t) - 1)
     own = first["energy.kinetic"]
@@ -119,7 +119,7 @@ def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
 def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float) -> Iterator[SteppedOver]:
     """Yield the intervals that end differently when they are solved again, the worst first."""
     system = job.dynamics.system
-    poses = PosesOnTheWay(system, rows.t, rows.q)
+    poses = PosesBetween(system, rows.t, rows.q)
     missing, speed = _momentum(system, rows)
     end, looked = job.evaluations() + allowed, np.zeros(len(missing), dtype=bool)
     for _ in range(VERIFICATION.stretches):
@@ -313,10 +313,10 @@ def beyond(values: np.ndarray, at: np.ndarray) -> tuple[float, float]:
     return float(np.nanmin(values[at]) - np.nanmin(values)), float(np.nanmax(values) - np.nanmax(values[at]))
 
 
-def poses_of(job: Job, solution: Solution) -> PosesOnTheWay:
+def poses_of(job: Job, solution: Solution) -> PosesBetween:
     """Return the poses of a solution with their distances from singular ones."""
     system = job.dynamics.system
     names = [f"{body}.{name}" for body in system.bodies for name in system.of_body.positions]
     q = from_own_axes(system, np.column_stack([solution[name] for name in names]))
-    behind = np.zeros((len(q), system.n_q - system.n_pose))  # irrelevant, as only J is evaluated
-    return PosesOnTheWay(system, solution.time, np.column_stack([q, behind]))
+    trailing = np.zeros((len(q), system.n_q - system.n_pose))  # irrelevant, as only J is evaluated
+    return PosesBetween(system, solution.time, np.column_stack([q, trailing]))

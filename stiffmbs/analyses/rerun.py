@@ -18,7 +18,7 @@ import numpy as np
 
 from ..dynamics.dynamics import OutputRows
 from ..run_checks.overlooked import Overlooked, overlooked, overlooked_in_long_steps, together
-from ..solve.error_control.relaxation import Creep, creep_of, creeps
+from ..solve.error_control.relaxation import Drift, drifts, drift_of
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, Trajectory
 
@@ -33,7 +33,7 @@ AGAIN = "the run was repeated with a restart there; set max_step, or request mor
 LEFT = "the results may be wrong from there on; set max_step to a much smaller value"
 
 RELAXED, EXACT = "SI2", "SI2_exact"
-CREPT = 10.0
+DRIFTED = 10.0
 """Mean velocity drift over the run, in tolerances, up to which a run is accepted."""
 LESS = 0.5
 """Part of the drift that exact constraints may leave."""
@@ -87,32 +87,32 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
     """Compute a job, and rerun it with SI2_exact if its constraints drift; the result has a note on that."""
     found = compute(job)
     compared = _compared(job, found)
-    if not relaxed(job) or not len(found.rows.t) or not creeps(*compared, CREPT):
+    if not relaxed(job) or not len(found.rows.t) or not drifts(*compared, DRIFTED):
         return found
-    creep = _creep(job, found)
+    drift = _drift(job, found)
     stopped = found.trajectory.outcome is Outcome.STOPPED
-    if not (creep.mean > CREPT or (stopped and creep.at_end > CREPT)):
+    if not (drift.mean > DRIFTED or (stopped and drift.at_end > DRIFTED)):
         return found
     if found.trajectory.outcome is Outcome.INTERRUPTED:
-        return _doubted(found, f"{creep.sentence()}; the results may be wrong by this amount")
+        return _doubted(found, f"{drift.sentence()}; the results may be wrong by this amount")
     again = compute(exactly(job))
     if len(again.rows.t) >= len(found.rows.t):
         # the rest is no drift, but jumps of velocities without a known breakpoint
-        if creep.mean > CREPT and _creep(job, again).mean > LESS * creep.mean:
+        if drift.mean > DRIFTED and _drift(job, again).mean > LESS * drift.mean:
             return found
-        return _noted(again, f"{creep.sentence()}; the run was repeated with formulation {EXACT}")
+        return _noted(again, f"{drift.sentence()}; the run was repeated with formulation {EXACT}")
     if stopped:
         return found
     return _doubted(
         found,
-        f"{creep.sentence()}; the results may be wrong by this amount, and formulation {EXACT} stopped earlier: "
+        f"{drift.sentence()}; the results may be wrong by this amount, and formulation {EXACT} stopped earlier: "
         f"{again.trajectory.message}",
     )
 
 
-def _creep(job: Job, computed: Computed) -> Creep:
+def _drift(job: Job, computed: Computed) -> Drift:
     breakpoints = job.dynamics.input_features(job.grid.start, job.grid.end).breakpoints
-    return creep_of(*_compared(job, computed), breakpoints)
+    return drift_of(*_compared(job, computed), breakpoints)
 
 
 def _compared(job: Job, computed: Computed) -> tuple[System, OutputRows, Trajectory, RunSettings]:

@@ -19,7 +19,7 @@ from .mechanism import Mechanism, Place
 
 
 @dataclass(frozen=True, eq=False)
-class LaidCurve:
+class FittedCurve:
     """Curve on a body.
 
     Attributes
@@ -74,7 +74,7 @@ class LaidCurve:
         return {"table": table, "ends": self.ends}
 
 
-def laid_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism) -> LaidCurve:
+def fitted_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism) -> FittedCurve:
     """Return the curve of a constraint in the axes of a marker.
 
     Raises DatasetFault if the curve does not exist, or cannot be represented as a spline over x or the angle.
@@ -83,8 +83,8 @@ def laid_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism) 
     frame = _plane(points, closed)
     seen = (points - frame.point) @ frame.axes
     flat = np.max(np.abs(seen[:, 2])) <= PRECISION * np.max(np.ptp(points, axis=0))
-    arguments, values, off = _round(user, seen) if closed else _across_its_way(user, seen)
-    return LaidCurve(owner, frame, closed, arguments, values, None if flat else off)
+    arguments, values, off = _round(user, seen) if closed else _across_its_chord(user, seen)
+    return FittedCurve(owner, frame, closed, arguments, values, None if flat else off)
 
 
 def _points(user: Numbered, number: int, mechanism: Mechanism) -> tuple[np.ndarray, bool]:
@@ -113,12 +113,12 @@ def _plane(points: np.ndarray, closed: bool) -> Frame:
     """Return axes with x and y in the curve's plane, at the centre of a closed curve or at the first point."""
     own = points[:-1] if closed else points
     middle = own.mean(axis=0)
-    _, sizes, ways = np.linalg.svd(own - middle)
-    x = ways[0] if closed else (points[-1] - points[0]) / (np.linalg.norm(points[-1] - points[0]) or 1.0)
+    _, sizes, directions = np.linalg.svd(own - middle)
+    x = directions[0] if closed else (points[-1] - points[0]) / (np.linalg.norm(points[-1] - points[0]) or 1.0)
     if np.max(np.abs(own[:, 2] - middle[2])) <= PRECISION * np.max(np.ptp(points, axis=0)):
         normal = IDENTITY[2]
     else:
-        normal = ways[2] if sizes[1] > PRECISION * sizes[0] else _across(x)
+        normal = directions[2] if sizes[1] > PRECISION * sizes[0] else _across(x)
     y = np.cross(normal, x)
     y /= np.linalg.norm(y)
     x = np.cross(y, normal) if closed else x
@@ -132,7 +132,7 @@ def _across(x: np.ndarray) -> np.ndarray:
     return found
 
 
-def _across_its_way(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _across_its_chord(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return x, y and z of the points."""
     if np.any(np.diff(seen[:, 0]) <= 0):
         raise user.fault(

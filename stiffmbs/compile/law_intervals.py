@@ -19,8 +19,8 @@ from .system import System
 from .table_values import ends_of, value_of
 
 
-def _on_both_sides(*edges: float) -> np.ndarray:
-    return np.array([*(-edge for edge in reversed(edges)), *edges])
+def _on_both_sides(*breakpoints: float) -> np.ndarray:
+    return np.array([*(-breakpoint for breakpoint in reversed(breakpoints)), *breakpoints])
 
 
 TURN = "turn"
@@ -50,11 +50,11 @@ BARELY = NEARER[-1]
 """Part of an interval over which a table always continues: less is rounding of its argument."""
 
 
-class Zones(NamedTuple):
+class Intervals(NamedTuple):
     """Intervals of all event functions, in the order of the values of the set ``event_function``.
 
     - `first` of shape (n + 1,): index of the first breakpoint of each function.
-    - `edges`: breakpoints in increasing order for each function; zero for an event function.
+    - `breakpoints`: breakpoints in increasing order for each function; zero for an event function.
     - `overlap`: distance on both sides of each breakpoint over which the law continues unchanged; zero for an event
       function.
     - `period` of shape (n,): period of a law; 0 if it is not periodic.
@@ -65,7 +65,7 @@ class Zones(NamedTuple):
     """
 
     first: np.ndarray
-    edges: np.ndarray
+    breakpoints: np.ndarray
     overlap: np.ndarray
     period: np.ndarray
     turns: np.ndarray
@@ -74,30 +74,32 @@ class Zones(NamedTuple):
     zoned: int
 
 
-def zones_of(system: System) -> Zones:
+def intervals_of(system: System) -> Intervals:
     """Return the intervals of all event functions of a system, cached for unchanged tables."""
     numbers = b"".join(group.numbers.tobytes() for group in system.groups if group.record.laws)
-    if system.known_zones.get("numbers") != numbers:
-        system.known_zones.update(numbers=numbers, zones=_zones_of(system))
-    found: Zones = system.known_zones["zones"]
+    if system.known_intervals.get("numbers") != numbers:
+        system.known_intervals.update(numbers=numbers, intervals=_intervals_of(system))
+    found: Intervals = system.known_intervals["intervals"]
     return found
 
 
-def _zones_of(system: System) -> Zones:
+def _intervals_of(system: System) -> Intervals:
     of_event_function = "", np.zeros(1), np.zeros(1), 0.0
     found = [of_event_function] * system.n_event_functions + list(_of_arguments(system))
-    counts = np.array([len(edges) for _, edges, _, _ in found], dtype=np.int64)
+    counts = np.array([len(breakpoints) for _, breakpoints, _, _ in found], dtype=np.int64)
     period = np.array([period for *_, period in found])
     repeated = (period > 0) & (counts <= FEW)
     turns = np.flatnonzero(np.array([name == TURN for name, *_ in found], dtype=bool) | repeated)
-    return Zones(
+    return Intervals(
         np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        np.concatenate([np.empty(0), *(edges for _, edges, _, _ in found)]),
+        np.concatenate([np.empty(0), *(breakpoints for _, breakpoints, _, _ in found)]),
         np.concatenate([np.empty(0), *(overlap for _, _, overlap, _ in found)]),
         period,
         turns,
         np.divide(2 * np.pi, period[turns], out=np.ones(len(turns)), where=period[turns] > 0),
-        np.array([_has_kinks(edges, overlap, period) for _, edges, overlap, period in found], dtype=np.int64),
+        np.array(
+            [_has_kinks(breakpoints, overlap, period) for _, breakpoints, overlap, period in found], dtype=np.int64
+        ),
         int(np.count_nonzero(counts)),
     )
 
@@ -116,12 +118,12 @@ def _of_arguments(system: System) -> Iterator[tuple[str, np.ndarray, np.ndarray,
                 yield name, *_of_table(group.numbers[at : at + 2 + count + 4 * (count - 1)].tobytes())
 
 
-def _narrower(edges: np.ndarray, period: float = 0.0) -> np.ndarray:
+def _narrower(breakpoints: np.ndarray, period: float = 0.0) -> np.ndarray:
     """Return the width of the narrower interval at each breakpoint; outermost intervals are infinite or periodic."""
-    if not len(edges):
-        return edges
-    around = edges[0] + period - edges[-1] if period else np.inf
-    widths = np.concatenate([[around], np.diff(edges), [around]])
+    if not len(breakpoints):
+        return breakpoints
+    around = breakpoints[0] + period - breakpoints[-1] if period else np.inf
+    widths = np.concatenate([[around], np.diff(breakpoints), [around]])
     return np.minimum(widths[:-1], widths[1:])
 
 
@@ -136,15 +138,15 @@ def _of_table(data: bytes) -> tuple[np.ndarray, np.ndarray, float]:
     a, b, c, d = (column[:, None] for column in pieces.T)
     y = (((a * z + b) * z + c) * z + d).ravel()
     allowed = CLOSE * float(np.ptp(y))
-    starts = list(_zones(x, y, 0, count - 1, allowed))
+    starts = list(_intervals(x, y, 0, count - 1, allowed))
     period = float(knots[-1] - knots[0]) if numbers[1] else 0.0
     at = np.array(starts if period else [*starts, count - 1])
     return knots[at], _overlaps(numbers, at, _narrower(knots[at], period)), period
 
 
-def _has_kinks(edges: np.ndarray, overlap: np.ndarray, period: float) -> bool:
+def _has_kinks(breakpoints: np.ndarray, overlap: np.ndarray, period: float) -> bool:
     """Return True if a law departs from its tangent immediately at a breakpoint."""
-    return bool(np.any((overlap > 0) & (overlap < 4 * BARELY * _narrower(edges, period))))
+    return bool(np.any((overlap > 0) & (overlap < 4 * BARELY * _narrower(breakpoints, period))))
 
 
 def _overlaps(numbers: np.ndarray, at: np.ndarray, narrower: np.ndarray) -> np.ndarray:
@@ -161,14 +163,14 @@ def _overlaps(numbers: np.ndarray, at: np.ndarray, narrower: np.ndarray) -> np.n
     return narrower * BARELY * 2.0 ** np.maximum(near - 1, 0)
 
 
-def _zones(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: float) -> Iterator[int]:
+def _intervals(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: float) -> Iterator[int]:
     """Yield the first pieces of the intervals between two knots, halved until a cubic describes each."""
     if end - first == 1 or _described(x, y, first, end, allowed):
         yield first
         return
     middle = (first + end) // 2
-    yield from _zones(x, y, first, middle, allowed)
-    yield from _zones(x, y, middle, end, allowed)
+    yield from _intervals(x, y, first, middle, allowed)
+    yield from _intervals(x, y, middle, end, allowed)
 
 
 def _described(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: float) -> bool:
