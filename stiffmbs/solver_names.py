@@ -7,8 +7,4 @@ from typing import Literal
 SolverName = Literal["bdf", "radau", "projected", "kinematic", "auto"]
 SchemeName = Literal["euler_cromer", "rk4", "dopri5", "dop853"]
 FormulationName = Literal["SI2", "SI2_exact", "SI1", "I3", "index1"]
-CHOICES: dict[str, object] = {
-    "SolverName": SolverName,
-    "SchemeName": SchemeName,
-    "FormulationName": FormulationName,
-}
+CHOICES: dict[str, object] = {"SolverName": SolverName, "SchemeName": SchemeName, "FormulationName": FormulationName}

@@ -28,10 +28,7 @@ def two_bodies(element, seed, apart=(0.7, -0.4, 0.5), turn=((1, 2, 3), 0.6), **f
     place_a = place_b + rotated(unit[0], on_b) + rotated(p_j, apart) - rotated(p_a, on_a)
     i = {"point": tuple(on_a), "orientation": unit[2]}
     j = {"point": tuple(on_b), "orientation": unit[1]}
-    for name, place, p, mass, markers in (
-        ("a", place_a, p_a, 1.0, {"i": i}),
-        ("b", place_b, unit[0], 2.0, {"j": j}),
-    ):
+    for name, place, p, mass, markers in (("a", place_a, p_a, 1.0, {"i": i}), ("b", place_b, unit[0], 2.0, {"j": j})):
         spin = tuple(rng.uniform(-1, 1, 3))
         inertia = tuple(rng.uniform(0.2, 0.3, 3))
         velocity = tuple(along if name == "a" else -along)

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..dynamics.dynamics import OutputRows
 from ..run_checks.overlooked import Overlooked, overlooked, overlooked_in_long_steps, together
-from ..solve.error_control.relaxation import Drift, drifts, drift_of
+from ..solve.error_control.relaxation import Drift, drift_of, drifts
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, Trajectory
 

@@ -107,10 +107,7 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
     state.q[:], state.u[:] = found.q, start.u
-    notes = (
-        "the stability of the equilibrium at the start was not checked",
-        *far_away(dynamics, start, found),
-    )
+    notes = ("the stability of the equilibrium at the start was not checked", *far_away(dynamics, start, found))
     return _moving(dynamics, replace(start, q=found.q, moved=(), notes=notes), "the described velocities", t)
 
 

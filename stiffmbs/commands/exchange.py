@@ -115,11 +115,7 @@ def _coordinate(text: str) -> tuple[str, float]:
     help="A channel and the column that it is compared with, by name or number (1 is time), times a factor; or a file of such lines.",
 )
 @click.option(
-    "--tolerance",
-    type=float,
-    default=1e-3,
-    show_default=True,
-    help="Largest relative difference that counts as equal.",
+    "--tolerance", type=float, default=1e-3, show_default=True, help="Largest relative difference that counts as equal."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, as_json: bool) -> None:

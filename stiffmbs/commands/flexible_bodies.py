@@ -30,10 +30,7 @@ from .scene import (
     "--hold", "held", multiple=True, metavar="NAME,...", help="Also list the frequencies with these interfaces fixed."
 )
 @click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Write the nodes and the mode shapes for ParaView: .vtu.",
+    "-o", "--output", type=click.Path(path_type=Path), help="Write the nodes and the mode shapes for ParaView: .vtu."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of text.")
 @CHANGES

@@ -187,10 +187,7 @@ class Equations:
         for name in ("q", "u"):
             independent_of, _ = self.coordinates.relation(name)
             moving = np.flatnonzero(independent_of != FIXED) if name in self.at else empty[:0]
-            lists |= {
-                f"moving_{name}": moving,
-                f"{name}_from": self.carried(name, moving)[0] if len(moving) else empty,
-            }
+            lists |= {f"moving_{name}": moving, f"{name}_from": self.carried(name, moving)[0] if len(moving) else empty}
         lists |= {f"at_{name}": self.at.get(name, empty) for name in ("mu", "lam", "x")}
         return {name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}
 

@@ -18,13 +18,7 @@ from ..elements.requests.order import dimensions
 from ..elements.requests.output import Output
 from ..elements.states.amount import InputValue, formulas_of_inputs
 from ..elements.states.equation import FormulaOfRate, Reported, SampledUpdate, StateName, own_state
-from ..elements.states.section import (
-    AnyState,
-    check_formula,
-    check_states,
-    names_in_formulas,
-    refuse_algebraic_loops,
-)
+from ..elements.states.section import AnyState, check_formula, check_states, names_in_formulas, refuse_algebraic_loops
 from ..elements.states.state import StateValue
 from ..methods import NotebookMethods
 from ..reading.did_you_mean import did_you_mean

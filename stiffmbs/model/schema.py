@@ -96,10 +96,7 @@ def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str
         "properties": {
             "include": include,
             "use": used,
-            "mounts": {
-                **words,
-                "description": "further bodies that the part connects to, with their defaults",
-            },
+            "mounts": {**words, "description": "further bodies that the part connects to, with their defaults"},
             "limits": {
                 "type": "object",
                 "additionalProperties": {"enum": [*LIMITS]},

@@ -20,10 +20,7 @@ from .singular_poses import singular_passage_sentence
 
 
 def motion_notes(
-    dynamics: Dynamics,
-    rows: OutputRows,
-    rtol: float,
-    again: Callable[[np.ndarray], OutputRows],
+    dynamics: Dynamics, rows: OutputRows, rtol: float, again: Callable[[np.ndarray], OutputRows]
 ) -> Iterator[str]:
     """Yield sentences on results that depend on rounding or tolerances: singular poses, missed turns, forces out of range.
 

@@ -74,9 +74,7 @@ class Output:
         """
         with np.errstate(all="ignore"):
             found = evaluated(
-                parsed(self.text).body,
-                partial(_channel, solution),
-                lambda name, x: REDUCTIONS[name](solution.time, x),
+                parsed(self.text).body, partial(_channel, solution), lambda name, x: REDUCTIONS[name](solution.time, x)
             )
         return np.asarray(found, dtype=float) if np.ndim(found) else float(found)
 

@@ -128,14 +128,7 @@ LAW = "FRICTION/1, JOINT=1, MU_STATIC=0.5, MU_DYNAMIC=0.2, STICTION_TRANSITION_V
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    ("word", "growth"),
-    [
-        ("CONSTANT", 0),
-        ("INCREASE", 1),
-        ("DECREASE", -1),
-    ],
-)
+@pytest.mark.parametrize(("word", "growth"), [("CONSTANT", 0), ("INCREASE", 1), ("DECREASE", -1)])
 def test_a_guide_rubs_by_force_moments_and_preload(tmp_path, word, growth):
     text = SLIDER.format(kind="TRANSLATIONAL", start="VY=-866.0254037844386, VZ=500")
     found = played(

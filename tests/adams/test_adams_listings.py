@@ -85,8 +85,7 @@ def test_bodies_move_as_their_requests_say(case):
 
 
 @pytest.mark.parametrize(
-    "case, plane",
-    [("Spherical_Case01", (0, 2)), ("Universal_Case01", (1, 2)), ("Universal_Case02", (0, 2))],
+    "case, plane", [("Spherical_Case01", (0, 2)), ("Universal_Case01", (1, 2)), ("Universal_Case02", (0, 2))]
 )
 def test_coarse_listings_of_the_pendulum(case, plane):
     """These joints let the bar swing in its plane as the revolute joint does.

@@ -281,14 +281,7 @@ def test_the_joint_holds_before_assembly_moves_parts():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    "function",
-    [
-        "DM(20,11)-2-0.1*SIN(5*TIME)",
-        "DM(20,11)-2.0+0*TIME",
-        "DM(20,11)**2-4",
-    ],
-)
+@pytest.mark.parametrize("function", ["DM(20,11)-2-0.1*SIN(5*TIME)", "DM(20,11)-2.0+0*TIME", "DM(20,11)**2-4"])
 def test_a_general_constraint_acts_on_its_marker(function):
     """A stone on a rope whose length is a function: the pull on marker I, on ground, is along the rope."""
     text = (

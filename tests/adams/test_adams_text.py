@@ -98,11 +98,7 @@ def test_numbers_may_be_degrees_or_have_fortrans_exponents(text, value):
     ],
 )
 def test_expressions_mean_what_they_mean_in_fortran(text, value):
-    names = {
-        "SIN": math.sin,
-        "COS": math.cos,
-        "IF_": lambda x, a, b, c: a if x < 0 else b if x == 0 else c,
-    }
+    names = {"SIN": math.sin, "COS": math.cos, "IF_": lambda x, a, b, c: a if x < 0 else b if x == 0 else c}
     assert eval(compile(ast.Expression(ast.fix_missing_locations(parse(text))), "", "eval"), names) == pytest.approx(
         value
     )

@@ -31,14 +31,8 @@ AT_REST = {
 }
 MOVING = {
     "pendulum": (pendulum, dict(zip(ROD, (0.4365307, -0.8979809), strict=False))),
-    "pendulum in space": (
-        lambda n: pendulum(n, 3),
-        dict(zip(ROD, (0.1955840, 0.4683335, -0.8644481), strict=True)),
-    ),
-    "spaghetti": (
-        flying_in_space,
-        {"rod.start.x": 19.213600, "rod.start.y": 1.625556, "rod.start.z": -2.127248},
-    ),
+    "pendulum in space": (lambda n: pendulum(n, 3), dict(zip(ROD, (0.1955840, 0.4683335, -0.8644481), strict=True))),
+    "spaghetti": (flying_in_space, {"rod.start.x": 19.213600, "rod.start.y": 1.625556, "rod.start.z": -2.127248}),
     "frame": (right_angle, {"frame.elbow.z": 4.642067, "frame.end.z": 3.508934}),
 }
 

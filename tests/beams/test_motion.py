@@ -145,10 +145,7 @@ joints:
 
 @pytest.mark.parametrize(
     ("spin", "expected"),
-    [
-        (200, [191.83284, 196.15700, 953.53732, 1080.93587]),
-        (400, [189.46186, 198.12374, 883.13087, 1131.68886]),
-    ],
+    [(200, [191.83284, 196.15700, 953.53732, 1080.93587]), (400, [189.46186, 198.12374, 883.13087, 1131.68886])],
 )
 def test_whirl_of_the_rotor_of_the_examples(spin, expected):
     """Whirl frequencies at two speeds, rad/s, from the same finite element model."""

@@ -11,10 +11,7 @@ from stiffmbs.model.beams.section import Circle, IProfile, Rectangle, Tube
 from .scenes import at_rest, bend, cantilever, princeton
 
 ELASTICA = {1: (0.46135195, 0.05643324, 0.30172077), 5: (1.21536812, 0.38762836, 0.71379152)}
-BEND = {
-    300: (58.779122, 22.244781, 40.191892),
-    600: (47.150439, 15.684801, 53.474859),
-}
+BEND = {300: (58.779122, 22.244781, 40.191892), 600: (47.150439, 15.684801, 53.474859)}
 """Tip of the bend with GJ = G/6."""
 PRINCETON = {
     (4.448, 45): (0.056055193, 0.003965163, -0.003746889),

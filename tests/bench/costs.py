@@ -145,10 +145,7 @@ def main() -> None:
         for spent, counted in found:
             explicit[0].append(np.r_[1.0, (counted["steps"] + counted["rejected"]) * step])
             explicit[1].append(spent)
-    for names, data in (
-        (EXPLICIT, explicit),
-        (IMPLICIT, implicit),
-    ):
+    for names, data in ((EXPLICIT, explicit), (IMPLICIT, implicit)):
         costs, told = fit(*data)
         print(
             f"{', '.join(f'{n} = {each:.3g}' for n, each in zip(names, costs[1:], strict=True))}, {costs[0]:.0f} us a run"

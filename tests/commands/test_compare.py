@@ -47,13 +47,7 @@ def test_the_figure_has_a_curve_for_each_solver(compared):
 def test_tables_for_a_person(examples):
     result = invoke("compare", examples / "cart_pendulum.yaml", *QUICK, "--solvers", "bdf", "--formulation", "SI2,I3")
     assert result.exit_code == 0, result.output
-    for words in (
-        "bdf SI2",
-        "bdf I3",
-        "ms at an error of (m or rad)",
-        "reference: bdf at rtol",
-        "conclusion: at an",
-    ):
+    for words in ("bdf SI2", "bdf I3", "ms at an error of (m or rad)", "reference: bdf at rtol", "conclusion: at an"):
         assert words in result.output
 
 

@@ -109,8 +109,7 @@ def test_completion_is_told_in_the_help_and_known_to_the_command(call, monkeypat
 
 
 @pytest.mark.parametrize(
-    ("option", "told"),
-    [("-q", set()), ("-v", {"warned", "informed"}), ("-vv", {"warned", "informed", "detailed"})],
+    ("option", "told"), [("-q", set()), ("-v", {"warned", "informed"}), ("-vv", {"warned", "informed", "detailed"})]
 )
 def test_logging_is_told_as_loudly_as_asked_for_and_only_by_this_command(call, monkeypatch, option, told):
     from stiffmbs.analyses import load_scene

@@ -112,9 +112,7 @@ def test_stiffness_of_the_balance(case):
 
     expected = -differences(dynamics, q, left)
     np.testing.assert_allclose(
-        dense(known.stiffness),
-        expected,
-        atol=1e-7 * max(1.0, np.abs(expected).max(), np.abs(known.lam).max(initial=0)),
+        dense(known.stiffness), expected, atol=1e-7 * max(1.0, np.abs(expected).max(), np.abs(known.lam).max(initial=0))
     )
 
 

@@ -254,11 +254,7 @@ def test_a_car_that_pulls_to_one_side_turns_at_the_rate_of_the_bicycle_model(ask
     def left(unknown):
         vx, vy, r = unknown
         front, rear = -6e4 * (vy + 1.2 * r) / 20, -7e4 * (vy - 1.4 * r) / 20
-        return (
-            500 - 30 * vx + 1200 * r * vy,
-            front + rear + 400 - 1200 * r * vx,
-            1.2 * front - 1.4 * rear + 0.3 * 400,
-        )
+        return (500 - 30 * vx + 1200 * r * vy, front + rear + 400 - 1200 * r * vx, 1.2 * front - 1.4 * rear + 0.3 * 400)
 
     vx, vy, r = fsolve(left, [18.0, 0.0, 0.0], xtol=1e-13)
     assert abs(r) > 5e-3

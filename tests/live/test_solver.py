@@ -84,8 +84,7 @@ def test_a_band_holds_the_curves_of_a_sweep():
 
 
 @pytest.mark.parametrize(
-    "content",
-    [{"count": 1}, {"count": 1000}, {"count": "many"}, {"low": None}, {"high": float("nan")}],
+    "content", [{"count": 1}, {"count": 1000}, {"count": "many"}, {"low": None}, {"high": float("nan")}]
 )
 def test_a_sweep_of_other_bounds_is_refused(content):
     request = Request({"text": TEXT, "parameter": "L", "low": 0.4, "high": 0.8, "count": 3, "unit": "m", **content})

@@ -6,13 +6,7 @@ import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-BINARY = {
-    ast.Add: ("+", "-"),
-    ast.Sub: ("-", "+"),
-    ast.Mult: ("*", "/"),
-    ast.Div: ("/", "*"),
-    ast.Pow: ("**", "*"),
-}
+BINARY = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*"), ast.Pow: ("**", "*")}
 """Operators of two operands, and their replacements."""
 COMPARISONS = {
     ast.Lt: ("<", ">="),

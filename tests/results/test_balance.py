@@ -73,11 +73,7 @@ def test_states_whose_forces_balance_are_left_alone(examples, monkeypatch):
 
 def test_correction_ends_where_forces_balance(monkeypatch):
     limit = OutputCorrection.limit
-    monkeypatch.setattr(
-        OutputCorrection,
-        "limit",
-        lambda self, long, part, balanced: limit(self, long, 0.0, balanced),
-    )
+    monkeypatch.setattr(OutputCorrection, "limit", lambda self, long, part, balanced: limit(self, long, 0.0, balanced))
     assert force_error(swinging(1.1e10, rtol=1e-4)) < 0.01  # no correction is small enough by its size
 
 

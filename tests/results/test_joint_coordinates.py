@@ -184,8 +184,7 @@ def spun(duration, output, torque=0.0, **requests):
     model = spatial.Model()
     wheel = model.add("wheel", spatial.Body(mass=1, inertia=(0.3, 0.5, 0.3), omega=(0, 40, 0)))
     model.add(
-        "hinge",
-        spatial.Revolute(i=wheel.at(0, 0, 0, ALONG_Y), j=spatial.Marker(body="ground", orientation=ALONG_Y)),
+        "hinge", spatial.Revolute(i=wheel.at(0, 0, 0, ALONG_Y), j=spatial.Marker(body="ground", orientation=ALONG_Y))
     )
     if torque:
         model.add("motor", spatial.AppliedTorque(i="wheel", torque=(0, torque, 0)))

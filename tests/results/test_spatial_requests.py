@@ -178,10 +178,7 @@ def test_channels_parameters_and_functions(solution):
         ("fx(ball.k)", r"requests.r: found 'ball.k'"),
         ("dm(top, arm, ground)", r"requests.r: found 3 markers in 'dm\(top, arm, ground\)', expected 1 to 2"),
         ("fx()", r"requests.r: found 0 names in 'fx\(\)'"),
-        (
-            "top.speed",
-            r"requests.r: found 'top.speed' in 'top.speed', expected one of top.x, top.y, top.z, ",
-        ),
+        ("top.speed", r"requests.r: found 'top.speed' in 'top.speed', expected one of top.x, top.y, top.z, "),
         ("ball.torque", r"requests.r: found 'ball.torque'"),
         ("what", r"requests.r: found the unknown name 'what'"),
         ("twice(t)", r"requests.r: found the unknown function 'twice'"),

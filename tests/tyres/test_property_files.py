@@ -275,8 +275,7 @@ def test_a_negative_peak_has_the_forces_of_a_positive_one(read):
 
 
 @pytest.mark.parametrize(
-    ("name", "least", "most"),
-    [("UNLOADED_RADIUS", 10, 5000), ("FNOMIN", 0.01, 2000), ("LONGVL", 100, 2e5)],
+    ("name", "least", "most"), [("UNLOADED_RADIUS", 10, 5000), ("FNOMIN", 0.01, 2000), ("LONGVL", 100, 2e5)]
 )
 def test_the_ranges_of_plausible_numbers(read, name, least, most):
     """From tyres of models to those of aircraft; the stiffness gives a deflection of a sixteenth of the radius."""

@@ -87,12 +87,7 @@ class AngleSpring(Spring, Generic[M]):
     """Base of the planar and the spatial torsion spring."""
 
     kind = "torsion_spring"
-    reflected = {
-        "free_angle": "angle",
-        "preload": "angle",
-        "spring_law": "angle",
-        "damper_law": "angle",
-    }
+    reflected = {"free_angle": "angle", "preload": "angle", "spring_law": "angle", "damper_law": "angle"}
     forms = ({"stiffness": ..., "damping": ...},)
 
     i: M = Field(description="marker of the first body, on which the torque is reported")

@@ -23,10 +23,7 @@ class Coupler(Relation):
     kind = "coupler"
     reflected = {"scale": "joint_1 joint_2", "offset": "joint_1"}
     equations = ("ratio",)
-    forms = (
-        {"joint_1": "pin", "joint_2": "second_pin"},
-        {"joint_1": "slider", "joint_2": "second_slider"},
-    )
+    forms = ({"joint_1": "pin", "joint_2": "second_pin"}, {"joint_1": "slider", "joint_2": "second_slider"})
 
     joint_1: JointReference = Field(description="joint with the coordinate s_1")
     joint_2: JointReference = Field(description="joint with the coordinate s_2")

@@ -43,8 +43,7 @@ class Road(Component):
     type: str = ""
     friction: Factor | None = Field(None, description="factor on the tyre's friction, of x and y; 1 by default")
     filter_radius: si.PositiveLength | None = Field(
-        None,
-        description="radius of a rolling disc that filters the heights of the road, m; by default no filter",
+        None, description="radius of a rolling disc that filters the heights of the road, m; by default no filter"
     )
 
     _cam: Cam | None = PrivateAttr(None)

@@ -37,8 +37,7 @@ def _lists(*counts: int) -> dict[str, Any]:
 AS_WRITTEN = WithJsonSchema({"anyOf": [_lists(6), _lists(2, 3), _lists(2, 3, 3), _lists(6, 6)]})
 Stiffness = Annotated[tuple[_Forces, _Forces, _Forces, _Torques, _Torques, _Torques], AS_WRITTEN]
 Damping = Annotated[
-    tuple[_ViscousForces, _ViscousForces, _ViscousForces, _ViscousTorques, _ViscousTorques, _ViscousTorques],
-    AS_WRITTEN,
+    tuple[_ViscousForces, _ViscousForces, _ViscousForces, _ViscousTorques, _ViscousTorques, _ViscousTorques], AS_WRITTEN
 ]
 """Symmetric 6 x 6 matrix; None for uncoupled directions, for which nothing is computed."""
 Preload = tuple[si.Force | None, si.Force | None, si.Force | None, si.Torque | None, si.Torque | None, si.Torque | None]

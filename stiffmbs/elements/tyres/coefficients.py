@@ -33,15 +33,7 @@ from .file_fields import (
 )
 from .names import COMBINED, OF_THE_FILE, ONE_SIDED, REASONS, REQUIRED, TURN_SLIP, home
 from .plausible import check_numbers, missing_sections
-from .property_file import (
-    NOMINAL_PRESSURE,
-    VERSIONS,
-    PropertyFile,
-    Version,
-    digits,
-    plain,
-    read_property_file,
-)
+from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, plain, read_property_file
 
 if TYPE_CHECKING:
     import numpy as np
@@ -64,8 +56,7 @@ class TyreProperties(Component):
     use_mode: int | None = Field(None, description="USE_MODE; 4, or 14 with relaxation lengths, by default")
     side: Literal["", "left", "right", "symmetric"] = Field("", description="TYRESIDE, that the tyre was measured on")
     ranges: dict[str, tuple[float, float]] = Field(
-        {},
-        description="valid ranges of slip, slip_angle (rad), camber (rad), load (N) and pressure (Pa)",
+        {}, description="valid ranges of slip, slip_angle (rad), camber (rad), load (N) and pressure (Pa)"
     )
     deflection_load: Table | None = Field(
         None, description="load (N) over deflection (m), in place of VERTICAL_STIFFNESS; 5.2 alone"

@@ -28,10 +28,7 @@ class MirroredNames(ast.NodeTransformer):
     """
 
     def __init__(
-        self,
-        frame: Any,
-        inside: Callable[[MarkerReference], bool],
-        along_joint: Callable[[str, str], float | None],
+        self, frame: Any, inside: Callable[[MarkerReference], bool], along_joint: Callable[[str, str], float | None]
     ) -> None:
         self.frame, self.inside, self.along_joint = frame, inside, along_joint
 

@@ -56,11 +56,7 @@ def iso3888_2(width: float) -> tuple[Lane, ...]:
     first, second, third = 1.1 * width + 0.25, width + 1.0, max(1.3 * width + 0.25, 3.0)
     avoiding = first / 2 + 1.0 + second / 2
     last = third / 2 - first / 2  # the right boundaries of the first and the third lane are in line
-    return (
-        _lane(0.0, 12.0, 0.0, first),
-        _lane(25.5, 36.5, avoiding, second),
-        _lane(49.0, 61.0, last, third),
-    )
+    return (_lane(0.0, 12.0, 0.0, first), _lane(25.5, 36.5, avoiding, second), _lane(49.0, 61.0, last, third))
 
 
 STANDARDS = {"iso3888-1": iso3888_1, "iso3888-2": iso3888_2}

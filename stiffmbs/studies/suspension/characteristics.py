@@ -296,10 +296,7 @@ def _roll_centre(pose: Pose, roll: np.ndarray) -> dict[str, float]:
 def _roll_rate(pose: Pose, roll: np.ndarray) -> float:
     """Return the change of the moment of the loads about the middle of the contacts per roll angle, N m/deg."""
     left, right = pose.hubs
-    (v_left, v_right), across = (
-        (pose.contact_velocity(hub, roll) for hub in pose.hubs),
-        left.contact - right.contact,
-    )
+    (v_left, v_right), across = ((pose.contact_velocity(hub, roll) for hub in pose.hubs), left.contact - right.contact)
     moving = v_left - v_right
     angle = (moving[2] * across[1] - moving[1] * across[2]) / (across[1] ** 2 + across[2] ** 2)
     changes = [pose.load_change(hub, roll) for hub in pose.hubs]

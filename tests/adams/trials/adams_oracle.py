@@ -198,9 +198,7 @@ class Mechanism:
         n = len(self.parts)
         p = y[3 * n : 7 * n].reshape(n, 4)
         w = view.w
-        turn = 0.5 * np.column_stack(
-            [-np.sum(p[:, 1:] * w, 1), p[:, :1] * w + np.cross(w, p[:, 1:])],
-        )
+        turn = 0.5 * np.column_stack([-np.sum(p[:, 1:] * w, 1), p[:, :1] * w + np.cross(w, p[:, 1:])])
         return np.concatenate([view.v.ravel(), turn.ravel(), accelerations.ravel()])
 
     def run(self, t, rtol=1e-12, max_step=np.inf) -> History:

@@ -221,14 +221,7 @@ BUSHING/1, I=22, J=32
         torque = torque - np.array([20, 30, 40]) * (axes.T @ (view.w[0] - view.w[1]))
         return axes @ force, axes @ torque
 
-    compare(
-        tmp_path,
-        text,
-        [lambda view: pair(view, i, j, *components(view))],
-        {},
-        5e-6,
-        0.5,
-    )
+    compare(tmp_path, text, [lambda view: pair(view, i, j, *components(view))], {}, 5e-6, 0.5)
 
 
 TURNING = (

@@ -238,11 +238,7 @@ def test_a_rack_falls_beside_its_pinion(tmp_path):
 
     mechanism = Mechanism(
         [Part(1, tensor(0.02, 0.03, 0.04), (0.05, 0, 0)), Part(2, tensor(0.1, 0.2, 0.3), (0.1, -0.15, 0))],
-        {
-            "JOINT_1": joints.revolute(pinion, base),
-            "JOINT_2": joints.translational(guide, rail),
-            "JOINT_3": teeth,
-        },
+        {"JOINT_1": joints.revolute(pinion, base), "JOINT_2": joints.translational(guide, rail), "JOINT_3": teeth},
         gravity=(9.80665, 0, 0),
     )
     reactions = {"JOINT_1": pinion, "JOINT_3": pinion}

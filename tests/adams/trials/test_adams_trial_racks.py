@@ -63,13 +63,7 @@ def teeth(pinion, contact):
 @pytest.mark.long
 @pytest.mark.parametrize(
     "drawn, backward, swapped",
-    [
-        (RADIUS, False, False),
-        (RADIUS, True, True),
-        (0.0, False, False),
-        (0.0, True, False),
-        (0.1, False, True),
-    ],
+    [(RADIUS, False, False), (RADIUS, True, True), (0.0, False, False), (0.0, True, False), (0.1, False, True)],
     ids=["in place", "in place, z backward", "across the axis", "across the axis, z backward", "too near"],
 )
 @pytest.mark.sampled(7)

@@ -147,12 +147,7 @@ def test_accelerations_are_differences_in_ground(both):
 
     holds_accelerations(both, "REQUEST_5", "accx accy accz", linear)
     holds_accelerations(both, "REQUEST_5", "wdtx wdty wdtz", angular)
-    holds_accelerations(
-        both,
-        "REQUEST_12",
-        "f7 f8",
-        lambda v, found: [linear(v, found)[0], angular(v, found)[1]],
-    )
+    holds_accelerations(both, "REQUEST_12", "f7 f8", lambda v, found: [linear(v, found)[0], angular(v, found)[1]])
 
 
 @pytest.mark.long

@@ -22,10 +22,7 @@ from ..peers.flexible.tasks import GRAVITY, HungBeam, HungBody
 from ..problem import Problem
 
 TIMES = np.linspace(0.0, 1.0, 6)
-BEAMS = {
-    "rubber_pendulum": HungBeam(0.02, 5e6, False, TIMES),
-    "falling_cantilever": HungBeam(0.01, 2e8, True, TIMES),
-}
+BEAMS = {"rubber_pendulum": HungBeam(0.02, 5e6, False, TIMES), "falling_cantilever": HungBeam(0.01, 2e8, True, TIMES)}
 ELEMENTS, AT, ORDER = 12, 2e-3, 4
 """Elements with which a beam has an error of about this size, m, and the order of the error."""
 LOOSEST = 1e-2

@@ -59,8 +59,7 @@ def test_starts_by_hand_are_consistent(name):
 
 
 @pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=pytest.mark.long if name in LONG_RACES else ()) for name in PROBLEMS],
+    "name", [pytest.param(name, marks=pytest.mark.long if name in LONG_RACES else ()) for name in PROBLEMS]
 )
 def test_contestants_agree_with_the_reference(name):
     problem = PROBLEMS[name]

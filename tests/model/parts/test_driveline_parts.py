@@ -271,11 +271,7 @@ def test_a_steering_column_has_its_ratio_compliance_and_assist(hand):
     """The rack's force is (M + A)/p with p = travel per angle; the wheel turns by the rack's travel over p and the twist M/k."""
     p, k = 0.05 / (2 * np.pi), 120.0
     tables = {"assist_of": {"table": [[-10, -30], [0, 0], [10, 30]], "lines": True}}
-    for assist, helped in (
-        ("none", 0.0),
-        ("table", 3 * hand),
-        ("formula", 40 * np.tanh((hand + 0.1 * hand**3) / 40)),
-    ):
+    for assist, helped in (("none", 0.0), ("table", 3 * hand), ("formula", 40 * np.tanh((hand + 0.1 * hand**3) / 40))):
         found = steered(assist, tables if assist == "table" else None, f"{hand} N m")
         assert found["column.assist_torque"] == pytest.approx(helped, abs=1e-6)
         assert found["rack"] == pytest.approx((hand + helped) / p / 1e5, rel=1e-6)

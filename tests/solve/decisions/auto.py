@@ -6,13 +6,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.solve import (
-    auto,
-    auto_checks,
-    auto_choice,
-    auto_decisions,
-    subsystems,
-)
+from stiffmbs.solve import auto, auto_checks, auto_choice, auto_decisions, subsystems
 from stiffmbs.solve.cost import ImplicitCost
 from stiffmbs.solve.radau.radau import of_radau
 from stiffmbs.solve.trajectory import Outcome, Trajectory

@@ -9,16 +9,12 @@ import numpy as np
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OPERATIONS
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.run_checks import growth
-from stiffmbs.solve import (
-    bdf,
-)
+from stiffmbs.solve import bdf
 from stiffmbs.solve.error_control.native import accumulated_errors
 from stiffmbs.solve.error_control.newton import Stiffness, newton_tolerance
 from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
-from stiffmbs.solve.explicit.native import (
-    runge_kutta,
-)
+from stiffmbs.solve.explicit.native import runge_kutta
 from stiffmbs.solve.ida.native import error_norm, iteration, output_correction
 from stiffmbs.solve.ida.native_engine import NativeEngine
 from stiffmbs.solve.trajectory import Grid

@@ -7,17 +7,11 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.solve import (
-    missing_rows,
-    sampling,
-    stiff_rows,
-)
+from stiffmbs.solve import missing_rows, sampling, stiff_rows
 from stiffmbs.solve.events import discontinuity, narrow_inputs
 from stiffmbs.solve.events.long_steps import LongStepLog
 from stiffmbs.solve.events.native import bounds, step_bound
-from stiffmbs.solve.explicit.native import (
-    explicit_events,
-)
+from stiffmbs.solve.explicit.native import explicit_events
 from stiffmbs.solve.ida.native import ida_events, passage
 from stiffmbs.solve.trajectory import Grid, History, Outcome, Trajectory
 from tests.interpreted import interpreted

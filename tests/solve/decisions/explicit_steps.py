@@ -10,19 +10,11 @@ import pytest
 import stiffmbs
 from stiffmbs.analyses.job import prepare
 from stiffmbs.model.settings import RunSettings
-from stiffmbs.solve import (
-    kinematic,
-)
+from stiffmbs.solve import kinematic
 from stiffmbs.solve.driven_states import IntegratedMotion
 from stiffmbs.solve.explicit import fixed, rounding, stable_step
 from stiffmbs.solve.explicit.adaptive import AdaptiveRun
-from stiffmbs.solve.explicit.native import (
-    attempt,
-    explicit_events,
-    fastest_rate,
-    interpolant,
-    runge_kutta,
-)
+from stiffmbs.solve.explicit.native import attempt, explicit_events, fastest_rate, interpolant, runge_kutta
 from stiffmbs.solve.explicit.native import start as explicit_start
 from stiffmbs.solve.trajectory import Grid
 from tests.interpreted import interpreted

@@ -53,8 +53,7 @@ def interpolating(scheme, rows, theta):
 
 
 @pytest.mark.parametrize(
-    ("scheme", "rows", "order"),
-    [("dopri5", "dense", 4), ("dop853", "dense", 7), ("dop853", "free", 6)],
+    ("scheme", "rows", "order"), [("dopri5", "dense", 4), ("dop853", "dense", 7), ("dop853", "free", 6)]
 )
 def test_interpolants_meet_the_conditions_of_their_order(scheme, rows, order):
     scheme = SCHEMES[scheme]

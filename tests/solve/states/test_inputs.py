@@ -23,12 +23,7 @@ T = np.linspace(0, 1, 11)
 
 @pytest.mark.parametrize(
     ("push", "x"),
-    [
-        (None, T**2 / 2),
-        (6, 1.5 * T**2),
-        (lambda t: 6 * t, T**3 / 2),
-        (([0, 2], [0, 12]), T**3 / 2),
-    ],
+    [(None, T**2 / 2), (6, 1.5 * T**2), (lambda t: 6 * t, T**3 / 2), (([0, 2], [0, 12]), T**3 / 2)],
     ids=["described", "constant", "function", "times and values"],
 )
 def test_an_input_is_what_a_run_gives(push, x):

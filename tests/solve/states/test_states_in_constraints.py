@@ -35,10 +35,7 @@ def rates(t, y, push):
 
 @pytest.mark.parametrize(
     "settings",
-    [
-        {"solver": "projected"},
-        *({"solver": "bdf", "formulation": name} for name in ("SI2", "I3", "SI1", "index1")),
-    ],
+    [{"solver": "projected"}, *({"solver": "bdf", "formulation": name} for name in ("SI2", "I3", "SI1", "index1"))],
     ids=lambda s: s.get("formulation", "dop853"),
 )
 @pytest.mark.parametrize("drive", ["drive", "equation"])

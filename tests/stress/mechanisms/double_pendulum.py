@@ -37,10 +37,7 @@ def angles(t: np.ndarray, length: float = 1.0, masses: tuple[float, float] = (1.
         a, b, v, w = y
         c, s = np.cos(a - b), np.sin(a - b)
         mass = np.array([[m / 3 + n, n / 2 * c], [n / 2 * c, n / 3]])
-        force = [
-            -n / 2 * s * w * w - (m / 2 + n) * g * np.cos(a),
-            n / 2 * s * v * v - n / 2 * g * np.cos(b),
-        ]
+        force = [-n / 2 * s * w * w - (m / 2 + n) * g * np.cos(a), n / 2 * s * v * v - n / 2 * g * np.cos(b)]
         return [v, w, *np.linalg.solve(mass, force)]
 
     solution = solve_ivp(rates, (0, t[-1] or 1.0), np.zeros(4), "DOP853", t_eval=t, rtol=1e-13, atol=1e-13)

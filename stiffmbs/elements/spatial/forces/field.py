@@ -24,12 +24,7 @@ class FieldForce(Connection):
         {"stiffness": ..., "damping": ...},
         {"stiffness": ((1,) * 6,) * 6, "damping": ((1,) * 6,) * 6, "free": (1, 0, 0, 0, 0, 0)},
     )
-    reflected = {
-        "stiffness": "matrix",
-        "damping": "matrix",
-        "preload": "components",
-        "free": "components",
-    }
+    reflected = {"stiffness": "matrix", "damping": "matrix", "preload": "components", "free": "components"}
 
     preload: Preload = Field(NO_ROW, description="force and torque on i at s0, N and N m")
     free: tuple[si.Length, si.Length, si.Length, si.Angle, si.Angle, si.Angle] | None = Field(

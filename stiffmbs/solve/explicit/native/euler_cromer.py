@@ -5,11 +5,7 @@ from math import isfinite
 from stiffmbs.compile.machine.native.access import compiled, factors_view, state_view
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.compile.machine.native.statuses import NOT_FINITE
-from stiffmbs.dynamics.native.block_systems import (
-    to_accelerations,
-    to_position_constraints,
-    to_velocity_constraints,
-)
+from stiffmbs.dynamics.native.block_systems import to_accelerations, to_position_constraints, to_velocity_constraints
 from stiffmbs.dynamics.native.layouts import MOST_MOVES
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.explicit.native.stages import add_trailing_rates

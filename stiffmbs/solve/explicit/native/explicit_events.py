@@ -19,13 +19,7 @@ from stiffmbs.solve.events.native.bounds import (
     suspicious,
     turned_arguments,
 )
-from stiffmbs.solve.events.native.from_zero import (
-    JUST_BEYOND,
-    begin_sides,
-    leave_zero,
-    leaves_zero,
-    note_sides,
-)
+from stiffmbs.solve.events.native.from_zero import JUST_BEYOND, begin_sides, leave_zero, leaves_zero, note_sides
 from stiffmbs.solve.events.native.nearby import note_intervals
 from stiffmbs.solve.events.native.parameters import BISECTIONS, EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, keep_row

@@ -88,11 +88,7 @@ def _places(equations: Equations) -> dict[str, Any]:
     found: dict[str, Any] = {"leader": integers(coordinates.independent_of)}
     for name, independent in (("q", coordinates.independent), ("u", coordinates.independent_u)):
         numbers = np.flatnonzero(independent & (equations.at[name] != ABSENT))
-        found |= {
-            f"n_{name}": len(numbers),
-            f"{name}_of": numbers,
-            f"{name}_at": integers(equations.at[name][numbers]),
-        }
+        found |= {f"n_{name}": len(numbers), f"{name}_of": numbers, f"{name}_at": integers(equations.at[name][numbers])}
     return found
 
 

@@ -11,10 +11,7 @@ import numpy as np
 from ...contestant import Contestant, Failed, Solve
 from .tree import GROUND, Tree
 
-PARTS = (
-    *(1 / part for part in (10, 5, 4, 2)),
-    *(1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256),
-)
+PARTS = (*(1 / part for part in (10, 5, 4, 2)), *(1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256))
 """Steps from one output time to the next."""
 
 

@@ -110,10 +110,7 @@ FORGETTING = {
     "creep to rest": _oscillator(f"{SPRING} - 100*b.vx", 500),
     "forced and damped vibration": _oscillator(f"{SPRING} - 2*b.vx + 10*sin(7*t) + 5*cos(31*t)", 300),
 }
-KEEPING = {
-    "vibration": _oscillator(SPRING, 30),
-    "small pendulum": _pendulum(0.1, 100),
-}
+KEEPING = {"vibration": _oscillator(SPRING, 30), "small pendulum": _pendulum(0.1, 100)}
 """Motions whose period does not depend on their amplitude."""
 WIDE = _pendulum(1.5, 300)
 

@@ -21,10 +21,7 @@ def oscillator(damping: float) -> Model:
     model = Model("Oscillator")
     model.add("cart", Body(mass=1, inertia=1, position=(0.1, 0)))
     model.add("rail", JOINTS["prismatic"](i="cart", j="ground"))
-    model.add(
-        "spring",
-        FORCES["bushing"](i="cart", j="ground", stiffness=[STIFFNESS, 0, 0], damping=[damping, 0, 0]),
-    )
+    model.add("spring", FORCES["bushing"](i="cart", j="ground", stiffness=[STIFFNESS, 0, 0], damping=[damping, 0, 0]))
     return model
 
 

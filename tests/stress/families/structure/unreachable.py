@@ -59,11 +59,6 @@ def _gap(base: str, joints: str, joint: str, expected: float, unit: str) -> Verd
 
 
 CASES = tuple(
-    Case(
-        name,
-        "the gap in the message against its closed form",
-        partial(_gap, *SCENES[name]),
-        expected=Outcome.TOLD,
-    )
+    Case(name, "the gap in the message against its closed form", partial(_gap, *SCENES[name]), expected=Outcome.TOLD)
     for name in SCENES
 )

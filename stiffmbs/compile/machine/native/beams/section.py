@@ -16,14 +16,7 @@ from stiffmbs.compile.machine.native.beams.nodes import (
     relative_screw,
     relative_tangents,
 )
-from stiffmbs.compile.machine.native.beams.screws import (
-    number,
-    series,
-    square,
-    square_rate,
-    tangent,
-    tangent_slope,
-)
+from stiffmbs.compile.machine.native.beams.screws import number, series, square, square_rate, tangent, tangent_slope
 from stiffmbs.elements.forces.beam_layout import OF_NODE, SCREW
 
 MOST = 5
