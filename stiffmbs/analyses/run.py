@@ -24,12 +24,12 @@ from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
 from ..results.solution import Solution
-from ..run_checks.growth import senseless
+from ..run_checks.growth import motion_within_tolerance, senseless
 from ..run_checks.lost_digits import lost_digits_sentence
 from ..run_checks.motion import motion_notes
 from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.missing_rows import reported
-from ..solve.settings import changed, settings_notes
+from ..solve.settings import changed, settings_notes, traits_of
 from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
@@ -281,6 +281,8 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
         from ..run_checks.growth import accumulated_errors_sentence
 
         yield from accumulated_errors_sentence(system, job.settings, trajectory)
+    if system.size == 1.0 and job.settings.atol is None and "rtol" in traits_of(job.settings).reads:
+        yield from motion_within_tolerance(system, job.settings, trajectory)
     yield from settings_notes(job.settings, system)
 
 

@@ -149,6 +149,23 @@ def accumulated_errors_sentence(system: System, settings: RunSettings, trajector
     )
 
 
+def motion_within_tolerance(system: System, settings: RunSettings, trajectory: Trajectory) -> Iterator[str]:
+    """Yield a sentence if bodies that are all described at one point move by less than the absolute tolerance.
+
+    The tolerance is relative to the size of a mechanism; a single point has none, and counts as 1 m.
+    """
+    first = trajectory.q[:1, : system.n_pose].reshape(len(system.bodies), -1)[:, : system.of_body.linear]
+    if system.size != 1.0 or not len(first) or np.ptp(first, axis=0).any():
+        return
+    places = trajectory.q[:, : system.n_pose].reshape(len(trajectory.q), *first.shape[:1], -1)
+    travel = float(np.ptp(places[:, :, : system.of_body.linear], axis=0).max())
+    if np.finfo(float).eps < travel < settings.rtol:
+        yield (
+            f"the motion of {travel:.2g} m is smaller than the absolute tolerance of {settings.rtol:.2g} m: bodies and markers at a "
+            "single point have no size that it could follow; set atol"
+        )
+
+
 def _widths_of_free_mechanisms(system: System, q: np.ndarray) -> np.ndarray:
     """Return the largest distance between connected bodies of each body's mechanism, for its translations, shape (n_u,), m.
 

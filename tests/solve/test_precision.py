@@ -63,3 +63,22 @@ def test_rounding_governs_a_long_run_that_fails_a_fifth_of_its_error_tests():
     steps = 10 * CONTROL.enough_steps
     failed = [governed_by_rounding({"steps": steps, "rejected": int(part * steps)}) for part in (0.15, 0.25)]
     assert failed == [False, True]
+
+
+@pytest.mark.parametrize(
+    "amplitude, settings, noted", [(1e-9, {}, True), (1e-9, {"atol": 1e-15}, False), (0.01, {}, False)]
+)
+def test_a_small_motion_of_a_model_without_a_size_is_noted(amplitude, settings, noted):
+    """All markers are at the origin: the absolute tolerance is 1e-6 m, and the plate of a sensor vibrates by 1 nm."""
+    scene = f"""
+bodies: {{plate: {{mass: 1e-11, inertia: 1e-22}}}}
+joints: {{rail: {{type: prismatic, i: plate, j: ground}}}}
+forces:
+  spring: {{type: bushing, i: plate, j: ground, stiffness: [2, 0, 0]}}
+  push: {{type: force, i: plate, force: [{2 * amplitude}, 0]}}
+run: {{duration: 1e-4, points: 101}}
+"""
+    solution = stiffmbs.run(stiffmbs.read_scene(scene), **settings)
+    assert any("set atol" in note for note in solution.notes) is noted
+    expected = amplitude * (1 - np.cos(np.sqrt(2 / 1e-11) * solution.time))
+    assert noted or np.abs(solution["plate.x"] - expected).max() < 1e-3 * amplitude
