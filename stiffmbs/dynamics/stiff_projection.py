@@ -21,6 +21,8 @@ FORCE_CHANGES, PROJECT = together(
     force_changes="void(int64, float64*, float64*, float64*, float64*, float64*, int64, int64*, int64*, float64*, float64*, float64*, int64*)",
     project_stiffly="int64(float64, float64, int64*, int64*, int64*, int64*)",
 )
+STEP_PARTS = 10.0
+"""Step of the solver relative to that of the matrix, in which unstable soft forces are small compared with inertia."""
 _MATRIX = (
     Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "u", "f_u", -1), Block("u", "q", "f_q", -1),
     Block("u", "lam", "J.T"), Block("lam", "u", "J"),
@@ -64,10 +66,10 @@ class StiffProjection:
         FORCE_CHANGES.call(len(t), *addresses(*states), len(self._forces[0]), *at_rest, self._at_state)
         return changes
 
-    def project(self, t: float, cj: float, q: np.ndarray, u: np.ndarray) -> bool:
-        """Project a state in place, by the matrix of an implicit step with u' = cj u; return False on failure."""
+    def project(self, t: float, step: float, q: np.ndarray, u: np.ndarray) -> bool:
+        """Project a state within a step, s, in place, by the matrix of a shorter implicit step; return False on failure."""
         state = self._state
         state.q[:], state.u[:] = q, u
-        status = PROJECT.short_call(t, cj, *self._tables, self._at_state)
+        status = PROJECT.short_call(t, STEP_PARTS / step, *self._tables, self._at_state)
         q[:], u[:] = state.q, state.u
         return status == 0 and bool(np.isfinite(q).all() and np.isfinite(u).all())

@@ -137,7 +137,7 @@ def accumulated_errors_sentence(system: System, settings: RunSettings, trajector
     beyond = f"{errors[worst]:.2g} times the tolerance"
     if not errors[worst] > ACCUMULATED.tolerances:
         parts = displaced / _widths_of_free_mechanisms(system, trajectory.q[[0, -1]])
-        parts[~(parts > ACCUMULATED.part_of_size * np.fmax(errors, 1.0))] = 0.0  # the tolerance exceeds that part, too
+        parts[~(parts > RUN_CHECKS.part_of_size * np.fmax(errors, 1.0))] = 0.0  # the tolerance exceeds that part, too
         worst = int(np.argmax(parts))
         beyond = f"{100 * parts[worst]:.2g} % of the size of its mechanism"
         if not parts[worst]:

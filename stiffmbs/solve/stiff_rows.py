@@ -12,10 +12,6 @@ from ..dynamics.stiff_projection import StiffProjection
 from .error_control.newton import stiffness_at
 from .trajectory import Trajectory
 
-STEP_PARTS = 10.0
-"""Step of the solver relative to that of the matrix, in which unstable soft forces are small compared with inertia."""
-
-
 States: TypeAlias = tuple[np.ndarray, np.ndarray]
 """Positions and velocities, one state per row."""
 
@@ -65,11 +61,6 @@ def lengths_of_steps(trajectory: Trajectory) -> np.ndarray:
     return np.asarray(ends[last] - ends[last - 1])
 
 
-def rates(steps: np.ndarray) -> np.ndarray:
-    """Return cj, 1/s, of the matrices for states in steps of some lengths."""
-    return STEP_PARTS / steps
-
-
 def _of(states: States, at: np.ndarray) -> States:
     return states[0][at], states[1][at]
 
@@ -96,7 +87,7 @@ def _projected_again(
     """Return rows of which some are projected without a change of stiff forces; None if that changes forces no less."""
     projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
     t, (q, u) = rows.t[at], _of(states, at)
-    each = zip(t.tolist(), rates(steps[at]).tolist(), q, u, strict=True)
+    each = zip(t.tolist(), steps[at].tolist(), q, u, strict=True)
     done = np.array([projection.project(*state) for state in each])
     less = projection.force_changes(t, _of(states, at), (q, u)) < _changes(dynamics, _of(states, at), rows, at)
     at, t, q, u = (array[done & less] for array in (at, t, q, u))

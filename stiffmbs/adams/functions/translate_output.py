@@ -7,14 +7,13 @@ from collections.abc import Callable
 
 from ..scene.contacts import swapped
 from ..scene.forces import TORQUE
-from ..scene.general_constraints import rod
 from ..statements.constraints import GeneralConstraint
 from ..statements.contact import Contact
 from ..statements.curves import CurveOnCurve, PointOnCurve
 from ..statements.declared import Numbered
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
-from .acting import acting_between, has_action_only
+from .acting import acting_between, has_action_only, rod
 from .function import Function
 from .measures import COMPONENTS, component_of
 from .translate import Translation

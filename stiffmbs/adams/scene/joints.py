@@ -9,11 +9,11 @@ import numpy as np
 
 from ...elements.spatial.number_format import plain, quaternion, vector
 from ...reading.formula.text import parse
+from ..functions.acting import rod
 from ..functions.translate import ANGULAR_VELOCITIES, VELOCITIES, Translation
 from ..statements.constraints import GeneralConstraint, Joint, Primitive
 from ..statements.geometry import Frame
 from ..statements.text import of_each
-from .general_constraints import rod
 from .mechanism import Mechanism, Place
 from .racks import rolling
 

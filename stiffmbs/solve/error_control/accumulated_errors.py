@@ -68,12 +68,10 @@ class AccumulatedErrors:
     """Threshold above which accumulated errors of positions are reported.
 
     `tolerances`: estimated error of a position, in units of its tolerance, above which it is reported. `usual_rtol`:
-    smallest relative tolerance that errors are compared with: that of a run without settings. `part_of_size`: error of a
-    mechanism that flies freely, relative to its size, above which it is reported, whatever the distance from the origin.
+    smallest relative tolerance that errors are compared with: that of a run without settings.
     """
 
     tolerances: float = 100.0
-    part_of_size: float = 0.01
     usual_rtol: float = DEFAULT_RTOL
 
     def counted(self, system: System, settings: RunSettings) -> tuple[np.ndarray, float]:

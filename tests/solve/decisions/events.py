@@ -7,7 +7,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.solve import missing_rows, sampling, stiff_rows
+from stiffmbs.solve import missing_rows, sampling
 from stiffmbs.solve.events import discontinuity, narrow_inputs
 from stiffmbs.solve.events.long_steps import LongStepLog
 from stiffmbs.solve.events.native import bounds, step_bound
@@ -183,10 +183,6 @@ def gaps_in_output():
         return len(missing_rows.reported(dynamics, Record(t=t, q=zeros, u=zeros), False, 1e-6)[1])
 
 
-def rate_of_a_projection():
-    return stiff_rows.rates(np.ones(1))[0]
-
-
 DECISIONS = {
     "next_step.short_of": distance_from_an_event,
     "next_step.of_an_interval": largest_part_of_an_interval,
@@ -205,7 +201,7 @@ DECISIONS = {
     "solve.events.native.step_bound:STRETCHED": step_bound_by_a_feature,
     "solve.events.narrow_inputs:NEAR_INPUT_END": distance_from_the_end_of_an_input,
     "solve.trajectory:SAME_TIME": first_sample,
-    "solve.missing_rows:MOST_MISSING": gaps_in_output, "solve.stiff_rows:STEP_PARTS": rate_of_a_projection,
+    "solve.missing_rows:MOST_MISSING": gaps_in_output,
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
@@ -213,6 +209,6 @@ EXPECTED = {
     "next_step.first_part": 0.0078125, "next_step.inside": 0.4, "next_step.lifted": 10, "long_steps.for_others": 594, "long_steps.for_functions": 215,
     "long_steps.from_middle": 0.0002, "narrow_inputs.most_samples": 5000, "jumps.jumps": 99, "jumps.rate_interval": 0.0001,
     "solve.events.native.step_bound:STRETCHED": 99, "solve.events.narrow_inputs:NEAR_INPUT_END": 9, "solve.trajectory:SAME_TIME": 40,
-    "solve.missing_rows:MOST_MISSING": 100, "solve.stiff_rows:STEP_PARTS": 10,
+    "solve.missing_rows:MOST_MISSING": 100,
 }  # fmt: skip
 """The decisions of the default parameters."""
