@@ -29,16 +29,22 @@ def damped_assembly(dynamics: Dynamics, t: float, q: np.ndarray) -> bool:
     rows = np.flatnonzero(system.active & system.holonomic)
     unit = system.per_velocity(system.size, 1.0)
 
+    weights = np.ones(len(rows))
+
     def gaps_at(pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the gaps and their slopes by dimensionless displacements."""
+        """Return the weighted gaps and their slopes by dimensionless displacements."""
         state.q[:] = pose
         state.evaluate("motion", t)
-        return state.vector("motion", "C")[rows], state.matrix("motion", "J")[rows] * unit
+        gaps, slopes = state.vector("motion", "C")[rows], state.matrix("motion", "J")[rows]
+        return weights * gaps, weights[:, None] * slopes * unit
 
+    sizes = np.linalg.norm(gaps_at(q)[1], axis=1)
+    if not sizes.all():  # an equation without a direction, such as of a rod between two points at one place
+        state.q[:] = before
+        return False
+    weights, damping = 1.0 / sizes, CLOSE
     pose = system.of_body.moved(q, NUDGE * unit * np.cos(np.arange(system.n_u) ** 2))
     gaps, slopes = gaps_at(pose)
-    weights = 1.0 / np.maximum(np.linalg.norm(slopes, axis=1), np.finfo(float).tiny)
-    gaps, slopes, damping = weights * gaps, weights[:, None] * slopes, CLOSE
     for _ in range(MOST_MOVES):
         least = np.linalg.norm(slopes.T @ gaps) <= CLOSE * np.linalg.norm(gaps)
         if least or not np.abs(gaps).max() > CLOSE:
@@ -46,14 +52,9 @@ def damped_assembly(dynamics: Dynamics, t: float, q: np.ndarray) -> bool:
         gram = slopes @ slopes.T + damping * np.eye(len(rows))
         trial = system.of_body.moved(pose, -unit * (slopes.T @ np.linalg.solve(gram, gaps)))
         trial_gaps, trial_slopes = gaps_at(trial)
-        trial_gaps = weights * trial_gaps
         if np.linalg.norm(trial_gaps) < np.linalg.norm(gaps):
-            pose, gaps, slopes, damping = (
-                trial,
-                trial_gaps,
-                weights[:, None] * trial_slopes,
-                max(damping / 4.0, np.finfo(float).eps),
-            )
+            pose, gaps, slopes = trial, trial_gaps, trial_slopes
+            damping = max(damping / 4.0, np.finfo(float).eps)
         else:
             damping *= 4.0
     state.q[:] = pose
