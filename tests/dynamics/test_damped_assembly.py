@@ -50,7 +50,5 @@ def test_its_equilibrium_is_the_catenary_of_rods():
 
 @pytest.mark.parametrize("scene", [PLANE, SPACE])
 def test_a_chain_that_is_too_short_is_refused(scene):
-    with pytest.raises(
-        AssemblyError, match=r"cannot be assembled: the largest gap is in joint '(first|pin\d|last)'"
-    ):
+    with pytest.raises(AssemblyError, match=r"cannot be assembled: the largest gap is in joint '(first|pin\d|last)'"):
         stiffmbs.run(stiffmbs.read_scene(scene, [("span", "1.01*N")]))

@@ -162,3 +162,16 @@ forces:
     else:
         found = stiffmbs.equilibrium(stiffmbs.read_scene(scene))
         assert found.channels["plate.x"] == pytest.approx(expected, abs=1e-8)
+
+
+def test_a_pole_at_which_a_force_changes_its_sign_is_no_equilibrium():
+    """A spring of 100 N/m and 26/(1 - x) N have no balance: 25 N is the largest force with one."""
+    scene = """
+bodies: {block: {mass: 1, inertia: 1}}
+joints: {rail: {type: prismatic, i: block, j: ground}}
+forces:
+  spring: {type: bushing, i: block, j: ground, stiffness: [100, 0, 0]}
+  pull: {type: force, i: block, force: ["26/(1 - block.x)", 0]}
+"""
+    with pytest.raises(SolverError, match="no equilibrium was found: the forces grow without bound"):
+        stiffmbs.equilibrium(stiffmbs.read_scene(scene))
