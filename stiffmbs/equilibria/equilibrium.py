@@ -24,11 +24,14 @@ from ..reading.units.quantity import LARGEST
 from .force_balance import Balance, balance_at, displacement, moved
 from .matrices import diagonal, joined, solution, zeros
 from .parameters import EQUILIBRIA
-from .poles import passes_a_pole
 from .steady_motion import SteadyMotion, at_rest
 
 FAR = LARGEST
 """Move in place of an infinite one, m or rad, whose products with forces are finite."""
+
+
+GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+"""Ratio of the golden section."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +123,9 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
             break
         known, first, faster = found, first or longest, faster + move[n:]
         ends = known.balanced or (count > 1 and longest <= EQUILIBRIA.last_move * longest_of_all)
-        if ends and passes_a_pole(dynamics, t, start, displacement(system, start, state.q), max(before, known.largest)):
+        if ends and _passes_a_pole(
+            dynamics, t, start, displacement(system, start, state.q), max(before, known.largest)
+        ):
             break
         if known.balanced:
             return _Step(known, 1.0, count)
@@ -262,3 +267,32 @@ def _left(system: System, before: Balance, found: Balance) -> float:
     of_forces, of_rates = np.split(before.left, [system.n_u])
     scales = float(np.sum(of_forces**2 / system.mass)) or 1.0, float(np.sum(of_rates**2)) or 1.0
     return total / scales[0] + float(np.sum(rates**2)) / scales[1]
+
+
+def _passes_a_pole(dynamics: Dynamics, t: float, start: np.ndarray, move: np.ndarray, largest: float) -> bool:
+    """Return True if forces along a move from the pose `start` exceed by far the largest one at its ends.
+
+    A long step may pass the pole of a law such as 1/(d - x)^2.  Forces are sampled ever more closely towards both ends, and
+    the largest one is refined by golden section.  The state stays at the end of the move.
+    """
+    system, state = dynamics.system, dynamics.state
+    end = state.q.copy()
+
+    def force(part: float) -> float:
+        state.q[:] = moved(system, start, part * move)
+        state.evaluate("motion", t)
+        return float(np.max(np.abs(state.vector("motion", "f")), initial=0.0))
+
+    halves = 0.5 ** np.arange(1, EQUILIBRIA.halvings + 1)
+    parts = np.concatenate([[0.0], halves[::-1], 1.0 - halves[1:], [1.0]])
+    forces = [force(part) for part in parts[1:-1]]
+    found = int(np.argmax(forces)) + 1
+    low, high, peak = parts[found - 1], parts[found + 1], forces[found - 1]
+    if peak > largest:
+        for _ in range(EQUILIBRIA.sections):
+            first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+            at_first, at_second = force(first), force(second)
+            peak = max(peak, at_first, at_second)
+            low, high = (low, second) if at_first > at_second else (first, high)
+    state.q[:] = end
+    return not peak <= EQUILIBRIA.pole * largest

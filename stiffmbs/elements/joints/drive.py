@@ -20,7 +20,7 @@ from ...reading.table import Table
 from ...reading.units.quantity import refuse_cycles
 from ...reading.units.units import named_unit
 from ..element import Expr, Joint, Matrix, Symbolic
-from .unfit_joints import unfit_joints
+from .relation import unfit_joints
 
 SORTS = {"angle": "angle", "displacement": "length", None: "value"}
 """Dimensions of joint coordinates by name."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
-from ...reading.joint_name import JointName
+from ...reading.joint_name import COORDINATES, JointName
 from ...reading.units import si
-from ..element import Expr, Joint, Symbolic
+from ..element import Element, Expr, Joint, Symbolic
 from ..initial_pose import initial_element
-from .unfit_joints import unfit_joints
 
 if TYPE_CHECKING:
     from ...model.model_data import ModelData
@@ -67,3 +66,28 @@ class Relation(OffsetConstraint):
                 f"found marker j of '{second}' on '{two.j.body}' and that of '{first}' on '{one.j.body}', expected both "
                 "on the carrier, the body in which both turn or slide",
             )
+
+
+def unfit_joints(
+    element: Element, joints: Mapping[str, Joint], wanted: Mapping[str, str] | None = None
+) -> Iterator[tuple[str, str]]:
+    """Yield the fields whose joint lacks a coordinate, or has another one than `wanted`, with the reason.
+
+    `element`: with fields that name joints. `joints`: joints of the model. `wanted`: ``angle`` or ``displacement`` by
+    field.
+    """
+    for field, name in element.parts(JointName):
+        joint, sort = joints[name.joint], (wanted or {}).get(field)
+        found, meant = f"found '{name}' of the type {joint.kind}, expected", name.coordinate_of(joint)
+        if joint.coordinates and meant is None:
+            yield field, f"{found} {' or '.join(f'{name.joint}.{own}' for own in joint.coordinates)}"
+        elif meant not in COORDINATES or sort not in (None, meant):
+            yield field, f"{found} {SORTS[sort]}"
+
+
+SORTS = {
+    None: "a joint with a coordinate, such as a revolute or prismatic one",
+    "angle": "a revolute joint, or another one's angle",
+    "displacement": "a prismatic joint, or another one's displacement",
+}
+"""Joints with a coordinate, or with a certain one, for messages."""
