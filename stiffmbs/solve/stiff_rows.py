@@ -34,18 +34,16 @@ def with_stiff_forces(
         Lengths of the implicit steps that contain the times, s; 0 for explicit steps, which are short for all forces.
     rtol : float
     """
-    while len(at := _suspects(dynamics, states, rows, steps, rtol)):
-        better = _projected_again(dynamics, states, rows, at, steps)
-        if better is None:
-            break
-        rows = better  # the largest force is less now
-    return rows
+    at = _suspects(dynamics, states, rows, steps, rtol)
+    return _projected_again(dynamics, states, rows, at, steps) if len(at) else rows
 
 
 def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.ndarray, rtol: float) -> np.ndarray:
     """Return the rows whose projections may have changed a force by more than `rtol` of the largest."""
     at = np.flatnonzero((rows.drift > POSITION_TOLERANCE) & (steps[: len(rows.t)] > 0.0))
-    allowed = rtol * np.nanmax(np.abs(np.sqrt(dynamics.system.mass) * rows.acceleration), initial=0.0)
+    if not len(at):
+        return at
+    allowed = rtol * _largest_force(dynamics, _of(states, at[-1:]), float(rows.t[at[-1]]))
     for changes in (_bounds, _changes):
         at = at[changes(dynamics, _of(states, at), rows, at) > allowed] if len(at) else at
     return at
@@ -63,6 +61,17 @@ def lengths_of_steps(trajectory: Trajectory) -> np.ndarray:
 
 def _of(states: States, at: np.ndarray) -> States:
     return states[0][at], states[1][at]
+
+
+def _largest_force(dynamics: Dynamics, states: States, t: float) -> float:
+    """Return the largest force of an element, or force of inertia, at a state, divided by the root of its inertia."""
+    system, state = dynamics.system, dynamics.state
+    state.q[:], state.u[:] = states[0][0], states[1][0]
+    status, acceleration = dynamics.accelerate(t)
+    forces = system.term("motion", "f")
+    acting = state.values["motion"][forces.source] / np.sqrt(system.mass[forces.row])
+    inertia = np.sqrt(system.mass) * acceleration if status == 0 else np.zeros(0)
+    return float(np.nanmax(np.abs(np.append(acting, inertia)), initial=0.0))
 
 
 def _bounds(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarray) -> np.ndarray:
@@ -83,15 +92,15 @@ def _changes(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarra
 
 def _projected_again(
     dynamics: Dynamics, states: States, rows: OutputRows, at: np.ndarray, steps: np.ndarray
-) -> OutputRows | None:
-    """Return rows of which some are projected without a change of stiff forces; None if that changes forces no less."""
+) -> OutputRows:
+    """Return rows of which some are projected without a change of stiff forces, where that changes forces less."""
     projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
     t, (q, u) = rows.t[at], _of(states, at)
     each = zip(t.tolist(), steps[at].tolist(), q, u, strict=True)
     done = np.array([projection.project(*state) for state in each])
     less = projection.force_changes(t, _of(states, at), (q, u)) < _changes(dynamics, _of(states, at), rows, at)
     at, t, q, u = (array[done & less] for array in (at, t, q, u))
-    return _replaced(rows, at, dynamics.report(t, q, u, project=False)) if len(at) else None
+    return _replaced(rows, at, dynamics.report(t, q, u, project=False)) if len(at) else rows
 
 
 def _replaced(rows: OutputRows, at: np.ndarray, others: OutputRows) -> OutputRows:
