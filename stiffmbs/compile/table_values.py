@@ -153,10 +153,10 @@ def _akima_slopes(chords: np.ndarray) -> np.ndarray:
     m[-2] = 2 * m[-3] - m[-4]
     m[-1] = 2 * m[-2] - m[-3]
     change = np.abs(np.diff(m))
-    ahead, after = change[2:], change[:-2]
-    both = ahead + after
+    ahead, back = change[2:], change[:-2]
+    both = ahead + back
     defined = both > UNDEFINED * both.max()
     slopes = 0.5 * (m[3:] + m[:-3])
     before, after = m[1:-2], m[2:-1]
-    slopes[defined] = (before + after / np.where(defined, both, 1.0) * (after - before))[defined]
+    slopes[defined] = (before + back / np.where(defined, both, 1.0) * (after - before))[defined]
     return np.asarray(slopes)
