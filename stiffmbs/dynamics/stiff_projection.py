@@ -54,7 +54,7 @@ class StiffProjection:
         self._tables = addresses(positions.equations_table, velocities.equations_table, positions.factors_table)
         forces = system.term("motion", "f")
         self._forces = np.array(forces.source, dtype=np.int64), np.array(forces.row, dtype=np.int64)
-        self._weight, self._work = 1.0 / np.sqrt(system.mass), np.empty(system.n_u)
+        self._work = np.empty(system.n_u)
 
     def force_changes(
         self, t: np.ndarray, before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]
@@ -62,9 +62,15 @@ class StiffProjection:
         """Return the largest change of a force between states (q, u) at some times, divided by roots of inertias."""
         changes = np.empty(len(t))
         states = [np.ascontiguousarray(array, dtype=float) for array in (t, *before, *after)]
-        at_rest = addresses(*self._forces, self._weight, self._work, changes)
+        weight = 1.0 / np.sqrt(self._state.system.mass)
+        at_rest = addresses(*self._forces, weight, self._work, changes)
         FORCE_CHANGES.call(len(t), *addresses(*states), len(self._forces[0]), *at_rest, self._at_state)
         return changes
+
+    def forget_pivots(self) -> None:
+        """Discard the pivot sequences, so that the rounding of a run does not depend on earlier runs."""
+        for each in self._systems:
+            each.forget_pivots()
 
     def project(self, t: float, step: float, q: np.ndarray, u: np.ndarray) -> bool:
         """Project a state within a step, s, in place, by the matrix of a shorter implicit step; return False on failure."""

@@ -95,6 +95,7 @@ def _projected_again(
 ) -> OutputRows:
     """Return rows of which some are projected without a change of stiff forces, where that changes forces less."""
     projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
+    projection.forget_pivots()
     t, (q, u) = rows.t[at], _of(states, at)
     each = zip(t.tolist(), steps[at].tolist(), q, u, strict=True)
     done = np.array([projection.project(*state) for state in each])

@@ -83,7 +83,7 @@ def _given_up(solution: Solution, found: float, allowed: float) -> Verdict:
     outcome = Outcome.SLOW if found <= allowed else Outcome.WRONG
     steps = solution.solver["steps"]
     return Verdict(
-        outcome, found, allowed, f"given up after {PATIENCE:g} s at t = {solution.t[-1]:.6g} s, {steps} steps"
+        outcome, found, allowed, f"aborted after {PATIENCE:g} s at t = {solution.t[-1]:.6g} s, {steps} steps"
     )
 
 
