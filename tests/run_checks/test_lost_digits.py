@@ -1,9 +1,12 @@
 """Notes on forces that the rounding of coordinates changes."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.run_checks import lost_digits
 
 SCENE = """
 gravity: [0, -9.81]
@@ -26,3 +29,12 @@ def test_a_force_beyond_the_digits_of_coordinates_is_noted(stiffness):
         known = float(notes[0].split()[8])
         smooth = np.diff(found["pin.fy"][5:], 4)
         assert np.abs(smooth).max() / 70**0.5 < 10 * known  # fourth differences of rounding
+
+
+@pytest.mark.parametrize(("lost", "noted"), [(0.9e-4, False), (1.1e-4, True)])
+def test_a_change_of_a_ten_thousandth_of_the_largest_force_is_noted(lost, noted, monkeypatch):
+    monkeypatch.setattr(lost_digits, "lost_digits", lambda state, t: lost_digits.LostDigits("strut", lost, 1.0))
+    state = SimpleNamespace(q=np.zeros(1), u=np.zeros(1))
+    rows = SimpleNamespace(t=np.zeros(1), q=np.zeros((1, 1)), u=np.zeros((1, 1)))
+    found = list(lost_digits.lost_digits_sentence(SimpleNamespace(state=state), rows))
+    assert bool(found) == noted

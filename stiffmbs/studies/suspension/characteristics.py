@@ -15,6 +15,7 @@ import numpy as np
 from ...dynamics.dynamics import Dynamics
 from ...elements.forces.springs import AngleSpring, LineSpring, Spring
 from ...model.model_data import ModelData
+from ...reading.marker import GROUND
 from .axle import Axle, Wheel
 from .rig import STEER, centre, contact_at, contact_from, contact_velocity, pad
 from .steering_axis import SteeringAxis, steering_axis
@@ -61,6 +62,11 @@ class Setup:
     springs: dict[str, Spring]
     of_wheel: dict[str, dict[str, LineSpring]]  # type: ignore[type-arg]
     angular: bool
+
+    @property
+    def plane(self) -> float:
+        """Position of the plane y = 0 of the body that carries the axle, along y of the ground, m."""
+        return 0.0 if self.axle.body == GROUND else float(self.model.bodies[self.axle.body].position[1])
 
 
 def setup_of(model: ModelData, axle: Axle, vehicle: Vehicle) -> Setup:
@@ -290,7 +296,7 @@ def _roll_centre(pose: Pose, roll: np.ndarray) -> dict[str, float]:
         level = abs(parallel) < PARALLEL and abs(right[1]) < PARALLEL
         return {"roll_centre_height": 0.0 if level else np.nan, "roll_centre_lateral": 0.0 if level else np.nan}
     y, z = np.linalg.solve(paths, right)
-    return {"roll_centre_height": MM * z, "roll_centre_lateral": MM * (y + middle[1])}
+    return {"roll_centre_height": MM * z, "roll_centre_lateral": MM * (y + middle[1] - pose.setup.plane)}
 
 
 def _roll_rate(pose: Pose, roll: np.ndarray) -> float:

@@ -1,6 +1,7 @@
 """Axles on their rig: against closed forms, left against right, bushings against joints, and what is refused."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -177,3 +178,11 @@ def test_equilibria_over_time_follow_a_torque():
 def test_an_instant_without_an_equilibrium_is_told():
     with pytest.raises(SolverError, match=r"t = 1\.4 s: no equilibrium"):
         stiffmbs.quasi_static(stiffmbs.read_scene(PENDULUM), duration=2.0, points=11)
+
+
+def test_the_roll_centre_lies_in_the_plane_of_a_body_beside_the_origin(examples):
+    """The displacement is measured from the plane y = 0 of the body, not of the ground."""
+    scene = stiffmbs.load_scene(examples / "car.yaml", [("bodies.chassis.position", "[0, 0.3, height]")])
+    found = json.dumps(stiffmbs.kinematics_and_compliance(scene, points=5, roll=2).as_dict(""))
+    values = [float(value) for value in re.findall(r'"axle.roll_centre_lateral": \{"value": ([^,]+),', found)]
+    assert values and values == pytest.approx([0.0] * len(values), abs=1e-6)
