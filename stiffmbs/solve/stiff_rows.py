@@ -68,6 +68,7 @@ def _largest_force(dynamics: Dynamics, states: States, t: float) -> float:
     system, state = dynamics.system, dynamics.state
     state.q[:], state.u[:] = states[0][0], states[1][0]
     status, acceleration = dynamics.accelerate(t)
+    state.evaluate("motion", t)
     forces = system.term("motion", "f")
     acting = state.values["motion"][forces.source] / np.sqrt(system.mass[forces.row])
     inertia = np.sqrt(system.mass) * acceleration if status == 0 else np.zeros(0)

@@ -10,6 +10,7 @@ from stiffmbs.analyses.job import prepare
 from stiffmbs.dynamics import stiff_projection
 from stiffmbs.dynamics.stiff_projection import StiffProjection
 from stiffmbs.model.settings import RunSettings
+from stiffmbs.solve import stiff_rows
 
 from ..conftest import EXAMPLES
 
@@ -31,3 +32,17 @@ def test_a_violation_is_closed():
     job.dynamics.state.q[:] = q
     job.dynamics.state.evaluate("motion", 0.0)
     assert np.abs(job.dynamics.state.vector("motion", "C")).max() < 1e-11
+
+
+@pytest.mark.parametrize("example", ["bar_pendulum", "spatial_chain"])
+def test_the_largest_force_is_that_of_the_state(example):
+    """Accelerations of large spatial mechanisms are found by elimination, without the terms of the block system."""
+    job = prepare(load_scene(EXAMPLES / f"{example}.yaml"), RunSettings(duration=1.0))
+    state, system = job.dynamics.state, job.dynamics.system
+    job.dynamics.place(job.start.q, job.start.u, job.start.lam)
+    state.evaluate("motion", 0.0)
+    _, acceleration = job.dynamics.accelerate(0.0)
+    forces = np.append(state.vector("motion", "f") / np.sqrt(system.mass), np.sqrt(system.mass) * acceleration)
+    state.values["motion"][: system.n_values("motion")] = np.nan
+    found = stiff_rows._largest_force(job.dynamics, (job.start.q[None, :], job.start.u[None, :]), 0.0)
+    assert found == pytest.approx(np.abs(forces).max())

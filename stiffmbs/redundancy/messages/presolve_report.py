@@ -44,7 +44,7 @@ def presolve_sentences(whole: System, subsystems: Sequence[Subsystem], dynamics:
         yield f"{len(subsystems)} independent mechanisms solved separately: {'; '.join(inside)}"
     before, after = unknowns(whole, subsystems, dynamics)
     if after != before:
-        yield f"{before} unknowns reduced to {after}"
+        yield f"{before} unknowns {'reduced' if after < before else 'increased'} to {after}"
 
 
 def _of_bodies(whole: System, subsystem: Subsystem) -> Iterator[str]:
