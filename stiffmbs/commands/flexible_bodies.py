@@ -45,25 +45,23 @@ def flexible(
     """
     from ..flexible_bodies.read import read_flexible_body
     from ..flexible_bodies.reduced import reduced_body
-    from ..show.flexible_body import flexible_body_as_dict, flexible_body_text
+    from ..show.flexible_body import check_shapes_file, flexible_body_as_dict, flexible_body_text, write_shapes
+    from .progress import ProgressBar
 
     with refusing(body, as_json):
+        if output is not None:
+            check_shapes_file(output)
         described = read_flexible_body(body, changes)
         names, folder = list(described.interfaces), Path(body).parent
         sets = {text: [_number(name, names) for name in text.split(",")] for text in held}
         try:
-            found = reduced_body(described, folder)
+            with ProgressBar(0.0, 0.0):
+                found = reduced_body(described, folder)
         except InputError as error:
             raise InputError(f"{body}: {error}") from None
         frequencies = {f"{text} held": found.held_frequencies(numbers) for text, numbers in sets.items()}
-        if output is not None:
-            from ..flexible_bodies.shapes import check_shapes_file
-
-            check_shapes_file(output)
     written = True
     if output is not None:
-        from ..flexible_bodies.shapes import write_shapes
-
         written = is_written(output, lambda: write_shapes(output, described.model(folder), found))
     click.echo(
         json.dumps(flexible_body_as_dict(body, found, names, frequencies))

@@ -57,6 +57,7 @@ def run(
     input is wrong.
     """
     from ..results.files import check_output
+    from .progress import ProgressBar
 
     with refusing(scene, as_json):
         if output is not None:
@@ -68,7 +69,8 @@ def run(
             check_figure("--figure", figure)
             refuse_own_input("--figure", scene, figure)
         changes = changes_of(options)
-        loaded = load_scene(scene, changes)
+        with ProgressBar(0.0, 0.0):
+            loaded = load_scene(scene, changes)
         solution = solve_scene(scene, loaded, verify, **start_of(loaded, state, at, changes))
     results, written = _write(scene, output, as_json, solution)
     if figure is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from .finite_elements import PRECISION, FiniteElements
 from .mesh_files import refuse_ignored, sets_of_sets
 from .solid import Solid
 
+LOGGER = logging.getLogger(__name__)
 SOLIDS = {
     "tetra": ("tetra", "ElementTetP1", 2),
     "tetra10": ("tetra10", "ElementTetP2", 4),
@@ -42,6 +44,7 @@ def from_mesh(
     `density`: Young's modulus, N/m^2, Poisson's ratio, and density, kg/m^3. `placed`: function of the positions of
     all nodes, shape (n, 3), m, that returns other ones. Raises InputError.
     """
+    LOGGER.info("reading and assembling the mesh %s", path.name)
     mesh = _read(path)
     kinds = {block.type for block in mesh.cells}
     solid = kinds & SOLIDS.keys()
@@ -146,9 +149,7 @@ def _assembled(
 ) -> tuple[csr_array, csr_array, Solid]:
     with needs("skfem", "flexible"):
         import skfem
-        from skfem.helpers import dot
         from skfem.io.meshio import from_meshio
-        from skfem.models.elasticity import lame_parameters, linear_elasticity
     import meshio
 
     geometry, element, order = SOLIDS[kind]
@@ -167,22 +168,13 @@ def _assembled(
                 "found elements that share nodes on edges or faces but not their corners, expected both or neither"
             ) from None
         _check_jacobians(of_skfem, scalar, order, cells)
-        basis = skfem.Basis(of_skfem, skfem.ElementVector(scalar), intorder=order)
-    of_shapes = _nodes_of_shapes(nodes, cells, basis.doflocs.T[basis.element_dofs[::3]], kind)
-    place = np.empty(basis.N, dtype=np.int64)
-    for component in range(3):
-        place[basis.element_dofs[component::3]] = 3 * of_shapes + component
-    _check_edges(place[basis.element_dofs[::3]] // 3, of_shapes)
-
-    @skfem.BilinearForm
-    def inertia(u: Any, v: Any, _: Any) -> Any:
-        return density * dot(u, v)
-
-    found = []
-    for form in (linear_elasticity(*lame_parameters(modulus, poisson)), inertia):
-        matrix = form.assemble(basis).tocoo()
-        found.append(csr_array((matrix.data, (place[matrix.row], place[matrix.col])), shape=(3 * len(nodes),) * 2))
-    return found[0], found[1], Solid(of_skfem, scalar, order, of_shapes, modulus, poisson)
+        basis = skfem.Basis(of_skfem, scalar, intorder=order)
+    of_shapes = _nodes_of_shapes(nodes, cells, basis.doflocs.T[basis.element_dofs], kind)
+    of_dofs = np.empty(basis.N, dtype=np.int64)
+    of_dofs[basis.element_dofs] = of_shapes
+    _check_edges(of_dofs[basis.element_dofs], of_shapes)
+    solid = Solid(of_skfem, scalar, order, of_shapes, modulus, poisson)
+    return solid.stiffness(), solid.mass(density), solid
 
 
 def _nodes_of_shapes(nodes: np.ndarray, cells: np.ndarray, places: np.ndarray, kind: str) -> np.ndarray:

@@ -165,7 +165,7 @@ def reduce(
     solver, held = static_solver(model, interfaces, rigid)
     squares, normal = _normal_modes(solver, count, highest)
     static = solver.static_modes()
-    under_weight = [solver.held_response(force) for force in by_rigid.T] if residual else []
+    under_weight = [solver.held_response(by_rigid)] if residual else []
     shapes = np.column_stack([static, *([] if held else [rigid]), normal, *under_weight])
     shapes /= np.sqrt(np.einsum("ij,ij->j", shapes, model.mass @ shapes))
     basis, condition = _independent(shapes, model)

@@ -15,6 +15,7 @@ Representation of geometric stiffening in multibody system simulation, Int. J. N
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -25,6 +26,7 @@ from .finite_elements import FiniteElements
 from .interfaces import Interface
 from .static_solver import StaticSolver
 
+LOGGER = logging.getLogger(__name__)
 RIGID_MOTIONS = 6
 
 
@@ -72,10 +74,12 @@ def second_order(
     n = modes.shape[1]
     if model.solid is None or n == 0:
         return SecondOrder(np.zeros((n, n, 3)), np.zeros((n, n, 3, 3)), np.zeros((n, 0)), np.zeros((0, n, n)))
+    LOGGER.info("computing the geometric stiffening of %d modes", n)
     work = _WorkOfStress(model, interfaces, modes)
     fields = np.einsum("nf,bc->nbfc", np.column_stack([np.ones(len(model.nodes)), model.nodes - centre]), np.eye(3))
     loads = model.mass @ fields.reshape(-1, 12)
-    inertial = np.array([work.of(-solver.held_response(load), load) for load in loads.T])
+    relaxed = solver.held_response(-loads)
+    inertial = np.array([work.of(*each) for each in zip(relaxed.T, loads.T, strict=True)])
     first, *moments = inertial.reshape(4, 3, n, n)
     shapes = _static_shapes(model, static, RIGID_MOTIONS if held else 0)
     return SecondOrder(

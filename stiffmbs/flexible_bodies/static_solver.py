@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.sparse import block_array, csc_array, csr_array, eye_array, hstack
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.linalg import eigh
+from scipy.sparse import coo_array, csc_array, csr_array
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from ..errors import InputError
+from .cholesky import Cholesky
 from .finite_elements import FiniteElements
 from .interfaces import AVERAGE, Interface
 
+LOGGER = logging.getLogger(__name__)
 DENSE = 400
 """Unknowns up to which eigenvalues are computed by a dense method."""
 
@@ -19,84 +23,101 @@ DENSE = 400
 class StaticSolver:
     """Factors of the stiffness matrix with interfaces held.
 
-    Displacements are u = T z. The coordinates of rigid and point interfaces replace the displacements of their nodes.
-    Those of average interfaces are prescribed by constraints W z = q with multipliers. `supports` of shape (3 n, k):
-    further functionals of the displacement that are held: those of a body that its interfaces do not hold. Raises
-    InputError if the stiffness matrix is singular with the interfaces held.
+    Nodes of rigid and point interfaces are prescribed. Coordinates of average interfaces are prescribed by equations
+    W u = g of the free displacements u, with multipliers mu:
+
+        K u + W^T mu = f,  K = K_s - E s E^T
+
+    The springs s at three nodes, the columns of E, hold the body that average interfaces alone do not, so that K_s is
+    positive definite. Their forces r = s E^T u are further unknowns of the small system for mu and r.
+
+    Parameters
+    ----------
+    model : FiniteElements
+    interfaces : sequence of Interface
+    supports : ndarray, shape (3 n, k)
+        Further functionals of the displacement that are held: those of a body that its interfaces do not hold.
+
+    Raises
+    ------
+    InputError
+        If the stiffness matrix is not positive definite with the interfaces held.
     """
 
     def __init__(self, model: FiniteElements, interfaces: Sequence[Interface], supports: np.ndarray) -> None:
-        self._interfaces = interfaces
-        exact = [interface for interface in interfaces if interface.kind != AVERAGE]
-        size = 3 * len(model.nodes)
-        held = np.concatenate([np.empty(0, dtype=np.int64), *(interface.entries for interface in exact)])
-        self.free = np.setdiff1d(np.arange(size), held)
-        parts = [eye_array(size, format="csc")[:, self.free]]
-        for interface in exact:
-            rigid = interface.rigid(model)
-            rows, columns = np.nonzero(rigid)
-            parts.append(
-                csc_array((rigid[rows, columns], (interface.entries[rows], columns)), shape=(size, interface.size))
-            )
-        self.shapes = csc_array(hstack(parts))
-        self.stiffness = csc_array(self.shapes.T @ model.stiffness @ self.shapes)
-        self.mass = csc_array(self.shapes.T @ model.mass @ self.shapes)
-        self._n = len(self.free)
-        self._functionals = self._held_functionals(model, supports)
-        inner = self.stiffness[: self._n, : self._n]
-        scale = np.abs(inner.diagonal()).max()
-        self._scale = scale
+        LOGGER.info("factoring the stiffness matrix of %d nodes", len(model.nodes))
+        self._model, self._interfaces = model, interfaces
+        held = [interface.nodes for interface in interfaces if interface.kind != AVERAGE]
+        inner = np.setdiff1d(np.arange(len(model.nodes)), np.concatenate([np.empty(0, dtype=np.int64), *held]))
+        self.free = (3 * inner[:, None] + np.arange(3)).ravel()
+        self._functionals = self._held_functionals(supports)
+        stiffness = csc_array(model.stiffness[self.free][:, self.free])
+        points, springs = model.nodes[inner], np.empty(0, dtype=np.int64)
         if len(self._functionals):
-            rows = csr_array(scale * self._functionals)
-            inner = csc_array(block_array([[inner, rows.T], [rows, None]]))
-        options = {} if len(self._functionals) else {"SymmetricMode": True}
+            springs = (3 * _apart(points)[:, None] + np.arange(3)).ravel()
+            spring = stiffness.diagonal().max()
+            at = (np.full(len(springs), spring), (springs, springs))
+            stiffness = csc_array(stiffness + coo_array(at, shape=stiffness.shape))
         try:
-            self._factors = splu(
-                inner, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01 if not options else 0.0, options=options
-            )
-        except RuntimeError:
+            self._factors = Cholesky(stiffness, points)
+            if len(self._functionals):
+                self._take_border(springs, spring)
+        except np.linalg.LinAlgError:
             raise InputError(
-                "stiffness: found a singular matrix with the interfaces held, expected that of an elastic body"
+                "stiffness: found a matrix that is not positive definite with the interfaces held, expected that of an "
+                "elastic body"
             ) from None
 
-    def _held_functionals(self, model: FiniteElements, supports: np.ndarray) -> np.ndarray:
-        """Return the rows of average interfaces, then the supports, by free displacements."""
-        rows = []
+    def _held_functionals(self, supports: np.ndarray) -> np.ndarray:
+        """Return the rows W of average interfaces, then those of the supports, by free displacements."""
+        rows = [np.empty((0, 3 * len(self._model.nodes)))]
         for interface in self._interfaces:
             if interface.kind == AVERAGE:
-                full = np.zeros((interface.size, self.shapes.shape[0]))
-                full[:, interface.entries] = interface.mean(model)
-                rows.append(full[:, self.free])
-        return np.vstack([*rows, supports.T @ self.shapes[:, : self._n]])
+                rows.append(np.zeros((interface.size, rows[0].shape[1])))
+                rows[-1][:, interface.entries] = interface.mean(self._model)
+        return np.vstack([*rows, supports.T])[:, self.free]
 
-    def _solve(self, force: np.ndarray, prescribed: np.ndarray) -> np.ndarray:
-        """Return free displacements under forces, with prescribed values of the functionals."""
-        return self._factors.solve(np.concatenate([force, self._scale * prescribed]))[: self._n]
+    def _take_border(self, springs: np.ndarray, spring: float) -> None:
+        """Factor the small system for the multipliers and the forces of the springs."""
+        rows = np.vstack([self._functionals, np.zeros((len(springs), len(self.free)))])
+        rows[len(self._functionals) + np.arange(len(springs)), springs] = -1.0
+        self._border, self._by_border = rows, self._factors.solve(rows.T)
+        flexibility = rows @ self._by_border
+        own = np.arange(len(self._functionals), len(rows))
+        flexibility[own, own] -= 1.0 / spring
+        self._inverse = np.linalg.inv(flexibility)
+
+    def _solve(self, force: np.ndarray, prescribed: np.ndarray | None = None) -> np.ndarray:
+        """Return free displacements under forces, shape (free,) or (free, k), with values of the functionals or zero."""
+        found = self._factors.solve(force)
+        if not len(self._functionals):
+            return found
+        gap = self._border @ found
+        if prescribed is not None:
+            gap[: len(self._functionals)] -= prescribed
+        return found - self._by_border @ (self._inverse @ gap)  # type: ignore[no-any-return]
 
     def held_response(self, force: np.ndarray) -> np.ndarray:
-        """Return the displacements of all nodes under forces, with the interfaces held, shape (3 n,)."""
-        own = self._solve((self.shapes.T @ force)[: self._n], np.zeros(len(self._functionals)))
-        return self.shapes[:, : self._n] @ own  # type: ignore[no-any-return]
+        """Return the displacements of all nodes under forces with the interfaces held, both (3 n,) or (3 n, k)."""
+        found = np.zeros_like(force)
+        found[self.free] = self._solve(force[self.free])
+        return found
 
     def static_modes(self) -> np.ndarray:
         """Return displacements of all nodes by unit interface coordinates, shape (3 n, interface coordinates)."""
-        columns, exact, functional = [], self._n, 0
+        total = sum(interface.size for interface in self._interfaces)
+        found, prescribed = np.zeros((3 * len(self._model.nodes), total)), np.zeros((len(self._functionals), total))
+        column = row = 0
         for interface in self._interfaces:
-            for k in range(interface.size):
-                prescribed = np.zeros(len(self._functionals))
-                master = np.zeros(self.stiffness.shape[0] - self._n)
-                force = np.zeros(self._n)
-                if interface.kind == AVERAGE:
-                    prescribed[functional + k] = 1.0
-                else:
-                    master[exact + k - self._n] = 1.0
-                    force = -self.stiffness[: self._n, [exact + k]].toarray()[:, 0]
-                columns.append(self.shapes @ np.concatenate([self._solve(force, prescribed), master]))
+            columns = slice(column, column + interface.size)
             if interface.kind == AVERAGE:
-                functional += interface.size
+                prescribed[row : row + interface.size, columns] = np.eye(interface.size)
+                row += interface.size
             else:
-                exact += interface.size
-        return np.array(columns).reshape(len(columns), self.shapes.shape[0]).T
+                found[interface.entries, columns] = interface.rigid(self._model)
+            column += interface.size
+        found[self.free] = self._solve(-(self._model.stiffness @ found)[self.free], prescribed)
+        return found
 
     def normal_modes(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the lowest normal modes with all interfaces held.
@@ -113,36 +134,42 @@ class StaticSolver:
         InputError
             If the model has fewer modes.
         """
-        most = self._n - len(self._functionals)
+        n = len(self.free)
+        most = n - len(self._functionals)
         if count > most:
             raise InputError(
                 f"modes: found {count}, expected {most} or fewer: the model has no more with its interfaces held"
             )
+        found = np.zeros((3 * len(self._model.nodes), count))
         if count == 0:
-            return np.empty(0), np.empty((self.shapes.shape[0], 0))
-        n, none = self._n, np.zeros(len(self._functionals))
-        mass = csr_array(self.mass[:n, :n])
-
-        def compliance(force: np.ndarray) -> np.ndarray:
-            return self._solve(np.asarray(force).ravel(), none)
-
+            return np.empty(0), found
+        LOGGER.info("computing %d normal modes", count)
+        mass = self._model.mass[self.free][:, self.free]
         if count > n - 2 or n <= DENSE:
-            squares, shapes = _dense_modes(np.column_stack([compliance(row) for row in mass.toarray()]), mass, count)
+            squares, shapes = _dense_modes(self._solve(mass.toarray()), mass, count)
         else:
-            inverse = LinearOperator((n, n), matvec=compliance, dtype=float)
-            start = compliance(mass @ np.random.default_rng(0).standard_normal(n))
-            stiffness = self.stiffness[:n, :n]
-            squares, shapes = eigsh(stiffness, count, mass, sigma=0.0, OPinv=inverse, v0=start, tol=1e-13)
+            inverse = LinearOperator((n, n), matvec=lambda force: self._solve(force.ravel()), dtype=float)
+            start = self._solve(mass @ np.random.default_rng(0).standard_normal(n))
+            # only the shape of the first argument is used
+            squares, shapes = eigsh(inverse, count, mass, sigma=0.0, OPinv=inverse, v0=start, tol=1e-13)
             order = np.argsort(squares)
             squares, shapes = squares[order], shapes[:, order]
-        return squares, self.shapes[:, :n] @ shapes
+        found[self.free] = shapes
+        return squares, found
 
 
-def _dense_modes(flexibility: np.ndarray, mass: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest modes from the compliance times the mass matrix, for small models."""
-    from scipy.linalg import eigh
+def _apart(points: np.ndarray) -> np.ndarray:
+    """Return three points, by number, that are far from one line."""
+    first = int(np.argmax(np.linalg.norm(points - points.mean(axis=0), axis=1)))
+    away = points - points[first]
+    second = int(np.argmax(np.linalg.norm(away, axis=1)))
+    third = int(np.argmax(np.linalg.norm(np.cross(away, away[second]), axis=1)))
+    return np.array([first, second, third])
 
-    by_mass = mass @ flexibility
-    compliances, shapes = eigh((by_mass + by_mass.T) / 2, mass.toarray())
+
+def _dense_modes(by_mass: np.ndarray, mass: csr_array, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest modes from the static displacements by the columns of the mass matrix, for small models."""
+    work = mass @ by_mass
+    compliances, shapes = eigh((work + work.T) / 2, mass.toarray())
     highest = np.argsort(compliances)[::-1][:count]
     return 1.0 / compliances[highest], shapes[:, highest]

@@ -1,12 +1,15 @@
-"""Report on a reduced flexible body as text and as JSON."""
+"""Report on a reduced flexible body as text and as JSON, and its mode shapes for ParaView."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..errors import InputError, needs
+from ..flexible_bodies.finite_elements import FiniteElements
 from ..flexible_bodies.reduction import ReducedBody
 
 if TYPE_CHECKING:
@@ -16,6 +19,8 @@ MOST_FREQUENCIES = 12
 """Number of modes that are shown, the slowest first."""
 LARGE_CONDITION = 1e12
 """Condition number above which a note advises fewer modes."""
+SHAPES_SUFFIXES = (".vtu", ".vtk")
+"""Types of files of mode shapes."""
 
 
 def flexible_body_text(name: str, body: ReducedBody, interfaces: Sequence[str], held: Mapping[str, np.ndarray]) -> str:
@@ -135,3 +140,23 @@ def flexible_motion_text(report: Mapping[str, Any]) -> str:
     for node, own in report["displacement"].items():
         lines.append(f"{f'node {node}':20}{own['largest']:.6g} m at {own['time']:.6g} s, at most")
     return "\n".join(lines)
+
+
+def check_shapes_file(path: Path) -> None:
+    """Refuse a file of another type, and a missing package. Raises InputError."""
+    if path.suffix.lower() not in SHAPES_SUFFIXES:
+        raise InputError(f"-o {path}: found the type '{path.suffix}', expected {' or '.join(SHAPES_SUFFIXES)}")
+    with needs("meshio", "flexible"):
+        import meshio  # noqa: F401
+
+
+def write_shapes(path: Path, model: FiniteElements, body: ReducedBody) -> None:
+    """Write nodes, elements and the displacement of each mode as vectors at the nodes. Raises OSError."""
+    import meshio
+
+    cells = dict(model.cells) or {"vertex": np.arange(len(model.nodes))[:, None]}
+    fields = {
+        f"mode {k + 1}: {frequency:.6g} Hz": body.modes[:, k].reshape(-1, 3)
+        for k, frequency in enumerate(body.frequencies)
+    }
+    meshio.Mesh(model.nodes, list(cells.items()), point_data=fields).write(path)

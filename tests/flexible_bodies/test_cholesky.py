@@ -1,0 +1,110 @@
+"""Factors of stiffness matrices, and assembled matrices, against SciPy and scikit-fem."""
+
+import numpy as np
+import pytest
+import skfem
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.sparse import coo_array, csc_array
+from skfem.helpers import dot
+from skfem.models.elasticity import lame_parameters, linear_elasticity
+
+from stiffmbs.flexible_bodies import cholesky
+from stiffmbs.flexible_bodies.cholesky import Cholesky, dissection
+
+from .bars import DENSITY, NU, E, bar, face
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    seed=st.integers(0, 10**6), count=st.integers(1, 250), neighbours=st.integers(0, 4), flat=st.booleans(),
+    part=st.sampled_from([2, 64]),
+)  # fmt: skip
+def test_solutions_of_random_graphs(seed, count, neighbours, flat, part):
+    """Also of graphs in several parts, and of edges between distant points."""
+    rng = np.random.default_rng(seed)
+    points = rng.random((count, 3)) * ([1.0, 0.0, 0.0] if flat else 1.0)
+    first, second = rng.integers(0, count, (2, count * neighbours))
+    near = np.linalg.norm(points[first] - points[second], axis=1) < rng.choice([0.2, 2.0])
+    matrix = _of_edges(first[near], second[near], count, rng)
+    right = rng.standard_normal((3 * count, 2))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cholesky, "LARGEST_PART", part)
+        found = Cholesky(matrix, points).solve(right)
+    assert found == pytest.approx(np.linalg.solve(matrix.toarray(), right), rel=1e-9, abs=1e-9)
+
+
+def _of_edges(first, second, count, rng):
+    """Return a diagonally dominant matrix with blocks of three rows."""
+    blocks = rng.uniform(-1, 1, (len(first), 3, 3))
+    rows = 3 * first[:, None, None] + np.arange(3)[:, None] + np.zeros(3, dtype=int)
+    columns = 3 * second[:, None, None] + np.arange(3) + np.zeros((3, 1), dtype=int)
+    half = csc_array(coo_array((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * count,) * 2))
+    both = half + half.T
+    return csc_array(both + coo_array((1.0 + abs(both).sum(axis=0), (np.arange(3 * count),) * 2)))
+
+
+def test_every_node_is_eliminated_once_and_separators_separate(tmp_path):
+    model = bar(tmp_path, "tetra10", along=20, across=3)
+    parts = dissection(csc_array(model.stiffness), model.nodes)
+    assert np.array_equal(np.sort(np.concatenate(parts)), np.arange(len(model.nodes)))
+    factors = Cholesky(csc_array(model.stiffness + 1e3 * model.mass * (E / DENSITY)), model.nodes)
+    largest = max(len(front.later) for front in factors._fronts)
+    assert largest <= 3 * 4 * 7 * 7  # four layers of nodes across the bar
+
+
+@pytest.mark.parametrize("shift", [-1.0, -1e6])
+def test_a_matrix_that_is_not_positive_definite_is_refused(tmp_path, shift):
+    model = bar(tmp_path, "tetra", along=12, across=2)
+    with pytest.raises(np.linalg.LinAlgError):
+        Cholesky(csc_array(model.stiffness + shift * model.mass), model.nodes)
+
+
+@pytest.mark.parametrize("kind", ["tetra", "tetra10", "hexahedron", "hexahedron27"])
+def test_assembled_matrices_are_those_of_scikit_fem(tmp_path, kind):
+    model = bar(tmp_path, kind, along=2, across=2)
+    solid = model.solid
+    basis = skfem.Basis(solid.mesh, skfem.ElementVector(solid.element), intorder=solid.order)
+    place = np.empty(basis.N, dtype=int)
+    for component in range(3):
+        place[basis.element_dofs[component::3]] = 3 * solid.nodes + component
+
+    @skfem.BilinearForm
+    def inertia(u, v, _):
+        return DENSITY * dot(u, v)
+
+    for form, own in ((linear_elasticity(*lame_parameters(E, NU)), model.stiffness), (inertia, model.mass)):
+        other = form.assemble(basis).toarray()
+        assert own.toarray()[np.ix_(place, place)] == pytest.approx(other, abs=1e-12 * np.abs(other).max())
+
+
+@pytest.mark.parametrize("kinds", [("average", "average"), ("rigid", "average"), ("rigid", "rigid")])
+def test_static_modes_minimise_the_strain_energy(tmp_path, kinds):
+    """Forces on free nodes are combinations of the functionals of average interfaces."""
+    from stiffmbs.flexible_bodies.static_solver import StaticSolver
+
+    model = bar(tmp_path, "tetra10", along=16, across=3)
+    interfaces = [face(model, 0.0, "a", kinds[0]), face(model, 0.4, "b", kinds[1])]
+    solver = StaticSolver(model, interfaces, np.empty((3 * len(model.nodes), 0)))
+    modes = solver.static_modes()
+    coordinates = np.vstack([each.mean(model) @ modes[each.entries] for each in interfaces])
+    assert coordinates == pytest.approx(np.eye(12), abs=1e-9)
+    force = (model.stiffness @ modes)[solver.free]
+    rows = solver._held_functionals(np.empty((3 * len(model.nodes), 0)))
+    if len(rows):
+        force -= rows.T @ np.linalg.lstsq(rows.T, force, rcond=None)[0]
+    assert np.abs(force).max() < 1e-9 * np.abs(model.stiffness @ modes).max()
+
+
+def test_the_stages_of_a_reduction_are_logged(tmp_path, caplog):
+    from stiffmbs.flexible_bodies.reduction import reduce
+
+    with caplog.at_level("INFO", logger="stiffmbs.flexible_bodies"):
+        model = bar(tmp_path, "tetra10")
+        reduce(model, [face(model, 0.0, "a"), face(model, 0.4, "b")], 3)
+    assert [record.getMessage() for record in caplog.records] == [
+        "reading and assembling the mesh bar.vtu",
+        f"factoring the stiffness matrix of {len(model.nodes)} nodes",
+        "computing 3 normal modes",
+        "computing the geometric stiffening of 9 modes",
+    ]
