@@ -146,8 +146,8 @@ def variations(name: str) -> Iterator[tuple[str, str, Any]]:
 
 def tested() -> dict[str, set[float]]:
     """Return the factors, 0.5 and 2, by which tests change each parameter: ``subsystem.field``, or ``module:NAME``."""
+    from tests.decisions import test_decisions
     from tests.solve import test_parameter_counts, test_parameter_thresholds
-    from tests.solve.decisions import test_decisions
 
     found = {name: {0.5, 2.0} for name in test_decisions.TABLE}
     found |= {f"{name}.{field}": {0.5, 2.0} for name, field in test_parameter_thresholds.PARAMETERS}

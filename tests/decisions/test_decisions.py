@@ -14,10 +14,10 @@ from unittest.mock import patch
 import pytest
 
 from stiffmbs import tuning
+from tests.decisions import auto, dynamics, error_control, event_search, events, explicit_steps, linear_solvers, radau
 from tests.parameters import changed, factors_of_tests
-from tests.solve.decisions import auto, error_control, event_search, events, explicit_steps, linear_solvers, radau
 
-MODULES = auto, error_control, event_search, events, explicit_steps, linear_solvers, radau
+MODULES = auto, dynamics, error_control, event_search, events, explicit_steps, linear_solvers, radau
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
 EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED.items()}
 
@@ -49,9 +49,10 @@ def with_others(parameter):
                 yield tuning.in_use({name: {field: changed(value, factor)}})
 
 
-def test_all_parameters_of_solvers_are_halved_and_doubled():
+@pytest.mark.parametrize("package", ["solve", "dynamics"])
+def test_all_parameters_of_a_package_are_halved_and_doubled(package):
     """By this table, or those of `test_parameter_thresholds` and `test_parameter_counts`."""
-    assert [name for name, (factors, _) in factors_of_tests("solve").items() if len(factors) < 2] == []
+    assert [name for name, (factors, _) in factors_of_tests(package).items() if len(factors) < 2] == []
 
 
 @pytest.mark.parametrize("parameter", TABLE)
