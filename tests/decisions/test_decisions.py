@@ -14,10 +14,20 @@ from unittest.mock import patch
 import pytest
 
 from stiffmbs import tuning
-from tests.decisions import auto, dynamics, error_control, event_search, events, explicit_steps, linear_solvers, radau
+from tests.decisions import (
+    auto,
+    dynamics,
+    equilibria,
+    error_control,
+    event_search,
+    events,
+    explicit_steps,
+    linear_solvers,
+    radau,
+)
 from tests.parameters import changed, factors_of_tests
 
-MODULES = auto, dynamics, error_control, event_search, events, explicit_steps, linear_solvers, radau
+MODULES = auto, dynamics, equilibria, error_control, event_search, events, explicit_steps, linear_solvers, radau
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
 EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED.items()}
 
@@ -49,7 +59,7 @@ def with_others(parameter):
                 yield tuning.in_use({name: {field: changed(value, factor)}})
 
 
-@pytest.mark.parametrize("package", ["solve", "dynamics"])
+@pytest.mark.parametrize("package", ["solve", "dynamics", "equilibria"])
 def test_all_parameters_of_a_package_are_halved_and_doubled(package):
     """By this table, or those of `test_parameter_thresholds` and `test_parameter_counts`."""
     assert [name for name, (factors, _) in factors_of_tests(package).items() if len(factors) < 2] == []
