@@ -24,10 +24,24 @@ from tests.decisions import (
     explicit_steps,
     linear_solvers,
     radau,
+    redundancy,
+    run_checks,
 )
 from tests.parameters import changed, factors_of_tests
 
-MODULES = auto, dynamics, equilibria, error_control, event_search, events, explicit_steps, linear_solvers, radau
+MODULES = (
+    auto,
+    dynamics,
+    equilibria,
+    error_control,
+    event_search,
+    events,
+    explicit_steps,
+    linear_solvers,
+    radau,
+    redundancy,
+    run_checks,
+)
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
 EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED.items()}
 
@@ -59,7 +73,7 @@ def with_others(parameter):
                 yield tuning.in_use({name: {field: changed(value, factor)}})
 
 
-@pytest.mark.parametrize("package", ["solve", "dynamics", "equilibria"])
+@pytest.mark.parametrize("package", ["solve", "dynamics", "equilibria", "run_checks", "redundancy"])
 def test_all_parameters_of_a_package_are_halved_and_doubled(package):
     """By this table, or those of `test_parameter_thresholds` and `test_parameter_counts`."""
     assert [name for name, (factors, _) in factors_of_tests(package).items() if len(factors) < 2] == []
