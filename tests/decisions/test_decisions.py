@@ -22,10 +22,13 @@ from tests.decisions import (
     event_search,
     events,
     explicit_steps,
+    linear_analysis,
     linear_solvers,
+    presolve,
     radau,
     redundancy,
     run_checks,
+    sensitivities,
 )
 from tests.parameters import changed, factors_of_tests
 
@@ -37,10 +40,13 @@ MODULES = (
     event_search,
     events,
     explicit_steps,
+    linear_analysis,
     linear_solvers,
+    presolve,
     radau,
     redundancy,
     run_checks,
+    sensitivities,
 )
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
 EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED.items()}
@@ -73,7 +79,19 @@ def with_others(parameter):
                 yield tuning.in_use({name: {field: changed(value, factor)}})
 
 
-@pytest.mark.parametrize("package", ["solve", "dynamics", "equilibria", "run_checks", "redundancy"])
+@pytest.mark.parametrize(
+    "package",
+    [
+        "dynamics",
+        "equilibria",
+        "linear_analysis",
+        "presolve",
+        "redundancy",
+        "run_checks",
+        "sensitivity_equations",
+        "solve",
+    ],
+)
 def test_all_parameters_of_a_package_are_halved_and_doubled(package):
     """By this table, or those of `test_parameter_thresholds` and `test_parameter_counts`."""
     assert [name for name, (factors, _) in factors_of_tests(package).items() if len(factors) < 2] == []
