@@ -8,7 +8,7 @@ note and message of a run; elapsed times are left out.  Runs with changed parame
 scan of all subsystems takes hours; set STIFFMBS_CACHE to a folder of its own.
 
 ``--untested`` runs nothing: it prints the parameters of a package that `.ci/parameters.py` counts, but no test halves and doubles. These
-tests are tables in `tests.solve`: decisions, thresholds, and counters of short runs.
+tests are tables in `tests.decisions` and `tests.solve`: decisions, thresholds, and counters of short runs.
 """
 
 from __future__ import annotations

@@ -29,6 +29,7 @@ from tests.decisions import (
     redundancy,
     run_checks,
     sensitivities,
+    verification,
 )
 from tests.parameters import changed, factors_of_tests
 
@@ -47,6 +48,7 @@ MODULES = (
     redundancy,
     run_checks,
     sensitivities,
+    verification,
 )
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
 EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED.items()}
@@ -90,6 +92,8 @@ def with_others(parameter):
         "run_checks",
         "sensitivity_equations",
         "solve",
+        "sparse",
+        "verification",
     ],
 )
 def test_all_parameters_of_a_package_are_halved_and_doubled(package):
