@@ -231,10 +231,10 @@ class Dynamics:
             self._input_end = start, end, first_input_end(self.system, start, end)
         return self._input_end[2]
 
-    def assemble(self, t: float, tolerance: float | None = None, most: int = 50) -> int:
+    def assemble(self, t: float, tolerance: float | None = None, most: int | None = None) -> int:
         """Correct positions by minimum-norm Newton moves until |C| <= tolerance; return their number or a failure."""
-        least = CONSISTENCY.position_tolerance if tolerance is None else tolerance
-        return ASSEMBLE.short_call(t, least, most, self._at)
+        allowed = CONSISTENCY.position_tolerance if tolerance is None else tolerance
+        return ASSEMBLE.short_call(t, allowed, most or CONSISTENCY.most_assembly_moves, self._at)
 
     def correct_velocities(self, t: float) -> int:
         """Apply the smallest correction of u in the mass norm with J u + C_t = 0; return 0 or a failure."""

@@ -6,12 +6,13 @@ from contextlib import nullcontext
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import numpy as np
 
 import stiffmbs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.dynamics import algebraic_states, damped_assembly, storage
+from stiffmbs.dynamics import algebraic_states, damped_assembly, dynamics, stiff_projection, storage
 from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.dynamics.elimination.eliminated import Eliminated
 from stiffmbs.dynamics.elimination.native import digits
@@ -21,7 +22,6 @@ from stiffmbs.dynamics.native import block_systems, consistent
 from stiffmbs.dynamics.native import dynamics as native
 from stiffmbs.dynamics.native import projection as native_projection
 from stiffmbs.dynamics.native import stiff_projection as native_stiff_projection
-from stiffmbs.dynamics.stiff_projection import StiffProjection
 from tests.decisions.common import Record, nothing
 from tests.interpreted import interpreted
 from tests.parameters import EXAMPLES
@@ -116,19 +116,21 @@ def largest_move(violation):
     return count_while(lambda move: is_regular(1e-9 * move), DOUBLES)
 
 
+def assembly_moves():
+    """Return the largest number of moves of an assembly."""
+    seen = SimpleNamespace(short_call=lambda t, tolerance, most, table: most)
+    with patch.object(dynamics, "ASSEMBLE", seen):
+        return Dynamics.assemble(Record(_at=None), 0.0)
+
+
 def part_of_a_step():
     """Return the reciprocal step of the matrix that projects a state within a step of 1 s."""
     found = []
     state = Record(q=np.zeros(1), u=np.zeros(1), table=None)
     projection = Record(_state=state, _tables=(), _at_state=0)
     seen = SimpleNamespace(short_call=lambda t, cj, *_: found.append(cj) or 0)
-    from stiffmbs.dynamics import stiff_projection
-
-    usual, stiff_projection.PROJECT = stiff_projection.PROJECT, seen
-    try:
-        StiffProjection.project(projection, 0.0, 1.0, np.zeros(1), np.zeros(1))
-    finally:
-        stiff_projection.PROJECT = usual
+    with patch.object(stiff_projection, "PROJECT", seen):
+        stiff_projection.StiffProjection.project(projection, 0.0, 1.0, np.zeros(1), np.zeros(1))
     return found[0]
 
 
@@ -293,6 +295,7 @@ DECISIONS = {
     "consistency.most_damped_moves": lambda: len(stuck(1.0)[1]),
     "consistency.nudge": lambda: float(stuck(1e-9)[1][0][0]),
     "consistency.close": lambda: count_while(lambda gap: stuck(1e-9 * gap)[0], DOUBLES),
+    "consistency.most_assembly_moves": assembly_moves,
     "consistency.most_moves": newton_moves,
     "consistency.position_tolerance": largest_closed_gap,
     "consistency.most_frozen_moves": lambda: moves_of_other_factors(1e-4)[1],
@@ -336,14 +339,14 @@ DECISIONS = {
 }  # fmt: skip
 EXPECTED = {
     "consistency.most_damped_moves": 201, "consistency.nudge": 0.001, "consistency.close": 40,
-    "consistency.most_moves": 20, "consistency.position_tolerance": 40, "consistency.most_frozen_moves": 3,
-    "consistency.contraction": 27, "consistency.amplified": 67, "consistency.moved": 40, "consistency.step_parts": 10,
-    "consistency.most_iterations": 40, "consistency.converged": 23, "consistency.rounded_off": 76,
-    "consistency.state_rounded_off": 36, "consistency.slow": 33, "consistency.zero_slope": 133,
-    "consistency.rate_interval": 1e-06, "consistency.worth_telling": 14, "consistency.much_less": 40,
-    "consistency.large_shift": 19, "consistency.large_turn": 26, "consistency.most_listed": 3,
-    "elimination.worth_compiling": 54, "elimination.most_multiplications": 9, "elimination.even": 53,
-    "elimination.kept": 40, "elimination.lost": 80, "elimination.small": 27, "elimination.together": 80,
-    "elimination.relative": 27, "elimination.residual": 27, "elimination.least_residual": 33,
-    "storage.largest_in_memory": 13, "storage.block": 100000,
+    "consistency.most_assembly_moves": 50, "consistency.most_moves": 20, "consistency.position_tolerance": 40,
+    "consistency.most_frozen_moves": 3, "consistency.contraction": 27, "consistency.amplified": 67,
+    "consistency.moved": 40, "consistency.step_parts": 10, "consistency.most_iterations": 40,
+    "consistency.converged": 23, "consistency.rounded_off": 76, "consistency.state_rounded_off": 36,
+    "consistency.slow": 33, "consistency.zero_slope": 133, "consistency.rate_interval": 1e-06,
+    "consistency.worth_telling": 14, "consistency.much_less": 40, "consistency.large_shift": 19,
+    "consistency.large_turn": 26, "consistency.most_listed": 3, "elimination.worth_compiling": 54,
+    "elimination.most_multiplications": 9, "elimination.even": 53, "elimination.kept": 40, "elimination.lost": 80,
+    "elimination.small": 27, "elimination.together": 80, "elimination.relative": 27, "elimination.residual": 27,
+    "elimination.least_residual": 33, "storage.largest_in_memory": 13, "storage.block": 100000,
 }  # fmt: skip

@@ -21,6 +21,8 @@ class ConsistencyParameters:
     the gaps."""
     close: float = 1e-6
     """Largest dimensionless gap from which Newton's moves converge."""
+    most_assembly_moves: int = 50
+    """Largest number of Newton's moves of an assembly."""
     most_moves: int = 20
     """Largest number of Newton's moves of a projection from a nearby state."""
     position_tolerance: float = 1e-12
