@@ -170,6 +170,11 @@ def numbers_of(parameters: Any) -> dict[str, Any]:
     }
 
 
+def changed_values() -> dict[str, dict[str, Any]]:
+    """Return the values in use of the subsystems that have changed ones, by subsystem and name."""
+    return {name: numbers_of(used) for name, used in _CHANGED.get().items()}
+
+
 def changes_in_use() -> Iterator[str]:
     """Yield each changed parameter with its value and its default."""
     for name, used in _CHANGED.get().items():

@@ -35,7 +35,7 @@ from ..solve.sampling import held
 from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
-from ..tuning import described, in_use
+from ..tuning import changed_values, described, in_use
 from .found_before import FoundBefore
 from .load_scene import load_scene
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
@@ -54,7 +54,7 @@ def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
     held = scene.held_at_start
     if held is None:
         return
-    found = examined(held, RunSettings(start=t))
+    found = examined(held, RunSettings(start=t, tuning=changed_values()))
     placed = initial_values(found.dynamics(), t)
     system, names = found.redundancy.system, {*scene.at_start}
     of_start = np.array([name in names for name, _ in system.equations], dtype=bool)
@@ -252,7 +252,7 @@ def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
 
 def start_of_job(job: Job) -> InitialValues:
     """Return the start of a job after a parameter change; errors as for `run`."""
-    with reported_faults(job.dynamics.system):
+    with reported_faults(job.dynamics.system), in_use(job.settings.tuning):
         job.dynamics.return_to_start()
         return _start(job.data, job.dynamics, job.grid.start, job.start_from)
 
