@@ -22,8 +22,10 @@ SUBSYSTEMS = {
     "accumulated_errors": "solve.error_control.accumulated_errors:ACCUMULATED",
     "auto": "solve.auto_decisions:AUTO",
     "chattering": "solve.events.chattering:CHATTERING",
+    "consistency": "dynamics.native.parameters:CONSISTENCY",
     "cost": "solve.cost:COSTS",
     "divergence": "solve.events.refusals:DIVERGENCE",
+    "elimination": "dynamics.native.parameters:ELIMINATION",
     "equilibria": "equilibria.parameters:EQUILIBRIA",
     "error_filter": "solve.error_control.native.parameters:FILTER",
     "error_test": "solve.error_control.error_test:PLANAR",
@@ -40,6 +42,7 @@ SUBSYSTEMS = {
     "fixed_steps": "solve.explicit.fixed:FIXED_STEP",
     "jumps": "solve.events.discontinuity:JUMP",
     "kinematic": "solve.driven_states:KINEMATIC",
+    "linear_analysis": "linear_analysis.parameters:LINEAR_ANALYSIS",
     "linear_solver": "solve.ida.choice:COSTS",
     "long_steps": "solve.events.long_steps:LONG_STEP",
     "loop": "solve.ida.native.parameters:LOOP",
@@ -51,13 +54,16 @@ SUBSYSTEMS = {
     "pivots": "solve.linear_solvers.native.parameters:PIVOTS",
     "polishing": "solve.error_control.native.parameters:POLISHING",
     "precision": "solve.error_control.precision:PRECISION",
+    "presolve": "presolve.relations:PRESOLVE",
     "radau": "solve.radau.parameters:RADAU",
     "redundancy": "redundancy.parameters:REDUNDANCY",
     "relaxation": "solve.error_control.relaxation:RELAXATION",
     "restarts": "solve.events.restart:RESTARTS",
     "run_checks": "run_checks.parameters:RUN_CHECKS",
+    "sensitivities": "sensitivity_equations.recorded:SENSITIVITIES",
     "stability_bound": "solve.explicit.stable_step:STABILITY_BOUND",
     "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
+    "storage": "dynamics.storage:STORAGE",
     "sundae": "solve.ida.sundae:FALLBACK",
     "velocity_jumps": "solve.events.discontinuity:VELOCITY_JUMP",
     "verification": "verification.parameters:VERIFICATION",
@@ -162,6 +168,11 @@ def numbers_of(parameters: Any) -> dict[str, Any]:
     return {
         name: value for name, value in found.items() if isinstance(value, int | float | tuple) and value is not True
     }
+
+
+def changed_values() -> dict[str, dict[str, Any]]:
+    """Return the values in use of the subsystems that have changed ones, by subsystem and name."""
+    return {name: numbers_of(used) for name, used in _CHANGED.get().items()}
 
 
 def changes_in_use() -> Iterator[str]:

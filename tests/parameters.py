@@ -8,7 +8,7 @@ note and message of a run; elapsed times are left out.  Runs with changed parame
 scan of all subsystems takes hours; set STIFFMBS_CACHE to a folder of its own.
 
 ``--untested`` runs nothing: it prints the parameters of a package that `.ci/parameters.py` counts, but no test halves and doubles. These
-tests are tables in `tests.solve`: decisions, thresholds, and counters of short runs.
+tests are tables in `tests.decisions` and `tests.solve`: decisions, thresholds, and counters of short runs.
 """
 
 from __future__ import annotations
@@ -146,8 +146,8 @@ def variations(name: str) -> Iterator[tuple[str, str, Any]]:
 
 def tested() -> dict[str, set[float]]:
     """Return the factors, 0.5 and 2, by which tests change each parameter: ``subsystem.field``, or ``module:NAME``."""
+    from tests.decisions import test_decisions
     from tests.solve import test_parameter_counts, test_parameter_thresholds
-    from tests.solve.decisions import test_decisions
 
     found = {name: {0.5, 2.0} for name in test_decisions.TABLE}
     found |= {f"{name}.{field}": {0.5, 2.0} for name, field in test_parameter_thresholds.PARAMETERS}

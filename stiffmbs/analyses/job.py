@@ -15,9 +15,9 @@ import numpy as np
 from ..compile.callbacks import fault_of
 from ..compile.compile_model import compile_model
 from ..compile.system import System
-from ..dynamics.dynamics import POSITION_TOLERANCE, Dynamics
+from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
-from ..dynamics.native.layouts import MOST_MOVES
+from ..dynamics.native.parameters import CONSISTENCY
 from ..dynamics.turns import counted_angles, take_nearest_turns
 from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.beams.entries import GROUND_AXES
@@ -35,7 +35,7 @@ from ..solve.sampling import held
 from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
-from ..tuning import described, in_use
+from ..tuning import changed_values, described, in_use
 from .found_before import FoundBefore
 from .load_scene import load_scene
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
@@ -54,7 +54,7 @@ def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
     held = scene.held_at_start
     if held is None:
         return
-    found = examined(held, RunSettings(start=t))
+    found = examined(held, RunSettings(start=t, tuning=changed_values()))
     placed = initial_values(found.dynamics(), t)
     system, names = found.redundancy.system, {*scene.at_start}
     of_start = np.array([name in names for name, _ in system.equations], dtype=bool)
@@ -202,7 +202,8 @@ def prepare(
         from ..redundancy.messages.redundancy import refuse_inconsistencies
 
         refuse_inconsistencies(found.redundancy)
-    dynamics = found.dynamics()
+    with in_use(found.settings.tuning):
+        dynamics = found.dynamics()
     LOGGER.info("assembling %s", found.data.name)
     before = FoundBefore(found.data, found.settings, found.start_from)
     with reported_faults(dynamics.system), in_use(found.settings.tuning):
@@ -229,7 +230,7 @@ def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
         others = np.flatnonzero(np.repeat([name not in modal for name in system.bodies], system.of_body.n_u))
         rows = np.flatnonzero(system.active & system.holonomic)
         start, move = state.q.copy(), np.zeros(system.n_u)
-        for _ in range(MOST_MOVES):
+        for _ in range(CONSISTENCY.most_moves):
             state.evaluate("position", t)
             gaps = state.vector("position", "C")[rows].copy()
             state.evaluate("motion", t)
@@ -239,7 +240,7 @@ def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
             if not np.isfinite(state.q).all():
                 state.q[:] = start
                 break
-            if np.abs(move).max() <= POSITION_TOLERANCE * system.size:
+            if np.abs(move).max() <= CONSISTENCY.position_tolerance * system.size:
                 break
     found = initial_values(dynamics, t)
     node = next(
@@ -251,7 +252,7 @@ def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
 
 def start_of_job(job: Job) -> InitialValues:
     """Return the start of a job after a parameter change; errors as for `run`."""
-    with reported_faults(job.dynamics.system):
+    with reported_faults(job.dynamics.system), in_use(job.settings.tuning):
         job.dynamics.return_to_start()
         return _start(job.data, job.dynamics, job.grid.start, job.start_from)
 

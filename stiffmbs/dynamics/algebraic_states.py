@@ -6,14 +6,11 @@ import numpy as np
 
 from ..compile.machine.native.statuses import NO_STATE
 from .dynamics import Dynamics
+from .native.parameters import CONSISTENCY
 from .storage import FAILURES
 
-RATE_INTERVAL = 1e-6
-"""Interval of the difference quotient for rates of algebraic states, s. They only enter the first prediction."""
 BEYOND_LAST_STATE = np.geomspace(1e-9, 1e-5, 3)
 """Times after the last state, relative to the time, s, at which missing values are searched for."""
-ZERO_SLOPE = 1e-10
-"""Scaled derivative of an algebraic equation by its states below which it counts as zero."""
 
 
 def rates_of_algebraic(
@@ -23,13 +20,13 @@ def rates_of_algebraic(
     places = dynamics.system.algebraic_coordinates
     if not len(places):
         return np.zeros(0)
-    state = dynamics.state
+    state, interval = dynamics.state, CONSISTENCY.rate_interval
     with state.unchanged():
-        there = dynamics.system.of_body.moved(q, RATE_INTERVAL * u)
-        there[dynamics.system.n_pose :] += RATE_INTERVAL * dynamics.position_rates(q, u)[dynamics.system.n_pose :]
-        state.q[:], state.u[:] = there, u + RATE_INTERVAL * acceleration
-        status, _ = dynamics.accelerate(t + RATE_INTERVAL)
-        rates = (state.q[places] - q[places]) / RATE_INTERVAL
+        there = dynamics.system.of_body.moved(q, interval * u)
+        there[dynamics.system.n_pose :] += interval * dynamics.position_rates(q, u)[dynamics.system.n_pose :]
+        state.q[:], state.u[:] = there, u + interval * acceleration
+        status, _ = dynamics.accelerate(t + interval)
+        rates = (state.q[places] - q[places]) / interval
     return rates if status >= 0 and np.all(np.isfinite(rates)) else np.zeros(len(places))
 
 
@@ -92,7 +89,7 @@ def no_value(dynamics: Dynamics, t: float) -> str:
         worst = int(undefined[0])
         return f"the equation of the state '{names[worst]}' has no finite value at {at[worst]}"
     values, vectors = np.linalg.eigh((slopes * sizes).T @ (slopes * sizes))
-    if not values[0] > ZERO_SLOPE**2 * max(values[-1], np.finfo(float).tiny):
+    if not values[0] > CONSISTENCY.zero_slope**2 * max(values[-1], np.finfo(float).tiny):
         worst = int(np.argmax(np.abs(vectors[:, 0])))
         return (
             f"the state '{names[worst]}' has no unique value: the derivative of its equation by the state is zero at {at[worst]}, "
@@ -100,7 +97,7 @@ def no_value(dynamics: Dynamics, t: float) -> str:
         )
     moves = np.abs(np.linalg.solve(slopes, left)) / sizes
     worst = int(np.argmax(moves))
-    if not moves[worst] > ZERO_SLOPE:
+    if not moves[worst] > CONSISTENCY.zero_slope:
         return ""
     return (
         f"the state '{names[worst]}' has no value: Newton's iteration finds no zero of its equation from {at[worst]}, "

@@ -5,13 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .dynamics import Dynamics
-
-MOST_MOVES = 200
-"""Largest number of damped moves, accepted or not."""
-NUDGE = 1e-3
-"""First displacement of all bodies, in sizes of the mechanism and rad, which leaves saddle points of the gaps."""
-CLOSE = 1e-6
-"""Largest dimensionless gap from which Newton's moves converge."""
+from .native.parameters import CONSISTENCY
 
 
 def damped_assembly(dynamics: Dynamics, t: float, q: np.ndarray) -> bool:
@@ -42,12 +36,12 @@ def damped_assembly(dynamics: Dynamics, t: float, q: np.ndarray) -> bool:
     if not sizes.all():  # an equation without a direction, such as of a rod between two points at one place
         state.q[:] = before
         return False
-    weights, damping = 1.0 / sizes, CLOSE
-    pose = system.of_body.moved(q, NUDGE * unit * np.cos(np.arange(system.n_u) ** 2))
+    weights, damping = 1.0 / sizes, CONSISTENCY.close
+    pose = system.of_body.moved(q, CONSISTENCY.nudge * unit * np.cos(np.arange(system.n_u) ** 2))
     gaps, slopes = gaps_at(pose)
-    for _ in range(MOST_MOVES):
-        least = np.linalg.norm(slopes.T @ gaps) <= CLOSE * np.linalg.norm(gaps)
-        if least or not np.abs(gaps).max() > CLOSE:
+    for _ in range(CONSISTENCY.most_damped_moves):
+        least = np.linalg.norm(slopes.T @ gaps) <= CONSISTENCY.close * np.linalg.norm(gaps)
+        if least or not np.abs(gaps).max() > CONSISTENCY.close:
             break
         gram = slopes @ slopes.T + damping * np.eye(len(rows))
         trial = system.of_body.moved(pose, -unit * (slopes.T @ np.linalg.solve(gram, gaps)))
@@ -58,7 +52,7 @@ def damped_assembly(dynamics: Dynamics, t: float, q: np.ndarray) -> bool:
         else:
             damping *= 4.0
     state.q[:] = pose
-    if np.abs(gaps).max() <= CLOSE and dynamics.assemble(t) >= 0:
+    if np.abs(gaps).max() <= CONSISTENCY.close and dynamics.assemble(t) >= 0:
         return True
     state.q[:] = before
     return False

@@ -17,7 +17,8 @@ from ..compile.machine.layout import address, addresses, packed
 from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
-from .native.layouts import DYNAMICS, POSITION_TOLERANCE
+from .native.layouts import DYNAMICS
+from .native.parameters import CONSISTENCY, ELIMINATION
 from .saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
 from .storage import all_finite, allocated, blocks, release
 
@@ -36,9 +37,6 @@ ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, CONTRADICTING, OUTPU
     output_points="int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
     energies="void(int64, int64, float64*, float64*, int64, float64*, int64, int64*, int64, int64*, int64, int64*, float64*, float64*, float64*)",
 )
-
-WORTH_ELIMINATING = 10_000
-"""Multiplications of the LU above which output rows and restarts use the elimination, which must be compiled."""
 
 
 @dataclass(frozen=True)
@@ -142,8 +140,7 @@ class Dynamics:
             "trailing_row": self._trailing[1],
             "turned_for_output": for_output[~np.isin(for_output, system.turned("acceleration"))].astype(np.int64),
         }
-        large = system.of_body.dimensions == 3 and self.lu_updates > WORTH_ELIMINATING
-        eliminates = large and self.eliminated.serves
+        eliminates = system.of_body.dimensions == 3 and self.is_large and self.eliminated.serves
         self.table = packed(
             DYNAMICS,
             {
@@ -209,6 +206,11 @@ class Dynamics:
         return Eliminated(self.state, self.lu_updates)
 
     @property
+    def is_large(self) -> bool:
+        """True if output rows and restarts are worth the elimination, which must be compiled."""
+        return self.lu_updates > ELIMINATION.worth_compiling
+
+    @property
     def lu_updates(self) -> int:
         """Multiplications of the LU of the block system for accelerations."""
         return self._accelerations.order.updates
@@ -229,9 +231,10 @@ class Dynamics:
             self._input_end = start, end, first_input_end(self.system, start, end)
         return self._input_end[2]
 
-    def assemble(self, t: float, tolerance: float = POSITION_TOLERANCE, most: int = 50) -> int:
+    def assemble(self, t: float, tolerance: float | None = None, most: int | None = None) -> int:
         """Correct positions by minimum-norm Newton moves until |C| <= tolerance; return their number or a failure."""
-        return ASSEMBLE.short_call(t, tolerance, most, self._at)
+        allowed = CONSISTENCY.position_tolerance if tolerance is None else tolerance
+        return ASSEMBLE.short_call(t, allowed, most or CONSISTENCY.most_assembly_moves, self._at)
 
     def correct_velocities(self, t: float) -> int:
         """Apply the smallest correction of u in the mass norm with J u + C_t = 0; return 0 or a failure."""
@@ -296,7 +299,7 @@ class Dynamics:
             times = np.array(t[block], dtype=float)
             at_times, *written = addresses(times, *(array[block] for array in (*rows, kinetic, potential, power)))
             done = block.start + OUTPUT_POINTS.call(
-                len(times), at_times, project, POSITION_TOLERANCE, n_output, *written[:6], self._at
+                len(times), at_times, project, CONSISTENCY.position_tolerance, n_output, *written[:6], self._at
             )
             mass, potentials, powers, kinetics = addresses(system.mass, self._potential, self._power, self._kinetic)
             ENERGIES.call(

@@ -12,14 +12,11 @@ from ..compile.machine.native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FI
 from ..compile.written_values import values_of
 from ..errors import AssemblyError
 from .algebraic_states import failure
-from .damped_assembly import damped_assembly
-from .dynamics import POSITION_TOLERANCE, Dynamics
+from .dynamics import Dynamics
 from .moves import Move, moves, position_words, velocity_words
+from .native.parameters import CONSISTENCY
 from .storage import FAILURES
 from .turns import take_nearest_turns
-
-MOST_LISTED = 3
-"""Bodies with the largest moves that the note of a run names."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,7 @@ class InitialValues:
         return self._changed(self._levels())
 
     def _levels(self) -> str:
-        levels = [words(self.moved, self.size, MOST_LISTED) for words in (position_words, velocity_words)]
+        levels = [words(self.moved, self.size, CONSISTENCY.most_listed) for words in (position_words, velocity_words)]
         return " and ".join(filter(None, levels))
 
     def as_asked_by(self, names: Sequence[str]) -> InitialValues:
@@ -78,7 +75,8 @@ class InitialValues:
             return ""
         bodies = f"{len(far)} bodies move" if len(far) > 1 else f"{far[0].body} moves"
         return (
-            f": {bodies} by more than a quarter of the mechanism's size ({self.size:.3g} m) or 45 deg; "
+            f": {bodies} by more than {CONSISTENCY.large_shift:g} of the mechanism's size ({self.size:.3g} m) "
+            f"or {CONSISTENCY.large_turn:g} deg; "
             f"check points of markers, positions and angles{self.hint}"
         )
 
@@ -110,8 +108,10 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
     system, state = dynamics.system, dynamics.state
     q0, u0 = system.q.copy(), system.u.copy()
     status = dynamics.assemble(t)
-    if status in (NO_CONVERGENCE, SINGULAR) and damped_assembly(dynamics, t, q0):
-        status = 0
+    if status in (NO_CONVERGENCE, SINGULAR):
+        from .damped_assembly import damped_assembly
+
+        status = 0 if damped_assembly(dynamics, t, q0) else status
     if status < 0:
         raise AssemblyError(_sentence(dynamics, NO_CONVERGENCE if status == SINGULAR else status, t))
     _close_open_rates(dynamics, t)
@@ -169,7 +169,7 @@ def _violation_sentence(dynamics: Dynamics, t: float) -> str:
     joint, equation = system.equations[row]
     return (
         f"the scene cannot be assembled: the largest gap is in joint '{joint}' (equation {equation}, "
-        f"{position_gap(state, t, row)}, expected less than {POSITION_TOLERANCE:g})"
+        f"{position_gap(state, t, row)}, expected less than {CONSISTENCY.position_tolerance:g})"
     )
 
 

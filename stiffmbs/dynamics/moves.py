@@ -10,17 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compile.system import System
+from .native.parameters import CONSISTENCY
 
-WORTH_TELLING = 1e-9
-"""Smallest change that is reported (m, rad, m/s, rad/s)."""
-MUCH_LESS = 1e-3
-"""Smallest reported part of a change (translation or rotation), as a fraction of the larger part."""
-ALONG = 1.0 - MUCH_LESS
-"""Fraction of a translation along one axis from which on it is reported by that coordinate."""
 DEGREES = math.radians(1.0)
 """Smallest rotation that is also reported in degrees."""
-LARGE_SHIFT, LARGE_TURN = 0.25, math.radians(45.0)
-"""Translation, in sizes of the mechanism, and rotation beyond which a move is no correction of a drawing."""
 
 
 class Move(NamedTuple):
@@ -45,7 +38,7 @@ class Move(NamedTuple):
 
     def is_large(self, size: float) -> bool:
         """Return True if the move is larger than a correction of a drawing, for a mechanism of a size in m."""
-        return self.distance > LARGE_SHIFT * size or abs(self.turn) > LARGE_TURN
+        return self.distance > CONSISTENCY.large_shift * size or abs(math.degrees(self.turn)) > CONSISTENCY.large_turn
 
 
 def moves(system: System, q: np.ndarray, u: np.ndarray) -> tuple[Move, ...]:
@@ -53,12 +46,12 @@ def moves(system: System, q: np.ndarray, u: np.ndarray) -> tuple[Move, ...]:
 
     `q`, `u` of shape (n_u,): displacements and velocity changes of all bodies.
     """
-    if max(np.abs(q).max(initial=0.0), np.abs(u).max(initial=0.0)) <= WORTH_TELLING:
+    if max(np.abs(q).max(initial=0.0), np.abs(u).max(initial=0.0)) <= CONSISTENCY.worth_telling:
         return ()
     straight, width = system.of_body.linear, system.of_body.n_u
     found = []
     for body, of_q, of_u in zip(system.bodies, q.reshape(-1, width), u.reshape(-1, width), strict=True):
-        if max(np.abs(of_q).max(), np.abs(of_u).max()) > WORTH_TELLING:
+        if max(np.abs(of_q).max(), np.abs(of_u).max()) > CONSISTENCY.worth_telling:
             (turn, omega) = (
                 float(v[-1] if width == straight + 1 else np.linalg.norm(v[straight:])) for v in (of_q, of_u)
             )
@@ -92,9 +85,9 @@ def _listed(
     found = []
     for body, shift, turn in changes:
         sizes = math.hypot(*shift) / size, abs(turn)
-        least = MUCH_LESS * max(sizes)
-        words = [shifting(body, shift)] if math.hypot(*shift) > WORTH_TELLING and sizes[0] >= least else []
-        words += [turning(body, turn)] if abs(turn) > WORTH_TELLING and sizes[1] >= least else []
+        least = CONSISTENCY.much_less * max(sizes)
+        words = [shifting(body, shift)] if math.hypot(*shift) > CONSISTENCY.worth_telling and sizes[0] >= least else []
+        words += [turning(body, turn)] if abs(turn) > CONSISTENCY.worth_telling and sizes[1] >= least else []
         if words:
             found.append((max(sizes), words))
     found.sort(key=lambda change: -change[0])
@@ -107,6 +100,6 @@ def _shift(body: str, shift: tuple[float, ...], prefix: str = "", unit: str = "m
     """Describe a translation by its coordinate if it is along one, else by its length."""
     k = max(range(len(shift)), key=lambda n: abs(shift[n]))
     length = math.hypot(*shift)
-    if abs(shift[k]) >= ALONG * length:
+    if abs(shift[k]) >= (1.0 - CONSISTENCY.much_less) * length:
         return f"{body}.{prefix}{'xyz'[k]} by {shift[k]:.3g} {unit}"
     return f"{body}{of} by {length:.3g} {unit}"

@@ -8,6 +8,7 @@ import mmap
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,16 +22,20 @@ from ..compile.machine.native.statuses import (
     SINGULAR,
 )
 from ..errors import InputError
-
-LARGEST_IN_MEMORY = 2**26
-"""Size of the largest array held in memory, bytes."""
-
-BLOCK = 100_000
-"""Rows that are written or read before memory is released."""
+from ..tuning import tuned
 
 
-CACHED = 256
-"""Rows of a table that are processed together, so that they stay in the processor's cache."""
+@dataclass(frozen=True)
+class StorageParameters:
+    """Parameters of the memory of results; results do not depend on them. Source: tests/dynamics/test_storage.py."""
+
+    largest_in_memory: int = 2**26
+    """Size of the largest array held in memory, bytes."""
+    block: int = 100_000
+    """Number of rows that are written or read before memory is released."""
+
+
+STORAGE = tuned("storage", StorageParameters())
 
 
 def allocated(*shape: int) -> np.ndarray:
@@ -40,7 +45,7 @@ def allocated(*shape: int) -> np.ndarray:
     the file.
     """
     size = 8 * math.prod(shape)
-    if size <= LARGEST_IN_MEMORY:
+    if size <= STORAGE.largest_in_memory:
         return np.empty(shape)
     with tempfile.TemporaryFile(prefix="stiffmbs-") as file:
         _reserve(file.fileno(), size)
@@ -73,8 +78,9 @@ def release(*arrays: np.ndarray) -> None:
 
 def blocks(count: int) -> Iterator[slice]:
     """Yield the rows of a table in blocks."""
-    for first in range(0, count, BLOCK):
-        yield slice(first, min(first + BLOCK, count))
+    block = STORAGE.block
+    for first in range(0, count, block):
+        yield slice(first, min(first + block, count))
 
 
 def all_finite(*arrays: np.ndarray) -> bool:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eig, svd
 
-CLOSE = 1e-6
-"""Relative difference up to which quantities of linearised equations are equal."""
+from .parameters import LINEAR_ANALYSIS
+
 ZERO_SINGULAR = 10 * np.finfo(float).eps
 """Singular value that counts as zero, relative to normalised rows, per row."""
 
@@ -50,7 +50,7 @@ def _fastest_rate(matrix: np.ndarray, n_poses: int, end: int) -> float:
         return 0.0
     velocities, states = slice(n_poses, end), slice(end, len(matrix))
     others = [np.linalg.norm(matrix[part, part], 2) for part in (velocities, states) if part.start < part.stop]
-    return float(max(np.sqrt(np.linalg.norm(matrix[velocities, :n_poses], 2)), CLOSE * max(others)))
+    return float(max(np.sqrt(np.linalg.norm(matrix[velocities, :n_poses], 2)), LINEAR_ANALYSIS.close * max(others)))
 
 
 def is_singular(matrix: np.ndarray) -> bool:

@@ -10,11 +10,9 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_array
 
-from .eigenvalues import CLOSE, Zeros, eigen
+from .eigenvalues import Zeros, eigen
+from .parameters import LINEAR_ANALYSIS
 from .state_space import StateMatrix
-
-NO_MOTION = 1e-12
-"""Displacement, in sizes of the mechanism, or rotation of a normalised eigenvector that counts as zero."""
 
 
 class Motion(Enum):
@@ -129,7 +127,7 @@ def _without_oscillation(
     pairs = list(_alike(likeness))
     others = max(0, state.degrees_of_freedom - int(np.sum(values.imag > 0)) - rigid.shape[1])
     if state.n_states or len(found) > 2 * others:  # unpaired eigenvalues
-        moving = [pair for pair in pairs if all(np.any(np.abs(likeness[k]) > NO_MOTION) for k in pair)]
+        moving = [pair for pair in pairs if all(np.any(np.abs(likeness[k]) > LINEAR_ANALYSIS.no_motion) for k in pair)]
         pairs = moving[:others]
         for k in set(range(len(found))) - {k for pair in pairs for k in pair}:
             yield (complex(found[k]),), known[k].astype(complex)
@@ -146,7 +144,7 @@ def _rigid_motions(state: StateMatrix, zeros: Zeros, scale: np.ndarray) -> np.nd
     rates = state.velocities @ zeros.generalised / scale[:, None]
     free = _free_velocities(state, scale)
     _, sizes, combined = np.linalg.svd(rates - free @ (free.T @ rates))
-    accompanying = int(np.sum(sizes > CLOSE * np.linalg.norm(rates)))
+    accompanying = int(np.sum(sizes > LINEAR_ANALYSIS.close * np.linalg.norm(rates)))
     return np.asarray(scale[:, None] * (rates @ combined[accompanying:].T if accompanying else rates))
 
 
@@ -182,7 +180,7 @@ def _mode(
 ) -> Mode:
     motion = Motion.OSCILLATING if both[0].imag else Motion.APERIODIC if all(both) else Motion.RIGID
     sizes = shape / scale * scale[0]  # the first entry of a body is a displacement
-    if np.max(np.abs(sizes), initial=0.0) <= NO_MOTION:  # states only
+    if np.max(np.abs(sizes), initial=0.0) <= LINEAR_ANALYSIS.no_motion:  # states only
         return Mode(motion, both, np.zeros(len(shape), dtype=complex), {})
     shape = shape / sizes[np.argmax(np.abs(sizes))]
     energy = (shape.conj() * (mass @ shape)).real.reshape(len(bodies), -1).sum(axis=1)

@@ -12,20 +12,12 @@ from ..dynamics.dynamics import Dynamics
 from ..equilibria.matrices import Matrix, dense
 from ..equilibria.steady_motion import SteadyMotion
 from ..sparse.parameters import MATRICES
-from .eigenvalues import CLOSE
+from .parameters import LINEAR_ANALYSIS
 from .state_space import null_space, state_matrix
 from .tangent_space import linearised
 
 STIFFNESS_ROUNDING = 2 * float(np.finfo(float).eps)
 """Error of w^2, relative to the sum of all contributions to a motion's stiffness."""
-IMBALANCE_FACTOR = 100.0
-"""Factor on the w^2 that the residual of the forces could cause."""
-LEAST_SHIFT = 1e-14
-"""Smallest shift, relative to the largest w^2 of a single body."""
-MOST_FREE, MOST_RESTARTS, ACCURACY = 6, 5, 1e-3
-"""Arnoldi iteration: motions at the last shift, restarts, and relative accuracy."""
-OWN = 0.05
-"""Smallest magnitude of a negative w^2 that is accepted at a shift, relative to it."""
 
 
 @dataclass(frozen=True)
@@ -68,9 +60,9 @@ def lowest(stiffness: Matrix, jacobian: Matrix, mass: np.ndarray, scale: np.ndar
     inertia = np.sum(shapes * (mass[:, None] * shapes), axis=0)
     sizes = np.abs(shapes)
     rounding = STIFFNESS_ROUNDING * np.sum(sizes * (abs(stiffness) @ sizes), axis=0)
-    of_imbalance = IMBALANCE_FACTOR * (np.abs(left) / scale) @ sizes**2
+    of_imbalance = LINEAR_ANALYSIS.imbalance * (np.abs(left) / scale) @ sizes**2
     none = (rounding + of_imbalance) / np.where(inertia > 0, inertia, np.inf) + of_eigenvalues
-    real = np.abs(squares.imag) <= CLOSE * np.abs(squares) + none
+    real = np.abs(squares.imag) <= LINEAR_ANALYSIS.close * np.abs(squares) + none
     return Lowest(squares[real].real, shapes[:, real], none[real])
 
 
@@ -99,17 +91,19 @@ def _near(
     largest = float(np.max(abs(stiffness) @ scale / (mass * scale), initial=0.0))
     values, vectors = [np.zeros(0, dtype=complex)], [np.zeros((n, 0))]
     start = np.cos(np.arange(1, n + 1, dtype=float) ** 2)
-    last = max(LEAST_SHIFT * largest, np.finfo(float).tiny)
+    last = max(LINEAR_ANALYSIS.least_shift * largest, np.finfo(float).tiny)
     for shift in last * 10.0 ** np.arange(max(np.log10(max(largest, last) / last), 0) + 1):
         whole = block_array(
             [[stiffness + shift * diags_array(mass), jacobian.T], [jacobian, csc_array((rows, rows))]], format="csc"
         )
         try:
-            of_inverse, shapes = _largest_of_inverse(whole, mass, MOST_FREE if shift == last else 1, start)
+            of_inverse, shapes = _largest_of_inverse(
+                whole, mass, LINEAR_ANALYSIS.most_free if shift == last else 1, start
+            )
         except RuntimeError:  # exactly singular
             continue
         found = 1.0 / of_inverse - shift
-        kept = (found.real < -OWN * shift) | (shift == last)
+        kept = (found.real < -LINEAR_ANALYSIS.own * shift) | (shift == last)
         values.append(found[kept])
         vectors.append(_real_shapes(found[kept], shapes[:, kept]))
     return np.concatenate(values), np.hstack(vectors)
@@ -123,7 +117,9 @@ def _largest_of_inverse(
     solve = splu(whole).solve
     operator = LinearOperator((n, n), lambda x: solve(np.append(mass * x, np.zeros(rows)))[:n], dtype=float)
     try:
-        found: tuple[np.ndarray, np.ndarray] = eigs(operator, k=count, v0=start, tol=ACCURACY, maxiter=MOST_RESTARTS)
+        found: tuple[np.ndarray, np.ndarray] = eigs(
+            operator, k=count, v0=start, tol=LINEAR_ANALYSIS.accuracy, maxiter=LINEAR_ANALYSIS.most_restarts
+        )
     except ArpackNoConvergence as some:
         return some.eigenvalues, some.eigenvectors
     return found
@@ -148,7 +144,7 @@ def eigenvalues_about(
     x, v = state.velocities - turning @ state.poses, state.accelerations - turning @ state.velocities
     rates = np.vstack([x / scale[:, None], v / scale[:, None], own])
     matrix, *_ = np.linalg.lstsq(values, rates, rcond=None)
-    if np.linalg.norm(values @ matrix - rates) > CLOSE * np.linalg.norm(rates):
+    if np.linalg.norm(values @ matrix - rates) > LINEAR_ANALYSIS.close * np.linalg.norm(rates):
         return None
     found: np.ndarray = np.linalg.eigvals(matrix)
     return found[np.lexsort((found.imag, -found.real))]

@@ -11,10 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SolverError
-from .tangent_space import SINGULAR, Linearised
-
-DEPENDENT = 1e-9
-"""Pivot, relative to the largest, below which an equation is dependent at a pose."""
+from .parameters import LINEAR_ANALYSIS
+from .tangent_space import Linearised
 
 
 @dataclass(frozen=True)
@@ -103,7 +101,7 @@ def _solved(inertia: np.ndarray, forces: np.ndarray) -> np.ndarray:
     if not len(inertia):
         return np.zeros(forces.shape)
     sizes = np.linalg.norm(inertia, axis=1)
-    if not np.all(sizes > 0) or np.linalg.cond(inertia / sizes[:, None]) > SINGULAR:
+    if not np.all(sizes > 0) or np.linalg.cond(inertia / sizes[:, None]) > LINEAR_ANALYSIS.singular:
         raise SolverError(
             "a motion that the joints leave free has no mass, expected mass or inertia in every free motion"
         )
@@ -131,7 +129,7 @@ class Constraints:
 
             self._q, self._r, self._order = qr((matrix[self._rows] / self._norms[self._rows, None]).T, pivoting=True)
         pivots = np.abs(np.diag(self._r))
-        self._rank = int(np.sum(pivots > DEPENDENT * pivots[0])) if len(pivots) else 0
+        self._rank = int(np.sum(pivots > LINEAR_ANALYSIS.dependent * pivots[0])) if len(pivots) else 0
 
     @property
     def null_space(self) -> np.ndarray:

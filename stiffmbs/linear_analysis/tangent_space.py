@@ -16,9 +16,7 @@ from ..compile.quaternions import rotated
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
-
-SINGULAR = 1e15
-"""Condition number of a matrix with normalised rows from which on it is singular."""
+from .parameters import LINEAR_ANALYSIS
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,7 @@ def algebraic_of(is_algebraic: np.ndarray, by_states: np.ndarray, rate_by_states
     """
     own = rate_by_states[np.ix_(is_algebraic, is_algebraic)]
     sizes = np.linalg.norm(own, axis=1)[:, None]
-    if own.size and not (np.all(sizes > 0) and np.linalg.cond(own / sizes) < SINGULAR):
+    if own.size and not (np.all(sizes > 0) and np.linalg.cond(own / sizes) < LINEAR_ANALYSIS.singular):
         raise SolverError(
             "the algebraic states have no unique values near this state, expected formulas that change with them"
         )

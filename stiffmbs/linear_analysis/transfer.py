@@ -13,7 +13,8 @@ import numpy as np
 from scipy.linalg import matrix_balance, schur
 
 from ..errors import InputError
-from .eigenvalues import CLOSE, is_singular
+from .eigenvalues import is_singular
+from .parameters import LINEAR_ANALYSIS
 from .state_space import StateMatrix
 from .tangent_space import Linearised
 
@@ -141,7 +142,7 @@ class Transfer:
 
     def _refuse_poles(self, rates: np.ndarray, values: np.ndarray) -> None:
         """Refuse frequencies at which i w - A is numerically singular."""
-        near = np.min(np.abs(rates[:, None] - values), axis=1) < CLOSE * (np.max(np.abs(values)) + 1.0)
+        near = np.min(np.abs(rates[:, None] - values), axis=1) < LINEAR_ANALYSIS.close * (np.max(np.abs(values)) + 1.0)
         for rate in rates[near]:
             if is_singular(rate * np.eye(len(values)) - self.a):
                 held = "an unconstrained motion" if rate == 0 else "an undamped mode"

@@ -24,12 +24,11 @@ from ..elements.spatial.orientation import matrix
 from ..model.model_data import ModelData
 from ..reading.formula.formula import Formula
 from ..reading.marker import GROUND, MarkerReference
+from .relations import PRESOLVE
 
 AXES = "xyz"
 PLACES, HALF = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]]), np.repeat([1.0, 0.5], 3)
 """Entries of a symmetric matrix in the layout of a flexible body, and their factors."""
-ROUNDING = 1e-9
-"""Largest antisymmetric number that counts as zero, relative to the size, mass or speed: rounding of eigenvectors."""
 
 
 def modes_at_rest(model: ModelData, system: System, q: np.ndarray, u: np.ndarray) -> dict[str, tuple[int, ...]]:
@@ -79,7 +78,7 @@ class _Mirror:
         return found
 
     def _zero(self, value: Any, scale: float) -> bool:
-        return bool(np.abs(value).max(initial=0.0) <= ROUNDING * scale)
+        return bool(np.abs(value).max(initial=0.0) <= PRESOLVE.at_rest * scale)
 
     def _keeps_bodies(self) -> bool:
         """Return True if centres of mass and motions are in the plane, and products of inertia with its normal are zero."""

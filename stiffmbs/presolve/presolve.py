@@ -19,6 +19,7 @@ from ..compile.quaternions import CONJUGATE, rotated, times
 from ..compile.system import System
 from ..model.model_data import ModelData
 from .merged_bodies import MergedBodies, merge
+from .relations import PRESOLVE
 from .spinning_bodies import AXES, SpinningBodies, name_of_angle, spinning
 from .subsystems import mechanisms, part_of, trailing_coordinates
 
@@ -122,9 +123,6 @@ BodyFixedPoses = PlanarPoses | SpatialPoses
 BODY_FIXED_POSES: dict[int, type[PlanarPoses] | type[SpatialPoses]] = {2: PlanarPoses, 3: SpatialPoses}
 
 
-MOST_APART = 8
-"""Largest number of mechanisms solved separately, as each has the cost of its own start and steps."""
-
 Alike = Callable[[Sequence[np.ndarray]], Sequence[Sequence[int]]]
 
 
@@ -196,7 +194,7 @@ class Part:
 
 def may_be_apart(system: System) -> bool:
     """Return True if parameter values may decide whether mechanisms are solved separately."""
-    return 1 < len(mechanisms(system)) <= MOST_APART
+    return 1 < len(mechanisms(system)) <= PRESOLVE.most_apart
 
 
 def parts_of(
@@ -213,12 +211,12 @@ def parts_of(
     spun = None if travel is None else spinning(merged or model, _turns(merged, whole, travel))
     system = _compiled(spun or merged, whole) if spun or merged else whole  # type: ignore[arg-type]
     found = mechanisms(system) if alike else []
-    if alike and 1 < len(found) <= MOST_APART:
+    if alike and 1 < len(found) <= PRESOLVE.most_apart:
         carried = [_carried(bodies, system, whole, merged) for bodies in found]
         found = sorted(
             (np.sort(np.concatenate([found[k] for k in each])) for each in alike(carried)), key=lambda bodies: bodies[0]
         )
-    if not 1 < len(found) <= MOST_APART:
+    if not 1 < len(found) <= PRESOLVE.most_apart:
         if system is whole:
             return ()
         found = [np.arange(len(system.bodies))]

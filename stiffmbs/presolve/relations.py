@@ -16,11 +16,30 @@ from ..compile.record import record_of
 from ..compile.state import State
 from ..compile.system import System, Term
 from ..compile.terms import TERM_SETS
+from ..tuning import tuned
 
-NEGLIGIBLE = 1e-13
-"""Coefficient that counts as zero, relative to the largest of its row."""
-INDEPENDENT = 1e-6
-"""Smallest singular value of independent rows, relative to the largest."""
+
+@dataclass(frozen=True)
+class PresolveParameters:
+    """Parameters of dependent coordinates, of bodies that spin, of modes at rest, and of separate mechanisms.
+
+    Source: tests/presolve.
+    """
+
+    negligible: float = 1e-13
+    """Coefficient that counts as zero, relative to the largest of its row."""
+    independent: float = 1e-6
+    """Smallest singular value of independent rows, relative to the largest."""
+    alike: float = 1e-12
+    """Largest relative difference of the moments across an axis, offset of a marker from it in sizes, and tilt, of a body
+    that may spin about the axis."""
+    at_rest: float = 1e-9
+    """Largest antisymmetric number that counts as zero, relative to the size, mass or speed: rounding of eigenvectors."""
+    most_apart: int = 8
+    """Largest number of mechanisms solved separately, as each has the cost of its own start and steps."""
+
+
+PRESOLVE = tuned("presolve", PresolveParameters())
 
 
 @dataclass
@@ -80,7 +99,7 @@ class Relations:
             _, values, axes = np.linalg.svd(
                 np.array([[part[independent_of] for independent_of in order] for part in same.values()])
             )
-            if values[-1] > INDEPENDENT * values[0]:
+            if values[-1] > PRESOLVE.independent * values[0]:
                 self._move_along(order, free * axes[-1])
                 self.satisfied[list(same)] = True
                 return True
@@ -90,7 +109,7 @@ class Relations:
         """Let leaders follow the one with the largest component of a direction; fix those with a zero component."""
         chief = int(np.argmax(np.abs(direction)))
         for independent_of, part in zip(independents, direction.tolist(), strict=True):
-            if abs(part) <= NEGLIGIBLE:
+            if abs(part) <= PRESOLVE.negligible:
                 self._follow(independent_of, FIXED, 0.0)
             elif independent_of != independents[chief]:
                 self._follow(independent_of, independents[chief], part / direction[chief])
@@ -112,7 +131,7 @@ class Relations:
             independent_of = int(self.independent_of[column])
             if independent_of != FIXED:
                 coefficients[independent_of] = coefficients.get(independent_of, 0.0) + value * self.ratio[column]
-        negligible = NEGLIGIBLE * max(abs(value) for _, value in entries)
+        negligible = PRESOLVE.negligible * max(abs(value) for _, value in entries)
         return {independent_of: value for independent_of, value in coefficients.items() if abs(value) > negligible}
 
     def _follow(self, follower: int, independent_of: int, ratio: float) -> None:
@@ -150,7 +169,7 @@ def dependence(system: System, term: Term, values: np.ndarray) -> Dependence:
     a pose.
     """
     rounding = np.zeros(system.n_c)
-    np.fmax.at(rounding, term.row, NEGLIGIBLE * np.abs(values[term.source]))
+    np.fmax.at(rounding, term.row, PRESOLVE.negligible * np.abs(values[term.source]))
     joints = [(g, group) for g, group in enumerate(system.groups) if group.record.variation]
     found = [_of_group(system, g, group, values, rounding) for g, group in joints]
     first = np.cumsum([0, *(len(part.row) for part in found)])
@@ -300,7 +319,7 @@ def _constant_rows(
     included[C_q.row[counts & (C_q.varies(moves) | ~np.isin(C_q.column, straight))]] = False
     largest = np.zeros(system.n_c)
     np.fmax.at(largest, C_q.row, np.abs(C_q.value))
-    kept = counts & included[C_q.row] & (np.abs(C_q.value) > NEGLIGIBLE * largest[C_q.row])
+    kept = counts & included[C_q.row] & (np.abs(C_q.value) > PRESOLVE.negligible * largest[C_q.row])
     rows: dict[int, list[tuple[int, float]]] = {}
     for row, column, value in zip(
         C_q.row[kept].tolist(), C_q.column[kept].tolist(), C_q.value[kept].tolist(), strict=True
@@ -330,5 +349,8 @@ def _held_orientations(
         inside = np.isin(row, rows)
         C_q_held = np.zeros((len(rows), of_body.n_q))
         np.add.at(C_q_held, (np.searchsorted(rows, row[inside]), place[inside]), derivative[inside])
-        if len(rows) == 3 and np.linalg.svd(C_q_held, compute_uv=False)[-1] > INDEPENDENT * np.abs(C_q_held).max():
+        if (
+            len(rows) == 3
+            and np.linalg.svd(C_q_held, compute_uv=False)[-1] > PRESOLVE.independent * np.abs(C_q_held).max()
+        ):
             yield held, rows.tolist()

@@ -20,10 +20,9 @@ from ..elements.states.state import StateValue
 from ..reading.formula.formula import Formula
 from ..reading.joint_name import JointName
 from ..reading.marker import MarkerReference
+from .relations import PRESOLVE
 
 AXES = "xyz"
-ALIKE = 1e-12
-"""Largest relative difference of the moments across the axis, offset of a marker from it in sizes, and tilt."""
 ANGLE = "spin_angle"
 """Suffix of a body's name for the name of its state."""
 
@@ -132,8 +131,8 @@ class _Demand(NamedTuple):
         if self.what in (REFUSED, BODY):
             return self.what == BODY
         off_axis = np.abs(np.delete(np.array(self.placed.point), axis)).max()
-        on_axis = self.what.startswith(ALONG) or off_axis <= ALIKE * size
-        return bool(on_axis and (self.what == POINT or self._tilt(axis) <= ALIKE))
+        on_axis = self.what.startswith(ALONG) or off_axis <= PRESOLVE.alike * size
+        return bool(on_axis and (self.what == POINT or self._tilt(axis) <= PRESOLVE.alike))
 
     def _tilt(self, axis: int) -> float:
         from ..elements.spatial.orientation import matrix
@@ -188,7 +187,7 @@ def _symmetric_about(body: Any) -> tuple[bool, bool, bool]:
 
 
 def _alike(one: float, other: float) -> bool:
-    return bool(abs(one - other) <= ALIKE * max(one, other))
+    return bool(abs(one - other) <= PRESOLVE.alike * max(one, other))
 
 
 def _is_spun(demands: Sequence[_Demand], turns: np.ndarray, axis: int) -> bool:

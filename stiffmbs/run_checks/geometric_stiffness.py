@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ..elements.spatial.flexible.layout import components, parts
 from .parameters import RUN_CHECKS
 
 REMEDY = "use a body of type: beam, or divide the body into several"
-CLAMPED = 36.0
+CLAMPED: Final = 36.0
 """Stiffening of a slender beam clamped at one end, over the square of its angular velocity by its lowest free one."""
 EULER = 4 * 4.730041**4 / np.pi**2
 """Force by the buckling load of that beam, over force by mass, length and the square of its lowest free one."""

@@ -12,9 +12,6 @@ from ..compile.terms import TERM_SETS
 from ..dynamics.dynamics import Dynamics, OutputRows
 from .parameters import RUN_CHECKS
 
-ROUNDING = 2.0 * np.finfo(float).eps
-"""Four roundings, relative to a coordinate."""
-
 
 class LostDigits(NamedTuple):
     """Element whose force rounding changes most, that change, and the largest force on a body, N."""
@@ -29,12 +26,13 @@ def lost_digits(state: State, t: float) -> LostDigits:
     system, found = state.system, [("", 0.0)]
     state.evaluate("tangent", t)
     size, width = np.append(np.abs(state.q), np.zeros(system.of_body.n_q)), system.of_body.n_u
+    rounding = 0.5 * RUN_CHECKS.roundings * np.finfo(float).eps
     at = 1 + TERM_SETS["tangent"].index("f_q")
     for g, group in enumerate(system.groups):
         if group.entries["f_q"] and group.kind.element.kind:
             source, _, column = group.placed("f_q", int(system.places["tangent"][g, at]))
             row = np.array(group.record.patterns["f_q"])[:, 0]
-            changes = (ROUNDING * np.abs(state.values["tangent"][source]) * size[column]).reshape(group.count, len(row))
+            changes = (rounding * np.abs(state.values["tangent"][source]) * size[column]).reshape(group.count, len(row))
             straight = (row % width < system.of_body.linear)[:, None]
             of_rows = changes @ (straight & (row[:, None] == np.arange(width * group.kind.n_bodies)))
             found += zip(group.names, of_rows.max(axis=1).tolist(), strict=True)

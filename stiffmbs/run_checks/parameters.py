@@ -18,6 +18,8 @@ class RunCheckParameters:
     """Largest rounding of coordinates, relative to a mechanism's size."""
     lost: float = 1e-4
     """Change of a force by the rounding of coordinates, relative to the largest force, above which a note appears."""
+    roundings: int = 4
+    """Number of roundings in each coordinate, for that change."""
     part_of_size: float = 0.01
     """Accumulated error of a mechanism that flies freely, relative to its size, above which a note appears."""
     stiffened: float = 0.03

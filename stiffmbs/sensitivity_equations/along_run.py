@@ -18,7 +18,7 @@ from .block_system import BlockSystem, Change
 from .collocation import CollocationVariations
 from .equations import VariationalEquations, singular
 from .jumps import BreakpointRates, Jump, Jumps, Shifted, State
-from .recorded import Recorder, Segment
+from .recorded import SENSITIVITIES, Recorder, Segment
 
 
 @dataclass(frozen=True)
@@ -173,17 +173,6 @@ class AlongRun:
         self._variations.close()
 
 
-NEAR = 1e-3
-"""Largest extremum near zero, relative to the largest value of an event function in a segment: the largest rtol."""
-FURTHER, LINEAR = 1e3, 0.1
-"""Ratio of two displacements from a grazed breakpoint, and ratio of rate changes that indicates a jump."""
-REST, MOVED, KINKED, NOTICED = 1e-12, 1e-6, 0.4, 1e-12
-"""Value, SI units, of an event function that is on its breakpoint; displacement, m or rad, from such a state; second difference of rates over half of it, relative to that over the
-whole, which is 1/2 at a kink and 1/4 without one; and least second difference relative to the rates."""
-STEADY = 0.75
-"""Least ratio of the errors of derivatives over half of a displacement and the whole: 1 at a breakpoint, 1/2 at most without one."""
-ROUNDED = 1e-14
-"""Rounding of forces, relative to the largest one, and of places, relative to the largest coordinate."""
 FORCES = "f", "rate"
 """Terms of the equations of motion with forces, and of the rates of states."""
 
@@ -211,7 +200,7 @@ class Touches:
         g, rates = found[:, 0], found[:, 1]
         steps = np.diff(rows[:, 0])
         turns = (rates[:-1] * rates[1:] < 0) & (steps > 0)[:, None]
-        near = np.minimum(np.abs(g[:-1]), np.abs(g[1:])) <= NEAR * np.abs(g).max(axis=0)
+        near = np.minimum(np.abs(g[:-1]), np.abs(g[1:])) <= SENSITIVITIES.near * np.abs(g).max(axis=0)
         for k, event in np.argwhere(turns & near):
             part = rates[k, event] / (rates[k, event] - rates[k + 1, event])
             y = self._between(rows[k], rows[k + 1], part)
@@ -224,7 +213,7 @@ class Touches:
                 )
 
         ends = np.cumsum([1 + len(each.rows) for each in segments])
-        return [np.flatnonzero(np.abs(part).max(axis=0) <= REST) for part in np.split(g, ends[:-1])]
+        return [np.flatnonzero(np.abs(part).max(axis=0) <= SENSITIVITIES.at_rest) for part in np.split(g, ends[:-1])]
 
     def refuse_rest(self, resting: np.ndarray, segment: Segment, s: np.ndarray) -> None:
         """Raise a SolverError if a parameter moves the state off a breakpoint that it rests on, with other forces on each side.
@@ -235,9 +224,12 @@ class Touches:
             return
         n, row = self._recorder.equations.n, segment.rows[-1]
         for numbers, dy in zip(self._directions, s, strict=True):
-            size = MOVED / max(float(np.abs(dy).max()), 1.0)
+            size = SENSITIVITIES.moved / max(float(np.abs(dy).max()), 1.0)
             whole, half = (self._bend(row[0], row[2 : 2 + n], dy, numbers, part * size) for part in (1.0, 0.5))
-            if np.any((half > KINKED * whole) & (whole > NOTICED * (1.0 + np.abs(row[2 + n :]).max()))):
+            if np.any(
+                (half > SENSITIVITIES.kinked * whole)
+                & (whole > SENSITIVITIES.noticed * (1.0 + np.abs(row[2 + n :]).max()))
+            ):
                 name = writer(self._dynamics.system, "event_function", int(resting[0]))
                 raise SolverError(
                     f"sensitivities: found that '{name}' stays on its breakpoint from t = {segment.first[0]:.9g} s to {row[0]:.9g} s, "
@@ -245,7 +237,10 @@ class Touches:
                     "stays clear of it"
                 )
             off = [self._off_differences(row[0], row[2 : 2 + n], dy, numbers, part * size) for part in (1.0, 0.5)]
-            if np.any((off[1] > STEADY * off[0]) & (size * off[0] > NOTICED * (1.0 + np.abs(row[2 + n :]).max()))):
+            if np.any(
+                (off[1] > SENSITIVITIES.steady * off[0])
+                & (size * off[0] > SENSITIVITIES.noticed * (1.0 + np.abs(row[2 + n :]).max()))
+            ):
                 name = writer(self._dynamics.system, "event_function", int(resting[0]))
                 raise SolverError(
                     f"sensitivities: found that '{name}' stays on its breakpoint from t = {segment.first[0]:.9g} s to {row[0]:.9g} s, "
@@ -267,8 +262,10 @@ class Touches:
         system, values = self._dynamics.system, self._dynamics.state.values["motion"]
         terms = np.concatenate([system.term("motion", name).source for name in FORCES])
         of_forces = float(np.max(np.abs(values[terms]), initial=0.0)) / size
-        of_places = float(np.max(np.abs(direction.values[terms]), initial=0.0)) * (1.0 + np.abs(y).max()) / MOVED
-        rounding = ROUNDED * (of_forces + of_places)
+        of_places = (
+            float(np.max(np.abs(direction.values[terms]), initial=0.0)) * (1.0 + np.abs(y).max()) / SENSITIVITIES.moved
+        )
+        rounding = SENSITIVITIES.rounded * (of_forces + of_places)
         return np.maximum(np.abs(found - (after - before) / (2 * size)) - rounding, 0.0)
 
     def _forces(self, t: float, y: np.ndarray) -> np.ndarray:
@@ -339,8 +336,8 @@ class Touches:
         if not abs(here) <= margin:
             return False
         dy = np.sign(slope) * tolerance / margin
-        near, far = (self._change(t, y, dy, -here, size) for size in (2 * margin, 2 * FURTHER * margin))
-        return bool(np.any((near > LINEAR * far) & (near > 0)))
+        near, far = (self._change(t, y, dy, -here, size) for size in (2 * margin, 2 * SENSITIVITIES.further * margin))
+        return bool(np.any((near > SENSITIVITIES.linear * far) & (near > 0)))
 
     def _slope(self, t: float, y: np.ndarray, event: int, moves: np.ndarray) -> np.ndarray:
         """Return the derivatives of an event function with respect to the state, by differences over the tolerances."""

@@ -23,21 +23,13 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.storage import FAILURES
 from ..errors import SolverError
 from .block_system import BlockSystem, saddle_solution
-from .recorded import Segment
+from .recorded import SENSITIVITIES, Segment
 
 BreakpointRates = Callable[[float, bool], np.ndarray | None]
 """Function of a time, s, and a flag that requires a result.
 
 It returns the derivatives of the breakpoint at that time, shape (directions,), or None if there is no breakpoint.
 """
-NO_JUMP = 100.0
-"""Largest difference of rates on both sides of an event that does not count as a jump, in relative tolerances."""
-MUCH_LARGER = 2.0
-"""Largest ratio of position sensitivities at a moving to those at a fixed time for which the former are used."""
-ALIKE = 1e-6
-"""Smallest relative difference of event time derivatives of separate events, and smallest relevant effect of a jump."""
-GRAZING = 1e-9
-"""Rate of an event function that counts as zero, relative to its change in the segment over the duration."""
 
 
 @dataclass(frozen=True)
@@ -91,14 +83,14 @@ def _matters(left: State, right: State, duration: float) -> bool:
     """Return True if the discontinuity of rates, over the duration of a segment, exceeds rounding in the state."""
     jumps = np.abs(right.q_rates - left.q_rates), np.abs(right.acceleration - left.acceleration)
     return any(
-        bool(np.max(jump, initial=0.0) * duration > ALIKE * np.max(np.abs(size), initial=0.0))
+        bool(np.max(jump, initial=0.0) * duration > SENSITIVITIES.alike * np.max(np.abs(size), initial=0.0))
         for jump, size in zip(jumps, (left.q, left.u), strict=True)
     )
 
 
 def _same(one: np.ndarray, other: np.ndarray) -> bool:
     """Return True if the derivatives of two event times agree in all directions."""
-    return bool(np.all(np.abs(one - other) <= ALIKE * np.maximum(np.abs(one), np.abs(other))))
+    return bool(np.all(np.abs(one - other) <= SENSITIVITIES.alike * np.maximum(np.abs(one), np.abs(other))))
 
 
 class Jumps:
@@ -115,7 +107,7 @@ class Jumps:
     ) -> None:
         self._dynamics, self._equations, self._block = dynamics, equations, block
         self._numbers, self._breakpoint_rates = directions, breakpoint_rates
-        self._small = NO_JUMP * rtol
+        self._small = SENSITIVITIES.no_jump * rtol
         self._events: list[Direction] = []
         self._motions: list[Direction] = []
 
@@ -129,7 +121,7 @@ class Jumps:
         if self._dynamics.system.n_c:
             to_u = self._projected(left, right.t, to_q, to_u, moved)
         found = Shifted(to_q, to_u, moved)
-        nearer = np.abs(to_q).max(axis=1) <= MUCH_LARGER * np.abs(q).max(axis=1)
+        nearer = np.abs(to_q).max(axis=1) <= SENSITIVITIES.much_larger * np.abs(q).max(axis=1)
         there = found.shifted_where(nearer & bool(before.fired), right.q_rates, right.acceleration)
         return Jump(left, right, (q, u), found.unshifted(right.q_rates, right.acceleration), moved, there)
 
@@ -154,7 +146,7 @@ class Jumps:
         state.q[:], state.u[:], state.lam[:] = right.q, right.u, right.lam
         state.evaluate("event_function", right.t)
         passed = values * state.values["event_function"][: len(values)] < 0
-        still = np.abs(rates) <= GRAZING * np.maximum(np.abs(values).max(), np.abs(rates))
+        still = np.abs(rates) <= SENSITIVITIES.grazing * np.maximum(np.abs(values).max(), np.abs(rates))
         if before.fired and still[before.fired[0]]:
             if jumps:
                 name = writer(system, "event_function", before.fired[0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
@@ -20,22 +21,70 @@ from ..solve.integrator import Integrator
 from ..solve.radau.collocation import radau
 from ..solve.radau.radau import CONTROL, driven_by_radau
 from ..solve.trajectory import Grid
+from ..tuning import tuned
 
-ROUNDING = 1e-13
-"""Rounding of times, relative to the time: least shift of a segment's end before an event, duration of an empty segment."""
-FURTHEST = 1e-6
-"""Largest shift of a segment's end before an event, relative to the segment."""
-SHORT, SUDDEN, JUMP, FELT = 0.1, 10.0, 1e-3, 1e-6
-"""Size of a step, relative to the median of a segment, below which it may contain a discontinuity, as errors there shorten steps.
-Change of an acceleration in a step, relative to that expected from the steps around it, that may be a discontinuity;
-and smallest jump, relative to own and all accelerations."""
-HALVINGS, LEFT, ROUNDINGS = 10, 0.5, 1e3
-"""Halvings of the way through a step, and part of a change that a discontinuity leaves in the last one. Least size of a
-discontinuity relative to the effect of rounding of the state."""
-STAGES = 5
+STAGES: Final = 5
 """Stages of the method by which sensitivities are integrated along steps of `radau`."""
-MOST_NUMBERS = 2e8
-"""Largest number of recorded numbers, 1.6 GB."""
+
+
+@dataclass(frozen=True)
+class SensitivityParameters:
+    """Parameters of recorded runs, of jumps of sensitivities, and of events that sensitivities refuse.
+
+    Source: tests/studies.
+    """
+
+    rounding: float = 1e-13
+    """Rounding of times, relative to the time: least shift of a segment's end before an event, duration of an empty segment."""
+    furthest: float = 1e-6
+    """Largest shift of a segment's end before an event, relative to the segment."""
+    short: float = 0.1
+    """Size of a step, relative to the median of a segment, below which it may contain a discontinuity, as errors there
+    shorten steps."""
+    sudden: float = 10.0
+    """Change of an acceleration in a step, relative to that expected from the steps around it, that may be a discontinuity."""
+    jump: float = 1e-3
+    """Smallest discontinuity of an acceleration, relative to its largest value."""
+    felt: float = 1e-6
+    """Smallest discontinuity of an acceleration, relative to all accelerations."""
+    halvings: int = 10
+    """Halvings of the displacement in a step, in search of a discontinuity."""
+    left: float = 0.5
+    """Part of a change that a discontinuity leaves in the last interval."""
+    roundings: float = 1e3
+    """Least size of a discontinuity relative to the effect of rounding of the state."""
+    most_numbers: int = 200_000_000
+    """Largest number of recorded numbers, 1.6 GB."""
+    no_jump: float = 100.0
+    """Largest difference of rates on both sides of an event that does not count as a jump, in relative tolerances."""
+    much_larger: float = 2.0
+    """Largest ratio of position sensitivities at a moving to those at a fixed time for which the former are used."""
+    alike: float = 1e-6
+    """Smallest relative difference of event time derivatives of separate events, and smallest relevant effect of a jump."""
+    grazing: float = 1e-9
+    """Rate of an event function that counts as zero, relative to its change in the segment over the duration."""
+    near: float = 1e-3
+    """Largest extremum near zero, relative to the largest value of an event function in a segment: the largest rtol."""
+    further: float = 1e3
+    """Ratio of two displacements from a grazed breakpoint."""
+    linear: float = 0.1
+    """Ratio of the rate changes over these displacements that indicates a jump."""
+    at_rest: float = 1e-12
+    """Value, SI units, of an event function that is on its breakpoint."""
+    moved: float = 1e-6
+    """Displacement from a state on a breakpoint, m or rad."""
+    kinked: float = 0.4
+    """Second difference of rates over half of it, relative to that over the whole, which is 1/2 at a kink and 1/4 without."""
+    noticed: float = 1e-12
+    """Least second difference, relative to the rates."""
+    steady: float = 0.75
+    """Least ratio of the errors of derivatives over half of a displacement and the whole: 1 at a breakpoint, 1/2 at most
+    without one."""
+    rounded: float = 1e-14
+    """Rounding of forces, relative to the largest one, and of places, relative to the largest coordinate."""
+
+
+SENSITIVITIES = tuned("sensitivities", SensitivityParameters())
 
 
 @dataclass
@@ -101,7 +150,9 @@ class Recorder(Integrator):
     def passed(self, duration: float) -> list[Segment]:
         """Return the segments of nonzero length; raise a SolverError when accelerations are discontinuous within one."""
         found = [each for each in self.segments if len(each.rows)]
-        found = [each for each in found if each.rows[-1, 0] - each.first[0] > ROUNDING * duration] or found
+        found = [
+            each for each in found if each.rows[-1, 0] - each.first[0] > SENSITIVITIES.rounding * duration
+        ] or found
         for segment in found:
             self._refuse_jumps_within(segment)
         return found
@@ -110,7 +161,7 @@ class Recorder(Integrator):
         """Refuse forces with undeclared discontinuities, where an acceleration changes more than around a step."""
         rows, n, at = segment.rows, self.equations.n, self.equations.at["u"]
         h = np.diff(rows[:, 0])[:, None]
-        short = h[:, 0] < SHORT * np.median(h) if len(h) else np.zeros(0, dtype=bool)
+        short = h[:, 0] < SENSITIVITIES.short * np.median(h) if len(h) else np.zeros(0, dtype=bool)
         if not short.any():
             return
         near = np.convolve(np.append(short, False), np.ones(4), "full")[1 : 1 + len(rows)] > 0
@@ -118,11 +169,11 @@ class Recorder(Integrator):
         a[near] = self._all_accelerations(rows[near])
         system, largest = self.dynamics.system, np.abs(rows[:, 2 + n + at]).max(axis=0)
         scale = system.per_velocity(system.size, 1.0)
-        least = np.maximum(JUMP * largest, FELT * np.max(largest / scale) * scale)
+        least = np.maximum(SENSITIVITIES.jump * largest, SENSITIVITIES.felt * np.max(largest / scale) * scale)
         change = np.abs(np.diff(a, axis=0))
         slopes = np.pad(change / h, ((1, 1), (0, 0)))
         expected = h * np.nan_to_num(np.fmax(slopes[:-2], slopes[2:]))
-        sudden = np.any((change > least) & (change > SUDDEN * expected), axis=1)
+        sudden = np.any((change > least) & (change > SENSITIVITIES.sudden * expected), axis=1)
         for k in np.flatnonzero(short & sudden):
             if self._jumps_between(rows[k], rows[k + 1], least):
                 raise SolverError(
@@ -137,14 +188,18 @@ class Recorder(Integrator):
         ends = [(row[: 2 + n], self._accelerations(row[0], row[2 : 2 + n])) for row in (before, after)]
         changed = ends[1][1]
         whole = np.abs(changed - ends[0][1])
-        for _ in range(HALVINGS):
+        for _ in range(SENSITIVITIES.halvings):
             middle = (ends[0][0] + ends[1][0]) / 2
             found = middle, self._accelerations(middle[0], middle[2:])
             changes = [np.max(np.abs(found[1] - end) / np.maximum(whole, least)) for _, end in ends]
             ends[int(np.argmin(changes))] = found
         left = np.abs(ends[1][1] - ends[0][1])
         noise = self._accelerations(after[0], after[2 : 2 + n] * (1 + np.finfo(float).eps)) - changed
-        return bool(np.any((left > least) & (left > LEFT * whole) & (left > ROUNDINGS * np.abs(noise))))
+        return bool(
+            np.any(
+                (left > least) & (left > SENSITIVITIES.left * whole) & (left > SENSITIVITIES.roundings * np.abs(noise))
+            )
+        )
 
     def _all_accelerations(self, rows: np.ndarray) -> np.ndarray:
         """Return the accelerations of the force law at recorded states, NaN where there are none."""
@@ -176,10 +231,10 @@ class Recorder(Integrator):
         if not len(rows):
             return
         t, y, yp = rows[-1, 0], rows[-1, 2 : 2 + n].copy(), rows[-1, 2 + n :]
-        back = ROUNDING * max(abs(t), t - segment.first[0])
+        back = SENSITIVITIES.rounding * max(abs(t), t - segment.first[0])
         if segment.fired:
             ahead = self._value(segment.fired[0], t + back, y + back * yp)
-            while back < FURTHEST * (t - segment.first[0]):
+            while back < SENSITIVITIES.furthest * (t - segment.first[0]):
                 if self._value(segment.fired[0], t - back, y - back * yp) * ahead < 0:
                     break
                 back *= 10.0
@@ -221,7 +276,7 @@ class Recorder(Integrator):
         segment.parts.append(steps[kept].reshape(-1, rows.shape[1]))
         segment.fired = reached.fired
         self._numbers += rows.size
-        if self._numbers > MOST_NUMBERS:
+        if self._numbers > SENSITIVITIES.most_numbers:
             raise SolverError(
                 f"sensitivities: found {self._numbers / rows.shape[1]:.3g} steps of {rows.shape[1]} numbers, expected fewer; "
                 "give a shorter duration or a larger rtol"

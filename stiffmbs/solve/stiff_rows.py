@@ -7,7 +7,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ..dynamics.dynamics import POSITION_TOLERANCE, Dynamics, OutputRows
+from ..dynamics.dynamics import Dynamics, OutputRows
+from ..dynamics.native.parameters import CONSISTENCY
 from ..dynamics.stiff_projection import StiffProjection
 from .error_control.newton import stiffness_at
 from .trajectory import Trajectory
@@ -40,7 +41,7 @@ def with_stiff_forces(
 
 def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.ndarray, rtol: float) -> np.ndarray:
     """Return the rows whose projections may have changed a force by more than `rtol` of the largest."""
-    at = np.flatnonzero((rows.drift > POSITION_TOLERANCE) & (steps[: len(rows.t)] > 0.0))
+    at = np.flatnonzero((rows.drift > CONSISTENCY.position_tolerance) & (steps[: len(rows.t)] > 0.0))
     if not len(at):
         return at
     allowed = rtol * _largest_force(dynamics, _of(states, at[-1:]), float(rows.t[at[-1]]))

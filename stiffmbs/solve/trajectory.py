@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from ..dynamics.storage import BLOCK, allocated, release
+from ..dynamics.storage import STORAGE, allocated, release
 from ..errors import SolverError
 from ..model.settings import RunSettings
 
@@ -194,7 +194,7 @@ class Rows:
         added = slice(self._count, self._count + len(t))
         self._t[added], self._q[added], self._u[added] = t, q, u
         self._count += len(t)
-        if self._count - self._released > BLOCK:
+        if self._count - self._released > STORAGE.block:
             release(self._t, self._q, self._u)
             self._released = self._count
 

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs import tuning
 from stiffmbs.dynamics import storage
 from stiffmbs.results.files import write
 
 
-def test_large_arrays_lie_in_files_and_keep_what_they_hold(monkeypatch):
-    monkeypatch.setattr(storage, "LARGEST_IN_MEMORY", 1000)
-    small, large = storage.allocated(10, 2), storage.allocated(300, 4)
+def test_large_arrays_lie_in_files_and_keep_what_they_hold():
+    with tuning.in_use({"storage": {"largest_in_memory": 1000}}):
+        small, large = storage.allocated(10, 2), storage.allocated(300, 4)
     large[:] = np.arange(1200.0).reshape(300, 4)
     storage.release(small, large, large[5:9, 1])
     np.testing.assert_array_equal(large, np.arange(1200.0).reshape(300, 4))
@@ -26,25 +27,24 @@ def test_a_full_disk_is_told_before_anything_is_written(monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(storage, "LARGEST_IN_MEMORY", 1000)
     monkeypatch.setattr(os, "posix_fallocate", full)
-    with pytest.raises(stiffmbs.InputError, match="too little space"):
+    few = tuning.in_use({"storage": {"largest_in_memory": 1000}})
+    with few, pytest.raises(stiffmbs.InputError, match="too little space"):
         storage.allocated(300, 4)
 
 
-def test_results_in_files_are_those_in_memory(examples, monkeypatch, tmp_path):
+def test_results_in_files_are_those_in_memory(examples, tmp_path):
     scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
     cases = ({}, {"solver": "projected", "scheme": "dop853"})
     in_memory = [stiffmbs.run(scene, points=5003, **changes) for changes in cases]
-    monkeypatch.setattr("stiffmbs.solve.trajectory.BLOCK", 700)
-    monkeypatch.setattr(storage, "BLOCK", 700)
-    monkeypatch.setattr(storage, "LARGEST_IN_MEMORY", 1000)
+    few = {"storage": {"largest_in_memory": 1000, "block": 700}}
     for changes, expected in zip(cases, in_memory, strict=True):
-        found = stiffmbs.run(scene, points=5003, **changes)
+        found = stiffmbs.run(scene, points=5003, tuning=few, **changes)
         for name in expected:
             np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
-    for ending in ("csv", "npz"):
-        write(tmp_path / f"results.{ending}", found)
+    with tuning.in_use(few):
+        for ending in ("csv", "npz"):
+            write(tmp_path / f"results.{ending}", found)
     table = np.genfromtxt(tmp_path / "results.csv", delimiter=",", names=True, deletechars="")
     column = {head.partition("_(")[0]: head for head in table.dtype.names}
     with np.load(tmp_path / "results.npz") as archive:

@@ -8,8 +8,8 @@ from zipfile import ZipFile
 import numpy as np
 import pytest
 
-from stiffmbs.dynamics import storage
 from stiffmbs.results.archive import write_archive
+from stiffmbs.tuning import in_use
 
 ROWS = np.random.default_rng(1).normal(size=(500, 3))
 ARRAYS = {
@@ -28,10 +28,10 @@ ARRAYS = {
 
 
 @pytest.mark.parametrize("block", [100_000, 7])
-def test_archives_contain_the_arrays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, block: int) -> None:
-    monkeypatch.setattr(storage, "BLOCK", block)
+def test_archives_contain_the_arrays(tmp_path: Path, block: int) -> None:
     path = tmp_path / "a.npz"
-    write_archive(path, ARRAYS)
+    with in_use({"storage": {"block": block}}):
+        write_archive(path, ARRAYS)
     with ZipFile(path) as archive:
         assert archive.testzip() is None
         assert archive.namelist() == [f"{name}.npy" for name in ARRAYS]

@@ -14,7 +14,13 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import tuning
+from stiffmbs.analyses import job as job_module
+from stiffmbs.analyses.job import prepare
 from stiffmbs.commands.main import main
+from stiffmbs.dynamics.native.layouts import DYNAMICS
+from stiffmbs.equilibria.parameters import EQUILIBRIA
+from stiffmbs.redundancy.parameters import REDUNDANCY
+from tests.bench.problems.chain_in_space import chain_in_space
 
 ROOT = Path(stiffmbs.__file__).parents[1]
 EXAMPLE = str(ROOT / "examples" / "cart_pendulum.yaml")
@@ -126,6 +132,40 @@ def test_an_equilibrium_uses_changed_parameters():
     with pytest.raises(stiffmbs.SolverError):
         stiffmbs.equilibrium(EXAMPLE, tuning={"equilibria": {"most_moves": 1, "most_corrections": 1}})
     assert stiffmbs.equilibrium(EXAMPLE).imbalance < 1e-6
+
+
+def test_modes_use_changed_parameters():
+    with pytest.raises(stiffmbs.SolverError, match="has no mass"):
+        stiffmbs.modes(EXAMPLE, tuning={"linear_analysis": {"singular": 1.01}})
+    assert len(stiffmbs.modes(EXAMPLE).modes) == 2
+
+
+def test_the_elimination_of_a_job_uses_changed_parameters():
+    scene = chain_in_space(10)
+    table = [
+        prepare(scene, tuning=changes).dynamics.table for changes in ({}, {"elimination": {"worth_compiling": 10**7}})
+    ]
+    assert [each[list(DYNAMICS).index("eliminates")] for each in table] == [1, 0]
+
+
+def test_a_start_after_a_parameter_change_uses_changed_parameters(monkeypatch):
+    job = prepare(EXAMPLE, tuning={"equilibria": {"most_moves": 7}})
+    monkeypatch.setattr(job_module, "_start", lambda *_: EQUILIBRIA.most_moves)
+    assert job_module.start_of_job(job) == 7
+
+
+def test_joints_that_hold_at_the_start_use_changed_parameters(monkeypatch):
+    scene = stiffmbs.load_scene(EXAMPLE, [("at_start.push", "{type: drive, joint: hinge, velocity: 1}")])
+    seen = []
+
+    def examine(*arguments):
+        seen.append(REDUNDANCY.most_names)
+        return usual(*arguments)
+
+    usual = job_module.examine
+    monkeypatch.setattr(job_module, "examine", examine)
+    prepare(scene, tuning={"redundancy": {"most_names": 2}})
+    assert seen == [2, 2]
 
 
 def test_a_run_notes_its_changed_parameters():

@@ -12,6 +12,7 @@ from ...errors import SolverError
 from ...model.model_data import ModelData
 from ...model.settings import RunSettings
 from ...redundancy.redundancy import Redundancy
+from ...tuning import in_use
 from ..job import Runnable, prepare
 from ..start_from import StartFrom
 from .sides import Instant
@@ -19,10 +20,11 @@ from .sides import Instant
 
 @dataclass(frozen=True)
 class AtState(Instant):
-    """Model at a time, s."""
+    """Model at a time, s, and the settings of the run to it."""
 
     data: ModelData
     redundancy: Redundancy
+    settings: RunSettings
 
 
 def at_state(
@@ -48,9 +50,11 @@ def at_state(
             raise SolverError(f"no state was found at t = {at:g} s: {trajectory.message}")
         t, state = at, job.dynamics.state
         state.q[:], state.u[:] = trajectory.q[-1], trajectory.u[-1]
-        job.dynamics.assemble(t)
-        job.dynamics.correct_velocities(t)
-    status, acceleration = job.dynamics.accelerate(t)
+    with in_use(job.settings.tuning):
+        if t != job.grid.start:
+            job.dynamics.assemble(t)
+            job.dynamics.correct_velocities(t)
+        status, acceleration = job.dynamics.accelerate(t)
     if status < 0:
         raise SolverError(f"no accelerations were found at t = {t:g} s: {failure(job.dynamics, status, t)}")
-    return AtState(job.dynamics, t, acceleration, job.data, job.redundancy)
+    return AtState(job.dynamics, t, acceleration, job.data, job.redundancy, job.settings)

@@ -19,6 +19,7 @@ from ...redundancy.messages.redundancy import derivative_sentences
 from ...results.energy_balance import energy_balance
 from ...results.solution import Solution
 from ...solve.sampling import held
+from ...tuning import in_use
 from ..equilibrium import solution_of_rows
 from ..job import Runnable
 from ..settled import GROWING
@@ -132,6 +133,11 @@ def modes(
         If the run does not reach that time, or a free motion has no mass.
     """
     found = at_state(model, settings, at, start_from, **changes)
+    with in_use(found.settings.tuning):
+        return _of_state(found)
+
+
+def _of_state(found: AtState) -> Modes:
     system = found.dynamics.system
     scale = system.per_velocity(system.size, 1.0)
     linear, state, kink = linearised_at(found, scale)

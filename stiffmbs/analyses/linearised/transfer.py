@@ -20,6 +20,7 @@ from ...model.settings import RunSettings, Settings, takes_settings
 from ...reading.did_you_mean import did_you_mean
 from ...redundancy.messages.redundancy import derivative_sentences
 from ...results.channels import channels_of
+from ...tuning import in_use
 from ..job import Runnable, prepare
 from ..start_from import StartFrom
 from .at_state import AtState, at_state
@@ -83,6 +84,13 @@ def transfer(
     if not outputs:
         raise InputError("outputs: found none, expected one channel or more")
     found = at_state(model, settings, at, start_from, **changes)
+    with in_use(found.settings.tuning):
+        return _of_state(found, inputs, outputs, changes)
+
+
+def _of_state(
+    found: AtState, inputs: Sequence[str] | Mapping[str, Parameterised], outputs: Sequence[str], changes: Settings
+) -> Transfer:
     system = found.dynamics.system
     scale = system.per_velocity(system.size, 1.0)
     linear, state, kink = linearised_at(found, scale)

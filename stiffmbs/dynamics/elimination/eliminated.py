@@ -16,6 +16,7 @@ from ...compile.machine.routines import together
 from ...compile.state import State
 from ...compile.system import System
 from ..native.layouts import ELIMINATED
+from ..native.parameters import ELIMINATION
 from ..saddle_point import ACCELERATIONS
 from .joint_blocks import Joints, block_lists
 from .native.layouts import BLOCK_ELIMINATION, PIN_ELIMINATION, Pin, PinProduct
@@ -26,13 +27,6 @@ ATTEMPT, MOVE = together(
     attempt="int32(float64, float64*, int64*)",
     move="int32(float64*, int64*)",
 )
-MOST_MULTIPLICATIONS = 3
-"""Multiplications of the elimination, relative to an LU of the whole system, up to which it is less expensive: its
-blocks are dense and in order."""
-EVEN = 100.0
-"""Ratio of the square roots of inertias, in units of mass, up to which pivots reflect the geometry."""
-LEAST = 1e-9
-"""Allowed residual of J u' = gamma, m/s^2 or rad/s^2, times the size of mechanisms smaller than 1 m."""
 
 
 class Eliminated:
@@ -62,10 +56,12 @@ class Eliminated:
         joints = Joints([rows[joint] for joint in order], [bodies.get(joint, []) for joint in order])
         hanging = len(system.term("acceleration", "f_lam").source) + len(system.term("acceleration", "inertia").source)
         self.multiplications = joints.updates
-        few = self.multiplications <= MOST_MULTIPLICATIONS * updates
+        few = self.multiplications <= ELIMINATION.most_multiplications * updates
         self.serves = not hanging and not system.algebraic.any() and few
         resisting = np.sqrt(system.mass) / system.per_velocity(1.0, system.size)
-        self.pivots_tell = self.serves and bool(resisting.max(initial=0.0) < EVEN * resisting.min(initial=np.inf))
+        self.pivots_tell = self.serves and bool(
+            resisting.max(initial=0.0) < ELIMINATION.even * resisting.min(initial=np.inf)
+        )
         self.table = np.zeros(len(ELIMINATED), dtype=np.int64)
         self._cells = self.table.view(ELIMINATED.cells)[0]
         if self.serves:
@@ -89,7 +85,7 @@ class Eliminated:
                 **arrays_of(ELIMINATED, arrays),
                 "state": state.table,
                 "kept": 1.0,
-                "least": LEAST * min(1.0, system.size),
+                "least": ELIMINATION.least_residual * min(1.0, system.size),
                 **numbers,
             }
             fill(self.table, ELIMINATED, self._arrays)

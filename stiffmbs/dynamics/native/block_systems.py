@@ -15,22 +15,12 @@ from stiffmbs.compile.machine.native.statuses import (
     NOT_FINITE,
     SINGULAR,
 )
-from stiffmbs.dynamics.native.layouts import POSITION_TOLERANCE
+from stiffmbs.dynamics.native.parameters import CONSISTENCY
 
-MOST_FROZEN_MOVES = 3
-"""Largest number of moves with the factors of another state; one usually suffices nearby."""
 ROUNDING = 4 * float_info.epsilon
 """Smallest detectable violation relative to the largest coordinate or velocity: four roundings."""
 ENTRY_ROUNDING = ROUNDING / 2
 """Difference of two entries in block matrices with unit diagonal that is rounding: two roundings of 1."""
-MOST_FRICTION_ITERATIONS = 40
-FRICTION_TOLERANCE = 1e-13
-"""Change of multipliers, relative to the largest multiplier or force, at which the friction iteration converges."""
-ROUNDED_OFF = 1e-9
-"""Change that is accepted after the last iteration."""
-STATE_ROUNDED_OFF, SLOW = 1e-7, 0.25
-"""Change of algebraic states, relative to values or scales, that is accepted above `POSITION_TOLERANCE` if it is at least the
-second number times its predecessor."""
 
 
 @compiled
@@ -164,7 +154,7 @@ def to_accelerations(s, m, t):
     for k in range(m.n_algebraic):
         m.algebraic_before[k] = s.q[m.algebraic[k]]
     moved = 0.0
-    for _ in range(MOST_FRICTION_ITERATIONS):
+    for _ in range(CONSISTENCY.most_iterations):
         for k in range(s.n_c):
             if e.at_lam[k] >= 0:
                 f.previous[e.at_lam[k]] = s.lam[k]
@@ -176,7 +166,9 @@ def to_accelerations(s, m, t):
             return _algebraic_back(s, m, NO_BALANCE if iterated and status == SINGULAR else status)
         before = moved
         moved = _algebraic_moved(s, m, e, f)
-        found = moved <= POSITION_TOLERANCE or (moved <= STATE_ROUNDED_OFF and moved >= SLOW * before)
+        found = moved <= CONSISTENCY.position_tolerance or (
+            moved <= CONSISTENCY.state_rounded_off and moved >= CONSISTENCY.slow * before
+        )
         change = 0.0
         largest = _largest_force(s, e, values) if iterated else 0.0
         for k in range(s.n_c):
@@ -184,8 +176,8 @@ def to_accelerations(s, m, t):
             change = max(change, abs(new - s.lam[k]))
             largest = max(largest, abs(new))
             s.lam[k] = new
-        if not iterated or (found and change <= FRICTION_TOLERANCE * largest):
+        if not iterated or (found and change <= CONSISTENCY.converged * largest):
             if m.by_reactions:
                 evaluate(s, ACCELERATION, t)
             return 0
-    return 0 if found and change <= ROUNDED_OFF * largest else _algebraic_back(s, m, NO_BALANCE)
+    return 0 if found and change <= CONSISTENCY.rounded_off * largest else _algebraic_back(s, m, NO_BALANCE)

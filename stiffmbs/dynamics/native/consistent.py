@@ -17,7 +17,6 @@ from stiffmbs.compile.machine.native.evaluate import (
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.dynamics.native.block_systems import (
-    MOST_FROZEN_MOVES,
     ROUNDING,
     largest_of,
     largest_open,
@@ -25,14 +24,8 @@ from stiffmbs.dynamics.native.block_systems import (
     to_position_constraints,
     to_velocity_constraints,
 )
+from stiffmbs.dynamics.native.parameters import CONSISTENCY, ELIMINATION
 from stiffmbs.dynamics.native.views import eliminated_view
-
-KEPT = 1e-3
-"""Least pivot relative to its diagonal for elimination, which then loses at most three of sixteen digits."""
-CONTRACTION = 0.01
-"""Part of a violation that a move by the factors of a nearby pose may leave."""
-LEFT = 1e-10
-"""Allowed residual of accelerations relative to the terms of J u' = gamma: forces on light bodies amplify rounding."""
 
 
 @compiled
@@ -41,7 +34,10 @@ def _eliminated(s, m, t):
     if not m.eliminates:
         return False
     r = eliminated_view(m.eliminated)
-    return call_int(r.attempt, (t, factors_view(m.acceleration_factors).b, m.eliminated)) != 0 and r.kept >= KEPT
+    return (
+        call_int(r.attempt, (t, factors_view(m.acceleration_factors).b, m.eliminated)) != 0
+        and r.kept >= ELIMINATION.kept
+    )
 
 
 @compiled
@@ -59,7 +55,7 @@ def _satisfy_joints(s, m):
             r.sizes[f.a_row[p]] += abs(part)
     beyond = 0
     for row in range(s.n_u, f.n):
-        beyond += 0 if abs(r.left[row]) <= LEFT * r.sizes[row] + r.least else 1  # also for NaN
+        beyond += 0 if abs(r.left[row]) <= ELIMINATION.residual * r.sizes[row] + r.least else 1  # also for NaN
     return beyond == 0
 
 
@@ -79,31 +75,31 @@ def _closed(r, s, m, t, tolerance):
     """Project q and u onto the constraints with the current factors; return True if that converges.
 
     The constraint terms of the set ``motion`` are then those of the result. Each move must reduce the violation to a part
-    `CONTRACTION`, so that moves by the factors of another pose are close to those of smallest norm.
+    `contraction`, so that moves by the factors of another pose are close to those of smallest norm.
     """
     joints = state_view(m.constraining)
     violations = evaluate(joints, MOTION, t)
     close = max(tolerance, ROUNDING * largest_of(s.q, s.n_pose))
-    for _ in range(MOST_FROZEN_MOVES):
+    for _ in range(CONSISTENCY.most_frozen_moves):
         before = largest_open(s, violations)
         if before > close:
             call_int(r.move, (violations, m.eliminated))
             add_rates(s, r.a, 1.0, s.q)
             take_unit_length(s)
             violations = evaluate(joints, MOTION, t)
-            if not largest_open(s, violations) <= max(close, CONTRACTION * before):
+            if not largest_open(s, violations) <= max(close, CONSISTENCY.contraction * before):
                 return False
     if largest_open(s, violations) > close:
         return False
     close = max(tolerance, ROUNDING * largest_of(s.u, s.n_u))
-    for _ in range(MOST_FROZEN_MOVES):
+    for _ in range(CONSISTENCY.most_frozen_moves):
         before = largest_open(s, shifted(violations, s.n_c))
         if before > close:
             call_int(r.move, (shifted(violations, s.n_c), m.eliminated))
             for k in range(s.n_u):
                 s.u[k] += r.a[k]
             violations = evaluate(joints, MOTION, t)
-            if not largest_open(s, shifted(violations, s.n_c)) <= max(close, CONTRACTION * before):
+            if not largest_open(s, shifted(violations, s.n_c)) <= max(close, CONSISTENCY.contraction * before):
                 return False
     return largest_open(s, shifted(violations, s.n_c)) <= close
 

@@ -16,12 +16,8 @@ from stiffmbs.dynamics.native.block_systems import (
     to_velocity_constraints,
 )
 from stiffmbs.dynamics.native.consistent import consistent_accelerations, from_row_to_row
-from stiffmbs.dynamics.native.layouts import MOST_MOVES
+from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view
-
-AMPLIFIED, MOVED = 1e6, 1e-6
-"""Amplification of a violation, and fraction of the largest coordinate, above which the move of a projection is
-refused: the pose is then singular up to rounding."""
 
 
 def assemble(t, tolerance, most, dynamics):
@@ -101,7 +97,7 @@ def _led_astray(s, q, violation):
     moved = 0.0
     for k in range(s.n_q):
         moved = max(moved, abs(s.q[k] - q[k]))
-    return moved > AMPLIFIED * violation and moved > MOVED * largest_of(s.q, s.n_q)
+    return moved > CONSISTENCY.amplified * violation and moved > CONSISTENCY.moved * largest_of(s.q, s.n_q)
 
 
 @compiled
@@ -116,7 +112,7 @@ def _output_point(s, m, t, q, project, tolerance, largest, first):
     status = 0
     if project and s.n_c > 0:
         largest[2] = _largest_violation(s, evaluate(s, POSITION, t))
-        status = from_row_to_row(s, m, t, tolerance, MOST_MOVES, first)
+        status = from_row_to_row(s, m, t, tolerance, CONSISTENCY.most_moves, first)
         if status < 0:
             return status
         if _led_astray(s, q, largest[2]):

@@ -27,8 +27,3 @@ ELIMINATED = Layout({
 tells the kind of the table `lists`.  `ready` is 1 if there are factors; `kept` and `most_kept` are the relative
 sizes of their pivots now and at most.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
 state; residuals of the block system, sizes of their terms, and the least allowed residual."""
-
-MOST_MOVES = 20
-"""Largest number of Newton steps of the projection from a nearby state."""
-POSITION_TOLERANCE = 1e-12
-"""Largest violation after a projection onto the positions, apart from rounding, m or rad."""

@@ -5,14 +5,13 @@ from stiffmbs.compile.machine.native.evaluate import MOTION, POSITION, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.dynamics.elimination.native.eliminated import smallest_move
 from stiffmbs.dynamics.native.block_systems import (
-    MOST_FROZEN_MOVES,
     ROUNDING,
     largest_of,
     largest_open,
     to_position_constraints,
     to_velocity_constraints,
 )
-from stiffmbs.dynamics.native.layouts import MOST_MOVES
+from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import eliminated_view
 
 
@@ -24,7 +23,7 @@ def _by_frozen_factors(r, s, t, tolerance):
     """
     violations = evaluate(s, POSITION, t)
     close = max(tolerance, ROUNDING * largest_of(s.q, s.n_pose))
-    for _ in range(MOST_FROZEN_MOVES):
+    for _ in range(CONSISTENCY.most_frozen_moves):
         if largest_open(s, violations) > close:
             smallest_move(r, s, violations)
             add_rates(s, r.a, 1.0, s.q)
@@ -48,5 +47,5 @@ def back_to_constraints(x, s, m, t):
         r = eliminated_view(x.eliminated)
         if r.ready and _by_frozen_factors(r, s, t, x.tolerance):
             return 0
-    status = to_position_constraints(s, m, t, x.tolerance, MOST_MOVES)
+    status = to_position_constraints(s, m, t, x.tolerance, CONSISTENCY.most_moves)
     return status if status < 0 else to_velocity_constraints(s, m, t)

@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.compile.machine.native.statuses import NO_CONVERGENCE, SINGULAR
 from stiffmbs.dynamics.native.block_systems import ROUNDING, largest_of, largest_open
-from stiffmbs.dynamics.native.layouts import MOST_MOVES, POSITION_TOLERANCE
+from stiffmbs.dynamics.native.parameters import CONSISTENCY
 
 
 @compiled
@@ -26,9 +26,9 @@ def project_stiffly(t, cj, positions, velocities, factors, state):
     add_entries(e, evaluate(s, e.matrix_set, t), cj, factors_view(factors).a)
     if factored(factors) != DONE:
         return SINGULAR
-    for _ in range(MOST_MOVES):
+    for _ in range(CONSISTENCY.most_moves):
         values = evaluate(s, MOTION, t)
-        if largest_open(s, values) <= max(POSITION_TOLERANCE, ROUNDING * largest_of(s.q, s.n_pose)):
+        if largest_open(s, values) <= max(CONSISTENCY.position_tolerance, ROUNDING * largest_of(s.q, s.n_pose)):
             move = _move(factors, velocities, values)
             for k in range(s.n_u):
                 s.u[k] += move[k]

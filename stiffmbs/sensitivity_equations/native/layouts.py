@@ -1,5 +1,7 @@
 """Tables of variational equations."""
 
+from typing import Final
+
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
 
 VARIATIONS = Layout({
@@ -17,7 +19,7 @@ of a step. `by_time` is the `PART` of r_t, `shift` the derivative of the event t
 
 Cells: 1 if any shift is nonzero, newest row of the history, cj of the step."""
 
-DEPTH = 8
+DEPTH: Final = 8
 """Number of stored steps; order 5 needs six before the current one."""
 
 PART = Layout({

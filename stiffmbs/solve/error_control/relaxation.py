@@ -9,7 +9,7 @@ import numpy as np
 
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics, OutputRows
-from ...dynamics.storage import CACHED, blocks, release
+from ...dynamics.storage import STORAGE, blocks, release
 from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
@@ -122,8 +122,9 @@ def _heaviest(system: System) -> np.ndarray:
 def drifts(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, limit: float) -> bool:
     """Return True if the drift of a run may exceed `limit` tolerances; an inexpensive bound of `drift_of`."""
     least = float(absolute_tolerances(system, settings)[system.n_q :].min())
-    before, firsts = trajectory.u[: len(rows.t)], range(0, len(rows.t), CACHED)
-    off = max([float(np.abs(before[k : k + CACHED] - rows.u[k : k + CACHED]).max()) for k in firsts])
+    before, block = trajectory.u[: len(rows.t)], STORAGE.block
+    firsts = range(0, len(rows.t), block)
+    off = max([float(np.abs(before[k : k + block] - rows.u[k : k + block]).max()) for k in firsts])
     return not max(off, _slip(system, rows, settings)) <= limit * least
 
 

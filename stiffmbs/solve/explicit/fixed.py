@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compile.machine.routines import Routine
-from ...dynamics.dynamics import POSITION_TOLERANCE, Dynamics
+from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
+from ...dynamics.native.parameters import CONSISTENCY
 from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
@@ -65,7 +66,7 @@ def euler_cromer(dynamics: Dynamics, start: InitialValues, settings: RunSettings
     state.q[:], state.u[:] = start.q, start.u
 
     def take(t: float, h: float, steps: int) -> int:
-        return steps_of(t, h, steps, settings.projection, POSITION_TOLERANCE, table)
+        return steps_of(t, h, steps, settings.projection, CONSISTENCY.position_tolerance, table)
 
     return Stepper("euler_cromer", state.q, state.u, take, 1)
 

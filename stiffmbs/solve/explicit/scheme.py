@@ -13,7 +13,8 @@ from ...compile.coordinates import all_independent
 from ...compile.machine.layout import packed
 from ...compile.machine.routines import together
 from ...compile.system import Term
-from ...dynamics.dynamics import POSITION_TOLERANCE, Dynamics
+from ...dynamics.dynamics import Dynamics
+from ...dynamics.native.parameters import CONSISTENCY
 from ..error_control.accumulated_errors import ErrorSums
 from ..ida.native.parameters import LOOP
 from .native.layouts import EXPLICIT, SCHEME
@@ -134,7 +135,7 @@ class StepMemory:
         self._arrays = {
             "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
             "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
-            "tolerance": POSITION_TOLERANCE, "atol": self.atol,
+            "tolerance": CONSISTENCY.position_tolerance, "atol": self.atol,
             "n_event_functions": events, "end_at_event": END_AT_EVENT.address if searched else 0, "signs": np.zeros(events),
             "lam": self.lam, "y": self.y, "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),

@@ -16,8 +16,7 @@ from ...model.settings import RunSettings
 from ...redundancy.messages.redundancy import derivative_sentences
 from ...results.channels import channels_of
 from ...sensitivity_equations.along_run import AlongRun, Instant, Side
-from ...sensitivity_equations.jumps import NO_JUMP
-from ...sensitivity_equations.recorded import STAGES, Recorder
+from ...sensitivity_equations.recorded import SENSITIVITIES, STAGES, Recorder
 from ...solve.bdf import integrated
 from ...solve.missing_rows import reported
 from ...solve.settings import changed
@@ -234,10 +233,10 @@ class DifferentiatedRun:
             )
         self._set_ups = [SetUp(job, parameter) for parameter in parameters]
         self._numbers = [set_up.numbers for set_up in self._set_ups]
-        self._recorder = Recorder(job.dynamics, job.settings)
-        job.dynamics.forget_pivots()
         grid = job.grid if times is None else Grid(job.grid.start, job.grid.end, times)
         with in_use(job.settings.tuning):
+            self._recorder = Recorder(job.dynamics, job.settings)
+            job.dynamics.forget_pivots()
             self._trajectory = integrated(self._recorder, job.start, grid, lambda _: None)
         if self._trajectory.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
@@ -299,13 +298,13 @@ class DifferentiatedRun:
     def _slopes(self, channels: dict[str, np.ndarray], instants: np.ndarray) -> dict[str, np.ndarray]:
         """Return the derivatives of all channels, shape (n, directions); zero at other than the given instants."""
         job, rows, count = self._job, self._rows, len(self._set_ups)
-        along = AlongRun(job.dynamics, self._recorder, self._numbers, breakpoint_rates(self._set_ups))
-        start_q, start_u = (np.array([set_up.start[k] for set_up in self._set_ups]) for k in range(2))
-        try:
-            with in_use(job.settings.tuning):
+        with in_use(job.settings.tuning):
+            along = AlongRun(job.dynamics, self._recorder, self._numbers, breakpoint_rates(self._set_ups))
+            start_q, start_u = (np.array([set_up.start[k] for set_up in self._set_ups]) for k in range(2))
+            try:
                 found = list(along.at(rows, instants, start_q, start_u))
-        finally:
-            along.close()
+            finally:
+                along.close()
         if not found:
             return {}
         at = rows.at(instants)
@@ -327,7 +326,7 @@ class DifferentiatedRun:
         left, right = (self._changed(s.row, at, [s]) for s, at in zip(instant.sides, there, strict=True))
         for name, slope in slopes.items():
             jump = abs(float(there[1][name][0] - there[0][name][0]))
-            jumps = jump > NO_JUMP * job.settings.rtol * np.abs(channels[name]).max()
+            jumps = jump > SENSITIVITIES.no_jump * job.settings.rtol * np.abs(channels[name]).max()
             both = right[name][0] if jumps else 0.5 * (left[name][0] + right[name][0])
             slope[k] = np.where(moved, both, slope[k])
             if jumps:

@@ -7,8 +7,9 @@ Algorithms, 2008, ch. 7).
 
 from stiffmbs.compile.machine.native.access import compiled, row_of, shifted, view_of
 from stiffmbs.compile.machine.native.quads import plus_product
-from stiffmbs.dynamics.elimination.native.digits import SMALL, keeps_digits
+from stiffmbs.dynamics.elimination.native.digits import keeps_digits
 from stiffmbs.dynamics.elimination.native.layouts import PIN_ELIMINATION, Pin, PinProduct
+from stiffmbs.dynamics.native.parameters import ELIMINATION
 
 pins_view = view_of("PinElimination", PIN_ELIMINATION)
 pin_of = row_of(Pin)
@@ -63,7 +64,7 @@ def _factored(r, e):
         own, diagonal, x = shifted(e.block, 4 * k), shifted(e.diagonal, 2 * k), shifted(e.x, 2 * k)
         xx, xy, yy = own[0], own[1], own[2]
         determinant = plus_product(xx * yy, -xy, xy)
-        kept = xx > SMALL * diagonal[0] and determinant > SMALL * xx * diagonal[1]
+        kept = xx > ELIMINATION.small * diagonal[0] and determinant > ELIMINATION.small * xx * diagonal[1]
         if not kept and not keeps_digits(r, xx, diagonal[0]):
             return False
         if not kept and not keeps_digits(r, determinant / xx, diagonal[1]):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from stiffmbs.compile.machine.layout import FLOATS, INDICES, INT, INTS, Layout
 
@@ -64,7 +64,7 @@ entries come from full and diagonal blocks (`FullBlock`, `DiagonalBlock`); all o
 positions in x of the columns right of each joint, four at a time.  `place` is the position of each equation in x;
 `pivot_scale` holds the diagonal before the elimination."""
 
-MOST_ROWS = 6
+MOST_ROWS: Final = 6
 """Rows of a full block, and lines of a product of two quads, that fit into registers."""
 
 

@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.native.access import compiled, factors_view, state
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.compile.machine.native.statuses import NOT_FINITE
 from stiffmbs.dynamics.native.block_systems import to_accelerations, to_position_constraints, to_velocity_constraints
-from stiffmbs.dynamics.native.layouts import MOST_MOVES
+from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.explicit.native.stages import add_trailing_rates
 
@@ -28,7 +28,7 @@ def _step(s, m, t, h, project, tolerance):
             return NOT_FINITE
     if not project:
         return 0
-    status = to_position_constraints(s, m, t + h, tolerance, MOST_MOVES)
+    status = to_position_constraints(s, m, t + h, tolerance, CONSISTENCY.most_moves)
     return status if status < 0 else to_velocity_constraints(s, m, t + h)
 
 

@@ -13,7 +13,7 @@ from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, 
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.dynamics.native.block_systems import to_position_constraints
-from stiffmbs.dynamics.native.layouts import MOST_MOVES, POSITION_TOLERANCE
+from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.error_control.native.parameters import POLISHING
 from stiffmbs.solve.ida.native.layouts import OUTPUT_CORRECTION
@@ -73,7 +73,10 @@ def _unbalanced(b, defect):
 def _by_closing(b, s, e, t):
     """Return the imbalance with joints closed by a projection."""
     copied(b.pose, s.q, s.n_q)
-    if to_position_constraints(s, dynamics_view(b.dynamics), t, POSITION_TOLERANCE, MOST_MOVES) < 0:
+    if (
+        to_position_constraints(s, dynamics_view(b.dynamics), t, CONSISTENCY.position_tolerance, CONSISTENCY.most_moves)
+        < 0
+    ):
         copied(s.q, b.pose, s.n_q)
         return INFINITE
     add_products(e, evaluate(s, e.residual_set, t), b.y, b.yp, b.correction)
@@ -88,7 +91,7 @@ def _left(b, s, e, t):
     opening = 0.0
     for k in range(b.n_joint_rows):
         opening = max(opening, abs(b.defect[b.joint_row[k]]))
-    return part if part > 1.0 or opening <= POSITION_TOLERANCE else max(part, _by_closing(b, s, e, t))
+    return part if part > 1.0 or opening <= CONSISTENCY.position_tolerance else max(part, _by_closing(b, s, e, t))
 
 
 @compiled

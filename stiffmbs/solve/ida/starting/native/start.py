@@ -19,7 +19,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.consistent import consistent_accelerations, to_constraints
-from stiffmbs.dynamics.native.layouts import MOST_MOVES, POSITION_TOLERANCE
+from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import event_search_view
 from stiffmbs.solve.explicit.native.stages import add_trailing_rates
@@ -202,7 +202,7 @@ restart_view = view_of("Restart", RESTART)
 @compiled
 def brought_back(s, m, t):
     """Project the current state onto the constraints; 0 or a negative status."""
-    return to_constraints(s, m, t, POSITION_TOLERANCE, MOST_MOVES) if s.n_c > 0 else 0
+    return to_constraints(s, m, t, CONSISTENCY.position_tolerance, CONSISTENCY.most_moves) if s.n_c > 0 else 0
 
 
 @compiled

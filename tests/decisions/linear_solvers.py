@@ -8,8 +8,8 @@ from stiffmbs.solve.ida.native import ida_loop
 from stiffmbs.solve.ida.statistics import StepLog
 from stiffmbs.solve.ida.sundae import SundaeEngine
 from stiffmbs.solve.linear_solvers.native import block_lu, block_trial, fixed_order
+from tests.decisions.common import Record, always, never, nothing
 from tests.interpreted import interpreted
-from tests.solve.decisions.common import Record, always, never, nothing
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
 

@@ -18,8 +18,8 @@ from stiffmbs.solve.explicit.native import runge_kutta
 from stiffmbs.solve.ida.native import error_norm, iteration, output_correction
 from stiffmbs.solve.ida.native_engine import NativeEngine
 from stiffmbs.solve.trajectory import Grid
+from tests.decisions.common import Record, always, nothing
 from tests.interpreted import interpreted
-from tests.solve.decisions.common import Record, always, nothing
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while, job_of
 
 

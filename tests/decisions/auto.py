@@ -10,7 +10,7 @@ from stiffmbs.solve import auto, auto_checks, auto_choice, auto_decisions, subsy
 from stiffmbs.solve.cost import ImplicitCost
 from stiffmbs.solve.radau.radau import of_radau
 from stiffmbs.solve.trajectory import Outcome, Trajectory
-from tests.solve.decisions.common import Record, nothing, parameters
+from tests.decisions.common import Record, nothing, parameters
 from tests.solve.test_parameter_thresholds import HALVES, count_while
 
 

@@ -14,8 +14,8 @@ from stiffmbs.solve.events.native import bounds, step_bound
 from stiffmbs.solve.explicit.native import explicit_events
 from stiffmbs.solve.ida.native import ida_events, passage
 from stiffmbs.solve.trajectory import Grid, History, Outcome, Trajectory
+from tests.decisions.common import Record, always, never, nothing, searched
 from tests.interpreted import interpreted
-from tests.solve.decisions.common import Record, always, never, nothing, searched
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
 

@@ -17,9 +17,9 @@ from stiffmbs.solve.explicit.adaptive import AdaptiveRun
 from stiffmbs.solve.explicit.native import attempt, explicit_events, fastest_rate, interpolant, runge_kutta
 from stiffmbs.solve.explicit.native import start as explicit_start
 from stiffmbs.solve.trajectory import Grid
+from tests.decisions.common import Reached, Record, always, never, nothing, parameters, searched
 from tests.interpreted import interpreted
 from tests.parameters import EXAMPLES
-from tests.solve.decisions.common import Reached, Record, always, never, nothing, parameters, searched
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from stiffmbs.solve.events import narrow_inputs
 from stiffmbs.solve.events.native import bounds, from_zero, nearby, sides, within_step
+from tests.decisions.common import Record, never, nothing, searched
 from tests.interpreted import interpreted
-from tests.solve.decisions.common import Record, never, nothing, searched
 from tests.solve.test_parameter_thresholds import HALVES, count_while
 
 

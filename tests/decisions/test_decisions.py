@@ -14,10 +14,42 @@ from unittest.mock import patch
 import pytest
 
 from stiffmbs import tuning
+from tests.decisions import (
+    auto,
+    dynamics,
+    equilibria,
+    error_control,
+    event_search,
+    events,
+    explicit_steps,
+    linear_analysis,
+    linear_solvers,
+    presolve,
+    radau,
+    redundancy,
+    run_checks,
+    sensitivities,
+    verification,
+)
 from tests.parameters import changed, factors_of_tests
-from tests.solve.decisions import auto, error_control, event_search, events, explicit_steps, linear_solvers, radau
 
-MODULES = auto, error_control, event_search, events, explicit_steps, linear_solvers, radau
+MODULES = (
+    auto,
+    dynamics,
+    equilibria,
+    error_control,
+    event_search,
+    events,
+    explicit_steps,
+    linear_analysis,
+    linear_solvers,
+    presolve,
+    radau,
+    redundancy,
+    run_checks,
+    sensitivities,
+    verification,
+)
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
 EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED.items()}
 
@@ -49,9 +81,24 @@ def with_others(parameter):
                 yield tuning.in_use({name: {field: changed(value, factor)}})
 
 
-def test_all_parameters_of_solvers_are_halved_and_doubled():
+@pytest.mark.parametrize(
+    "package",
+    [
+        "dynamics",
+        "equilibria",
+        "linear_analysis",
+        "presolve",
+        "redundancy",
+        "run_checks",
+        "sensitivity_equations",
+        "solve",
+        "sparse",
+        "verification",
+    ],
+)
+def test_all_parameters_of_a_package_are_halved_and_doubled(package):
     """By this table, or those of `test_parameter_thresholds` and `test_parameter_counts`."""
-    assert [name for name, (factors, _) in factors_of_tests("solve").items() if len(factors) < 2] == []
+    assert [name for name, (factors, _) in factors_of_tests(package).items() if len(factors) < 2] == []
 
 
 @pytest.mark.parametrize("parameter", TABLE)

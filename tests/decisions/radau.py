@@ -10,8 +10,8 @@ from stiffmbs.solve.cost import ImplicitCost
 from stiffmbs.solve.radau import collocation
 from stiffmbs.solve.radau import memory as radau_memory
 from stiffmbs.solve.radau.native import between_steps, interface, newton, steps
+from tests.decisions.common import Record, always, nothing, parameters
 from tests.interpreted import interpreted
-from tests.solve.decisions.common import Record, always, nothing, parameters
 from tests.solve.test_parameter_thresholds import HALVES, count_while
 
 

@@ -1,1 +1,0 @@
-"""Linear analysis: state matrices on the constraint manifold, modes, and frequency response about a state."""
