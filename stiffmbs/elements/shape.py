@@ -137,7 +137,7 @@ class Placed(Shape):
     """Base of the shapes with a position and a direction."""
 
     point: Point = Field((0.0, 0.0), description="its middle (of a mesh the origin) in the body's own axes, m")
-    angle: si.Angle = Field(0.0, description="its direction against the body's, rad")
+    angle: si.Angle = Field(0.0, description="its direction relative to the body's axes, rad")
 
 
 class Box(Placed):

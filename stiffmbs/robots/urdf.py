@@ -117,7 +117,7 @@ def _from_the_root(links: dict[str, Node], joints: dict[str, Node], child_of: di
         ordered.extend(carried.get(name, ()))
     if len(ordered) < len(links):
         lost = ", ".join(name for name in links if name not in ordered)
-        raise RobotFault(f"found links that carry each other in a circle, {lost}, expected a tree")
+        raise RobotFault(f"found a closed chain of links, {lost}, expected a tree")
     return ordered
 
 

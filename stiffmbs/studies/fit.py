@@ -41,6 +41,7 @@ class Fit:
     intervals : dict of str to (float, float)
         95 % confidence intervals, by the linearised model and Student's distribution.
     standard_errors : dict of str to float
+        Standard errors of the parameters, SI units, by the linearised model.
     correlation : ndarray
         Correlation of the estimates, in the order of `values`.
     residuals : dict of str to float

@@ -30,6 +30,7 @@ class Optimum:
     values : dict of str to float
         Parameters, SI units.
     objective : float
+        Objective with these parameters.
     before : float
         Objective at the start of the search.
     constraints : dict of str to float
@@ -39,6 +40,7 @@ class Optimum:
     success : bool
         True if the search converged with all constraints satisfied.
     message : str
+        Reason for termination.
     """
 
     values: dict[str, float]

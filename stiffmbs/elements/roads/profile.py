@@ -44,7 +44,10 @@ class TableRoad(Road):
     def _one_or_two(self) -> TableRoad:
         two = (self.left, self.right, self.track)
         if (self.profile is None) == (None in two) or (self.profile is not None and two != (None, None, None)):
-            raise ValueError("found neither or both, expected a 'profile', or 'left', 'right' and 'track'")
+            given = [name for name in ("profile", "left", "right", "track") if getattr(self, name) is not None]
+            raise ValueError(
+                f"found {' and '.join(given) or 'no table'}, expected either 'profile', or 'left', 'right' and 'track'"
+            )
         return self
 
     def extent(self) -> tuple[float, float]:

@@ -54,7 +54,7 @@ class Impact(Force):
     friction_velocity: si.PositiveVelocity = Field(0.1, description="sliding speed above which mu is mu_d, m/s")
 
     @model_validator(mode="after")
-    def _rubs(self) -> Self:
+    def _has_both_coefficients(self) -> Self:
         if (self.static_friction is None) != (self.friction is None):
             raise ValueError("found one of friction and static_friction, expected both or neither")
         if self.friction is not None and not self.stiction_velocity < self.friction_velocity:

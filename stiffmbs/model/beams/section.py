@@ -301,6 +301,7 @@ class Numbers(Section):
         return self.model_copy(update={"I3": I3, "J": self.I2 + I3 if self.J is None else self.J})
 
     def properties(self, nu: float) -> Properties:
+        """Return the given constants, completed; `nu` is not used."""
         of: Any = self.complete()
         return Properties(
             of.A, of.I2, of.I3, of.J, of.shear2, of.shear3, of.I23, of.shear_centre, wagner=of.wagner

@@ -37,7 +37,7 @@ class BeamBody(Beam):
         None, description="about axes 1, 2, 3, in place of section and material, kg m"
     )
     velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
-        (0.0, 0.0, 0.0), description="of its start point, m/s"
+        (0.0, 0.0, 0.0), description="of its start point at the start of the run, m/s"
     )
     omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
         (0.0, 0.0, 0.0), description="of the whole beam at the start of the run, rad/s"

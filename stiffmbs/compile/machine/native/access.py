@@ -94,6 +94,7 @@ def row_of(kind: type[tuple[int, ...]]) -> Builtin:
     columns: tuple[str, ...] = kind._fields  # type: ignore[attr-defined]
 
     def row(code: Code, rows: Value, number: Operand) -> Record:
+        """Load the integers of a row."""
         start = code.put_value("int", f"mul nsw {code.integer(number).typed}, {len(columns)}")
         first = shifted.lower(code, rows, start)
         items = (code.load(code.item(first, constant(column))) for column in range(len(columns)))

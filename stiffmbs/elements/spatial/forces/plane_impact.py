@@ -69,9 +69,9 @@ class EllipsoidPlaneImpact(PlaneImpact):
         from sympy import sqrt
 
         n = e.j.z
-        ways = [e.named(half * axis.dot(n)) for half, axis in ((e.x, e.i.x), (e.y, e.i.y), (e.z, e.i.z))]
-        height = e.named(sqrt(sum(way**2 for way in ways)))
-        up = e.named((e.x * ways[0] * e.i.x + e.y * ways[1] * e.i.y + e.z * ways[2] * e.i.z) / height)
+        heights = [e.named(half * axis.dot(n)) for half, axis in ((e.x, e.i.x), (e.y, e.i.y), (e.z, e.i.z))]
+        height = e.named(sqrt(sum(part**2 for part in heights)))
+        up = e.named((e.x * heights[0] * e.i.x + e.y * heights[1] * e.i.y + e.z * heights[2] * e.i.z) / height)
         return [Touch((e.i.point - e.j.point).dot(n) - height, e.i.point - up, n)]
 
 
