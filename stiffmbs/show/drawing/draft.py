@@ -42,7 +42,7 @@ class Site:
 
     @property
     def on_ground(self) -> bool:
-        """Whether its body is ground."""
+        """True if its body is ground."""
         return self.body == GROUND
 
     def at(self, shift: Sequence[float] | np.ndarray) -> Site:

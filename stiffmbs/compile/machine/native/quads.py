@@ -199,6 +199,7 @@ def _change(
     sums = [_kept(code, loaded(code, width, place)) for place in places]
 
     def add(at_a: Value, at_b: Value) -> None:
+        """Add the products of a column of a and a row of b."""
         line = loaded(code, width, code.item(b[0], at_b).text)
         for i, total in enumerate(sums):
             number = code.load(code.item(a[0], plus(code, at_a, i)))
