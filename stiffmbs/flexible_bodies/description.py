@@ -101,7 +101,7 @@ class InterfaceOfNodes(Described):
     """Interface: nodes of the body that move with a marker."""
 
     nodes: tuple[int, ...] | None = Field(
-        None, description="numbers of nodes: those of a file of nodes, otherwise from 0 in its order"
+        None, description="node numbers of the file of nodes; for a mesh or an archive, from 0 in its order"
     )
     group: str | None = Field(None, description="named group of nodes of the file")
     sphere: Sphere | None = Field(None, description="all nodes within a sphere")
@@ -187,7 +187,7 @@ class FlexibleBody(Described):
     mass : float, optional
         Stated mass, kg, compared with that of the model.
     stiffening : bool or str
-        Geometric stiffening, which needs a mesh; ``auto`` for that of every mesh.
+        Geometric stiffening, which needs a mesh; ``auto`` for every body with a mesh.
     residual_modes : bool
         True for the static displacements under uniform accelerations, as a static correction of few normal modes.
     """

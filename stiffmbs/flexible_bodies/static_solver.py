@@ -56,7 +56,7 @@ class StaticSolver:
             )
         except RuntimeError:
             raise InputError(
-                "stiffness: found a singular matrix with the interfaces held, expected that of an elastic body"
+                "stiffness: found a singular matrix with the interfaces held, expected the stiffness matrix of an elastic body"
             ) from None
 
     def _held_functionals(self, model: FiniteElements, supports: np.ndarray) -> np.ndarray:

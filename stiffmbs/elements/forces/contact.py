@@ -27,7 +27,7 @@ class PressedSurfaces(Friction):
     @model_validator(mode="after")
     def _has_both_coefficients(self) -> Self:
         if self.static_friction is not None and self.friction is None:
-            raise ValueError("found static_friction alone, expected friction too")
+            raise ValueError("found static_friction without friction, expected both")
         return self
 
     @classmethod

@@ -58,7 +58,10 @@ class Impact(Force):
         if (self.static_friction is None) != (self.friction is None):
             raise ValueError("found one of friction and static_friction, expected both or neither")
         if self.friction is not None and not self.stiction_velocity < self.friction_velocity:
-            raise ValueError("found a friction_velocity up to the stiction_velocity, expected a larger one")
+            raise ValueError(
+                f"found a friction_velocity of {self.friction_velocity:g} m/s, expected more than the stiction_velocity, "
+                f"{self.stiction_velocity:g} m/s"
+            )
         return self
 
     @classmethod

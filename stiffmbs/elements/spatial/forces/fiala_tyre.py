@@ -41,8 +41,7 @@ class FialaTyre(Tyre):
     width: si.LengthOrZero = Field(0.0, description="of the tyre, for its aligning torque, m")
     rolling_resistance: si.LengthOrZero = Field(0.0, description="torque over load, m")
     relaxation: tuple[si.PositiveLength, si.PositiveLength] | None = Field(
-        None,
-        description="longitudinal and lateral relaxation length, m; slips are those of the steady state by default",
+        None, description="longitudinal and lateral relaxation length, m; steady-state slips by default"
     )
 
     def own_states(self) -> tuple[str, ...]:

@@ -36,7 +36,7 @@ class SphereImpact(Impact):
     solid.
     """
 
-    beyond = "found the centre of a sphere inside the solid that it meets, expected it outside: use a larger stiffness or a lower speed"
+    beyond = "found the centre of a sphere inside the other solid, expected it outside: use a larger stiffness or a lower speed"
 
     i: Marker = Field(description="the sphere's centre")
     radius: si.PositiveLength = Field(description="of the sphere, m")
