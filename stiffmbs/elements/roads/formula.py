@@ -24,9 +24,9 @@ class FormulaRoad(Road):
 
     kind = "formula"
 
-    z: Height = Field(description="height, m, of x along and y across, m")
-    first: si.Length | None = Field(None, description="x of the start of the interval for the filter, m")
-    last: si.Length | None = Field(None, description="x where it ends, m")
+    z: Height = Field(description="height, m: a formula of x along and y across the road, m")
+    first: si.Length | None = Field(None, description="x at the start of the interval for the filter, m")
+    last: si.Length | None = Field(None, description="x at the end of this interval, m")
 
     @model_validator(mode="after")
     def _may_be_filtered(self) -> FormulaRoad:

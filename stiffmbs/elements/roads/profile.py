@@ -23,9 +23,9 @@ class TableRoad(Road):
 
     kind = "table"
 
-    profile: Table | None = Field(None, description="height over x, m, the same for all y; a table or its name")
-    left: Table | None = Field(None, description="height over x at y = track/2 and beyond")
-    right: Table | None = Field(None, description="height over x at y = -track/2 and beyond")
+    profile: Table | None = Field(None, description="height over x, m, for all y; a table or its name")
+    left: Table | None = Field(None, description="height over x at y >= track/2, m")
+    right: Table | None = Field(None, description="height over x at y <= -track/2, m")
     track: si.PositiveLength | None = Field(None, description="distance between the left and right tracks, m")
 
     @field_validator("profile", "left", "right", mode="before")

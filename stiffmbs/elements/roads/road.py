@@ -196,7 +196,7 @@ class FlatRoad(Road):
     kind = "flat"
     level = True
 
-    z: si.Length = Field(0.0, description="its height, m")
+    z: si.Length = Field(0.0, description="height, m")
 
     @staticmethod
     def height(r: Symbolic, x: Expr, y: Expr) -> Expr:

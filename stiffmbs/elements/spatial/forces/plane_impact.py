@@ -31,8 +31,8 @@ class BoxPlaneImpact(PlaneImpact):
 
     i: Marker = Field(description="the middle of the box, with its axes")
     x: si.PositiveLength = Field(description="size along x of i, m")
-    y: si.PositiveLength = Field(description="along y, m")
-    z: si.PositiveLength = Field(description="along z, m")
+    y: si.PositiveLength = Field(description="size along y of i, m")
+    z: si.PositiveLength = Field(description="size along z of i, m")
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
@@ -56,8 +56,8 @@ class EllipsoidPlaneImpact(PlaneImpact):
 
     i: Marker = Field(description="the middle of the ellipsoid, with its axes")
     x: si.PositiveLength = Field(description="semi-axis along x of i, m")
-    y: si.PositiveLength = Field(description="along y, m")
-    z: si.PositiveLength = Field(description="along z, m")
+    y: si.PositiveLength = Field(description="semi-axis along y of i, m")
+    z: si.PositiveLength = Field(description="semi-axis along z of i, m")
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:

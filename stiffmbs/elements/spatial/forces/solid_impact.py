@@ -90,10 +90,10 @@ class SolidImpact(Impact):
 
     i: Marker = Field(description="the middle of the first solid, with its axes")
     j: Marker = Field(description="the middle of the second solid, with its axes")
-    i_shape: Shape = Field(description="of the first solid; the axis of a cylinder is z")
-    i_size: Sizes = Field(description="of the first solid along its axes, m")
-    j_shape: Shape = Field(description="of the second solid")
-    j_size: Sizes = Field(description="of the second solid along its axes, m")
+    i_shape: Shape = Field(description="shape of the first solid; the axis of a cylinder is z")
+    i_size: Sizes = Field(description="sizes of the first solid along its axes, m")
+    j_shape: Shape = Field(description="shape of the second solid")
+    j_size: Sizes = Field(description="sizes of the second solid along its axes, m")
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
