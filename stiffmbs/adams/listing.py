@@ -47,11 +47,13 @@ class ListedStatement:
     Attributes
     ----------
     file : str
-        Its name.
+        Name of the dataset or command file.
+    line : int
+        Line in it.
     statement : str
         Full name and number: ``JOINT/3``.
     fate : str
-        ``read``, ``left out`` or ``refused``.
+        Treatment: ``read``, ``left out`` or ``refused``.
     reason : str
         Reason why it is left out or refused, or its meaning.
     argument : str
@@ -135,7 +137,7 @@ def _statement(
     label = f"{name or statement.word}/{statement.ident}".rstrip("/")
     one = partial(ListedStatement, file, statement.line, label)
     if name is None:
-        yield one(NOT_READ, "found a statement that is not known")
+        yield one(NOT_READ, "found an unknown statement")
     elif is_unread_system(name, statement, every):
         yield one(OMITTED, UNREAD_SYSTEM)
     elif name in REFUSED:
@@ -155,7 +157,7 @@ def _statement(
             if argument.name in omitted:
                 yield of_argument(OMITTED, omitted[argument.name], argument.name)
             for function in _unread_functions(name, argument.values):
-                yield of_argument(NOT_READ, f"a function that {argument.name} cannot use here", function)
+                yield of_argument(NOT_READ, f"a function that {argument.name} of this statement cannot use", function)
 
 
 def _lines(statement: Statement) -> set[int]:
@@ -185,7 +187,7 @@ def _commands(text: str, file: str, known: Collection[Key], read: Read) -> list[
         elif name in (*SETTINGS, *HARMLESS):
             fate, reason = OMITTED, "no effect on results" if name in HARMLESS else "analysis settings"
         elif not (name in (*FOLLOWED, *ENDING) or alters(name)):
-            fate, reason = OMITTED, "the name of a file"
+            fate, reason = OMITTED, "a file name"
         ended = ended or name in ENDING
         listed.append(ListedStatement(file, command.line, label, fate, reason))
     return listed

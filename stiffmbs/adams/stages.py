@@ -83,7 +83,7 @@ def _staged(
     """Return one stage per simulation; if sensors may end stages (`watched`), an end time stays absolute."""
     stages: list[dict[str, Any]] = []
     count = len(segments)
-    notes = [f"{source} asks for {f'{count} simulations, one after the other' if count > 1 else 'one simulation'}"]
+    notes = [f"{source} runs {f'{count} simulations in succession' if count > 1 else 'one simulation'}"]
     units = described[0].units
     time, before, known = 0.0, segments[0], described
     for k, segment in enumerate(segments, start=1):
@@ -137,12 +137,12 @@ def _refuse_other_frames(bodies: Mapping[str, Any], segment: Segment) -> None:
     for name, patch in bodies.items():
         if any(key in POSES for key in patch or {}):
             raise segment.simulation.fault(
-                f"found another centre-of-mass marker of {name} since the simulation before it, expected the same in all"
+                f"found a changed centre-of-mass marker of {name}, expected the same marker in all simulations"
             )
 
 
 def _refuse_other_turns(joints: Mapping[str, Any], dataset: Dataset, segment: Segment) -> None:
-    """Refuse constraints that depend on the initial pose but start later."""
+    """Refuse constraints that depend on the initial pose but become active later."""
     for kind in dataset.statements.values():
         for found in kind.values():
             if not joints.get(getattr(found, "name", "")):
@@ -150,10 +150,10 @@ def _refuse_other_turns(joints: Mapping[str, Any], dataset: Dataset, segment: Se
             sort = getattr(found, "kind", "") or found.keyword
             if sort in BY_INITIAL_POSE:
                 raise segment.simulation.fault(
-                    f"found {found.label}, {sort}, made active or changed since the simulation before it, expected it before the first"
+                    f"found {found.label}, {sort}, activated or changed between simulations, expected this before the first one"
                 )
             if isinstance(found, Motion) and found.order and "position" in joints[found.name]:
                 raise segment.simulation.fault(
-                    f"found {found.label}, an integral since t = 0, made active or changed since the simulation before it, "
+                    f"found {found.label}, an integral since t = 0, activated or changed between simulations, "
                     "expected a displacement, or a velocity without ICDISP"
                 )

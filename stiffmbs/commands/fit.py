@@ -59,7 +59,7 @@ def _text(found: Sensitivity) -> str:
     return "\n".join(lines)
 
 
-_sought_options = several(
+_search_options = several(
     click.option(
         "--parameter", "parameters", multiple=True, required=True, metavar="NAME=FROM:TO[:log]",
         help="Parameter or path to determine, with its bounds; any number of times.",
@@ -72,7 +72,7 @@ _sought_options = several(
 @click.command(short_help="Fit parameters to measured channels.")
 @click.argument("scene")
 @click.option("--data", required=True, metavar="FILE", help="Measured channels over time: .csv, .npz or .nc.")
-@_sought_options
+@_search_options
 @solving_options
 def fit(
     scene: str, data: str, parameters: tuple[str, ...], start: tuple[str, ...], as_json: bool, **options: Any
@@ -93,11 +93,11 @@ def fit(
 
 @click.command(short_help="Find the parameters that minimise an output.")
 @click.argument("scene")
-@click.option("--minimise", required=True, metavar="FORMULA", help="What is made least: 'rms(chassis.ay)'.")
+@click.option("--minimise", required=True, metavar="FORMULA", help="Objective: 'rms(chassis.ay)'.")
 @click.option(
     "--keep", multiple=True, metavar="'FORMULA <= VALUE'", help="A constraint, with <= or >=; any number of times."
 )
-@_sought_options
+@_search_options
 @solving_options
 def optimise(
     scene: str, minimise: str, keep: tuple[str, ...], parameters: tuple[str, ...], start: tuple[str, ...], as_json: bool,

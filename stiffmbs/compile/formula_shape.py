@@ -153,6 +153,7 @@ class FormulaShape(ast.NodeVisitor):
         return self._found[part.number]
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
+        """Replace the operands; an integer exponent stays a literal."""
         match node:
             case ast.BinOp(
                 base, ast.Pow(), ast.Constant(int()) | ast.UnaryOp(ast.USub(), ast.Constant(int())) as power
@@ -161,6 +162,7 @@ class FormulaShape(ast.NodeVisitor):
         return ast.BinOp(self.visit(node.left), node.op, self.visit(node.right))
 
     def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.AST:
+        """Replace the operand."""
         return ast.UnaryOp(node.op, self.visit(node.operand))
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
@@ -179,6 +181,7 @@ class FormulaShape(ast.NodeVisitor):
         return ast.Call(ast.Name(f"table{len(self.tables) - 1}"), arguments, [])
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
+        """Replace a state by its place or the formula of its output, and a variable by its number."""
         if node.id in self.formula.states:
             output = self.model.state_outputs().get(node.id)
             if output is not None:
@@ -194,6 +197,7 @@ class FormulaShape(ast.NodeVisitor):
         return tree
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        """Replace a reaction or measured coordinate by a placeholder, and a body by its number."""
         assert isinstance(node.value, ast.Name)
         if node.value.id in self.model.joints:
             self.reactions.append((node.attr, node.value.id))

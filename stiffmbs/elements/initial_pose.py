@@ -92,12 +92,15 @@ class InitialSpatialMarker:
 
     @property
     def x(self) -> np.ndarray:
+        """Its unit x axis, in ground axes."""
         return self.axes[:, 0]
 
     @property
     def y(self) -> np.ndarray:
+        """Its unit y axis, in ground axes."""
         return self.axes[:, 1]
 
     @property
     def z(self) -> np.ndarray:
+        """Its unit z axis, in ground axes."""
         return self.axes[:, 2]

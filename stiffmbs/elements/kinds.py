@@ -105,6 +105,7 @@ def any_of(kinds: Kinds) -> Any:
     """Return the type of a field that takes an element of some kinds, selected by its ``type``."""
 
     def read(found: object, context: Context) -> Any:
+        """Return the element of a mapping, validated by the class of its ``type``."""
         if isinstance(found, Element):
             if not kinds.is_shipped(type(found)):
                 check_class(type(found))
@@ -118,11 +119,12 @@ def any_of(kinds: Kinds) -> Any:
         if not isinstance(kind, str) or kind not in kinds:
             expected = ", ".join(f"'{known}'" for known in kinds)
             raise ValueError(
-                f"found the type '{quoted(kind)}'{did_you_mean(kind, kinds)}, expected one of {expected}, or one of your own that stiffmbs.register has made known"
+                f"found the type '{quoted(kind)}'{did_you_mean(kind, kinds)}, expected one of {expected}, or a class registered with stiffmbs.register"
             )
         return kinds[kind].model_validate(found, context=context)
 
     def schema(schema_of: Callable[[type[Element]], JsonSchema]) -> JsonSchema:
+        """Return the schema of any of the kinds, discriminated by ``type``."""
         schemas = {kind: schema_of(element) for kind, element in kinds.items()}
         mapping = {kind: each["$ref"] for kind, each in schemas.items()}
         return {"discriminator": {"mapping": mapping, "propertyName": "type"}, "oneOf": list(schemas.values())}

@@ -121,7 +121,7 @@ def _lacks(element: Any) -> Iterator[str]:
         found = f"the kind '{element.kind}'" if element.kind else "no kind"
         yield f"found {found}, expected a name for scenes, such as kind = 'my_{_base(element).__name__.lower()}'"
     if not dimensions_of(element):
-        yield "found markers of the plane and of space, expected markers of one of them"
+        yield "found planar and spatial markers, expected either"
     yield from _not_static(element)
     if issubclass(element, Joint):
         if element.position is Joint.position and element.velocity is Joint.velocity:

@@ -78,7 +78,7 @@ class MeshShape(Shape):
     type: Literal["mesh"] = "mesh"
     file: str = Field(description="a file .stl or .obj, relative to the folder of the scene")
     scale: Scale = Field(
-        (1.0, 1.0, 1.0), description="metres for one unit of the file, 1e-3 for mm: one number, or along x, y and z"
+        (1.0, 1.0, 1.0), description="unit of the file in metres, 1e-3 for mm: one number, or along x, y and z"
     )
 
     @field_validator("file")
@@ -130,35 +130,35 @@ Point = tuple[si.Length, si.Length]
 class Polyline(PolylineShape):
     """Polyline; if closed, a filled outline."""
 
-    points: tuple[Point, ...] = Field(min_length=2, description="in the body's own axes, m")
+    points: tuple[Point, ...] = Field(min_length=2, description="corners in the body's own axes, m")
 
 
 class Placed(Shape):
     """Base of the shapes with a position and a direction."""
 
     point: Point = Field((0.0, 0.0), description="its middle (of a mesh the origin) in the body's own axes, m")
-    angle: si.Angle = Field(0.0, description="its direction against the body's, rad")
+    angle: si.Angle = Field(0.0, description="its direction relative to the body's axes, rad")
 
 
 class Box(Placed):
     """Rectangle."""
 
     type: Literal["box"] = "box"
-    size: tuple[si.PositiveLength, si.PositiveLength] = Field(description="along its x and y, m")
+    size: tuple[si.PositiveLength, si.PositiveLength] = Field(description="lengths along its x and y, m")
 
 
 class Cylinder(Placed):
     """Disc: the end view of a cylinder."""
 
     type: Literal["cylinder"] = "cylinder"
-    radius: si.PositiveLength = Field(description="m")
+    radius: si.PositiveLength = Field(description="radius, m")
 
 
 class Sphere(Placed):
     """Disc: the view of a sphere."""
 
     type: Literal["sphere"] = "sphere"
-    radius: si.PositiveLength = Field(description="m")
+    radius: si.PositiveLength = Field(description="radius, m")
 
 
 class Mesh(MeshShape, Placed):

@@ -43,7 +43,7 @@ class Material(Described):
 
     E: si.PositivePressure = Field(description="Young's modulus, N/m^2")
     nu: si.Number = Field(description="Poisson's ratio, above -1 and below 0.5")
-    density: si.PositiveDensity = Field(description="kg/m^3")
+    density: si.PositiveDensity = Field(description="density, kg/m^3")
 
     @field_validator("nu")
     @classmethod
@@ -83,15 +83,15 @@ class Thickness(Described):
 class Sphere(Described):
     """Sphere that selects the nodes within it."""
 
-    center: Point = Field(description="m, in the coordinates of the mesh")
-    radius: si.PositiveLength = Field(description="m")
+    center: Point = Field(description="centre in the coordinates of the mesh, m")
+    radius: si.PositiveLength = Field(description="radius, m")
 
 
 class Plane(Described):
     """Plane that selects the nodes on it."""
 
-    point: Point = Field(description="a point on it, m, in the coordinates of the mesh")
-    normal: Direction = Field(description="direction across it")
+    point: Point = Field(description="a point of the plane in the coordinates of the mesh, m")
+    normal: Direction = Field(description="normal of the plane")
     within: si.PositiveLength | None = Field(None, description="largest distance of a node, m")
 
     _not_zero = field_validator("normal")(not_zero)
@@ -101,7 +101,7 @@ class InterfaceOfNodes(Described):
     """Interface: nodes of the body that move with a marker."""
 
     nodes: tuple[int, ...] | None = Field(
-        None, description="numbers of nodes: those of a file of nodes, otherwise from 0 in its order"
+        None, description="node numbers of the file of nodes; for a mesh or an archive, from 0 in its order"
     )
     group: str | None = Field(None, description="named group of nodes of the file")
     sphere: Sphere | None = Field(None, description="all nodes within a sphere")
@@ -187,7 +187,7 @@ class FlexibleBody(Described):
     mass : float, optional
         Stated mass, kg, compared with that of the model.
     stiffening : bool or str
-        Geometric stiffening, which needs a mesh; ``auto`` for that of every mesh.
+        Geometric stiffening, which needs a mesh; ``auto`` for every body with a mesh.
     residual_modes : bool
         True for the static displacements under uniform accelerations, as a static correction of few normal modes.
     """
@@ -195,14 +195,12 @@ class FlexibleBody(Described):
     mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
     matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or files of K, M and nodes")
     units: Units = Field(description="units of the file")
-    material: Material | None = Field(None, description="of a mesh")
+    material: Material | None = Field(None, description="material of a mesh")
     thickness: Thickness | None = Field(None, description="stretch of a mesh along its thickness")
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
     mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
-    stiffening: bool | Literal["auto"] = Field(
-        "auto", description="geometric stiffening; auto: of a body that is described by a mesh"
-    )
+    stiffening: bool | Literal["auto"] = Field("auto", description="geometric stiffening; auto: for a body with a mesh")
     residual_modes: bool = Field(
         False, description="static correction: add the displacements under uniform accelerations to the modes"
     )

@@ -16,7 +16,7 @@ SYMMETRY = 1e-8
 """Tolerance of symmetry, relative to the largest entry."""
 PRECISION = 1e-6
 """Relative precision of the data of a model. Places of nodes refer to the size of the body, or of a line of them. A mass
-along x, y and z refers to the largest entry, and the force of a rigid displacement to that of each node alone."""
+along x, y and z refers to the largest entry, and the force of a rigid displacement to the force of moving each node by itself."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +126,7 @@ class FiniteElements:
             motions = [f"{motion} {axis}" for motion in ("translation along", "rotation about") for axis in "xyz"]
             raise InputError(
                 f"stiffness: found a force of {force.max():.2g} of the largest stiffness under a rigid "
-                f"{motions[int(force.argmax())]}, expected none: the matrix must be that of the free body without "
+                f"{motions[int(force.argmax())]}, expected none: the matrix must belong to the free body without "
                 "supports"
             )
 

@@ -60,7 +60,9 @@ def check_interfaces(interfaces: list[Interface], model: FiniteElements) -> None
     for interface in interfaces:
         name, nodes = interface.name, interface.nodes
         if len(nodes) == 0:
-            raise InputError(f"interfaces.{name}: found no node there, expected three or more, or one with type: point")
+            raise InputError(
+                f"interfaces.{name}: found no node in its selection, expected three or more, or one with type: point"
+            )
         if interface.kind == POINT:
             if len(nodes) > 1:
                 raise InputError(f"interfaces.{name}: found {len(nodes)} nodes, expected one for type: point")

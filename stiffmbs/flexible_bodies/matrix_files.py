@@ -91,7 +91,11 @@ def _chosen(names: list[str], letter: str, name: str | None) -> str:
     else:
         own = names if len(names) == 1 else [key for key in names if key.upper().startswith(letter)]
     if len(own) != 1:
-        wanted = f"'{name}'" if name else f"one whose name begins with {letter}, or its name stated in names"
+        wanted = (
+            f"'{name}'"
+            if name
+            else f"exactly one with a name that begins with {letter}, or its name in the field names"
+        )
         raise InputError(f"found the matrices {', '.join(names) or 'none'}, expected {wanted}")
     return own[0]
 
@@ -114,7 +118,7 @@ def _placed(matrix: csr_array, labels: np.ndarray | None, nodes: Nodes) -> csr_a
     if len(unknown):
         number, component = labels[unknown[0]].tolist()
         what = f"scalar point {number}, a modal coordinate" if component == 0 else f"a row of node {number}"
-        raise InputError(f"found {what}, expected rows of the {count} nodes alone")
+        raise InputError(f"found {what}, expected only rows of the {count} nodes")
     entries = matrix.tocoo()
     turns = labels[:, 1] > 3
     of_turns = turns[entries.row] | turns[entries.col]

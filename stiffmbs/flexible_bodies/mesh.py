@@ -60,7 +60,7 @@ def from_mesh(
         )
     if connected.min() < 0 or connected.max() >= len(mesh.points):
         raise InputError(
-            f"found an element with a node that is none of the {len(mesh.points)} nodes, expected known ones"
+            f"found an element with a node outside the {len(mesh.points)} nodes of the mesh, expected only these"
         )
     if "gmsh:physical" in mesh.cell_data:  # Gmsh repeats elements of several physical groups (format 2)
         connected = connected[np.sort(np.unique(connected, axis=0, return_index=True)[1])]
@@ -202,7 +202,7 @@ def _check_edges(of_dofs: np.ndarray, of_shapes: np.ndarray) -> None:
     if len(bad):
         one, other = sorted((int(of_dofs[tuple(bad[0])]), int(of_shapes[tuple(bad[0])])))
         raise InputError(
-            f"found the nodes {one} and {other} at one place of an edge or face that elements share, expected one node"
+            f"found the nodes {one} and {other} at the same place of an edge or face that elements share, expected one node"
         )
 
 

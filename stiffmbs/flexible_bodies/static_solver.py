@@ -64,7 +64,7 @@ class StaticSolver:
                 self._take_border(springs, spring)
         except np.linalg.LinAlgError:
             raise InputError(
-                "stiffness: found a matrix that is not positive definite with the interfaces held, expected that of an "
+                "stiffness: found a matrix that is not positive definite with the interfaces held, expected the stiffness matrix of an "
                 "elastic body"
             ) from None
 

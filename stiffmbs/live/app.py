@@ -179,6 +179,7 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
         return Response(schema[0], media_type="application/json")
 
     async def job(request: Request, content: dict[str, Any]) -> Response:
+        """Send a job to the worker of a page, and stream its messages as lines of JSON."""
         worker = workers.of(str(content.get("page", "")))
         if content.get("what") == STOP:
             worker.put({"what": STOP})
@@ -191,6 +192,7 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
         return StreamingResponse(lines(), media_type="application/x-ndjson")
 
     async def save(request: Request, content: dict[str, Any]) -> Response:
+        """Write the document, unless its file was changed elsewhere."""
         try:
             digest = (
                 ""
@@ -228,6 +230,7 @@ def _posted(
     """Return a route that reads a JSON object."""
 
     async def posted(request: Request) -> Response:
+        """Answer a request whose body is a JSON object, and refuse others."""
         from starlette.responses import JSONResponse
 
         try:

@@ -172,6 +172,7 @@ def _served(document: Any, data: ModelData | None, port: int, browser: bool) -> 
     )
 
     def serve() -> None:
+        """Serve until shutdown, then end all workers."""
         asyncio.set_event_loop(loop)
         try:
             loop.run_until_complete(server.serve(sockets=[listening]))

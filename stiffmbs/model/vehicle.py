@@ -74,7 +74,7 @@ class Vehicle(Described):
     body: str = Field(description="the sprung body")
     point: Point = Field(ORIGIN, description="reference point in the body's axes, m")
     orientation: Orientation = Field(
-        IDENTITY, description="of the vehicle axes, x forward and z upwards, against the body's"
+        IDENTITY, description="orientation of the vehicle axes, x forward and z upwards, relative to the body's"
     )
     points: dict[str, Point] = Field(
         default_factory=dict,

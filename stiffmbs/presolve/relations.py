@@ -56,6 +56,7 @@ class Relations:
 
     @classmethod
     def none(cls, system: System) -> Relations:
+        """Return no relations: all coordinates are independent."""
         return cls(np.arange(system.n_q), np.ones(system.n_q), np.zeros(system.n_c, dtype=bool))
 
     def coordinates(self, system: System) -> Coordinates:

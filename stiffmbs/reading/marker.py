@@ -31,7 +31,7 @@ class Placement(Described):
     point: tuple[si.Length, si.Length] = Field(
         (0.0, 0.0), description="position in the body's own axes, from its centre of mass, m"
     )
-    angle: si.Angle = Field(0.0, description="direction of the marker's axis against the body's, rad")
+    angle: si.Angle = Field(0.0, description="direction of the marker's axis relative to the body's, rad")
 
     def numbers(self) -> tuple[float, ...]:
         """Return the inputs of kernels: the point, the angle, its cosine and its sine."""
@@ -106,7 +106,7 @@ class Marker(MarkerReference):
     dimensions: ClassVar[int | None] = 2
 
     point: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="position in the body's own axes, m")
-    angle: si.Angle = Field(0.0, description="direction of the axis against the body's, rad")
+    angle: si.Angle = Field(0.0, description="direction of the axis relative to the body's, rad")
 
     def placement(self) -> Placement:
         """Return the explicit placement on the body."""

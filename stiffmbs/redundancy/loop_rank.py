@@ -19,7 +19,7 @@ class LoopRank(NamedTuple):
     - `rank`: in general: the largest rank at any pose.
     - `start_rank`: at the start; less than `rank` at a singular pose.
     - `least`: smallest singular value that counts in the rank.
-    - `null_spaces` of shape (n, n - rank)): left null vectors of the scaled J at general poses, including the start if
+    - `null_spaces` of shape (n, n - rank): left null vectors of the scaled J at general poses, including the start if
       it is one.
     """
 

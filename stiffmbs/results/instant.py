@@ -233,6 +233,7 @@ def compiled(output: Output) -> Callable[[Instant], float]:
         return ast.Call(ast.Attribute(ast.Name("instant", ast.Load()), name, ast.Load()), [kept(argument)], [])
 
     def written(node: ast.expr) -> ast.expr:
+        """Return a node as Python that reads an instant."""
         match node:
             case ast.BinOp(left, ast.Pow(), right):
                 return ast.Call(ast.Name("power", ast.Load()), [written(left), written(right)], [])

@@ -65,7 +65,7 @@ def _along(link: Link, start: Placed, coordinates: Mapping[str, float], rates: M
 
 
 def _moved(frame: Placed, joint: LinkJoint, s: float, rate: float) -> Placed:
-    """Return the frame after a joint whose coordinate is s from its zero."""
+    """Return the frame after a joint, with its coordinate s relative to its zero, m or rad, and its rate."""
     axis = rotated(frame.orientation, joint.axis)
     if joint.kind == "slide":
         position = frame.position + s * axis

@@ -80,7 +80,7 @@ def _named(root: Node, tag: str) -> Iterator[tuple[str, Node]]:
 
 
 def _children(joints: dict[str, Node], links: dict[str, Node]) -> dict[str, str]:
-    """Return the joint that carries each link."""
+    """Return the parent joint of each link."""
     found: dict[str, str] = {}
     for name, element in joints.items():
         if element.get("type") not in (*KINDS, FIXED, PLANAR):
@@ -93,7 +93,7 @@ def _children(joints: dict[str, Node], links: dict[str, Node]) -> dict[str, str]
                 raise RobotFault(f"joint {name}: found the {role} {link}, expected a link of the file")
         child = _end(element, "child") or ""
         if child in found:
-            raise RobotFault(f"link {child}: found two joints that carry it, {found[child]} and {name}, expected one")
+            raise RobotFault(f"link {child}: found two parent joints, {found[child]} and {name}, expected one")
         found[child] = name
     return found
 
@@ -108,7 +108,7 @@ def _from_the_root(links: dict[str, Node], joints: dict[str, Node], child_of: di
     roots = [name for name in links if name not in child_of]
     if len(roots) != 1:
         found = ", ".join(roots) or "none"
-        raise RobotFault(f"found the links {found} that no joint carries, expected one, the root of the tree")
+        raise RobotFault(f"found the links {found} without a parent joint, expected one, the root of the tree")
     carried: dict[str, list[str]] = {}
     for child, joint in child_of.items():
         carried.setdefault(_end(joints[joint], "parent") or "", []).append(child)
@@ -117,7 +117,7 @@ def _from_the_root(links: dict[str, Node], joints: dict[str, Node], child_of: di
         ordered.extend(carried.get(name, ()))
     if len(ordered) < len(links):
         lost = ", ".join(name for name in links if name not in ordered)
-        raise RobotFault(f"found links that carry each other in a circle, {lost}, expected a tree")
+        raise RobotFault(f"found a closed chain of links, {lost}, expected a tree")
     return ordered
 
 

@@ -107,6 +107,7 @@ class Segment:
 
     @property
     def steps(self) -> np.ndarray:
+        """Rows of all steps; see the class."""
         if len(self.parts) > 1:
             self.parts = [np.concatenate(self.parts)]
         rows = self.parts[0] if self.parts else np.empty((0, len(self.first)))
@@ -114,6 +115,7 @@ class Segment:
 
     @property
     def rows(self) -> np.ndarray:
+        """Rows at the ends of all steps, shape (steps, 2 + 2 n); see the class."""
         rows: np.ndarray = self.steps[:, -1]
         return rows
 

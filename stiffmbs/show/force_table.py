@@ -126,6 +126,7 @@ def force_rows(solution: Solution, most: int | None = None) -> list[list[str]]:
     elements = [element for element in every if element in shown]
 
     def cells(element: str, components: Sequence[str]) -> list[str]:
+        """Return the cells of an element."""
         names = [f"{element}.{part}" for part in components]
         marks = [NOT_UNIQUE * (name in solution.not_unique) for name in names]
         return [

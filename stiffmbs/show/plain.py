@@ -28,6 +28,7 @@ def boxed(rows: Sequence[Sequence[str]]) -> str:
         return left + between.join(fill * (width + 2) for width in widths) + right
 
     def lines(row: Sequence[Sequence[str]], bar: str) -> Iterator[str]:
+        """Yield the lines of a row of cells."""
         for k in range(max(map(len, row))):
             first, *others = (
                 cell[k].ljust(width) if k < len(cell) else " " * width for cell, width in zip(row, widths, strict=True)

@@ -19,7 +19,7 @@ from ..solve.trajectory import Grid, Outcome
 from .case_solver import CaseSolver, Task, written_scene
 from .measured import Measured, measured, of_common_noise, of_separate_noise
 from .outputs import Output, outputs_of
-from .parameters import Gradients, Sought, central_differences, sought
+from .parameters import Gradients, ParameterRanges, central_differences, parameter_ranges
 
 CONFIDENCE = 0.95
 ROUNDS = 3
@@ -41,6 +41,7 @@ class Fit:
     intervals : dict of str to (float, float)
         95 % confidence intervals, by the linearised model and Student's distribution.
     standard_errors : dict of str to float
+        Standard errors of the parameters, SI units, by the linearised model.
     correlation : ndarray
         Correlation of the estimates, in the order of `values`.
     residuals : dict of str to float
@@ -119,7 +120,7 @@ def fit(
     Seber and Wild, Nonlinear Regression, 1989, chapter 5: confidence intervals.
     """
     found, written = measured(data), written_scene(scene)
-    ranges = sought(parameters, written)
+    ranges = parameter_ranges(parameters, written)
     model = _Model(written, ranges, found, settings)
     weights = _weights(found, sigma)
     point = ranges.point(start or {})
@@ -151,7 +152,7 @@ def _weights(found: Measured, sigma: Mapping[str, float] | None) -> dict[str, fl
 class _Model:
     """Model at points of the unit cube, compared with the data."""
 
-    def __init__(self, scene: Any, ranges: Sought, data: Measured, settings: Mapping[str, Any]) -> None:
+    def __init__(self, scene: Any, ranges: ParameterRanges, data: Measured, settings: Mapping[str, Any]) -> None:
         self._outputs: tuple[Output, ...] = outputs_of({name: name for name in data.channels})
         self._solver = CaseSolver(Task(scene, ranges.names, {}, self._outputs))
         self._ranges, self._data = ranges, data
@@ -236,7 +237,12 @@ class _Model:
 
 
 def _concluded(
-    model: _Model, ranges: Sought, point: np.ndarray, weights: Mapping[str, float], result: Any, of_channels: bool
+    model: _Model,
+    ranges: ParameterRanges,
+    point: np.ndarray,
+    weights: Mapping[str, float],
+    result: Any,
+    of_channels: bool,
 ) -> Fit:
     from scipy.stats import t as student
 
@@ -264,7 +270,7 @@ def _concluded(
     )  # fmt: skip
 
 
-def _at_bounds(ranges: Sought, active: np.ndarray) -> list[str]:
+def _at_bounds(ranges: ParameterRanges, active: np.ndarray) -> list[str]:
     """Return a clause on each parameter that is at a bound at the end of the search."""
     return [
         f"'{name}' is at its {'lower' if side < 0 else 'upper'} bound, {one.low if side < 0 else one.high:g}: a better fit may "

@@ -37,7 +37,7 @@ def follow(
 ) -> Iterator[Solution]:
     """Solve a model, and yield the solution so far from time to time, finally the whole solution.
 
-    bdf keeps its history, as in `stiffmbs.run`; explicit solvers restart at each output instant.  Notes and
+    bdf and radau keep their history, as in `stiffmbs.run`; other solvers restart at each output instant.  Notes and
     verification, as of `stiffmbs.run`, are omitted.
 
     Parameters

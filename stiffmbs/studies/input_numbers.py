@@ -1,4 +1,4 @@
-"""Inputs of a simulation, whose values in forces change between steps, and its followed revolutions."""
+"""Inputs of a simulation, whose values in forces and states change between steps, and its continuous angles."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class InputNumbers:
 
     `job`: job whose forces have the inputs. `solver`: solver of the scene with these inputs. `values`: inputs,
     parameters or paths of the scene, with their initial values. Raises InputError if an input changes more than numbers
-    of forces.
+    of forces and states.
     """
 
     def __init__(self, job: Job, solver: CaseSolver, values: Mapping[str, float]) -> None:
@@ -79,8 +79,8 @@ class InputNumbers:
         for name in self._names:
             if not changes_of_numbers(job, self._scene({**self.values, name: self.values[name] + 1.0})):
                 raise InputError(
-                    f"input '{name}': found a value that more than numbers of forces and states follow from, expected one of these "
-                    "alone"
+                    f"input '{name}': found an input that affects more than numbers of forces and states, expected one "
+                    "that affects only these"
                 )
         self._quick = self._linear()
 
@@ -120,7 +120,7 @@ class InputNumbers:
             found = ", ".join(f"input '{name}': found {value:g}" for name, value in changed.items())
             raise InputError(
                 f"{found}, which changes more than numbers of forces and states, such as the form of a force, expected a value "
-                "that changes these alone"
+                "that changes only these"
             )
         self._job = replace(self._job, data=scene)
 

@@ -14,7 +14,7 @@ from ..model.files.stages import WrittenScene
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .outputs import Output, outputs_of
-from .parameters import Gradients, Sought, central_differences, sought
+from .parameters import Gradients, ParameterRanges, central_differences, parameter_ranges
 from .sensitivities.formulas import of_whole_time
 
 STEP = 1e-3
@@ -30,6 +30,7 @@ class Optimum:
     values : dict of str to float
         Parameters, SI units.
     objective : float
+        Objective with these parameters.
     before : float
         Objective at the start of the search.
     constraints : dict of str to float
@@ -39,6 +40,7 @@ class Optimum:
     success : bool
         True if the search converged with all constraints satisfied.
     message : str
+        Reason for termination.
     """
 
     values: dict[str, float]
@@ -100,7 +102,7 @@ def optimise(
     SLSQP).
     """
     limits, written = dict(constraints or {}), written_scene(scene)
-    ranges = sought(parameters, written)
+    ranges = parameter_ranges(parameters, written)
     model = _Model(written, objective, limits, ranges, settings)
     point = ranges.point(start or {})
     first = model.check(point)
@@ -125,7 +127,7 @@ class _Model:
     """Objective and constrained outputs at points of the unit cube, each point solved once."""
 
     def __init__(
-        self, written: WrittenScene, objective: str, limits: Mapping[str, tuple[float | None, float | None]], ranges: Sought,
+        self, written: WrittenScene, objective: str, limits: Mapping[str, tuple[float | None, float | None]], ranges: ParameterRanges,
         settings: Mapping[str, Any],
     ) -> None:  # fmt: skip
         self._texts = [objective, *limits]

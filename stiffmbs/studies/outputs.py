@@ -22,7 +22,8 @@ class Reported(Protocol):
     """Solution or equivalent object: output instants, and channels by name."""
 
     @property
-    def time(self) -> np.ndarray: ...
+    def time(self) -> np.ndarray:
+        """Output instants, s."""
 
     def __getitem__(self, channel: str, /) -> np.ndarray: ...
 

@@ -21,7 +21,7 @@ from .sensitivities.sensitivities import DifferentiatedRun, differentiable
 
 
 @dataclass(frozen=True)
-class Sought:
+class ParameterRanges:
     """Parameters within ranges, as points of the unit cube."""
 
     names: tuple[str, ...]
@@ -51,7 +51,7 @@ class Sought:
         ])  # fmt: skip
 
 
-def sought(parameters: Mapping[str, Any], scene: WrittenScene) -> Sought:
+def parameter_ranges(parameters: Mapping[str, Any], scene: WrittenScene) -> ParameterRanges:
     """Return parameters of a scene with their ranges, each a `Range`, its text, or a pair of its ends.
 
     Raises InputError if there is no parameter, or a range is invalid.
@@ -60,7 +60,7 @@ def sought(parameters: Mapping[str, Any], scene: WrittenScene) -> Sought:
         raise InputError("parameters: found none, expected one or more with their ranges")
     found = [_bounded(name, given) for name, given in parameters.items()]
     refuse_units(scene, found)
-    return Sought(tuple(parameters), tuple(one.range for one in found if one.range))
+    return ParameterRanges(tuple(parameters), tuple(one.range for one in found if one.range))
 
 
 def central_differences(function: Callable[[np.ndarray], np.ndarray], point: np.ndarray, step: float) -> np.ndarray:
@@ -111,7 +111,7 @@ class Gradients:
     """
 
     def __init__(
-        self, written: WrittenScene, ranges: Sought, texts: Sequence[str], settings: RunSettings,
+        self, written: WrittenScene, ranges: ParameterRanges, texts: Sequence[str], settings: RunSettings,
         times: np.ndarray | None = None,
     ) -> None:  # fmt: skip
         self._scenes, self._ranges, self._texts = Scenes(written), ranges, texts

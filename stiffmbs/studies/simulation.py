@@ -38,7 +38,7 @@ QUATERNION = ("q0", "q1", "q2", "q3")
 """Channels that are normalised, unlike the coordinates of an integrator."""
 INPUT = "simulation/input/"
 """Prefix of the names of inputs in files of saved simulations."""
-LOOK = 64
+DRIFT_CHECK_INTERVAL = 64
 """Number of steps between checks for drift of relaxed constraints, in addition to those at steps 1, 2, 4, 8, ..."""
 
 
@@ -161,7 +161,7 @@ class Simulation:
         end = self.t + dt
         self._steps += 1
         with in_use(self._job.settings.tuning):
-            if self._relaxed and (self._steps % LOOK == 0 or self._steps & (self._steps - 1) == 0):
+            if self._relaxed and (self._steps % DRIFT_CHECK_INTERVAL == 0 or self._steps & (self._steps - 1) == 0):
                 self._advance_without_drift(end)
             else:
                 self._advance(end)

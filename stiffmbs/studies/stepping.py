@@ -1,4 +1,4 @@
-"""Steppers of a simulation: IDA's own steps, or short runs of explicit solvers."""
+"""Steppers of a simulation: the steps of an implicit solver, or short runs."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class Stepper(Protocol):
 
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
-    """Return a stepper: with the own steps of bdf and radau with the native engine, else with short runs."""
+    """Return a stepper: by the steps of bdf or radau if the native engine runs them, otherwise by short runs."""
     made = {"bdf": Integrator, "radau": radau_integrator}.get(job.settings.solver)
     if made is not None and not job.dynamics.system.sampled.any():
         integrator = made(job.dynamics, job.settings)
@@ -114,10 +114,10 @@ def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
 
 
 class ImplicitSteps:
-    """IDA's own steps, as long as in one run, with interpolation in the last step.
+    """Steps of bdf or radau, as long as in one run, with interpolation in the last step.
 
-    After a jump of inputs, IDA ends a step at the end of the first simulation step, as inputs mostly jump again there.
-    `integrator`: integrator with the native engine. `t`: time, s.
+    After a jump of inputs, IDA restarts and ends a step at the end of the first simulation step, as inputs mostly jump
+    again there. `integrator`: integrator with the native engine. `t`: time, s.
     """
 
     def __init__(self, job: Job, integrator: Integrator, start: InitialValues, t: float) -> None:

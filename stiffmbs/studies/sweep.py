@@ -54,7 +54,7 @@ class Study:
         task = self.task
         return {
             "stiffmbs": __version__, "the scene": repr((task.scene.content, task.scene.changes)),
-            "what is varied": repr(self.cases), "the settings": repr(task.settings), "the outputs": repr(task.outputs),
+            "the varied values": repr(self.cases), "the settings": repr(task.settings), "the outputs": repr(task.outputs),
             **{f"'{quoted(name)}'": digest for name, digest in task.scene.files.items()},
         }  # fmt: skip
 
@@ -89,6 +89,7 @@ class _Progress:
         self._begun = time.monotonic()
 
     def add(self, count: int) -> None:
+        """Count solved cases, and report the progress."""
         self._done += count
         if self._watch:
             each = (time.monotonic() - self._begun) / (self._done - self._before)

@@ -133,7 +133,7 @@ def test_requests_are_read_again():
         (BETWEEN["planar"], "joints.turn: found a drive of a formula, expected one of a joint"),
         ("forces: {f: {type: force, i: a, force: [b.q1, 0, 0]}}", "forces.f: found 'b.q1'"),
         ("joints: {p: {type: revolute_spherical, i: a, j: b.end, length: 1}}", "joints.p: found a joint of the type revolute_spherical"),
-        ("forces: {s: {type: bushing, i: a, j: b, axes: ground, stiffness: [1, 1, 1, 0, 0, 0]}}", "forces.s: .*ground's axes"),
+        ("forces: {s: {type: bushing, i: a, j: b, axes: ground, stiffness: [1, 1, 1, 0, 0, 0]}}", "forces.s: .*'axes: ground'"),
         ("forces: {s: {type: torsion_spring, i: a, j: b, spring_law: 2*s^3}}", "forces.s: found curves of a torsion spring between axes"),
     ],
 )  # fmt: skip

@@ -62,6 +62,6 @@ def test_they_move_alike(name):
 def test_a_curve_by_a_formula_is_refused():
     text = "dimensions: 3\nbodies: {b: {mass: 1, inertia: [1, 1, 1]}}\njoints: {c: {type: point_on_curve, i: b, j: ground, y: x^2}}\n"
     with pytest.raises(
-        InputError, match=r"joints\.c: found a curve by another law, expected a table with the ends not-a-knot"
+        InputError, match=r"joints\.c: found a curve by another law, expected a table with 'ends: not-a-knot'"
     ):
         dataset_text(stiffmbs.read_scene(text))

@@ -254,7 +254,7 @@ SFORCE/2, TRANS, ACTION, I=20, J=2, FUNC=-0.3*VARVAL(1)*STEP(VX(20), -0.01, -1, 
         ("FX(20,30)", "found the force of BEAM/7 in 'FX.*expected it in a REQUEST, or that of a joint, or of SFORCE"),
         ("BEAM(7,0,1,0)", "found BEAM in 'BEAM.*expected it in a REQUEST, or one of JOINT, JPRIM, SFORCE"),
         ("FX(20,1)", "found no joint and no force between the markers 20 and 1"),
-        ("BUSH(6,0,8,0)", "found the torque of BUSHING/6, expected it in a REQUEST alone"),
+        ("BUSH(6,0,8,0)", "found the torque of BUSHING/6, expected it in a REQUEST only"),
     ],
 )
 def test_forces_that_cannot_be_followed_are_named(law, words):

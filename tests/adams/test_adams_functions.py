@@ -173,7 +173,7 @@ def test_interp_has_the_method_before_the_spline():
     text = SPLINE + "SPLINE/1, X=0,1,2,3, Y=0,1,2,3\nVARIABLE/1, FUNC="
     assert made(text + "INTERP(TIME,3,1)")["requests"]["VARIABLE_1"] == "CUBSPL_1(t)"
     assert made(text + "INTERP(TIME,1,3,0)")["requests"]["VARIABLE_1"].startswith("LINE_3(t) + ")
-    with pytest.raises(InputError, match="expected a spline's value"):
+    with pytest.raises(InputError, match="expected the value of a cubic or linear spline"):
         made(f"{text.partition('VARIABLE')[0]}SFORCE/1, TRANS, I=22, J=1, FUNC=INTERP(TIME,3,1,1)")
 
 
@@ -237,8 +237,8 @@ def test_families_that_are_none_are_refused(more, words):
     "text, words",
     [
         ("AKISPL(TIME,0,4)", "found the spline 4 in 'AKISPL"),
-        ("AKISPL(TIME,0,3,1)", "expected a spline's value"),
-        ("INTERP(TIME,2,3)", "expected a spline's value"),
+        ("AKISPL(TIME,0,3,1)", "expected the value of a cubic or linear spline"),
+        ("INTERP(TIME,2,3)", "expected the value of a cubic or linear spline"),
     ],
 )
 def test_splines_that_are_not_there_are_told(text, words):

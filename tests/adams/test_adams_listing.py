@@ -74,8 +74,8 @@ def test_arguments_and_functions_have_lines_of_their_own(tmp_path):
         "line 4, MARKER/10: read (PART)",
         "line 5, MARKER/21: read (PART)",
         "line 6, SFORCE/1: read (ROTATIONAL I J FUNCTION)",
-        "line 7, SFORCE/1, MOD: refused, a function that FUNCTION cannot use here",
-        "line 7, SFORCE/1, NFORCE: refused, a function that FUNCTION cannot use here",
+        "line 7, SFORCE/1, MOD: refused, a function that FUNCTION of this statement cannot use",
+        "line 7, SFORCE/1, NFORCE: refused, a function that FUNCTION of this statement cannot use",
         "line 9, REQUEST/1: read (F2 F3)",
         "line 9, REQUEST/1, COMMENT: left out, text",
     ]

@@ -44,7 +44,7 @@ def test_an_input_is_given_and_an_output_read():
     [
         ("PINPUT/5, VARIABLES=1,2", "PINPUT/5", "PINPUT/5: found no VARIABLES, expected the numbers of VARIABLE statements"),
         ("VARIABLES=3", "VARIABLES=4", "POUTPUT/6: found VARIABLES = 4, expected the number of a VARIABLE"),
-        ("0*POUVAL(6, 1)", "POUVAL(6, 2)", r"found POUVAL\(6, 2\), expected a POUTPUT and the place of one of its variables"),
+        ("0*POUVAL(6, 1)", "POUVAL(6, 2)", r"found POUVAL\(6, 2\), expected a POUTPUT and the position of one of its variables"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_with_inputs_and_outputs_is_said(old, new, message):

@@ -94,7 +94,7 @@ def test_no_command_is_followed_after_halt(run_with):
 def test_a_sensor_that_only_restarts_the_integration_is_left_out(run_with):
     found = run_with("SENSOR/3, FUNCTION=TIME, VALUE=0.3, GE, STEPSIZE=1, RESTART", "SIM/DYN, END=1, STEPS=4\n")
     np.testing.assert_allclose(found.time, np.arange(5) / 4)
-    told = "SENSOR/3 is left out: it does not end the run, and RESTART, STEPSIZE change no results"
+    told = "SENSOR/3 is left out: it does not end the run, and RESTART, STEPSIZE do not affect results"
     assert told in found.notes
 
 
@@ -157,10 +157,10 @@ def test_a_sensor_that_is_true_at_once_is_told(run_with):
         ("FUNCTION=TIME, GE, RETURN", "SENSOR/1: found no VALUE, expected the number"),
         ("VALUE=1, RETURN", "SENSOR/1: found no FUNCTION"),
         ("FUNCTION=TIME, VALUE=1, GE, LE", "SENSOR/1: found GE and LE, expected one of them"),
-        ("FUNCTION=USER(1), VALUE=1, RETURN", "SENSOR/1: found FUNCTION = USER\\(1\\), which is computed by a subroutine"),
+        ("FUNCTION=USER(1), VALUE=1, RETURN", "SENSOR/1: found FUNCTION = USER\\(1\\), a user subroutine"),
         ("FUNCTION=SENVAL(2), VALUE=1, RETURN", "found SENVAL\\(2\\), expected the number of a SENSOR with EVALUATE"),
         ("FUNCTION=TIME, VALUE=1, DT=0", "found DT = 0, expected a number above zero"),
-        ("FUNCTION=TIME, VALUE=1, ERROR=-1, RETURN", "found ERROR = -1, expected no number below zero"),
+        ("FUNCTION=TIME, VALUE=1, ERROR=-1, RETURN", "found ERROR = -1, expected a number of zero or more"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_with_a_sensor_is_said(sensor, message):

@@ -177,7 +177,7 @@ def test_contacts_that_are_not_read_are_refused(text, words):
         ("ARRAY/1, X\nARRAY/2, U\nARRAY/3, Y\nTFSISO/1, X=1, U=2, Y=3, NUM=1, DENOM=1,1", "found U = 2, expected the number of an ARRAY"),
         ("TFSISO/1, X=1, U=2, Y=3, NUM=1,1,1, DENOM=1,1", "found no proper transfer function"),
         ("ARRAY/1, X\nMATRIX/1, FULL=RORDER, M=1, N=2, VALUES=1,2\nLSE/1, X=1, A=1", "found A of 1 by 2 numbers, expected 1 rows and 1 col"),
-        ("MATRIX/1, FULL=RORDER, M=2, N=2, VALUES=1,2", "found 2 VALUES of 2 rows"),
+        ("MATRIX/1, FULL=RORDER, M=2, N=2, VALUES=1,2", "found 2 VALUES, M = 2 and N = 2"),
         ("MATRIX/1, FILE=a.txt", "found FILE, expected the numbers"),
         ("SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=21, J=10, FUNCTION=ARYVAL(8,1)", r"found ARYVAL\(8, 1\), expected an ARRAY"),
         ("ARRAY/8, IC, NUM=1,2\nSFORCE/1, TRANSLATIONAL, ACTIONONLY, I=21, J=10, FUNCTION=ARYVAL(8,3)", r"found ARYVAL\(8, 3\), expected"),
@@ -240,6 +240,7 @@ def test_all_faults_of_a_dataset_are_told_at_once():
     with pytest.raises(stiffmbs.InputError, match=r"I = 77.*JOINT = 9.*the marker 88"):
         run(text)
     with pytest.raises(
-        stiffmbs.InputError, match=r"not read here: FLEX_BODY/1.*JOINT/2: found no J.*SFORCE/1: found no kind"
+        stiffmbs.InputError,
+        match=r"found unsupported statements: FLEX_BODY/1.*JOINT/2: found no J.*SFORCE/1: found no kind",
     ):
         run(SLIDER + "FLEX_BODY/1\nJOINT/2, REVOLUTE, I=21\nSFORCE/1, I=21, J=10, FUNCTION=1\n")

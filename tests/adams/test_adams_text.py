@@ -182,14 +182,14 @@ def test_markers_are_turned_by_angles_or_points(marker, x, z):
         ("JPRIM/1, I=1, J=2", r"JPRIM/1: found no kind of primitive"),
         ("MOTION/1, I=1, FUNC=TIME", r"MOTION/1: found no JOINT, expected JOINT, or I and J"),
         ("MOTION/1, JOINT=1", r"MOTION/1: found no FUNCTION"),
-        ("MOTION/1, JOINT=1, FUNCTION=USER(1,2)", r"computed by a subroutine"),
+        ("MOTION/1, JOINT=1, FUNCTION=USER(1,2)", r"a user subroutine"),
         ("GCON/1, FUNCTION=DX(1,2", r"line 6, GCON/1: FUNCTION: found 'DX\(1,2'"),
         ("COUPLER/1, JOINTS=1", r"COUPLER/1: found JOINTS = 1, expected 2 or 3"),
         ("COUPLER/1, JOINTS=1,2, TYPE=T:Q, SCALES=2", r"found TYPE = T:Q, expected T or R"),
         ("GEAR/1, CV=3", r"GEAR/1: found no JOINTS"),
         ("SFORCE/1, I=1, J=2, FUNC=1", r"SFORCE/1: found no kind of force"),
         ("VFORCE/1, I=1, JFLOAT=2, FX=1", r"VFORCE/1: found no FY, no FZ"),
-        ("GFORCE/1, I=1, JFLOAT=2, FUNCTION=USER(1)", r"computed by a subroutine"),
+        ("GFORCE/1, I=1, JFLOAT=2, FUNCTION=USER(1)", r"a user subroutine"),
         ("SPRINGDAMPER/1, I=1, J=2, K=3", r"found no kind of spring"),
         ("SPRINGDAMPER/1, ROT, I=1, J=2, K=3", r"found K with ROTATIONAL, expected only KT, CT, ANGLE, TORQUE"),
         ("BEAM/1, I=1, J=2, LENGTH=1", r"BEAM/1: found no AREA"),
@@ -233,7 +233,7 @@ def test_a_first_line_that_can_only_be_a_statement_is_one_with_a_note():
     body = "\nPART/1, GROUND\nEND"
     for first in ("UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND", "units/\n, SYSTEM=CGS"):
         found = read_dataset(first + body)
-        assert found.units.length in (1e-3, 1e-2) and "line 1 is the title" in found.notes[0]
+        assert found.units.length in (1e-3, 1e-2) and "line 1, the title in Adams" in found.notes[0]
     for title in ("joint / 3 of them", "UNITS of all sorts", "! PART/2", "gear/box", "part/2b"):
         assert read_dataset(title + body).title == title and not read_dataset(title + body).notes
 

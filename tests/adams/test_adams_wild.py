@@ -55,7 +55,7 @@ def test_a_variable_by_a_subroutine_that_nothing_uses_is_left_out():
     ],
 )
 def test_forces_and_motions_by_a_routine_are_refused_as_such(text):
-    with pytest.raises(InputError, match=r"found FUNCTION = USER\(1\).*computed by a subroutine"):
+    with pytest.raises(InputError, match=r"found FUNCTION = USER\(1\).*a user subroutine"):
         read_adams(HEAD.format(text))
 
 

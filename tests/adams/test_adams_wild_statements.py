@@ -87,7 +87,7 @@ def test_general_state_equations_that_nothing_reads_are_left_out():
 
 @pytest.mark.parametrize("reads", READS)
 def test_general_state_equations_that_are_read_are_refused(reads):
-    with pytest.raises(InputError, match=r"found statements that are not read here: GSE/4"):
+    with pytest.raises(InputError, match=r"found unsupported statements: GSE/4"):
         notes(f"{GSE}\n{reads}".replace(", FUNCTION=USER(1)\\", ""))
 
 
@@ -195,7 +195,7 @@ def test_commands_after_those_of_another_file_are_followed(tmp_path):
             "model\nFILE/COMMAND=other.acf\n",
             r"line 2, FILE/COMMAND: other.acf, line 2, .* expected no file that executes itself",
         ),
-        ("BOX/1\n", r"model.acf, line 2, BOX/1: found a command that is not followed"),
+        ("BOX/1\n", r"model.acf, line 2, BOX/1: found an unsupported command"),
         ("SIMULATE/DYNAMICS, END=x\n", r"model.acf, line 2, SIMULATE: found END = x"),
     ],
 )

@@ -72,7 +72,7 @@ def test_a_contact_of_a_beam_may_be_with_a_circle_and_has_messages():
         ),
         (("stiffness: 1e4 N/m^2", ""), "forces.floor.stiffness: found nothing"),
         (("stiffness: 1e4 N/m^2", "stiffness: -3"), "expected a value greater than 0"),
-        (("j: ground,", "i: rod.end,"), "forces.floor.i: found a marker of a contact of a beam"),
+        (("j: ground,", "i: rod.end,"), "forces.floor.i: found a marker of a beam contact"),
         (("j: ground,", ""), "floor.start.j: found nothing"),
         (("stiffness: 1e4", "frction: 0.3, stiffness: 1e4"), "did you mean 'friction'?"),
     ):

@@ -135,5 +135,5 @@ def test_bad_tolerances_are_reported(monkeypatch):
         stiffmbs.equilibrium(read_scene(text.replace("elements: 8", "elements: {tolerance: 1e-12}")))
     with pytest.raises(InputError, match="found a tolerance, expected a number"):
         stiffmbs.modes(read_scene(text.replace("elements: 8", "elements: auto")))
-    with pytest.raises(InputError, match=r"b.elements: found a tolerance, which a scene may have"):
+    with pytest.raises(InputError, match=r"b.elements: found a tolerance in a model built in Python"):
         Model().add("b", BeamBody(start=(0, 0), end=(1, 0), elements="auto", stiffness=(1, 1, 1), mass_per_length=1, inertia_per_length=1))  # fmt: skip

@@ -23,7 +23,7 @@ def message(text):
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
-        (("end: [1, 0]", "end: [0, 0]"), "bodies.s.end: found the points 1 and 2 at one place"),
+        (("end: [1, 0]", "end: [0, 0]"), "bodies.s.end: found the points 1 and 2 at the same place"),
         (("E: 5 MPa", "E: -5 MPa"), "bodies.s.material.E: found -5 MPa, expected a pressure greater than 0"),
         ((SECTION + ", ", ""), "bodies.s.section: found nothing, expected a value"),
         ((", " + MATERIAL, ""), "bodies.s.material: found nothing, expected a value"),
@@ -35,8 +35,8 @@ def message(text):
         (("elements: 4", "elements: 4, stations: {m: 2 m}"), "bodies.s.stations.m: found 2 m, expected less than the length"),
         (("elements: 4", "elements: 4, stations: {end: 0.2}"), "bodies.s.stations: found the name 'end'"),
         (("elements: 4", "elements: 4, stiffness: [1, 1, 1]"), "bodies.s: found both 'section' and numbers"),
-        (("end: [1, 0]", "end: [1, 0], through: [2, 0]"), "bodies.s.through: found a beam that leads straight back"),
-        (("start: [0, 0], end: [1, 0]", "points: [[0, 0], [1, 0], [0.5, 0]]"), "leads straight back at point 2"),
+        (("end: [1, 0]", "end: [1, 0], through: [2, 0]"), "bodies.s.through: found a beam that reverses its direction"),
+        (("start: [0, 0], end: [1, 0]", "points: [[0, 0], [1, 0], [0.5, 0]]"), "reverses its direction at point 2"),
         (("end: [1, 0], elements: 4", "end: [1e-3, 0], through: [0.5, 1], elements: 1"), "expected more elements"),
         (("diameter: 20 mm", "diameter: 20 N"), "bodies.s.section.diameter: found '20 N'"),
         (("type: circle, diameter: 20 mm", "type: tube, diameter: 20 mm, thickness: 10 mm"), "a solid bar is"),
@@ -56,7 +56,9 @@ def test_bad_references_are_reported():
     load = "forces: {c: {type: distributed_load, beam: t, force: [0, 1]}}"
     assert "forces.c.beam: found the unknown beam 't', expected s" in message(beam + load)
     assert "expected one of type beam" in message("bodies: {s: {mass: 1, inertia: 1}}\n" + load)
-    assert "that the beam 's' makes too" in message(f"bodies: {{s: {GOOD}, s.end: {{mass: 1, inertia: 1}}}}")
+    assert "found the name of a node of the beam 's'" in message(
+        f"bodies: {{s: {GOOD}, s.end: {{mass: 1, inertia: 1}}}}"
+    )
     assert "bodies.t: found the name 't', which is reserved" in message(f"bodies: {{t: {GOOD}}}")
     across = "dimensions: 3\nbodies: {s: {type: beam, start: [0, 0, 0], end: [1, 0, 0], up: [1, 0, 0], elements: 1, "
     assert "bodies.s.up: found no direction across the beam" in message(f"{across}{SECTION}, {MATERIAL}}}}}")

@@ -177,7 +177,7 @@ REFUSED = [
     ({"stiffness": 1, "surface": "sphere"}, "surface: found 'sphere', expected 'line', 'circle' or 'hole'"),
     ({"stiffness": 1, "surface": "circle"}, "found two points, expected a radius or surface_radius above zero"),
     ({"stiffness": 1, "surface": "hole", "radius": 1, "surface_radius": 0.5}, "a circle of radius 1 in a hole of 0.5"),
-    ({"stiffness": 1, "static_friction": 1}, "found static_friction alone, expected friction too"),
+    ({"stiffness": 1, "static_friction": 1}, "found static_friction without friction, expected both"),
 ]
 
 

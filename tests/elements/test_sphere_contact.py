@@ -95,7 +95,7 @@ def test_a_ball_with_side_spin_slides_on_a_parabola_until_it_rolls():
         ({"surface": "sphere"}, "found two points, expected a radius or surface_radius above zero"),
         ({"surface": "hollow", "radius": 1, "surface_radius": 0.5}, "found a sphere of radius 1 in a hollow of 0.5"),
         ({"surface_radius": 1}, "found a surface_radius of a plane, expected none"),
-        ({"static_friction": 1}, "found static_friction alone, expected friction too"),
+        ({"static_friction": 1}, "found static_friction without friction, expected both"),
     ],
 )
 def test_what_is_wrong_with_a_contact_is_said(fields, message):

@@ -110,7 +110,7 @@ def test_elements_that_share_an_edge_share_the_node_on_it(tmp_path):
     mesh.points = np.vstack([mesh.points, mesh.points[mesh.cells[0].data[0, 4]]])
     mesh.cells[0].data[0, 4] = len(mesh.points) - 1
     mesh.write(tmp_path / "a.vtu")
-    with pytest.raises(InputError, match=r"found the nodes [0-9]+ and [0-9]+ at one place"):
+    with pytest.raises(InputError, match=r"found the nodes [0-9]+ and [0-9]+ at the same place"):
         from_mesh(tmp_path / "a.vtu", 1e-3, 2.1e11, 0.3, 7850.0)
 
 
@@ -118,8 +118,8 @@ def test_elements_that_share_an_edge_share_the_node_on_it(tmp_path):
     ("cells", "message"),
     [
         (np.empty((3, 0), dtype=int), "found 3 elements of 0 nodes of the type tetra, expected some of 4"),
-        ([[0, 1, 2, 40]], "found an element with a node that is none of the 4 nodes"),
-        ([[0, 1, 2, -1]], "found an element with a node that is none of the 4 nodes"),
+        ([[0, 1, 2, 40]], "found an element with a node outside the 4 nodes"),
+        ([[0, 1, 2, -1]], "found an element with a node outside the 4 nodes"),
     ],
 )
 def test_elements_without_their_nodes_are_refused(monkeypatch, tmp_path, cells, message):

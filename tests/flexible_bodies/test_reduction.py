@@ -171,7 +171,7 @@ def _compliance(body):
 @pytest.mark.parametrize(
     ("nodes", "kind", "message"),
     [
-        ([], "rigid", "found no node there"),
+        ([], "rigid", "found no node in its selection"),
         ([5], "rigid", "found 1 node, expected three or more"),
         ([0, 1], "point", "found 2 nodes, expected one"),
     ],

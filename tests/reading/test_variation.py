@@ -8,7 +8,7 @@ from stiffmbs.comparison.plan import numbers_of
 from stiffmbs.errors import InputError
 from stiffmbs.reading.variation import read_variation, variation
 from stiffmbs.studies.case_solver import written_scene
-from stiffmbs.studies.parameters import sought
+from stiffmbs.studies.parameters import parameter_ranges
 
 STIFFNESS = (1, 0, -2)
 
@@ -76,7 +76,7 @@ def test_a_comparison_chooses_the_number_of_values_if_there_is_none():
 def test_bounds_of_a_search_are_a_range_its_text_or_a_pair(examples):
     scene = written_scene(examples / "half_car.yaml")
     given = {"k_b": "1e5:1e6:log", "zeta": (0.01, 0.3), "V": Range(10, 20)}
-    assert sought(given, scene).ranges == (Range(1e5, 1e6, log=True), Range(0.01, 0.3), Range(10, 20))
+    assert parameter_ranges(given, scene).ranges == (Range(1e5, 1e6, log=True), Range(0.01, 0.3), Range(10, 20))
     for wrong in ("1,2", "1:2:3", "1 mm:2 mm"):
         with pytest.raises(InputError, match="k_b"):
-            sought({"k_b": wrong}, scene)
+            parameter_ranges({"k_b": wrong}, scene)

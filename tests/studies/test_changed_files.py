@@ -131,7 +131,7 @@ def test_the_scene_itself_and_other_parts_are_named(tmp_path, examples):
     sweep(scene, L=[0.5], duration=0.1, store=store)
     with pytest.raises(InputError, match="in which the settings had"):
         sweep(scene, L=[0.5], duration=0.1, rtol=1e-5, store=store)
-    with pytest.raises(InputError, match="in which what is varied had"):
+    with pytest.raises(InputError, match="in which the varied values had"):
         sweep(scene, L=[0.6], duration=0.1, store=store)
     scene.write_text(scene.read_text().replace("cart:", "cart: ", 1) + "notes: [more]\n")
     with pytest.raises(InputError, match="in which the scene had"):

@@ -134,7 +134,9 @@ def test_a_model_built_in_python_is_stepped_beyond_its_duration():
 
 def test_what_is_no_input_is_refused(examples):
     scene = stiffmbs.read_scene(SLED)
-    with pytest.raises(InputError, match=r"input 'bodies\.sled\.mass': found a value that more than numbers of forces"):
+    with pytest.raises(
+        InputError, match=r"input 'bodies\.sled\.mass': found an input that affects more than numbers of forces"
+    ):
         simulation(scene, inputs={"bodies.sled.mass": 2.0})
     with pytest.raises(InputError, match="G: found no such parameter, expected one of F, k"):
         simulation(scene, inputs={"G": 2.0})

@@ -97,7 +97,7 @@ def test_tracks_of_a_random_road_have_the_filter():
     ("road", "said"),
     [
         (lambda: FormulaRoad(z="0.1*x", filter_radius=0.3), "expected all three or none"),
-        (lambda: FormulaRoad(z="0.1*y", first=0, last=1, filter_radius=0.3), "expected a formula of x alone"),
+        (lambda: FormulaRoad(z="0.1*y", first=0, last=1, filter_radius=0.3), "expected a formula of x only"),
         (lambda: FormulaRoad(z="x", first=2, last=1, filter_radius=0.3), "expected it after first = 2 m"),
         (lambda: Dunes(filter_radius=0.3), "without an extent"),
     ],

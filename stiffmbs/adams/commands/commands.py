@@ -96,7 +96,7 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
                 segments.append(Segment(simulation, changes, dict(settings)))
         elif name == "INTEGRATOR":
             settings |= _integrator_settings(command)
-            left_out.append(f"INTEGRATOR (line {command.line}) but for HMAX, and ERROR below {DEFAULT_RTOL:g}")
+            left_out.append(f"INTEGRATOR (line {command.line}) except HMAX, and ERROR below {DEFAULT_RTOL:g}")
         elif name == "LINEAR":
             linear.append(_linear_note(command, bool(segments)))
         elif name in SETTINGS:
@@ -105,7 +105,7 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
             if segments:
                 _refuse_between_runs(command, name or "")
             changes = _followed(changes, command, name, known)
-    notes = (f"{', '.join(left_out)} of the command file left out: analysis settings",) if left_out else ()
+    notes = (f"{', '.join(left_out)} of the command file: left out, analysis settings",) if left_out else ()
     return Commands(tuple(segments), changes, (*linear, *notes))
 
 
@@ -145,7 +145,7 @@ def _followed(changes: Changes, command: Statement, name: str | None, known: Col
     raise DatasetFault(
         command.line,
         f"{word}/{ident or command.ident}".rstrip("/"),
-        f"found a command that is not followed, expected SIMULATE, ACTIVATE, DEACTIVATE, INTEGRATOR, STOP, new values of "
+        f"found an unsupported command, expected SIMULATE, ACTIVATE, DEACTIVATE, INTEGRATOR, STOP, new values of "
         f"statements, or one of {', '.join((*HARMLESS, *SETTINGS))}, which are left out",
     )
 
@@ -162,13 +162,13 @@ def _refuse_between_runs(command: Statement, name: str) -> None:
             raise DatasetFault(
                 command.line,
                 f"{name}/{ident}",
-                f"found {word} changed between two simulations, expected one of {', '.join(allowed)}: others belong to the "
+                f"found {word} changed between two simulations, expected one of {', '.join(allowed)}: others define the "
                 "start of the first",
             )
 
 
 def _word(piece: Subsystem) -> str:
-    """Return the argument named by a piece of a command; '' for a further value of the argument before it."""
+    """Return the argument named by a piece of a command; '' for a further value of the previous argument."""
     head = piece.text.partition("=")[0].strip().upper()
     return head if "=" in piece.text or head.isidentifier() else ""
 

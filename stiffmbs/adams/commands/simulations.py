@@ -96,7 +96,7 @@ def read_simulation(command: Statement) -> Simulation:
         raise found.fault("found neither END nor DURATION, expected one of them")
     if analysis not in (*OVER_TIME, STATICS) and (limit or sampled):
         raise found.fault(
-            f"found {limit or sampled} with {analysis}, which is not followed over time, expected neither"
+            f"found {limit or sampled} with {analysis}, an analysis at one time, expected none of END, DURATION, STEPS and DTOUT"
         )
     return Simulation(analysis, command.line, *times)
 
@@ -138,5 +138,5 @@ def refuse_velocities(line: int, dataset: Dataset) -> None:
         raise DatasetFault(
             line,
             "SIMULATE",
-            f"found STATICS where {moving[0]} states an initial velocity, expected none before equilibrium",
+            f"found STATICS and an initial velocity of {moving[0]}, expected none: a run from equilibrium starts at rest",
         )

@@ -123,5 +123,5 @@ def _points(joint: Curve[Any]) -> np.ndarray:
 def _columns(law: Any, ends: str) -> np.ndarray:
     """Return arguments and values of a spline table with the given end conditions."""
     if not isinstance(law, Table) or law.ends != ends:
-        raise Refusal(f"found a curve by another law, expected a table with the ends {ends}")
+        raise Refusal(f"found a curve by another law, expected a table with 'ends: {ends}'")
     return np.array(law.table).T

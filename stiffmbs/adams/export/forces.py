@@ -133,7 +133,7 @@ class Forces:
         laws = [name for name in type(force).model_fields if name.startswith("law_")]
         _refuse_laws(force, *laws)
         if force.axes != "j":
-            raise Refusal("found a bushing along the ground's axes, expected one along those of j")
+            raise Refusal("found a bushing with 'axes: ground', expected 'axes: j'")
         K, C = _filled(force.stiffness), _filled(force.damping)
         if any(np.any(matrix - np.diag(np.diag(matrix))) for matrix in (K, C)):
             raise Refusal("found a bushing that couples its directions, expected a field")
@@ -167,7 +167,7 @@ def _filled(values: Any) -> np.ndarray:
 def _refuse_laws(force: Force, *fields: str) -> None:
     for field in fields:
         if getattr(force, field) is not None:
-            raise Refusal(f"found a {field} of a {force.kind}, expected numbers alone: write a force with a formula")
+            raise Refusal(f"found a {field} of a {force.kind}, expected numbers only, or a force with a formula")
 
 
 def _given(values: Mapping[str, float | None]) -> list[str]:

@@ -90,7 +90,7 @@ class Functions:
                 return self._coordinate(owner, name, law)
             case ast.Call(ast.Name(name), arguments):
                 return self._call(node, name, arguments, law)
-        raise Refusal(f"found '{ast.unparse(node)}' in '{quoted(law.text)}', expected what Adams' functions have")
+        raise Refusal(f"found '{ast.unparse(node)}' in '{quoted(law.text)}', expected an expression that Adams has")
 
     def _name(self, name: str, law: Formula) -> str:
         if name == "t":
@@ -98,7 +98,7 @@ class Functions:
         if name in self._names:
             return self._names[name]
         if name not in law.values:
-            raise Refusal(f"found '{name}' in '{quoted(law.text)}', expected what Adams' functions have")
+            raise Refusal(f"found '{name}' in '{quoted(law.text)}', expected an expression that Adams has")
         return f"({number(law.values[name])})" if law.values[name] < 0 else number(law.values[name])
 
     def _coordinate(self, body: str, name: str, law: Formula) -> str:

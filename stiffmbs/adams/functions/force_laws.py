@@ -1,4 +1,4 @@
-"""Forces of elements in the expressions of other forces: laws of positions and velocities are substituted.
+"""Forces of elements in the expressions of other forces: laws of positions and velocities are substituted for them.
 
 SFORCE(id, jflag, comp, rm) and alike for SPDP, BUSH, VFORCE, VTORQ and GFORCE, and FX(i, j, rm) and alike of these and of
 joints. The torque of a BUSHING, and elements whose force is not an expression, are not supported.
@@ -45,8 +45,8 @@ class _Part:
     def along(self, axis: str, frame: Place | None, mechanism: Mechanism) -> ast.expr:
         """Return the component along an axis of a marker; of ground without one."""
         if not self.axis:
-            way = measured(f"d{axis}", self.end, self.start, frame.reference if frame else "")
-            return product(self.size, quotient(way, self.length) if self.length else way)
+            displacement = measured(f"d{axis}", self.end, self.start, frame.reference if frame else "")
+            return product(self.size, quotient(displacement, self.length) if self.length else displacement)
         if frame is None:
             return self.size if axis == self.axis else number(0.0)
         return product(self.size, measured(f"d{self.axis}", mechanism.tip(frame, axis), frame.reference, ""))
@@ -109,7 +109,7 @@ def _component(
         )
     if found.label in translation.substituted:
         raise function.fault(
-            f"found the force of {found.label} in its own law, expected forces that do not hang on themselves"
+            f"found the force of {found.label} in its own law, expected forces that do not depend on themselves"
         )
     translation.substituted.append(found.label)
     try:
@@ -151,7 +151,7 @@ def _parts(found: Numbered, kind: str, function: Function, translation: Translat
             for k, axis in enumerate("xyz"):
                 yield _on_axis(_of_bushing(found, k, i.reference, j.reference, translation), axis, j, mechanism)
         case Bushing():
-            raise function.fault(f"found the torque of {found.label}, expected it in a REQUEST alone")
+            raise function.fault(f"found the torque of {found.label}, expected it in a REQUEST only")
 
 
 def _on_axis(size: ast.expr, axis: str, frame: Place | None, mechanism: Mechanism) -> _Part:
@@ -163,11 +163,12 @@ def _on_axis(size: ast.expr, axis: str, frame: Place | None, mechanism: Mechanis
 def _of_spring(spring: SpringDamper, i: str, j: str) -> ast.expr:
     """Return the force that pushes the markers apart, or the torque about z of J."""
     if spring.sort == TRANSLATIONAL:
-        way, rate = measured("dm", i, j, ""), measured("vr", i, j, "")
+        displacement, rate = measured("dm", i, j, ""), measured("vr", i, j, "")
     else:
-        way, rate = measured("az", i, j, ""), measured("wz", i, j, j)
+        displacement, rate = measured("az", i, j, ""), measured("wz", i, j, j)
     return total([
-        number(spring.preload), times(difference(way, number(spring.length)), -spring.stiffness), times(rate, -spring.damping),
+        number(spring.preload), times(difference(displacement, number(spring.length)), -spring.stiffness),
+        times(rate, -spring.damping),
     ])  # fmt: skip
 
 

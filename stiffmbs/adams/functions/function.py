@@ -62,10 +62,7 @@ def read_function(found: Arguments, name: str) -> Function | None:
         return None
     text = (found.text(name) or "").strip().strip('"')
     if is_subroutine(found, name):
-        raise found.fault(
-            f"found {name} = {text}, which is computed by a subroutine of its own, expected an expression",
-            found.line(name),
-        )
+        raise found.fault(f"found {name} = {text}, a user subroutine, expected an expression", found.line(name))
     return read_any_function(found, name)
 
 

@@ -43,7 +43,7 @@ def variable_of_plant(dataset: Dataset, name: str, ident: int, at: int, function
     plant = dataset.statements.get(PLANTS[name], {}).get(ident)
     if plant is None or not 1 <= at <= len(plant.variables):
         raise function.fault(
-            f"found {name}({ident}, {at}), expected a {PLANTS[name]} and the place of one of its variables"
+            f"found {name}({ident}, {at}), expected a {PLANTS[name]} and the position of one of its variables"
         )
     number: int = plant.variables[at - 1]
     return number

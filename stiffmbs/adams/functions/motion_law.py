@@ -61,7 +61,7 @@ class _InPlace(Translation):
         value = self.translated(variable.function)
         if sum(1 for _ in ast.walk(value)) > MOST_PARTS:
             raise function.fault(
-                f"found VARVAL({ident}), which has more than {MOST_PARTS} parts with the variables in it, expected fewer"
+                f"found VARVAL({ident}) with more than {MOST_PARTS} terms after substitution of variables, expected fewer"
             )
         return value
 

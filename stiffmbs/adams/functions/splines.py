@@ -46,7 +46,7 @@ def spline_value(
     if spline is None:
         raise function.fault(f"found the spline {ident} in '{quoted(function.text)}', expected the number of a SPLINE")
     if order or not name:
-        raise function.fault(f"found '{quoted(function.text)}', expected a spline's value, cubic or by straight lines")
+        raise function.fault(f"found '{quoted(function.text)}', expected the value of a cubic or linear spline")
     if spline.z and name == "LINE":
         raise function.fault(f"found {spline.label} of several curves in INTERP, expected AKISPL or CUBSPL")
     argument, values = translate(x), []

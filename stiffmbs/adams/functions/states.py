@@ -100,8 +100,8 @@ def value_of_system(dataset: Dataset, array: int, at: int, function: Function) -
                     return name_of(one.name)
                 case TransferFunction(x=state) if state == array:
                     raise function.fault(
-                        f"found ARYVAL({array}, {at}), a state of {one.label}, expected its output: which states it has is "
-                        "Adams' own choice"
+                        f"found ARYVAL({array}, {at}), a state of {one.label}, expected its output: Adams does not document "
+                        "its choice of states"
                     )
                 case LinearSystem(y=output) if output == array:
                     return name_of(f"{one.name}.y{at}")

@@ -88,6 +88,7 @@ class Translation:
         """Return an expression as the syntax tree of a formula."""
 
         def translate(node: ast.expr) -> ast.expr:
+            """Return a node as the node of a formula."""
             match node:
                 case ast.BinOp(left, op, right):
                     return ast.BinOp(translate(left), op, translate(right))
@@ -167,13 +168,13 @@ class Translation:
             return force_between(name, arguments, function, self)
         if name in COUPLED:
             raise function.fault(
-                f"found {name} in '{quoted(function.text)}', a force that hangs on others at the same instant, expected it in a "
+                f"found {name} in '{quoted(function.text)}', a force that depends on others at the same time, expected it in a "
                 f"REQUEST, or one of {', '.join((*REACTIONS, *LAWS, *COMPONENTS))}"
             )
         if name == "INCANG":
             ends = [self.reference(function.identifier(arguments, k), function) for k in range(3)]
             return included_angle(*ends)
-        raise function.fault(f"found the function {name} in '{quoted(function.text)}', expected one that is read here")
+        raise function.fault(f"found the function {name} in '{quoted(function.text)}', expected a supported function")
 
     def measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
         """Return a displacement, velocity or angle between markers.
@@ -245,7 +246,7 @@ class Translation:
         if joint is None:
             raise function.fault(f"found {name}({ident}, ...), expected the number of a {name}")
         if joint.kind in BY_ITS_PLACE:
-            raise function.fault(f"found the reaction of {joint.label}, {joint.kind}, expected it in a REQUEST alone")
+            raise function.fault(f"found the reaction of {joint.label}, {joint.kind}, expected it in a REQUEST only")
         which = component_of(name, component, function)
         frame = self.mechanism.place(axes, function, "RM") if axes else None
         force = reaction(joint, which, bool(on_j), frame, self.mechanism)
@@ -259,5 +260,7 @@ class Translation:
             return of_system
         array = self.mechanism.dataset.arrays.get(ident)
         if array is None or not 1 <= at <= len(array.numbers):
-            raise function.fault(f"found ARYVAL({ident}, {at}), expected an ARRAY and the place of one of its numbers")
+            raise function.fault(
+                f"found ARYVAL({ident}, {at}), expected an ARRAY and the position of one of its numbers"
+            )
         return ast.Constant(array.numbers[at - 1])

@@ -99,7 +99,9 @@ class OutputTranslation(Translation):
             raise function.fault(f"found {name}({ident}, ...), expected the number of a {ELEMENTS[name]}")
         which = component_of(name, component, function)
         if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
-            raise function.fault(f"found the force of {found.label} on its marker J, which it does not have")
+            raise function.fault(
+                f"found the force of {found.label} on its marker J, expected the force on I: it has no marker J"
+            )
         if on_j and isinstance(found, SingleForce) and found.action_only:
             return number(0.0)
         if isinstance(found, Contact):
@@ -117,7 +119,7 @@ class OutputTranslation(Translation):
         for found, on_j in acting:
             if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
                 raise function.fault(
-                    f"found the force of {found.label} on another marker than its I, expected it there"
+                    f"found the force of {found.label} on a marker other than its I, expected the force on I"
                 )
         if not acting and (self.mechanism.dataset.inactive or has_action_only(i, j, self.mechanism)):
             return number(0.0)

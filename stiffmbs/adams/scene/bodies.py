@@ -88,14 +88,14 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
     lacking = [p.label for p in mechanism.moving if not p.point and lacks_inertia(_tensor(mechanism, p))]
     if lacking:
         yield (
-            f"{', '.join(lacking)} {'have' if len(lacking) > 1 else 'has'} no moment of inertia about some axis, taken as "
-            f"{MASSLESS:g} of that of the lightest part's mass at the mechanism's reach"
+            f"{', '.join(lacking)} {'have' if len(lacking) > 1 else 'has'} no moment of inertia about some axis, set to "
+            f"{MASSLESS:g} m L^2 with the mass m of the lightest part and the extent L of the markers"
         )
     unreal = [p.label for p in mechanism.moving if _breaks_triangle(mechanism, p)]
     if unreal:
         yield (
             f"warning: {', '.join(unreal)} {'have' if len(unreal) > 1 else 'has'} a principal moment of inertia greater than "
-            "the sum of the other two, as no body has; it is taken as it stands"
+            "the sum of the other two, which no body has; it is used unchanged"
         )
 
 

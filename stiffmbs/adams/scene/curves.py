@@ -48,7 +48,7 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
         for one in (*mechanism.dataset.points_on_curves.values(), *mechanism.dataset.curves_on_curves.values())
     )
     if labels:
-        yield f"{labels}: the curve is a cubic spline through the points of its MATRIX, which Adams may lay otherwise between them"
+        yield f"{labels}: the curve is a cubic spline through the points of its MATRIX; Adams' curve may differ between them"
 
 
 def _on_curve(one: PointOnCurve, mechanism: Mechanism) -> dict[str, Any]:
@@ -101,7 +101,7 @@ def _body(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
     start = first_touch(first, second, (near, also_near))
     if start.apart > start.size:
         raise pair.fault(
-            f"found curves that do not touch: as drawn they come no nearer than {start.apart:.6g} m, expected them to touch"
+            f"found curves that do not touch (gap of {start.apart:.6g} m as drawn), expected curves in contact"
         )
     z = second.initial.axes[:, 2]
     frame = Frame(start.point, np.column_stack([start.tangent, np.cross(z, start.tangent), z]))

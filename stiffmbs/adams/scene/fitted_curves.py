@@ -136,7 +136,7 @@ def _across_its_chord(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.
     """Return x, y and z of the points."""
     if np.any(np.diff(seen[:, 0]) <= 0):
         raise user.fault(
-            "found an open curve that turns back on the way from its first point to its last, expected none"
+            "found an open curve that turns back between its first and last point, expected one that advances along its chord"
         )
     return seen[:, 0], seen[:, 1], seen[:, 2]
 
@@ -150,7 +150,7 @@ def _round(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
     turned = angles[-1] - angles[0]
     if np.any(np.diff(angles) <= 0) or abs(turned - 2 * np.pi) > PRECISION:
         raise user.fault(
-            "found a closed curve that a line from its middle meets more than once, expected a convex or nearly convex one"
+            "found a closed curve that a ray from its centre meets more than once, expected a convex or nearly convex one"
         )
     angles[-1], radii[-1], off[-1] = angles[0] + 2 * np.pi, radii[0], off[0]
     return angles, radii, off

@@ -26,7 +26,7 @@ def frictions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
     """Return the friction forces and torques by name, except those of deactivated joints."""
     return of_each(
         _acting(mechanism),
-        lambda friction: _Rubbing(friction, _joint(friction, mechanism), mechanism, translation).made(),
+        lambda friction: _FrictionLaw(friction, _joint(friction, mechanism), mechanism, translation).made(),
     )
 
 
@@ -35,7 +35,7 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
     labels = ", ".join(friction.label for friction in _acting(mechanism))
     if labels:
         yield (
-            f"{labels}: below STICTION_TRANSITION_VELOCITY the joint creeps, where Adams holds it within "
+            f"{labels}: below STICTION_TRANSITION_VELOCITY the joint slides slowly; Adams holds it within "
             "MAX_STICTION_DEFORMATION"
         )
     crosses = ", ".join(
@@ -44,7 +44,7 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
         if friction.yokes == "IJ" and mechanism.dataset.joints[friction.joint].kind in ARMS
     )
     if crosses:
-        yield f"{crosses}: both arms of the cross rub, as no YOKE is named"
+        yield f"{crosses}: friction acts on both arms of the cross, as no YOKE is given"
 
 
 def _acting(mechanism: Mechanism) -> list[JointFriction]:
@@ -66,7 +66,7 @@ ARMS = {"UNIVERSAL": "ZZ", "HOOKE": "XY"}
 """Axes of markers I and J along the arms of a universal joint's cross."""
 
 
-class _Rubbing:
+class _FrictionLaw:
     """Friction law of one joint as Adams function expressions."""
 
     def __init__(self, friction: JointFriction, joint: Joint, mechanism: Mechanism, translation: Translation) -> None:

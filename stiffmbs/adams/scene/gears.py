@@ -58,7 +58,7 @@ class _Wheel:
         i, j = mechanism.ends(joint)
         if contact.body not in (i.body, j.body):
             raise user.fault(
-                f"found the marker CV on {contact.body}, expected it on the carrier, which {joint.label} joins too"
+                f"found the marker CV on {contact.body}, expected it on the carrier, one of the parts of {joint.label}"
             )
         self.own, self.seat = (i, j) if contact.body == j.body else (j, i)
         self._contact, self._mechanism = contact, mechanism
@@ -73,7 +73,7 @@ class _Wheel:
         sliding = float(self._along[2]) if self._slides else 0.0
         if abs(turning) <= self._massless and abs(sliding) <= ROUNDING:
             raise user.fault(
-                f"found the z axis of the marker CV across the motion that {joint.label} allows there, expected it along the "
+                f"found the z axis of the marker CV normal to the motion that {joint.label} allows there, expected it along the "
                 "motion of the teeth"
             )
 

@@ -100,7 +100,7 @@ def notes(dataset: Dataset) -> Iterator[str]:
     """Yield a sentence that lists the initial conditions without effect."""
     left_out = [joint.label for joint in dataset.joints.values() if joint.start != _undriven(joint, dataset)]
     if left_out:
-        yield f"initial conditions of {', '.join(left_out)} are left out: a MOTION says where they start"
+        yield f"initial conditions of {', '.join(left_out)} are left out: a MOTION prescribes these coordinates"
 
 
 def _states(part: Part) -> bool:

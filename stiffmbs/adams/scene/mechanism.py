@@ -90,11 +90,11 @@ class Mechanism:
         self.parts = {(part.keyword, part.ident): self._weighed(part) for part in dataset.parts}
         grounds = [part for part in dataset.parts if part.ground]
         if len(grounds) > 1:
-            raise grounds[1].fault(f"found GROUND, which {grounds[0].label} is already")
+            raise grounds[1].fault(f"found a second GROUND, expected one ({grounds[0].label})")
         for marker in dataset.markers.values():
             if marker.owner not in self.parts:
                 kind, ident = marker.owner
-                raise marker.fault(f"found {kind} = {ident}, which the dataset does not have")
+                raise marker.fault(f"found {kind} = {ident}, expected the number of a {kind} of the dataset")
         for part in self.moving:
             self._check(part)
 
@@ -154,12 +154,12 @@ class Mechanism:
         weightless = [part.label for part in self.moving if part.mass < self.least]
         if weightless:
             yield (
-                f"{', '.join(weightless)} {'have' if len(weightless) > 1 else 'has'} no MASS, taken as {MASSLESS:g} of the "
-                "lightest part's"
+                f"{', '.join(weightless)} {'have' if len(weightless) > 1 else 'has'} no MASS, set to {MASSLESS:g} times that of "
+                "the lightest part"
             )
         exact = [part.label for part in self.moving if part.exact]
         if exact:
-            yield f"EXACT of {', '.join(exact)} is left out: assembly may move every part"
+            yield f"EXACT of {', '.join(exact)} is left out: assembly may move any part"
 
     def place(self, ident: int, user: Numbered | Function, name: str = "I") -> Place:
         """Return a marker that a statement refers to. Raises DatasetFault if there is no such marker."""

@@ -121,11 +121,11 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
         distance = float(np.linalg.norm(gap))
         if _crosses(joint, gap):
             yield (
-                f"{joint.label}: the rack's line goes through the pinion's axis, and the rack is taken to be at -y of "
-                f"MARKER/{joint.i}, half the pitch diameter away"
+                f"{joint.label}: the rack's line passes through the pinion's axis; the pitch line is assumed half the pitch diameter "
+                f"from it, at -y of MARKER/{joint.i}"
             )
         elif abs(distance - radius) > ACROSS * radius:
             yield (
-                f"{joint.label}: the rack's line is drawn {distance:.6g} m from the pinion's axis, and its teeth are taken to "
-                f"be where PD says, {radius:.6g} m from it"
+                f"{joint.label}: the rack's line is drawn {distance:.6g} m from the pinion's axis; the pitch line is assumed "
+                f"{radius:.6g} m from it, half of PD"
             )

@@ -48,7 +48,7 @@ def notes(dataset: Dataset) -> Iterator[str]:
             yield f"{sensor.label}: {listed} left out: no effect on results"
         elif not sensor.then:
             yield f"{sensor.label} is left out: it does not end the run" + (
-                listed and f", and {listed} change no results"
+                listed and f", and {listed} do not affect results"
             )
 
 
@@ -118,7 +118,7 @@ class Requests:
         """Return the functions of a request, in the dataset's units."""
         if request.computed:
             self.notes.append(
-                f"line {request.line}, {request.label}: {', '.join(request.computed)} of a user's own subroutine is left out "
+                f"line {request.line}, {request.label}: {', '.join(request.computed)}, computed by a user subroutine, is left out "
                 "of the results"
             )
         found = {}

@@ -12,7 +12,7 @@ from .geometry import Frame, read_frame
 from .units import Units
 
 Vector = tuple[float, float, float]
-ASSEMBLY = {"EXACT": "assembly may move every part"}
+ASSEMBLY = {"EXACT": "assembly may move any part"}
 
 
 def _frame(origin: str, x_point: str, z_point: str, *words: str) -> Any:
@@ -75,6 +75,7 @@ class Part(Numbered):
 
     @property
     def name(self) -> str:
+        """Name of the body in the scene; the ground has a fixed one."""
         return GROUND if self.ground else super().name
 
 
@@ -98,7 +99,7 @@ def _owner(found: Arguments, _: Units) -> tuple[str, int]:
 
 @dataclass(frozen=True)
 class Marker(Numbered):
-    """Point and axes, in SI units, in the axes of the part that its keyword and number name (empty: the one before)."""
+    """Point and axes, in SI units, in the axes of the part `owner` (keyword and number; empty for the preceding part)."""
 
     owner: tuple[str, int] = read_by(_owner, "PART", "POINT_MASS")
     frame: Frame = _frame("QP", "XP", "ZP", "USEXP")

@@ -73,7 +73,9 @@ class Changes:
         for key, line in (*((key, c[0].line) for key, c in self.altered.items()), *self.inactive.items()):
             if key not in known and key != GRAVITY:
                 label = f"{key[0]}/{key[1]}"
-                raise CommandFault(line, label, "found a command for it, expected a statement that the dataset has")
+                raise CommandFault(
+                    line, label, "found a command for a missing statement, expected a statement of the dataset"
+                )
         found = [
             (name, self._changed(statement)) for name, statement in named if key_of(statement) not in self.inactive
         ]
@@ -99,7 +101,7 @@ class Changes:
     def notes_since(self, before: Changes, source: str) -> list[str]:
         """Return one sentence for each change after earlier ones."""
         on = [f"{name}/{ident}" for name, ident in before.inactive if (name, ident) not in self.inactive]
-        sentences = [f"{', '.join(on)} {'are' if len(on) > 1 else 'is'} active again by {source}"] if on else []
+        sentences = [f"{', '.join(on)} {'are' if len(on) > 1 else 'is'} activated again by {source}"] if on else []
         return [*self.since(before).notes(source), *sentences]
 
     def notes(self, source: str) -> list[str]:
@@ -107,10 +109,12 @@ class Changes:
         sentences = []
         if self.inactive:
             labels = ", ".join(f"{name}/{ident}" for name, ident in self.inactive)
-            sentences.append(f"{labels} {'are' if len(self.inactive) > 1 else 'is'} inactive by {source}, and left out")
+            sentences.append(
+                f"{labels} {'are' if len(self.inactive) > 1 else 'is'} deactivated by {source} and left out"
+            )
         if self.altered:
             labels = ", ".join(f"{name}/{ident}" if ident else name for name, ident in self.altered)
-            sentences.append(f"{labels} {'are' if len(self.altered) > 1 else 'is'} as {source} says")
+            sentences.append(f"{labels} {'are' if len(self.altered) > 1 else 'is'} changed by {source}")
         return sentences
 
 

@@ -97,7 +97,7 @@ class Joint(Primitive):
     pitch: float = _length_of("SCREW", "PITCH")
     diameter: float = _length_of("RACKPIN", "PD")
     start: tuple[Start, ...] = read_by(_starts, "IC", "ICROT", "ICTRAN")
-    ignored = dict.fromkeys(OLD_FRICTION, "of friction of old versions, which is off")
+    ignored = dict.fromkeys(OLD_FRICTION, "friction of old versions, which is off")
 
     @classmethod
     def check(cls, found: Arguments) -> None:
@@ -107,7 +107,7 @@ class Joint(Primitive):
         for name in COEFFICIENTS:
             if not is_off and found.number(name):
                 raise found.fault(
-                    f"found {name} = {found.text(name)}, friction of old versions whose law is not published, expected a "
+                    f"found {name} = {found.text(name)}, friction of old versions with an unpublished law, expected a "
                     "FRICTION statement",
                     found.line(name),
                 )
@@ -180,9 +180,7 @@ class Coupler(Numbered):
     def check(cls, found: Arguments) -> None:
         """Refuse a subroutine."""
         if "FUNCTION" in found:
-            raise found.fault(
-                "found FUNCTION, which is computed by a subroutine, expected SCALES", found.line("FUNCTION")
-            )
+            raise found.fault("found FUNCTION, a user subroutine, expected SCALES", found.line("FUNCTION"))
 
 
 def _geared(found: Arguments, _: Units) -> tuple[int, ...]:

@@ -41,7 +41,7 @@ def _friction(found: Arguments, _: Units) -> Friction | None:
     static, dynamic, slow, fast = (found.number(name) for name in _FRICTION)
     if static is None or dynamic is None or slow is None or fast is None or not 0 < slow < fast:
         raise found.fault(
-            f"found friction without all of {', '.join(_FRICTION)}, expected them, the last the largest velocity"
+            f"found incomplete friction, expected {', '.join(_FRICTION)}, with velocities above zero, the last the larger one"
         )
     return Friction(static, dynamic, slow, fast)
 

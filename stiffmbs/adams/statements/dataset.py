@@ -233,7 +233,7 @@ def _unread(named: list[tuple[str | None, Statement]]) -> str:
         return ""
     named_lines = listed([f"{label} (line {line})" for label, line in unread])
     return (
-        f"found statements that are not read here: {named_lines}; expected {', '.join((*SINGLE, *READERS))}, or "
+        f"found unsupported statements: {named_lines}; expected {', '.join((*SINGLE, *READERS))}, or "
         "graphics, output and analysis settings, which are left out"
     )
 
@@ -256,7 +256,7 @@ def _is_statement(title: str) -> bool:
 
 def _notes(named: list[tuple[str | None, Statement]], ended: bool, without_title: bool) -> Iterator[str]:
     if without_title:
-        yield "line 1 is the title of a dataset, but reads as a statement: it is taken as one, which Adams would leave out"
+        yield "line 1, the title in Adams, is read as a statement, which Adams would ignore"
     kinds: dict[str, list[int]] = {}
     for name, statement in named:
         if name in LEFT_OUT or name in REFUSED:  # only a GSE reaches this point

@@ -39,6 +39,7 @@ class Numbered:
 
     @property
     def label(self) -> str:
+        """Name and number of the statement in messages: ``JOINT/3``."""
         return f"{self.keyword}/{self.ident}"
 
     @property
@@ -67,7 +68,7 @@ class Numbered:
 
     @classmethod
     def check(cls, found: Arguments) -> None:
-        """Raise DatasetFault for arguments that do not fit together."""
+        """Raise DatasetFault for inconsistent arguments."""
 
 
 def read_by(read: Callable[[Arguments, Units], Any], *names: str, expressions: bool = False) -> Any:

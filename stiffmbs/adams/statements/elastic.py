@@ -173,6 +173,6 @@ class Beam(Numbered):
         if (found.text("FORMULATION") or "LINEAR").upper() != "LINEAR":
             raise found.fault(
                 f"found FORMULATION = {found.text('FORMULATION')}, expected LINEAR: the laws of the others are not "
-                "published; several linear beams in a row bend as far",
+                "published; for large deflections use several linear beams in series",
                 found.line("FORMULATION"),
             )

@@ -21,7 +21,7 @@ def _from_zero(found: Arguments, name: str) -> float:
     if value is None and name.startswith("MU"):
         raise found.fault(f"found no {name}, expected a coefficient of friction")
     if value is not None and value < 0:
-        raise found.fault(f"found {name} = {found.text(name)}, expected no number below zero", found.line(name))
+        raise found.fault(f"found {name} = {found.text(name)}, expected a number of zero or more", found.line(name))
     return value or 0.0
 
 
@@ -60,7 +60,7 @@ def _static(found: Arguments, _: Units) -> float:
 def _friction_velocity(found: Arguments, _: Units) -> float:
     slow, factor = (found.positive(name) or usual for name, usual in (_SLOW, _FACTOR))
     if factor <= 1:
-        raise found.fault("found TRANSITION_VELOCITY_COEFFICIENT up to 1, expected a larger number")
+        raise found.fault("found TRANSITION_VELOCITY_COEFFICIENT = {factor:g}, expected a number above 1")
     return slow * factor
 
 
@@ -116,7 +116,7 @@ class JointFriction(Numbered):
     yokes: str = _word_of("YOKE", YOKES)
     others = ("FORMULATION",)
     ignored = {
-        "MAX_STICTION_DEFORMATION": "the joint creeps below STICTION_TRANSITION_VELOCITY",
+        "MAX_STICTION_DEFORMATION": "the joint slides slowly below STICTION_TRANSITION_VELOCITY",
         **dict.fromkeys(("INACTIVE", "INACTIVE_DURING"), "friction is zero in statics"),
     }
     refused = dict.fromkeys(_NOT_READ, "friction without it")

@@ -54,20 +54,20 @@ LEFT_OUT = {
     **dict.fromkeys(("MREQUEST", "FEMDATA"), "output"),
     **dict.fromkeys(("LINEAR", "INTEGRATOR", "DEBUG", "EQUILIBRIUM", "IC", "KINEMATICS"), "analysis settings"),
     **dict.fromkeys(("LSOLVER", "PREFERENCES", "PSTATE"), "analysis settings"),
-    **dict.fromkeys(("STRING", "SURFACE"), "data that nothing here uses"),
+    **dict.fromkeys(("STRING", "SURFACE"), "unused data"),
     "TITLE": "text",
 }
 """Ignored statements (no mass, force or constraint), with their content."""
 FLEXIBLE = ("FLEX_BODY", "FE_PART", "FE_NODE", "FE_LOAD", "NONLINEAR_BEAM", "MFORCE", "MODAL", "EXTERNAL_SYSTEM")
 REFUSED = {
-    **dict.fromkeys(FLEXIBLE, "flexible bodies are not solved for"),
-    **dict.fromkeys(("PTSF", "CVSF", "SFSF"), "curves and surfaces in space are not read"),
+    **dict.fromkeys(FLEXIBLE, "flexible bodies of datasets are not supported"),
+    **dict.fromkeys(("PTSF", "CVSF", "SFSF"), "constraints on surfaces are not supported"),
     "CLEARANCE": "distances between surfaces are not computed",
-    "NFORCE": "fields between more than two markers are not read",
-    **dict.fromkeys(("UCON", "GSE"), "it needs a user's own subroutine"),
-    "TIRE": "tyres belong to Adams' own libraries; a scene has tyres of its own",
-    "PFORCE": "it is none of the forces that are read",
-    **dict.fromkeys(("DEACTIVATE", "ACTIVATE"), "it is a command, which belongs into a command file"),
+    "NFORCE": "fields between more than two markers are not supported",
+    **dict.fromkeys(("UCON", "GSE"), "it needs a user subroutine"),
+    "TIRE": "its law is in Adams/Tire; use a tyre of a scene",
+    "PFORCE": "this force is not supported",
+    **dict.fromkeys(("DEACTIVATE", "ACTIVATE"), "it is a command, expected in a command file"),
 }
 """Unsupported statements with mass, force, constraint or states, with the reason."""
 

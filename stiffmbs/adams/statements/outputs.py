@@ -68,17 +68,17 @@ class Request(Numbered):
     others = ("VARIABLES",)
     ignored = {
         **dict.fromkeys(("COMMENT", "TITLE", "CUNITS", "CLABELS", "RESULTS_NAME"), "text"),
-        "ROUTINE": "a user's own subroutine",
+        "ROUTINE": "a user subroutine",
     }
 
     @classmethod
     def check(cls, found: Arguments) -> None:
-        """Refuse a request of nothing."""
+        """Refuse a request without a quantity."""
         sort = found.one_of(*SORTS)
         if sort is None and not (found.idents("VARIABLES") or any(column in found for column in FUNCTIONS)):
             raise found.fault(f"found no quantity, expected one of {', '.join(SORTS)} or {COLUMNS[1]} = an expression")
         if sort is not None and not found.reference("I"):
-            raise found.fault(f"found no I, expected the marker whose {sort.lower()} is asked for")
+            raise found.fault(f"found no I, expected the marker whose {sort.lower()} is requested")
 
 
 def _of_variable(found: Arguments, _: Units) -> Function:
@@ -125,7 +125,7 @@ class Spline(Numbered):
         several = len(y) > len(x) + 1 and len(y) % (len(x) + 1) == 0
         if not x or not y or not (len(x) == len(y) or several):
             raise found.fault(
-                f"found {len(x)} X and {len(y)} Y, expected as many of each, or for a family of curves one Y for each: its z, then as many values as X"
+                f"found {len(x)} X and {len(y)} Y, expected equal numbers, or for a family of curves a Y for each curve: z, then a value for each X"
             )
         z = y[:: len(x) + 1] if several else ()
         if len(x) < FEWEST_POINTS or any(b <= a for values in (x, z) for a, b in itertools.pairwise(values)):
@@ -154,10 +154,10 @@ class Array(Numbered):
 
     @classmethod
     def check(cls, found: Arguments) -> None:
-        """Exclude the role of an array, which its users state too, from the notes; refuse another size than that of its list."""
+        """Exclude the role of an array, which its users state too, from the notes; refuse a SIZE that contradicts its list."""
         found.without_effect("IC", "X", "Y", "U")
         size, count = found.number("SIZE"), len(found.texts("NUMBERS") or found.texts("VARIABLES"))
         if size is not None and count and size != count:
             raise found.fault(
-                f"found SIZE = {found.text('SIZE')} and {count} entries, expected as many", found.line("SIZE")
+                f"found SIZE = {found.text('SIZE')} and {count} entries, expected equal numbers", found.line("SIZE")
             )

@@ -69,5 +69,5 @@ class Sensor(Numbered):
             raise found.fault("found no VALUE, expected the number that the function is compared with")
         if (found.number("ERROR") or 0.0) < 0:
             raise found.fault(
-                f"found ERROR = {found.text('ERROR')}, expected no number below zero", found.line("ERROR")
+                f"found ERROR = {found.text('ERROR')}, expected a number of zero or more", found.line("ERROR")
             )

@@ -39,7 +39,7 @@ def _rows(found: Arguments, _: Units) -> Rows:
         return _from_entries(found, values)
     rows, columns = (int(found.number(name) or 0) for name in ("M", "N"))
     if rows < 1 or columns < 1 or len(values) != rows * columns:
-        raise found.fault(f"found {len(values)} VALUES of {rows} rows and {columns} columns, expected as many of each")
+        raise found.fault(f"found {len(values)} VALUES, M = {rows} and N = {columns}, expected M N VALUES")
     by_rows = (found.text("FULL") or "RORDER").strip().upper().startswith("R")
     at = (lambda i, j: i * columns + j) if by_rows else (lambda i, j: j * rows + i)
     return tuple(tuple(values[at(i, j)] for j in range(columns)) for i in range(rows))
@@ -48,7 +48,9 @@ def _rows(found: Arguments, _: Units) -> Rows:
 def _from_entries(found: Arguments, values: tuple[float, ...]) -> Rows:
     rows, columns = found.idents("I"), found.idents("J")
     if not values or len(rows) != len(values) or len(columns) != len(values) or 0 in (*rows, *columns):
-        raise found.fault("found other numbers of I, J and VALUES, expected as many of each, I and J from 1 on")
+        raise found.fault(
+            f"found {len(rows)} I, {len(columns)} J and {len(values)} VALUES, expected equal numbers, I and J from 1 on"
+        )
     entries = dict(zip(zip(rows, columns, strict=True), values, strict=True))
     high, wide = (max(int(found.number(name) or 0), *at) for name, at in (("M", rows), ("N", columns)))
     return tuple(tuple(entries.get((i, j), 0.0) for j in range(1, wide + 1)) for i in range(1, high + 1))
@@ -81,7 +83,7 @@ class LinearSystem(Numbered):
     def check(cls, found: Arguments) -> None:
         """Refuse inputs without their matrix."""
         if ("U" in found) != ("B" in found):
-            raise found.fault("found one of U and B alone, expected both or neither")
+            raise found.fault("found one of U and B, expected both or neither")
 
 
 @dataclass(frozen=True)

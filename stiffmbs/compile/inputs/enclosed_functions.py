@@ -45,7 +45,10 @@ def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
     """Return cosh or sinh, which are each other's derivatives."""
 
     def of(x: Enclosure) -> Enclosure:
+        """Return the enclosure of the function at an enclosed argument."""
+
         def outer(k: int) -> Range:
+            """Return the range of the k-th Taylor coefficient of the function."""
             rising = even != (k % 2 == 0)
             return (np.sinh(x.value) if rising else between_turns(np.cosh, x.value, (0.0,))) / factorial(k)
 
@@ -63,6 +66,7 @@ def tanh(x: Enclosure) -> Enclosure:
     rate = between_turns(lambda z: 1 / np.cosh(z) ** 2, x.value, (0.0,))
 
     def outer(k: int) -> Range:
+        """Return the range of the k-th Taylor coefficient of the function."""
         third = (3 * power_range(T, 2) - 1) / 3
         return (T, rate, -product(T, rate)[::-1], product(rate, third))[k]
 
@@ -74,6 +78,7 @@ def atan(x: Enclosure) -> Enclosure:
     angle = np.arctan(x.value)
 
     def outer(k: int) -> Range:
+        """Return the range of the k-th Taylor coefficient of the function."""
         return (
             lambda: angle,
             lambda: between_turns(lambda a: np.cos(a) ** 2, angle, (0.0,)),
@@ -93,6 +98,7 @@ def asin(x: Enclosure) -> Enclosure:
     P = 1.0 - squared[::-1]
 
     def outer(k: int) -> Range:
+        """Return the range of the k-th Taylor coefficient of the function."""
         if k == 0:
             return np.where((x.value[1] < -1) | (x.value[0] > 1), np.nan, np.arcsin(inside))
         if k == 1:
@@ -121,6 +127,7 @@ def _cubic_ramp(z: Enclosure) -> Enclosure:
     inside, crosses, beyond = _within(z.value)
 
     def outer(k: int) -> Range:
+        """Return the range of the k-th Taylor coefficient of the function."""
         if k == 0:
             return inside**2 * (3 - 2 * inside)
         if k == 1:
@@ -137,6 +144,7 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
     turn = np.sqrt(3) / 6
 
     def outer(k: int) -> Range:
+        """Return the range of the k-th Taylor coefficient of the function."""
         if k == 0:
             return inside**3 * (10 - 15 * inside + 6 * inside**2)
         if k == 1:
@@ -189,6 +197,7 @@ def _by_derivative(function: FormulaFunction) -> Callable[[Enclosure], Enclosure
         slope = evaluate(tree(), names.__getitem__, FUNCTIONS, np.float64)
 
         def outer(k: int) -> Range:
+            """Return the range of the k-th Taylor coefficient of the function."""
             return _mean_value(function.array, x.value, slope.value) if k == 0 else slope[k - 1] / k
 
         return x.composed(outer)

@@ -116,14 +116,17 @@ class SymbolicElement:
 
     @property
     def q(self) -> sp.Matrix:
+        """Coordinates of all bodies of the element."""
         return sp.Matrix([symbol for frame in self.frames for symbol in frame.q])
 
     @property
     def u(self) -> sp.Matrix:
+        """Velocities of all bodies of the element."""
         return sp.Matrix([symbol for frame in self.frames for symbol in frame.u])
 
     @property
     def a(self) -> sp.Matrix:
+        """Accelerations of all bodies of the element."""
         return sp.Matrix([symbol for frame in self.frames for symbol in frame.a])
 
     @property

@@ -44,7 +44,9 @@ class AppliedForce(Force):
     i: Marker = Field(description="marker at which the force acts")
     j: Marker | None = Field(None, description="a second body, on which the opposite force acts at the same point")
     force: tuple[ForceOfMotion, ForceOfMotion] = Field(description="components along x and y, N: numbers or formulas")
-    axes: Literal["ground", "body"] = Field("ground", description="whether x and y are the ground's or marker i's axes")
+    axes: Literal["ground", "body"] = Field(
+        "ground", description="axes x and y of the components: the ground's or marker i's"
+    )
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
@@ -73,7 +75,7 @@ class AppliedTorque(Force):
 
     i: Marker = Field(description="marker of the body on which the torque acts")
     j: Marker | None = Field(None, description="marker of a second body, on which the opposite torque acts")
-    torque: TorqueOfMotion = Field(description="about z, N m: a number or a formula")
+    torque: TorqueOfMotion = Field(description="torque about z, N m: a number or a formula")
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:

@@ -60,7 +60,7 @@ class Bushing(Force):
     law_angle: TorqueOfDeflection | None = Field(
         None, description="moment against the rotation added over s (rad), N m"
     )
-    axes: Literal["j", "ground"] = Field("j", description="whether x and y are marker j's or the ground's axes")
+    axes: Literal["j", "ground"] = Field("j", description="axes x and y: marker j's or the ground's")
 
     _symmetric = field_validator("stiffness", "damping")(check_symmetric)
 

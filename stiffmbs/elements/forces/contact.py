@@ -25,9 +25,9 @@ class PressedSurfaces(Friction):
     dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
 
     @model_validator(mode="after")
-    def _rubs(self) -> Self:
+    def _has_both_coefficients(self) -> Self:
         if self.static_friction is not None and self.friction is None:
-            raise ValueError("found static_friction alone, expected friction too")
+            raise ValueError("found static_friction without friction, expected both")
         return self
 
     @classmethod
@@ -140,7 +140,7 @@ class Contact(ContactLaw):
     i: Marker = Field(description="the point, or the circle's centre")
     j: Marker = Field(description="on the surface line, its normal pointing out of the solid, or the surface's centre")
     radius: si.LengthOrZero = Field(0.0, description="radius of the circle about i, m; 0 for a point")
-    surface: Literal["line", "circle", "hole"] = Field("line", description="what i meets")
+    surface: Literal["line", "circle", "hole"] = Field("line", description="shape of the surface at j that i touches")
     surface_radius: si.LengthOrZero = Field(0.0, description="radius of a circle or hole about j, m")
 
     @staticmethod

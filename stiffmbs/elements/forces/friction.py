@@ -28,7 +28,7 @@ class Friction(Force):
     """Base of forces with dry friction: Coulomb's law with the Stribeck effect, smoothed at zero speed.
 
     mu(v) = (mu_d + (mu_s - mu_d) exp(-(v/v_d)^2)) tanh(v/v_s), with the stiction velocity v_s and the friction velocity
-    v_d. There is no true stiction: below v_s friction is viscous, and a sticking contact creeps.
+    v_d. There is no true stiction: friction is viscous below v_s, so that a contact under load keeps sliding slowly.
 
     Andersson, Soderberg, Bjorklund, Friction models for sliding dry, boundary and mixed lubricated contacts, Tribology
     International 40 (2007) 580-587.

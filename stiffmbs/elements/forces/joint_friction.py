@@ -29,9 +29,10 @@ class AnyJointFriction(Friction):
     length: si.PositiveLength | None = Field(None, description="length of a guide or bearing, for its moment, m")
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        """Yield the fields that do not fit the joint, each with its message."""
         joint = joints[self.joint.joint]
         if type(joint).loads is Joint.loads:
-            *others, last = self.rubbing()
+            *others, last = self.frictional_kinds()
             expected = f"{', '.join(others)} or {last}"
             yield "joint", f"found '{self.joint}', which is of type {joint.kind}, expected a {expected} joint"
         elif joint.coordinates in (PIN, BALL) and self.radius == 0:
@@ -39,16 +40,16 @@ class AnyJointFriction(Friction):
             yield "radius", f"found none for the {joint.kind} joint '{self.joint}', expected the radius of its {part}"
 
     @classmethod
-    def known(cls) -> Mapping[str, Any]:
-        """Return the joints of its family, by kind."""
+    def joints_by_kind(cls) -> Mapping[str, Any]:
+        """Return the classes of planar or spatial joints by kind."""
         raise NotImplementedError
 
     @classmethod
-    def rubbing(cls, *sorts: tuple[str, ...]) -> list[str]:
+    def frictional_kinds(cls, *sorts: tuple[str, ...]) -> list[str]:
         """Return the kinds of joints that can have friction, optionally of some categories only."""
         return [
             kind
-            for kind, joint in cls.known().items()
+            for kind, joint in cls.joints_by_kind().items()
             if joint.loads is not Joint.loads and (not sorts or joint.coordinates in sorts)
         ]
 
@@ -78,7 +79,7 @@ class JointFriction(AnyJointFriction):
     )
 
     @classmethod
-    def known(cls) -> Mapping[str, Any]:
+    def joints_by_kind(cls) -> Mapping[str, Any]:
         from ..planar_kinds import JOINTS
 
         return JOINTS

@@ -35,10 +35,13 @@ class Spring(Force):
         return sum(laws, linear)
 
     @staticmethod
-    def stored(e: Symbolic, s: Expr, way: Expr) -> Expr:
-        """Return the potential energy, J, zero without a closed form; the preload's is zero at `way` = 0."""
+    def stored(e: Symbolic, s: Expr, coordinate: Expr) -> Expr:
+        """Return the potential energy, J, zero without a closed form; that of the preload is zero at coordinate 0.
+
+        `s`: deflection, m or rad. `coordinate`: length, m, or angle, rad.
+        """
         of_law = e.integral(e.spring_law, s) if e.spring_law is not None else 0
-        return e.stiffness * s**2 / 2 + e.preload * way + of_law if of_law is not None else 0
+        return e.stiffness * s**2 / 2 + e.preload * coordinate + of_law if of_law is not None else 0
 
 
 class LineSpring(Spring, Generic[M]):

@@ -24,7 +24,7 @@ class UserConstraint(Joint):
     """
 
     i: MarkerReference | None = Field(None, description="marker of the body on which the reaction is reported")
-    j: MarkerReference | None = Field(None, description="marker on which requests may ask for the reaction")
+    j: MarkerReference | None = Field(None, description="marker for requests of the reaction")
     zero: tuple[Formula, ...]
 
     @field_validator("zero", mode="before")

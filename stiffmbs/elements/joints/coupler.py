@@ -29,7 +29,7 @@ class Coupler(Relation):
     joint_2: JointReference = Field(description="joint with the coordinate s_2")
     scale: si.ValueNotZero = Field(description="ds_1/ds_2, in units of s_1 over units of s_2 (m, rad)")
     offset: si.Anything | None = Field(
-        None, description="s_1 - scale s_2, m or rad; by default that of the initial pose"
+        None, description="s_1 - scale s_2, m or rad; by default its value in the initial pose"
     )
 
     @staticmethod

@@ -64,7 +64,7 @@ class Drive(Joint):
     i: MarkerReference | None = Field(
         None, description="marker of the body on which the action of a driven coordinate is reported"
     )
-    j: MarkerReference | None = Field(None, description="marker on which requests may ask for the reaction")
+    j: MarkerReference | None = Field(None, description="marker for requests of the reaction")
     joint: JointReference | None = Field(
         None, description="joint whose coordinate is driven, or one of its coordinates"
     )
@@ -89,7 +89,7 @@ class Drive(Joint):
     def _one_of_each(self) -> Drive:
         exactly_one(("joint", self.joint), ("coordinate", self.driven))
         if self.joint is not None and (self.i is not None or self.j is not None):
-            raise ValueError("found the markers i or j with a joint, expected those of the joint alone")
+            raise ValueError("found a joint with markers i or j, expected the joint only, which has its own")
         exactly_one(("position", self.prescribed_position), ("velocity", self.prescribed_velocity))
         return self
 

@@ -32,7 +32,7 @@ class Gear(Relation):
     joint_2: JointReference = Field(description="revolute joint of wheel 2 (marker i), in the same carrier (marker j)")
     ratio: si.NumberNotZero = Field(description="teeth of wheel 2 over teeth of wheel 1, negative for internal teeth")
     offset: si.Angle | None = Field(
-        None, description="theta_1 + ratio theta_2, rad; by default that of the initial pose"
+        None, description="theta_1 + ratio theta_2, rad; by default its value in the initial pose"
     )
 
     @staticmethod

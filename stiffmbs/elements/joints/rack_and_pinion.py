@@ -32,7 +32,7 @@ class RackAndPinion(Relation):
         description="revolute joint of the pinion (marker i), in the same housing (marker j)"
     )
     pitch_radius: si.LengthNotZero = Field(description="R, m; negative for a pinion on the right of the rack's axis")
-    offset: si.Length | None = Field(None, description="s - R theta, m; by default that of the initial pose")
+    offset: si.Length | None = Field(None, description="s - R theta, m; by default its value in the initial pose")
 
     @staticmethod
     def relation(e: Symbolic) -> Expr:

@@ -132,7 +132,7 @@ def read_request(family: OutputNames, found: object, context: Context) -> Any:
     return formulas
 
 
-_FORMULA = [{"type": "string", "description": "a formula of anything that a run knows"}, {"type": "number"}]
+_FORMULA = [{"type": "string", "description": "a formula of any quantities of a run"}, {"type": "number"}]
 
 
 def output_field(family: OutputNames) -> ReadBy:

@@ -104,6 +104,7 @@ class CrgRoad(Road):
         return math.cos(heading), math.sin(heading)
 
     def notes(self) -> Iterator[str]:
+        """Yield notes on unused long sections, and remarks of the reader."""
         used, count = len(self._columns), len(self.file.v)
         if used < count:
             yield f"{used} of the {count} long sections of {self.file.path} are used"

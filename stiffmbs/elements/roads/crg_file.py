@@ -226,6 +226,6 @@ def _text(data: bytes, header: CrgHeader, source: str) -> np.ndarray:
             except ValueError:
                 raise InputError(
                     f"{source}, line {header.line + 1 + k}: found '{quoted(text)}' for '{_name(header, column)}', expected a number "
-                    "in so many characters"
+                    f"of {width} characters"
                 ) from None
     return records

@@ -24,19 +24,19 @@ class FormulaRoad(Road):
 
     kind = "formula"
 
-    z: Height = Field(description="height, m, of x along and y across, m")
-    first: si.Length | None = Field(None, description="x of the start of the interval for the filter, m")
-    last: si.Length | None = Field(None, description="x where it ends, m")
+    z: Height = Field(description="height, m: a formula of x along and y across the road, m")
+    first: si.Length | None = Field(None, description="x at the start of the interval for the filter, m")
+    last: si.Length | None = Field(None, description="x at the end of this interval, m")
 
     @model_validator(mode="after")
     def _may_be_filtered(self) -> FormulaRoad:
         if (self.first is None or self.last is None) != (self.filter_radius is None):
-            raise ValueError("found some of first, last and filter_radius, expected all three or none")
+            raise ValueError("found only some of first, last and filter_radius, expected all three or none")
         if self.first is not None and self.last is not None and not self.first < self.last:
             raise ValueError(f"found last = {self.last:g} m, expected it after first = {self.first:g} m")
         names = {node.id for node in ast.walk(self.z.tree) if isinstance(node, ast.Name)}
         if self.filter_radius is not None and "y" in names:
-            raise ValueError("found y in the formula of a road with filter_radius, expected a formula of x alone")
+            raise ValueError("found y in the formula of a road with filter_radius, expected a formula of x only")
         return self
 
     def extent(self) -> tuple[float, float] | None:

@@ -48,12 +48,14 @@ class Iso8608Road(Road):
     roughness: Literal["A", "B", "C", "D", "E", "F", "G", "H"] = Field(
         description="roughness class, from A (very good) to H"
     )
-    seed: int = Field(0, ge=0, description="of the random phases")
+    seed: int = Field(0, ge=0, description="seed of the random phases")
     track: si.PositiveLength = Field(1.5, description="distance between the left and the right track, m")
     length: si.PositiveLength = Field(250.0, description="period of the road, m")
     longest: si.PositiveLength = Field(100.0, description="longest wave, m")
     shortest: si.PositiveLength = Field(0.2, description="shortest wave, m")
-    coherence: Literal["isotropic", "full", "none"] = Field("isotropic", description="between left and right")
+    coherence: Literal["isotropic", "full", "none"] = Field(
+        "isotropic", description="coherence of the left and right tracks"
+    )
     start: si.Length | None = Field(None, description="x of the start of the road, m; by default it has no start")
     entry: si.PositiveLength = Field(
         5.0, description="length over which the roughness grows from zero after the start, m"

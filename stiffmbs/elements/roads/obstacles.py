@@ -14,7 +14,7 @@ from .road import Road, functions_of, ramp
 class Obstacle(Road):
     """Base of the level roads with an obstacle; scenes use its subclasses."""
 
-    start: si.Length = Field(description="x where it begins, m")
+    start: si.Length = Field(description="x at the start of the obstacle, m")
     if TYPE_CHECKING:
         length: float
 
@@ -41,7 +41,7 @@ class CosineBump(Obstacle):
 
     kind = "cosine_bump"
 
-    length: si.PositiveLength = Field(description="of the bump, m")
+    length: si.PositiveLength = Field(description="length of the bump, m")
     crest: si.Length = Field(description="height in the middle, m; negative for a hole")
 
     @staticmethod
@@ -61,8 +61,8 @@ class SineSweep(Obstacle):
     kind = "sine_sweep"
 
     length: si.PositiveLength = Field(description="length of the waves, m")
-    amplitude: si.Length = Field(description="of the waves, m")
-    first_wavelength: si.PositiveLength = Field(description="at the start, m")
+    amplitude: si.Length = Field(description="amplitude of the waves, m")
+    first_wavelength: si.PositiveLength = Field(description="wavelength at the start, m")
     last_wavelength: si.PositiveLength = Field(
         description="wavelength at the end, m; equal to the first for a sine wave"
     )

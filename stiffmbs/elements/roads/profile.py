@@ -23,9 +23,9 @@ class TableRoad(Road):
 
     kind = "table"
 
-    profile: Table | None = Field(None, description="height over x, m, the same for all y; a table or its name")
-    left: Table | None = Field(None, description="height over x at y = track/2 and beyond")
-    right: Table | None = Field(None, description="height over x at y = -track/2 and beyond")
+    profile: Table | None = Field(None, description="height over x, m, for all y; a table or its name")
+    left: Table | None = Field(None, description="height over x at y >= track/2, m")
+    right: Table | None = Field(None, description="height over x at y <= -track/2, m")
     track: si.PositiveLength | None = Field(None, description="distance between the left and right tracks, m")
 
     @field_validator("profile", "left", "right", mode="before")
@@ -44,7 +44,10 @@ class TableRoad(Road):
     def _one_or_two(self) -> TableRoad:
         two = (self.left, self.right, self.track)
         if (self.profile is None) == (None in two) or (self.profile is not None and two != (None, None, None)):
-            raise ValueError("found neither or both, expected a 'profile', or 'left', 'right' and 'track'")
+            given = [name for name in ("profile", "left", "right", "track") if getattr(self, name) is not None]
+            raise ValueError(
+                f"found {' and '.join(given) or 'no table'}, expected either 'profile', or 'left', 'right' and 'track'"
+            )
         return self
 
     def extent(self) -> tuple[float, float]:

@@ -57,7 +57,7 @@ class Road(Component):
     def _may_be_filtered(self) -> Road:
         if self.filter_radius is not None and not self.level and self.extent() is None:
             raise ValueError(
-                f"found filter_radius on a road '{self.kind}' without an extent, expected a road that states one"
+                f"found filter_radius on a road '{self.kind}' without an extent, expected a road with one, such as a table"
             )
         return self
 
@@ -125,7 +125,7 @@ class Road(Component):
         if self.level:
             return self
         if self.extent() is None:
-            raise ValueError(f"found a road '{self.kind}' without an extent, expected a road that states one")
+            raise ValueError(f"found a road '{self.kind}' without an extent, expected a road with one, such as a table")
         road = self.model_copy()
         road._cam = cam
         return road
@@ -196,7 +196,7 @@ class FlatRoad(Road):
     kind = "flat"
     level = True
 
-    z: si.Length = Field(0.0, description="its height, m")
+    z: si.Length = Field(0.0, description="height, m")
 
     @staticmethod
     def height(r: Symbolic, x: Expr, y: Expr) -> Expr:

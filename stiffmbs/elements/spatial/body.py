@@ -40,11 +40,12 @@ class Body(Described):
     inertia: Inertia = Field(
         description="Ixx, Iyy, Izz or the symmetric 3x3 tensor (off the diagonal minus the products of inertia) about the centre of mass in the body's own axes, kg m^2"
     )
-    center_of_mass: Point = Field(ORIGIN, description="in the body's own axes from its origin, m")
+    center_of_mass: Point = Field(ORIGIN, description="position relative to the body's origin, in its own axes, m")
     position: Point = Field(
-        ORIGIN, description="of the body's origin at the start, m; assembly changes the pose if joints require it"
+        ORIGIN,
+        description="position of the body's origin at the start, m; assembly changes the pose if joints require it",
     )
-    orientation: Orientation = Field(IDENTITY, description="of the body's own axes at the start")
+    orientation: Orientation = Field(IDENTITY, description="orientation of the body's own axes at the start")
     velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
         (0.0, 0.0, 0.0), description="velocity of the centre of mass at the start, in ground axes, m/s"
     )

@@ -22,7 +22,7 @@ class Placed(Shape):
     """Base of the shapes with a position and an orientation."""
 
     point: Point = Field(ORIGIN, description="its middle (of a mesh the origin) in the body's own axes, m")
-    orientation: Orientation = Field(IDENTITY, description="of its axes against the body's")
+    orientation: Orientation = Field(IDENTITY, description="orientation of its axes relative to the body's")
 
 
 class Box(Placed):

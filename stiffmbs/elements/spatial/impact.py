@@ -45,20 +45,25 @@ class Impact(Force):
     i: Marker
     j: Marker
     stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^e")
-    exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="e")
+    exponent: Annotated[float, Measured("number", at_least=1)] = Field(
+        1.5, description="e, exponent of the penetration"
+    )
     damping: si.Damping = Field(0.0, description="c, N s/m")
     depth: si.PositiveLength = Field(1e-4, description="d, penetration above which the full damping acts, m")
     static_friction: si.NumberOrZero | None = Field(None, description="mu_s, static coefficient of friction")
-    friction: si.NumberOrZero | None = Field(None, description="mu_d, dynamic coefficient")
+    friction: si.NumberOrZero | None = Field(None, description="mu_d, dynamic coefficient of friction")
     stiction_velocity: si.PositiveVelocity = Field(0.01, description="sliding speed at which mu reaches mu_s, m/s")
     friction_velocity: si.PositiveVelocity = Field(0.1, description="sliding speed above which mu is mu_d, m/s")
 
     @model_validator(mode="after")
-    def _rubs(self) -> Self:
+    def _has_both_coefficients(self) -> Self:
         if (self.static_friction is None) != (self.friction is None):
             raise ValueError("found one of friction and static_friction, expected both or neither")
         if self.friction is not None and not self.stiction_velocity < self.friction_velocity:
-            raise ValueError("found a friction_velocity up to the stiction_velocity, expected a larger one")
+            raise ValueError(
+                f"found a friction_velocity of {self.friction_velocity:g} m/s, expected more than the stiction_velocity, "
+                f"{self.stiction_velocity:g} m/s"
+            )
         return self
 
     @classmethod

@@ -22,7 +22,7 @@ class Placement(Described):
     """Position and orientation of a named marker on its body."""
 
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
-    orientation: Orientation = Field(IDENTITY, description="of the marker's axes against the body's")
+    orientation: Orientation = Field(IDENTITY, description="orientation of the marker's axes relative to the body's")
 
     def numbers(self) -> tuple[float, ...]:
         """Return the inputs of kernels: the point, the rotation matrix by rows, and the quaternion."""
@@ -39,7 +39,9 @@ class Marker(MarkerReference):
     dimensions = 3
 
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
-    orientation: Orientation = Field(IDENTITY, description="of the axes against the body's; a joint's axis is z")
+    orientation: Orientation = Field(
+        IDENTITY, description="orientation of the axes relative to the body's; a joint's axis is z"
+    )
 
     def placement(self) -> Placement:
         """Return the explicit placement on the body."""

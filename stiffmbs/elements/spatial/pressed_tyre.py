@@ -42,6 +42,7 @@ class _Pressed:
 
     @property
     def gamma(self) -> Expr:
+        """Camber angle in the axes of the property file, rad."""
         return self.e.named(self.hand * self.contact.camber)
 
     def slip(self, load: Expr) -> tuple[Any, Any, Any, tuple[Any, ...]]:

@@ -128,8 +128,8 @@ class LinearSystem(Entry):
     With two outputs, ``actuator.force`` and ``actuator.flow``::
 
         states:
-          actuator: {a: [[-5, 1], [0, -2]], b: [[0], [1]], c: [[1, 0], [0, 1]], input: [cart.vx], outputs: [force,
-          flow]}
+          actuator:
+            {a: [[-5, 1], [0, -2]], b: [[0], [1]], c: [[1, 0], [0, 1]], input: [cart.vx], outputs: [force, flow]}
 
     This is Adams' LSE.
     """
@@ -193,12 +193,12 @@ class PID(Entry):
     --------
     ::
 
-        states: {motor: {pid: {input: cart.x, setpoint: 0.4 m, kp: 50, ki: 30, kd: 12, filter: 1 ms}}} forces: {push:
-        {type: force, i: cart, force: [motor, 0]}}
+        states: {motor: {pid: {input: cart.x, setpoint: 0.4 m, kp: 50, ki: 30, kd: 12, filter: 1 ms}}}
+        forces: {push: {type: force, i: cart, force: [motor, 0]}}
     """
 
-    input: OfMotion = Field(description="what is controlled: a formula of time, coordinates, velocities and states")
-    setpoint: OfMotion | None = Field(None, description="what it is to be; zero by default")
+    input: OfMotion = Field(description="controlled quantity: a formula of time, coordinates, velocities and states")
+    setpoint: OfMotion | None = Field(None, description="set value of the input: a formula; zero by default")
     kp: si.Anything = Field(0.0, description="proportional gain")
     ki: si.Anything = Field(0.0, description="integral gain")
     kd: si.Anything = Field(0.0, description="derivative gain")

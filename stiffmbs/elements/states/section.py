@@ -73,7 +73,7 @@ def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
     except CycleError as error:
         loop = error.args[1][::-1]
         raise ValueError(
-            f"states.{loop[0]}: found an output that depends on itself at once ({' -> '.join(loop)}), expected a state in the loop"
+            f"states.{loop[0]}: found an algebraic loop ({' -> '.join(loop)}), expected a state in the loop"
         ) from None
 
 

@@ -79,7 +79,7 @@ class State(Entry):
     rate: OfMotion = Field(description="its rate of change: a formula of time, coordinates, velocities and states")
     start: AnyAmount = Field(Amount(0.0), description="initial value; a unit states its dimension")
     scale: Scale = Field(
-        Amount(1.0), description="a size of it that matters, for its absolute tolerance; 1 in SI units by default"
+        Amount(1.0), description="typical magnitude, for its absolute tolerance; 1 in SI units by default"
     )
 
     @model_validator(mode="after")
@@ -108,13 +108,13 @@ class AlgebraicState(Entry):
     """
 
     zero: OfMotion = Field(
-        description="what is zero: a formula of the state itself, time, coordinates, velocities and other states"
+        description="residual, zero at all times: a formula of the state itself, time, coordinates, velocities and other states"
     )
     start: AnyAmount = Field(
-        Amount(0.0), description="where its value is sought from at the start; a unit states its dimension"
+        Amount(0.0), description="initial guess of its value at the start; a unit states its dimension"
     )
     scale: Scale = Field(
-        Amount(1.0), description="a size of it that matters, for its absolute tolerance; 1 in SI units by default"
+        Amount(1.0), description="typical magnitude, for its absolute tolerance; 1 in SI units by default"
     )
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:

@@ -79,11 +79,11 @@ def pieces_through(points: Sequence[np.ndarray]) -> list[Piece]:
     for k, (a, b) in enumerate(itertools.pairwise(points)):
         if np.linalg.norm(b - a) <= NEARLY * size:
             raise ValueError(
-                f"found the points {k + 1} and {k + 2} at one place (a length of zero), expected two places"
+                f"found the points {k + 1} and {k + 2} at the same place, expected a piece of non-zero length"
             )
         found.append(Straight(np.asarray(a, dtype=float), np.asarray(b, dtype=float)))
         if k and found[-2].at(0)[1] @ found[-1].at(0)[1] < NEARLY - 1:
-            raise ValueError(f"found a beam that leads straight back at point {k + 1}, expected another direction")
+            raise ValueError(f"found a beam that reverses its direction at point {k + 1}, expected another direction")
     return found
 
 

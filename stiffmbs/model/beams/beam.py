@@ -59,7 +59,7 @@ class Beam(LineBody):
         description="number of elements; one for each interval between ends, corners and stations; auto; or {tolerance: 1 mm} of its position"
     )
     interpolation: Literal["pairs", "spectral"] = Field(
-        "pairs", description="of the strain: constant between two nodes, or by polynomials through three to five nodes"
+        "pairs", description="of the strain: constant between two nodes, or by polynomials through four or five nodes"
     )
     section: AnySection | None = Field(
         None, description="cross section: circle, tube, rectangle, i, l, u, numbers or points"
@@ -120,7 +120,7 @@ class Beam(LineBody):
 
         if self.elements.tolerance is not None:
             raise InputError(
-                f"{name}.elements: found a tolerance, which a scene may have, expected a number in a model built in Python"
+                f"{name}.elements: found a tolerance in a model built in Python, expected a number; only scenes take a tolerance"
             )
         try:
             made = expanded(name, self)

@@ -50,7 +50,7 @@ def expand_beams(
             raise InputError(f"{where}.{name}.{error}") from None
         taken = next((full for full in made.bodies if full in bodies), None)
         if taken is not None:
-            raise InputError(f"{where}.{taken}: found a name that the beam '{name}' makes too, expected another")
+            raise InputError(f"{where}.{taken}: found the name of a node of the beam '{name}', expected another")
         found |= made.bodies
         added |= made.forces
         of_beams |= made.forces.keys()

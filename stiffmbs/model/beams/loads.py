@@ -26,7 +26,8 @@ class DistributedLoad(Described):
         description="components per length, N/m: numbers or formulas of time and of measured quantities"
     )
     axes: Literal["ground", "section"] = Field(
-        "ground", description="whether the components are along the ground's axes, or follow those of the section"
+        "ground",
+        description="axes of the components: the ground's, or those of the section, which rotate with the node",
     )
 
     @field_validator("force")
@@ -40,7 +41,7 @@ class DistributedLoad(Described):
 def node_forces(name: str, load: DistributedLoad, lines: Mapping[str, Line], where: str) -> dict[str, Any]:
     """Return the nodal forces of a distributed load, as entries of a scene.
 
-    The weights of the nodes are those of their masses. Raises InputError if the load names an unknown beam.
+    Nodes have the same shares of the load as of the mass. Raises InputError if the load names an unknown beam.
     """
     axes = {"axes": "body"} if load.axes == "section" else {}
     return {
@@ -57,10 +58,10 @@ def node_contacts(
     """Return the contacts of nodes of an entry ``beam_contact``, as entries of a scene.
 
     They are of the given kind and have its fields, with `beam` in place of `i`. The stiffness is per length of the beam; the
-    radius of a node is by default that of its section. Raises InputError for an unknown beam or without a stiffness.
+    radius of a node is by default the radius of its section. Raises InputError for an unknown beam or without a stiffness.
     """
     if "i" in entry:
-        raise InputError(f"{where}.i: found a marker of a contact of a beam, expected 'beam' alone")
+        raise InputError(f"{where}.i: found a marker of a beam contact, expected 'beam' only")
     for key in ("beam", "stiffness"):
         if entry.get(key) is None:
             raise InputError(f"{where}.{key}: found nothing, expected a value (the key is required)")

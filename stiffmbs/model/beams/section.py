@@ -203,9 +203,9 @@ class Angle(Section):
     """L profile; its legs extend from the corner along axes 2 and 3."""
 
     type: Literal["l"] = "l"
-    width: si.PositiveLength = Field(description="of the leg along axis 2, m")
-    height: si.PositiveLength = Field(description="of the leg along axis 3, m")
-    thickness: si.PositiveLength = Field(description="of both legs, m")
+    width: si.PositiveLength = Field(description="length of the leg along axis 2, m")
+    height: si.PositiveLength = Field(description="length of the leg along axis 3, m")
+    thickness: si.PositiveLength = Field(description="thickness of both legs, m")
 
     @model_validator(mode="after")
     def _fits(self) -> Angle:
@@ -301,6 +301,7 @@ class Numbers(Section):
         return self.model_copy(update={"I3": I3, "J": self.I2 + I3 if self.J is None else self.J})
 
     def properties(self, nu: float) -> Properties:
+        """Return the given constants, completed; `nu` is not used."""
         of: Any = self.complete()
         return Properties(
             of.A, of.I2, of.I3, of.J, of.shear2, of.shear3, of.I23, of.shear_centre, wagner=of.wagner
@@ -338,7 +339,7 @@ class Material(Described):
 
     E: Annotated[float, Measured("pressure", above=0)] = Field(description="Young's modulus, N/m^2")
     nu: Annotated[float, Measured("number", at_least=0, at_most=0.5)] = Field(0.3, description="Poisson's ratio")
-    density: Annotated[float, Measured("density", above=0)] = Field(description="kg/m^3")
+    density: Annotated[float, Measured("density", above=0)] = Field(description="density, kg/m^3")
 
     @property
     def G(self) -> float:

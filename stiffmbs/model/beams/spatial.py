@@ -21,8 +21,8 @@ class BeamBody(Beam):
 
     dimensions: ClassVar[int] = 3
 
-    start: Point | None = Field(None, description="its start, m")
-    end: Point | None = Field(None, description="its end, m")
+    start: Point | None = Field(None, description="start point, m")
+    end: Point | None = Field(None, description="end point, m")
     through: Point | None = Field(None, description="a further point of an arc from start to end, m")
     points: tuple[Point, ...] | None = Field(
         None, min_length=2, description="in place of start and end: corners of straight pieces, rigidly connected, m"
@@ -34,11 +34,11 @@ class BeamBody(Beam):
         None, description="EA, GA2, GA3 (with shear factors), GJ, EI2, EI3: in place of section and material"
     )
     inertia_per_length: tuple[InertiaPerLength, InertiaPerLength, InertiaPerLength] | None = Field(
-        None, description="about axes 1, 2, 3, in place of section and material, kg m"
+        None, description="moments of inertia per length about axes 1, 2, 3, in place of section and material, kg m"
     )
     velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
-        (0.0, 0.0, 0.0), description="of its start point, m/s"
+        (0.0, 0.0, 0.0), description="velocity of the start point at the start of the run, m/s"
     )
     omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
-        (0.0, 0.0, 0.0), description="of the whole beam at the start of the run, rad/s"
+        (0.0, 0.0, 0.0), description="angular velocity of the whole beam at the start of the run, rad/s"
     )

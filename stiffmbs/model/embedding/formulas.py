@@ -126,6 +126,7 @@ class _Renamed(ast.NodeTransformer):
         self.any = False
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        """Replace the rotation of a body or a joint's coordinate."""
         owner, data = node.value.id, self._angles.data  # type: ignore[attr-defined]
         if owner in data.requests or owner == UNIT:
             return node
@@ -148,6 +149,7 @@ class _Renamed(ast.NodeTransformer):
         return self._read(f"({ast.unparse(node)} + {2 * math.pi * turns!r})") if turns else node
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
+        """Replace ``az``, and arguments of functions."""
         called = node.func.id  # type: ignore[attr-defined]
         if called not in (*OF_PLANE.measures, *OF_PLANE.actions):
             return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])

@@ -33,6 +33,7 @@ class MirroredNames(ast.NodeTransformer):
         self.frame, self.inside, self.along_joint = frame, inside, along_joint
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        """Return a coordinate or velocity with its sign in the mirrored part."""
         body = node.value.id  # type: ignore[attr-defined]
         if body == UNIT:
             return node
@@ -54,6 +55,7 @@ class MirroredNames(ast.NodeTransformer):
         )
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
+        """Return a measure with its sign in the mirrored part."""
         if not is_measure(node):
             return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
         name: str = node.func.id  # type: ignore[attr-defined]

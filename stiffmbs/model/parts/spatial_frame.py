@@ -99,6 +99,7 @@ class SpatialFrame(Frame):
         return marker.model_copy(update={"orientation": product(marker.orientation, turn)})
 
     def placed_inertia(self, body: Body) -> dict[str, Any]:
+        """Return the fields of a body that depend on the frame: axes, omega, centre of mass and inertia."""
         inertia = np.outer(self.signs, self.signs) * np.array(body.inertia)
         return {
             "orientation": self.oriented(body.orientation),

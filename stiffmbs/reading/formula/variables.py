@@ -48,6 +48,7 @@ def resolved(formulas: Mapping[str, str | float], known: Collection[str]) -> dic
     units = {name: ast.Attribute(ast.Name(UNIT), name) for name in UNITS if name not in known and name not in formulas}
 
     def resolve(name: str, within: tuple[str, ...]) -> ast.expr:
+        """Return the tree of a variable; `within`: the variables that lead to it."""
         if name in within:
             loop = " -> ".join((*within[within.index(name) :], name))
             raise FormulaError(f"{name}: found a variable that depends on itself ({loop}), expected one that does not")

@@ -32,6 +32,7 @@ def _parsed(text: str) -> tuple[ast.expr, tuple[str, ...]]:
 
 def _named(text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Callable[[str], Quantity]:
     def named(name: str) -> Quantity:
+        """Return the quantity of a unit, constant or other name."""
         owner, _, last = name.rpartition(".")
         if owner == UNIT:
             for table in (UNITS, known, CONSTANTS):

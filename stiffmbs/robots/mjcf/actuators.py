@@ -95,7 +95,7 @@ def _actuator(m: Any, k: int, disabled: Disabled) -> Transmission:
         )
     for key in ("actuator_damping", "actuator_dampingpoly", "actuator_armature", "actuator_delay"):
         if hasattr(m, key) and np.any(getattr(m, key)[k]):
-            raise RobotFault(f"actuator {name}: found {key.split('_')[1]} of its own, expected that of the joint")
+            raise RobotFault(f"actuator {name}: found a {key.split('_')[1]} of the actuator, expected it at the joint")
     fixed = gain == mujoco.mjtGain.mjGAIN_FIXED
     gains = (float(m.actuator_gainprm[k, 0]), 0.0, 0.0) if fixed else tuple(map(float, m.actuator_gainprm[k, :3]))
     affine = bias == mujoco.mjtBias.mjBIAS_AFFINE

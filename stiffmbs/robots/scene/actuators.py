@@ -105,7 +105,7 @@ def _force(
 
 
 def _of_total(transmission: Transmission, name: str, along: list[str]) -> str:
-    """Return the force of an actuator; MuJoCo bounds the total force on a tendon before that of each actuator.
+    """Return the force of an actuator; MuJoCo limits the total force on a tendon before the force of each actuator.
 
     Raises RobotFault if the bounds of the total force of several actuators do not enclose zero.
     """

@@ -20,7 +20,7 @@ from ..pose import Placed, frames
 from ..robot import Link, LinkJoint, Robot
 
 ROUNDING = 1e-12
-"""Part of a turn by which an angle at the start counts as half a turn: that of measures is then positive."""
+"""Tolerance, in turns, within which an initial angle counts as half a turn; measures then give a positive angle."""
 
 
 class Names:

@@ -61,7 +61,7 @@ def _check_joints(robot: Robot, given: Mapping[str, float]) -> None:
     for name in given:
         if name not in known:
             raise RobotFault(
-                f"found the joint {name}, expected one of {', '.join(sorted(known)) or 'none: it has none'}"
+                f"found the joint {name}, expected one of {', '.join(sorted(known)) or 'none (the robot has no joints)'}"
             )
 
 

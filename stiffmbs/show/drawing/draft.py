@@ -37,10 +37,12 @@ class Site:
 
     @property
     def anchor(self) -> Anchor:
+        """Its point on the body."""
         return Anchor(self.body, self.point)
 
     @property
     def on_ground(self) -> bool:
+        """True if its body is ground."""
         return self.body == GROUND
 
     def at(self, shift: Sequence[float] | np.ndarray) -> Site:

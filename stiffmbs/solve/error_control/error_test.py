@@ -28,8 +28,8 @@ class ErrorControl:
         Coefficient of Newton's convergence test (IDASetNonlinConvCoef); None to choose it by the stiffness of the
         scene (`stiffmbs.solve.error_control.newton`).
     renewal : float
-        Change x of cj that causes a linear solver setup, if that is inexpensive: its ratio to the last setup's leaves
-        (1 - x)/(1 + x) to (1 + x)/(1 - x) (IDASetDeltaCjLSetup).
+        Relative change x of cj that causes a linear solver setup: the ratio of cj to that of the last setup leaves the
+        interval from (1 - x)/(1 + x) to (1 + x)/(1 - x) (IDASetDeltaCjLSetup).
     growth : float
         Least factor by which a step is enlarged (IDASetEtaFixedStepBounds).  With IDA's default 2, the steps of an
         even motion keep the size that the start has given them.

@@ -88,9 +88,11 @@ class BDF:
         self._matrix, self._predicted_residual = matrix, predicted_residual
 
     def libraries(self) -> Libraries:
+        """Return the libraries of the matrix and its linear solver."""
         return self._matrix.libraries()
 
     def memory(self, session: Session) -> int:
+        """Return the address of IDA's memory in a session."""
         return session.ida()
 
     def connect(self, connection: Connection, session: Session, assembled: Assembled) -> None:

@@ -98,6 +98,7 @@ class WhenNeeded:
 
 def _filling(cells: np.void, routines: Mapping[str, Routine], faults: list[BaseException]) -> Callable[[], int]:
     def fill() -> int:
+        """Write the addresses of the compiled routines; return OK or FAILED."""
         try:  # an exception cannot pass through compiled code
             addresses = {name: routine.address for name, routine in routines.items()}
         except BaseException as fault:

@@ -109,9 +109,9 @@ def _content(scene: Scene) -> str:
     """Return the scene as text, with everything that its file includes."""
     written = scene.written
     if written is None:
-        raise InputError("found a scene that was not read from a file, expected one of a file")
+        raise InputError("found a scene that was not read from a file, expected a scene file")
     if written.changes:
-        raise InputError("found --set, expected a scene as it stands in its file: its parameters can be set in the FMU")
+        raise InputError("found --set, expected the unchanged scene of a file: its parameters can be set in the FMU")
     return scene_text(copy.deepcopy(dict(written.content)))
 
 
@@ -125,7 +125,7 @@ def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]
             raise InputError("found a scene with stages, expected a scene of one run")
     except InputError as error:
         raise InputError(
-            f"alone in an FMU, without files next to it: {str(error).replace(f'{copied.parent}/', '')}"
+            f"scene within the FMU, without other files of its folder: {str(error).replace(f'{copied.parent}/', '')}"
         ) from None
     inputs = {name: value for name, value in scene.inputs.items() if isinstance(value, float | int)}
     tables = [name for name in scene.inputs if name not in inputs]

@@ -78,6 +78,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
         for name, value in values.items():
 
             def put(number: float, name: str = name) -> None:
+                """Set a variable; parameters keep their values after the start."""
                 if causality != Fmi2Causality.input and number != values[name]:
                     if self._initialized:
                         raise self._logged(

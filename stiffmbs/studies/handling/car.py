@@ -121,7 +121,7 @@ def _upright(scene: Scene, wheel: str) -> str:
     for joint in scene.joints.values():
         if joint.kind == "revolute" and wheel in (joint.i.body, joint.j.body):
             return joint.j.body if joint.i.body == wheel else joint.i.body  # type: ignore[no-any-return]
-    raise InputError(f"found no revolute joint of the wheel '{wheel}', expected one that holds it")
+    raise InputError(f"found no revolute joint of the wheel '{wheel}', expected one as its bearing")
 
 
 def _steering(scene: Scene, given: str | None) -> str:

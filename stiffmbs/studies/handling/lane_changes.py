@@ -66,6 +66,7 @@ def highest_entry_speed(known: Known, test: ObstacleAvoidance, solve: Callable[[
     """
 
     def passes(speed: float) -> bool:
+        """Return True if no cone is hit at an entry speed, m/s."""
         one = replace(test, speed=speed)
         try:
             runs = [solve(each) for each in in_lanes(PART_2)(known, one)]

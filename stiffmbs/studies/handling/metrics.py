@@ -84,7 +84,7 @@ def step_response(time: np.ndarray, steer: np.ndarray, response: np.ndarray, set
     end = time >= time[-1] - settled
     final, steady = float(np.mean(steer[end])), float(np.mean(response[end]))
     if final == 0.0 or steady == 0.0:
-        raise InputError("found no step of the input or no response to it, expected both other than zero at the end")
+        raise InputError("found no step of the input or no response to it, expected non-zero final values of both")
     start = _first(time, steer / final, 0.5)
     part = response / steady
     after = time >= start
@@ -236,7 +236,7 @@ def mean_deceleration(time: np.ndarray, speed: np.ndarray) -> float:
 def yaw_rate_ratio(
     time: np.ndarray, yaw_rate: np.ndarray, speed: np.ndarray, begin: float, after: float = 1.0
 ) -> float:
-    """Return the yaw rate some time after braking begins, relative to that of the initial radius (ISO 7975).
+    """Return the yaw rate at a time `after` braking begins, s, relative to that on the initial radius (ISO 7975).
 
     The reference is the yaw rate of the initial curvature at the current speed: 1 means that the car keeps its radius.
     Raises InputError if the run ends before.

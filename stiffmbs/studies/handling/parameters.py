@@ -97,7 +97,7 @@ class BrakingInATurn:
 
     radius: float = parameter(100.0, "length", "radius of the circle", "ISO 7975, initial condition")
     lateral_acceleration: float = parameter(5.0, "acceleration", "of the circle before braking", "ISO 7975")
-    pedal: float | None = parameter(None, "force", "braking force; by default that of the driver")
+    pedal: float | None = parameter(None, "force", "braking force; by default the driver's")
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class StraightBraking:
     """Parameters of `straight_braking`."""
 
     speed: float = parameter(100 / 3.6, "velocity", "speed before braking", "ISO 21994, initial speed")
-    pedal: float | None = parameter(None, "force", "braking force; by default that of the driver")
+    pedal: float | None = parameter(None, "force", "braking force; by default the driver's")
 
 
 @dataclass(frozen=True)

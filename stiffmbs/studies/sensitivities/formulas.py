@@ -119,6 +119,7 @@ class Formula:
 
     def _dual(self, node: ast.AST, slopes: Mapping[str, Any]) -> Dual:
         def channel(name: str) -> Dual:
+            """Return a channel with its derivatives."""
             if name == TIME:
                 return Dual(self._time, 0.0)
             if name not in slopes:

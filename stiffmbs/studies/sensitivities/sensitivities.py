@@ -38,11 +38,11 @@ NUMBERS_OF_STEPS = {"bdf": tuple(200 * 8**k for k in range(4)), "radau": tuple(2
 FEWEST = 200
 """Least numbers of steps of a run, and the first of them.
 
-The error control does not see variations: a motion at rest, or a steady one, takes steps of any length.
+The error control disregards derivatives: steps may have any length if the motion is at rest or steady.
 """
 ALIKE = {"bdf": 3, "radau": 2}
-"""Successive runs that have to agree. At rest bdf stays at order 1, which damps all vibrations: two of three runs may agree for that
-reason alone."""
+"""Number of successive runs that must agree. At rest bdf stays at order 1, which damps all vibrations: two of three runs may agree
+only because of this."""
 AGREED, NOISE = {"bdf": 5e-3, "radau": 1e-4}, 1e-9
 """Accepted difference between the derivatives of two runs, relative to their size, and relative to the output."""
 AT_THE_LIMIT = 0.9
@@ -157,7 +157,7 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
 
 
 def _solver(settings: RunSettings) -> str:
-    """Return the solver along whose steps sensitivities are integrated: `radau` if it is requested, or `bdf`."""
+    """Return the solver with whose steps sensitivities are integrated: `radau` if it is requested, otherwise `bdf`."""
     return "radau" if settings.solver == "radau" else "bdf"
 
 

@@ -44,7 +44,7 @@ def depends_on_more(element: Element) -> bool:
 
 
 def stays(element: Element, bodies: frozenset[str]) -> bool:
-    """Return True if an element belongs on the rig: no tyre, and attached to bodies of the axle alone."""
+    """Return True if an element belongs on the rig: no tyre, and attached only to bodies of the axle and ground."""
     if isinstance(element, Tyre) or depends_on_more(element):
         return False
     return set(bodies_at(element)) <= bodies | {GROUND}
@@ -236,7 +236,7 @@ def _with_tyres(model: ModelData, name: str, radius: float | None) -> tuple[Whee
 def _of_body(model: ModelData, body: str, radius: float | None) -> Wheel:
     """Return the wheel that is a body with a hub."""
     if body not in model.bodies:
-        raise InputError(f"found no body '{body}'{did_you_mean(body, model.bodies)}, expected that of a wheel")
+        raise InputError(f"found no body '{body}'{did_you_mean(body, model.bodies)}, expected the body of a wheel")
     hubs = {
         name: joint
         for name, joint in model.joints.items()

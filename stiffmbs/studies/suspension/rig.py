@@ -126,7 +126,7 @@ def _markers(body: Any, wheel: Wheel) -> dict[str, Placement]:
 
 
 def _hold_wheel(model: Any, wheel: Wheel) -> None:
-    """Add a pad, forces and a torque to a wheel; those of one wheel alone are mirrored on the right.
+    """Add a pad, forces and a torque to a wheel; those of a single wheel are mirrored on the right.
 
     The wheel rolls on its pad: the contact stays below its centre when the carrier rotates about the wheel's axis.
     """

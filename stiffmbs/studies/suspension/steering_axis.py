@@ -11,7 +11,7 @@ from .tangent import Twist
 STILL = 1e-9
 """Angular velocity per unit of steering below which a wheel does not steer, rad/m or rad/rad."""
 LEVEL = 1e-6
-"""Upward component of a direction below which it meets no road."""
+"""Smallest upward component of a direction that intersects the road."""
 
 
 @dataclass(frozen=True)

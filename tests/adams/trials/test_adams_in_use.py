@@ -94,7 +94,7 @@ def test_a_command_file_of_one_static_simulation_runs_and_is_summarised(tmp_path
     printed = CliRunner().invoke(main, ["run", str(path)])
     assert printed.exit_code == 0, printed.output
     assert "at rest in equilibrium" in printed.output
-    assert printed.output.count("model.acf asks for one simulation") == 1
+    assert printed.output.count("model.acf runs one simulation") == 1
     solution = stiffmbs.run(load_adams(path))
     assert abs(solution["PART_2.z"][-1] - 5 * 0.5**3 / (3 * 2.07e11 * 50e-12)) < 1e-6
     assert "equilibrium" in stiffmbs.summary(solution)

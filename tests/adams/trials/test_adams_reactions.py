@@ -78,7 +78,7 @@ def test_a_brake_that_its_own_hinge_presses(tmp_path):
         ("JOINT(1,0,9,0)", "found the component 9 of JOINT, expected 1 to 8"),
         ("SFORCE(1,0,5,0)", "found the force of SFORCE/1 in its own law"),
         ("BUSH(1,0,1,0)", r"found BUSH\(1, ...\), expected the number of a BUSHING"),
-        ("CONTACT(1,0,1,0)", "found CONTACT in .*, a force that hangs on others at the same instant, expected it in a REQUEST"),
+        ("CONTACT(1,0,1,0)", "found CONTACT in .*, a force that depends on others at the same time, expected it in a REQUEST"),
     ],
 )  # fmt: skip
 def test_what_forces_cannot_use_is_said(function, message):

@@ -72,7 +72,7 @@ def test_a_hinge_is_let_go_and_gravity_turned(run_with):
     np.testing.assert_allclose(np.linalg.norm(spin, axis=0), np.linalg.norm(rows[:, 10:], axis=1), atol=2e-7)
     assert np.all(found["JOINT_1.fz"][:5] > 0) and not np.any(found["JOINT_1.fz"][5:])
     np.testing.assert_allclose(found["REQUEST_1.f2"], found["JOINT_1.fz"], atol=1e-9)
-    assert "from simulation 2 on JOINT/1 is inactive by model.acf, and left out" in found.notes
+    assert "from simulation 2 on JOINT/1 is deactivated by model.acf and left out" in found.notes
 
 
 def pendulum(times, angle, rate, pull):

@@ -97,7 +97,7 @@ def test_models_with_linear_systems_are_written_and_read_again():
     [
         ("numerator: [2, 1]", "numerator: [2, 1, 1]", "lead: numerator: found the degree 2 above that of the denominator, 1"),
         ("denominator: [0.1, 1]", "denominator: [0, 0]", "lead: denominator: found zeros"),
-        ("input: smooth", "input: lead", "found an output that depends on itself at once \\(lead -> lead\\)"),
+        ("input: smooth", "input: lead", "found an algebraic loop \\(lead -> lead\\)"),
         ("b: [[0], [1]]", "b: [[0, 1]]", "two: b: found 1 rows of 2 numbers, expected 2 rows of 1"),
         ("outputs: [p, q]", "outputs: [p]", "two: outputs: found 1 names, expected 2"),
         (", filter: 10 ms", "", "motor: filter: found none with kd"),

@@ -111,7 +111,7 @@ def test_wheels_are_found_by_their_tyres():
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ({"wheels": ["hull"]}, r"found no body 'hull', expected that of a wheel"),
+        ({"wheels": ["hull"]}, r"found no body 'hull', expected the body of a wheel"),
         ({"wheels": ["front.left.upright"]}, r"expected the radius of the wheel|found . revolute joints"),
         ({"wheels": ["front.left.wheel"], "radius": "0.3 m"}, r"radius: found '0\.3 m', expected a length above zero"),
         ({"wheels": ["front.left.wheel"], "radius": -0.3}, r"radius: found -0\.3, expected a length above zero"),

@@ -30,6 +30,7 @@ class FlexibleInterface(Joint):
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:
+        """Return the displacement and rotation of j relative to the interface as deformed by the modes."""
         modal = [mode.body.origin[k] for mode in e.modes for k in range(3)]
         along = []
         for row in range(6):

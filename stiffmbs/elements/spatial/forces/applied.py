@@ -24,8 +24,10 @@ class Applied(Force):
     j: Marker | None = Field(
         None, description="a second body, on which the opposite load acts at the same point of space"
     )
-    axes: Literal["ground", "body"] = Field("ground", description="whether x, y and z are the ground's or marker i's")
-    frame: Marker | None = Field(None, description="marker whose axes x, y and z are, in place of `axes`")
+    axes: Literal["ground", "body"] = Field(
+        "ground", description="axes x, y and z of the components: the ground's or marker i's"
+    )
+    frame: Marker | None = Field(None, description="marker along whose axes the components are, in place of `axes`")
 
     @model_validator(mode="after")
     def _one_kind_of_axes(self) -> Applied:

@@ -38,7 +38,7 @@ class Beam(Elastic):
     length: si.PositiveLength = Field(description="L, without load, m")
     young: Modulus = Field(description="E, modulus of elasticity, N/m^2")
     shear_modulus: Modulus = Field(description="G, N/m^2")
-    area: Area = Field(description="A of the cross section, m^2")
+    area: Area = Field(description="A, area of the cross section, m^2")
     torsion: SecondMoment = Field(description="Ixx, torsion constant of the cross section, m^4")
     iyy: SecondMoment = Field(description="second moment of area about y, m^4")
     izz: SecondMoment = Field(description="second moment of area about z, m^4")

@@ -63,9 +63,7 @@ class Bushing(Connection):
         None, description="moment against the rotation about z over s (rad), N m"
     )
 
-    axes: Literal["j", "ground"] = Field(
-        "j", description="whether x, y and z of the force are marker j's or the ground's"
-    )
+    axes: Literal["j", "ground"] = Field("j", description="axes x, y and z of the force: marker j's or the ground's")
 
     @classmethod
     def resisted(cls, e: Symbolic) -> list[bool]:

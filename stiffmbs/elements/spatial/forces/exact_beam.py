@@ -102,6 +102,7 @@ class ExactBeam(BeamStrain):
 
     @staticmethod
     def stretching(e: Symbolic, strain: list[Expr]) -> list[Stretch]:
+        """Return the stretching by bowing and by torsion, with the strains at the shear centre."""
         if e.shear_centre is None and e.wagner is None:
             return BeamStrain.stretching(e, strain)
         _, y, z = e.shear_centre or (0, 0, 0)

@@ -31,18 +31,17 @@ class FialaTyre(Tyre):
     kind = "fiala_tyre"
     forms = ({}, {"relaxation": (0.3, 0.5)})
 
-    radius: si.PositiveLength = Field(description="without load, m")
-    stiffness: si.Stiffness = Field(description="radial, N/m")
-    damping: si.Damping = Field(0.0, description="radial, N s/m")
+    radius: si.PositiveLength = Field(description="unloaded radius, m")
+    stiffness: si.Stiffness = Field(description="radial stiffness, N/m")
+    damping: si.Damping = Field(0.0, description="radial damping, N s/m")
     slip_stiffness: si.PositiveForce = Field(description="C_kappa: longitudinal force over slip, N")
     cornering_stiffness: si.PositiveForce = Field(description="C_alpha: lateral force over slip angle, N/rad")
-    mu_static: si.PositiveNumber = Field(description="friction without slip")
-    mu_sliding: si.NumberOrZero = Field(description="friction at full slip")
-    width: si.LengthOrZero = Field(0.0, description="of the tyre, for its aligning torque, m")
-    rolling_resistance: si.LengthOrZero = Field(0.0, description="torque over load, m")
+    mu_static: si.PositiveNumber = Field(description="coefficient of friction without slip")
+    mu_sliding: si.NumberOrZero = Field(description="coefficient of friction at full slip")
+    width: si.LengthOrZero = Field(0.0, description="width of the tyre, for the aligning torque, m")
+    rolling_resistance: si.LengthOrZero = Field(0.0, description="rolling resistance torque over load, m")
     relaxation: tuple[si.PositiveLength, si.PositiveLength] | None = Field(
-        None,
-        description="longitudinal and lateral relaxation length, m; slips are those of the steady state by default",
+        None, description="longitudinal and lateral relaxation length, m; steady-state slips by default"
     )
 
     def own_states(self) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ class FieldForce(Connection):
 
     preload: Preload = Field(NO_ROW, description="force and torque on i at s0, N and N m")
     free: tuple[si.Length, si.Length, si.Length, si.Angle, si.Angle, si.Angle] | None = Field(
-        None, description="s0: place and rotation vector of i against j without force, m and rad"
+        None, description="s0: position and rotation vector of i relative to j without force, m and rad"
     )
 
     @staticmethod

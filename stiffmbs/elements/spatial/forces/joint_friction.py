@@ -52,11 +52,11 @@ class JointFriction(AnyJointFriction):
         joint = joints[self.joint.joint]
         for field, sorts in (("thrust_radius", (PIN,)), ("torsion_radius", (GUIDE,)), ("length", (PIN, SLEEVE, GUIDE))):
             if getattr(self, field) is not None and joint.coordinates not in sorts:
-                fits = ", ".join(self.rubbing(*sorts))
+                fits = ", ".join(self.frictional_kinds(*sorts))
                 yield field, f"found one for the {joint.kind} joint '{self.joint}', expected none (for {fits} only)"
 
     @classmethod
-    def known(cls) -> Mapping[str, Any]:
+    def joints_by_kind(cls) -> Mapping[str, Any]:
         from ..spatial_kinds import JOINTS
 
         return JOINTS

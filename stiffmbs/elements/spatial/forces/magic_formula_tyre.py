@@ -57,7 +57,7 @@ class MagicFormulaTyre(Tyre):
         None, description="of the car that the tyre is mounted on: the tyre is mirrored if TYRESIDE is the other one"
     )
     transient: bool | None = Field(
-        None, description="whether slips lag by relaxation lengths; as USE_MODE says by default"
+        None, description="whether slips lag by relaxation lengths; by default according to USE_MODE"
     )
     envelope: Envelope | Literal["file"] | None = Field(  # type: ignore[assignment]
         None, description="elliptical cams for short obstacles: their sizes, or 'file' for ELLIPS_LENGTH and so on"
@@ -66,7 +66,7 @@ class MagicFormulaTyre(Tyre):
         None, description="inflation pressure of a tyre of 6.1 or 6.2, Pa; INFLPRES of the file by default"
     )
     turn_slip: bool | None = Field(
-        None, description="whether the yaw rate acts on the forces (6.1, 6.2); as USE_MODE says by default"
+        None, description="whether the yaw rate acts on the forces (6.1, 6.2); by default according to USE_MODE"
     )
 
     @model_validator(mode="after")

@@ -31,8 +31,8 @@ class BoxPlaneImpact(PlaneImpact):
 
     i: Marker = Field(description="the middle of the box, with its axes")
     x: si.PositiveLength = Field(description="size along x of i, m")
-    y: si.PositiveLength = Field(description="along y, m")
-    z: si.PositiveLength = Field(description="along z, m")
+    y: si.PositiveLength = Field(description="size along y of i, m")
+    z: si.PositiveLength = Field(description="size along z of i, m")
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
@@ -56,8 +56,8 @@ class EllipsoidPlaneImpact(PlaneImpact):
 
     i: Marker = Field(description="the middle of the ellipsoid, with its axes")
     x: si.PositiveLength = Field(description="semi-axis along x of i, m")
-    y: si.PositiveLength = Field(description="along y, m")
-    z: si.PositiveLength = Field(description="along z, m")
+    y: si.PositiveLength = Field(description="semi-axis along y of i, m")
+    z: si.PositiveLength = Field(description="semi-axis along z of i, m")
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
@@ -69,9 +69,9 @@ class EllipsoidPlaneImpact(PlaneImpact):
         from sympy import sqrt
 
         n = e.j.z
-        ways = [e.named(half * axis.dot(n)) for half, axis in ((e.x, e.i.x), (e.y, e.i.y), (e.z, e.i.z))]
-        height = e.named(sqrt(sum(way**2 for way in ways)))
-        up = e.named((e.x * ways[0] * e.i.x + e.y * ways[1] * e.i.y + e.z * ways[2] * e.i.z) / height)
+        heights = [e.named(half * axis.dot(n)) for half, axis in ((e.x, e.i.x), (e.y, e.i.y), (e.z, e.i.z))]
+        height = e.named(sqrt(sum(part**2 for part in heights)))
+        up = e.named((e.x * heights[0] * e.i.x + e.y * heights[1] * e.i.y + e.z * heights[2] * e.i.z) / height)
         return [Touch((e.i.point - e.j.point).dot(n) - height, e.i.point - up, n)]
 
 

@@ -43,7 +43,8 @@ class RoadContact(PressedSurfaces):
 
     i: Marker = Field(description="the point, or the sphere's centre")
     j: Marker | None = Field(
-        None, description="whose axes the road's x, y and z are, on a body that carries it; ground by default"
+        None,
+        description="marker with the axes x, y and z of the road, on the body that carries the road; ground by default",
     )
     road: AnyRoad = Field(
         FlatRoad.model_construct(type=FlatRoad.kind),

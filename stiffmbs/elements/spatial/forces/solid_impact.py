@@ -43,7 +43,9 @@ class RoundSolid:
 
         reaches = [e.named(_reach(squares, n)) for squares in self.ellipsoids]
         parts = zip(self.ellipsoids, reaches, strict=True)
-        by_part = [[square * way / reach for square, way in zip(squares, n, strict=True)] for squares, reach in parts]
+        by_part = [
+            [square * cosine / reach for square, cosine in zip(squares, n, strict=True)] for squares, reach in parts
+        ]
         return Matrix([sum(along) for along in zip(*by_part, strict=True)])
 
 
@@ -67,7 +69,7 @@ def round_solid(e: Symbolic, shape: Shape, size: Expr) -> RoundSolid:
 def _reach(squares: list[Expr], n: Matrix) -> Expr:
     from sympy import sqrt
 
-    return sqrt(sum(square * way**2 for square, way in zip(squares, n, strict=True)))
+    return sqrt(sum(square * cosine**2 for square, cosine in zip(squares, n, strict=True)))
 
 
 class SolidImpact(Impact):
@@ -83,27 +85,27 @@ class SolidImpact(Impact):
     """
 
     kind = "solid_impact"
-    beyond = "found solids that overlap by a quarter of the least size of one of them, expected less: use a larger stiffness or a lower speed"
+    beyond = "found solids that overlap by a quarter of the smallest size of one of them, expected less: use a larger stiffness or a lower speed"
     forms = tuple({"i_shape": "box", "j_shape": "box", **form} for form in Impact.forms)
 
     i: Marker = Field(description="the middle of the first solid, with its axes")
     j: Marker = Field(description="the middle of the second solid, with its axes")
-    i_shape: Shape = Field(description="of the first solid; the axis of a cylinder is z")
-    i_size: Sizes = Field(description="of the first solid along its axes, m")
-    j_shape: Shape = Field(description="of the second solid")
-    j_size: Sizes = Field(description="of the second solid along its axes, m")
+    i_shape: Shape = Field(description="shape of the first solid; the axis of a cylinder is z")
+    i_size: Sizes = Field(description="sizes of the first solid along its axes, m")
+    j_shape: Shape = Field(description="shape of the second solid")
+    j_size: Sizes = Field(description="sizes of the second solid along its axes, m")
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
         """Return the single contact."""
         first, second = round_solid(e, e.i_shape, e.i_size), round_solid(e, e.j_shape, e.j_size)
-        way = e.named(seen_from(e.i.point, e.j))
+        offset = e.named(seen_from(e.i.point, e.j))
         axes = e.named([own.dot(other) for own in e.j.axes for other in e.i.axes])
-        n = e.common_normal(way, axes, first.ellipsoids, second.ellipsoids)
+        n = e.common_normal(offset, axes, first.ellipsoids, second.ellipsoids)
 
         def distance(n: Matrix) -> Expr:
             turned = [sum(n[row] * axes[3 * row + column] for row in range(3)) for column in range(3)]
-            along = sum(part * own for part, own in zip(way, n, strict=True))
+            along = sum(part * own for part, own in zip(offset, n, strict=True))
             return along - first.support(turned) - second.support(n)
 
         gap = e.at_extremum(distance, n)

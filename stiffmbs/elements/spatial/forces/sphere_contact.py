@@ -40,7 +40,9 @@ class SphereContact(ContactLaw):
     i: Marker = Field(description="the point, or the sphere's centre")
     j: Marker = Field(description="on the plane, its z pointing out of the solid, or the surface's centre")
     radius: si.LengthOrZero = Field(0.0, description="radius of the sphere about i, m; 0 for a point")
-    surface: Literal["plane", "sphere", "hollow"] = Field("plane", description="what i meets")
+    surface: Literal["plane", "sphere", "hollow"] = Field(
+        "plane", description="shape of the surface at j that i touches"
+    )
     surface_radius: si.LengthOrZero = Field(0.0, description="radius of a sphere or hollow sphere about j, m")
 
     @model_validator(mode="after")

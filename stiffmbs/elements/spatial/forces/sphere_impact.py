@@ -36,10 +36,10 @@ class SphereImpact(Impact):
     solid.
     """
 
-    beyond = "found the centre of a sphere inside the solid that it meets, expected it outside: use a larger stiffness or a lower speed"
+    beyond = "found the centre of a sphere inside the other solid, expected it outside: use a larger stiffness or a lower speed"
 
     i: Marker = Field(description="the sphere's centre")
-    radius: si.PositiveLength = Field(description="of the sphere, m")
+    radius: si.PositiveLength = Field(description="radius of the sphere, m")
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
@@ -70,7 +70,7 @@ class SphereSphereImpact(SphereImpact):
     kind = "sphere_sphere_impact"
 
     j: Marker = Field(description="the other sphere's centre")
-    other_radius: si.PositiveLength = Field(description="of the sphere about j, m")
+    other_radius: si.PositiveLength = Field(description="radius of the sphere about j, m")
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
@@ -95,8 +95,8 @@ class SphereBoxImpact(SphereImpact):
 
     j: Marker = Field(description="the middle of the box, with its axes")
     x: si.PositiveLength = Field(description="size of the box along x of j, m")
-    y: si.PositiveLength = Field(description="along y, m")
-    z: si.PositiveLength = Field(description="along z, m")
+    y: si.PositiveLength = Field(description="size along y of j, m")
+    z: si.PositiveLength = Field(description="size along z of j, m")
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
@@ -119,8 +119,8 @@ class SphereCylinderImpact(SphereImpact):
     kind = "sphere_cylinder_impact"
 
     j: Marker = Field(description="the middle of the cylinder, its z along the axis")
-    cylinder_radius: si.PositiveLength = Field(description="m")
-    cylinder_length: si.PositiveLength = Field(description="m")
+    cylinder_radius: si.PositiveLength = Field(description="radius of the cylinder, m")
+    cylinder_length: si.PositiveLength = Field(description="length of the cylinder, m")
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:

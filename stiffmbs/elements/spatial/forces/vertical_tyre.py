@@ -17,9 +17,9 @@ class VerticalTyre(Tyre):
 
     kind = "vertical_tyre"
 
-    radius: si.PositiveLength = Field(description="without load, m")
-    stiffness: si.Stiffness = Field(description="radial, N/m")
-    damping: si.Damping = Field(0.0, description="radial, N s/m")
+    radius: si.PositiveLength = Field(description="unloaded radius, m")
+    stiffness: si.Stiffness = Field(description="radial stiffness, N/m")
+    damping: si.Damping = Field(0.0, description="radial damping, N s/m")
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:

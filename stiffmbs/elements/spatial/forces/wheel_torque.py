@@ -37,7 +37,7 @@ class WheelTorque(AxleForce):
     kind = "wheel_torque"
     reflected = {"torque": "about y"}
 
-    torque: TorqueOfMotion = Field(description="N m: a number or a formula")
+    torque: TorqueOfMotion = Field(description="torque about the axle, N m: a number or a formula")
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:

@@ -49,9 +49,9 @@ class PointOnCurve(Curve[Marker]):
     @model_validator(mode="after")
     def _of_one_kind(self) -> Self:
         if self.z is not None and self.y is None:
-            raise ValueError("found z of a curve by its radius, expected it with y")
+            raise ValueError("found z for a curve given by its radius, expected z only with y")
         if self.height is not None and self.radius is None:
-            raise ValueError("found height of a slot, expected it with a radius")
+            raise ValueError("found height for a slot, expected height only with a radius")
         return self
 
     @staticmethod

@@ -32,7 +32,7 @@ class Thread(OffsetConstraint):
     pitch: si.LengthNotZero = Field(
         description="advance along z in one revolution, m; negative for a left-handed thread"
     )
-    offset: si.Length | None = Field(None, description="s at angle zero, m; by default that of the initial pose")
+    offset: si.Length | None = Field(None, description="s at angle zero, m; by default its value in the initial pose")
 
     @staticmethod
     def relation(e: Symbolic) -> Expr:

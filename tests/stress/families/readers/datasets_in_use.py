@@ -67,7 +67,7 @@ COMMANDS: dict[str, tuple[dict[str, str], float]] = {
 FAULTY: dict[str, tuple[str, dict[str, str], str]] = {
     "no such file": ("FILE/COMMAND=no.acf\n", {}, "no.acf: found no such file"),
     "a file within itself": ("FILE/COMMAND=o.acf\n", {"o.acf": "FILE/COMMAND=o.acf\n"}, "FILE/COMMAND: o.acf, line 1, FILE/COMMAND: found COMMAND = o.acf, expected no file that executes itself"),
-    "a command that is not followed": ("FILE/COMMAND=o.acf\n", {"o.acf": "BOX/1\n"}, "BOX/1: found a command that is not followed"),
+    "a command that is not followed": ("FILE/COMMAND=o.acf\n", {"o.acf": "BOX/1\n"}, "BOX/1: found an unsupported command"),
     "a range of nothing": ("DEACTIVATE/SFORCE, RANGE=20,30\n", {}, "found no SFORCE from"),
 }  # fmt: skip
 SCENES: dict[str, tuple[str, float]] = {
