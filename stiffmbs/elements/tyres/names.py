@@ -156,5 +156,5 @@ SAMPLE_6 = {
     "Q_CAM1": 1.0, "Q_CAM2": 1.0, "Q_FYS1": 0.1, "Q_FCX": 4e-3, "Q_FCY": 2e-3,
 }  # fmt: skip
 """Coefficients of a tyre of 6.2, for compilation in advance."""
-SAMPLE_FIALA = {**dict.fromkeys(FIALA, 1.0), "UMIN": 0.8, "FZMAX": 1e9, "LONGVL": 16.7}
+SAMPLE_FIALA = {**dict.fromkeys(FIALA_REQUIRED, 1.0), "UMIN": 0.8}
 """Numbers of a Fiala tyre, for compilation in advance."""

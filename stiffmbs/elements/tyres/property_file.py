@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from .magic_formula import Formula
 
 _NAMES = {
-    "LENGTH": {"m": "meter m", "mm": "mm millimeter", "cm": "cm centimeter", "km": "km kilometer", "inch": "inch in", "ft": "foot feet ft"},
-    "FORCE": {"N": "newton n", "kN": "kn knewton kilonewton", "kgf": "kg_force kgf", "lbf": "pound_force lbf"},
+    "LENGTH": {"m": "meter meters m", "mm": "mm millimeter millimeters", "cm": "cm centimeter", "km": "km kilometer", "inch": "inch inches in", "ft": "foot feet ft"},
+    "FORCE": {"N": "newton newtons n", "kN": "kn knewton kilonewton", "kgf": "kg_force kgf", "lbf": "pound_force lbf"},
     "ANGLE": {"rad": "radian radians rad", "deg": "degree degrees deg"},
     "MASS": {"kg": "kg kilogram", "g": "gram", "tonne": "tonne", "lb": "pound_mass", "slug": "slug"},
     "TIME": {"s": "second seconds sec s", "ms": "millisecond", "min": "minute", "h": "hour"},
@@ -66,6 +66,7 @@ def composed_of(dimension: str, units: Iterable[str]) -> tuple[list[str], list[s
 
 
 _KEY = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(.*)$")
+_TEXT = re.compile(r"""^(['"])(?!.*\1\s*=).*\1$""")
 _QUOTED = re.compile(r"^'([^']*)'|^\"([^\"]*)\"")
 
 
@@ -193,15 +194,15 @@ def parse_properties(text: str, source: str) -> PropertyFile:
     for number, line in enumerate(lines(text), start=1):
         content = line.strip()
         where = f"{source}, line {number}"
-        if not content or content[0] in "!$#{(":
+        if not content or content[0] in "!$#{(" or _TEXT.match(content):
             continue
         if content.startswith("["):
             section = _section(content, where)
         elif key := _KEY.match(content):
             name, own = key[1].upper(), sections.setdefault(section, {})
-            if name in own:
+            entry = Entry(_value(key[2], where), number, section)
+            if own.setdefault(name, entry).text != entry.text:
                 raise InputError(f"{where}: found {name} again, which line {own[name].line} has too, expected it once")
-            own[name] = Entry(_value(key[2], where), number, section)
         elif section:
             row = tuple(finite_number(part, where) for part in re.split(r"[\s,]+", _uncommented(content)))
             rows.setdefault(section, (number, []))[1].append(row)
@@ -226,7 +227,7 @@ def _section(content: str, where: str) -> str:
 
 
 def _uncommented(text: str) -> str:
-    return re.split(r"[$!]", text)[0].strip()
+    return re.split(r"[$!#]", text)[0].strip()
 
 
 def _value(text: str, where: str) -> str:
