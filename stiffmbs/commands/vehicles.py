@@ -210,7 +210,9 @@ def handling(
 @click.command(short_help="Curves of a tyre; conversion of property files.")
 @click.argument("file")
 @click.option("--load", "loads", multiple=True, help="N, or with a unit; any number of times.")
-@click.option("--pressure", "pressures", multiple=True, help="Pa, or with a unit, of 6.1, 6.2 and PAC2002; any number of times.")
+@click.option(
+    "--pressure", "pressures", multiple=True, help="Pa, or with a unit, of 6.1, 6.2 and PAC2002; any number of times."
+)
 @click.option("--camber", default="0", help="rad, or with a unit.")
 @click.option("--speed", help="m/s, or with a unit; LONGVL by default.")
 @click.option("--points", type=int, default=61, show_default=True, help="Number of points of each curve.")

@@ -32,8 +32,12 @@ CONSTANTS = ("Kxk", "Kya", "mux", "muy", "Re", "rho", "Rl", "sigma_x", "sigma_y"
 class TyreSweep(Described):
     """Loads, pressures, camber and speed of the curves, and the number of points of each."""
 
-    load: tuple[si.PositiveForce, ...] = Field((), description="N; half, all and one and a half of the nominal load by default")
-    pressure: tuple[si.PositivePressure, ...] = Field((), description="Pa, of 6.1, 6.2 and PAC2002; that of the file by default")
+    load: tuple[si.PositiveForce, ...] = Field(
+        (), description="N; half, all and one and a half of the nominal load by default"
+    )
+    pressure: tuple[si.PositivePressure, ...] = Field(
+        (), description="Pa, of 6.1, 6.2 and PAC2002; that of the file by default"
+    )
     camber: si.Angle = Field(0.0, description="rad")
     speed: si.PositiveVelocity | None = Field(None, description="m/s; LONGVL by default")
     points: int = Field(61, ge=3, le=10001, description="of each curve")

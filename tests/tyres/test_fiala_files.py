@@ -70,7 +70,14 @@ def random_states(seed, count):
     kappa = np.where(small, rng.uniform(-0.05, 0.05, count), rng.uniform(-1.2, 1.2, count))
     alpha = np.where(small, rng.uniform(-0.15, 0.15, count), rng.uniform(-1.2, 1.2, count))
     load = np.where(rng.random(count) < 0.05, 0.0, rng.uniform(0, 15e3, count))
-    return load, kappa, alpha, rng.uniform(-0.3, 0.3, count), rng.choice([-20.0, 20.0], count), rng.uniform(0.2, 1, count)
+    return (
+        load,
+        kappa,
+        alpha,
+        rng.uniform(-0.3, 0.3, count),
+        rng.choice([-20.0, 20.0], count),
+        rng.uniform(0.2, 1, count),
+    )
 
 
 @pytest.mark.parametrize("units", UNITS)
@@ -141,7 +148,9 @@ def test_lengths_in_another_unit_are_left_out_or_refused(read, part):
     steady = read(file_of("mm-N-deg", 2, **wrong))
     assert any("RELAX_LENGTH_X = " in note and "steady slip does without it" in note for note in steady.notes())
     assert steady.coefficients["RELAX_LENGTH_X"] == 0
-    with pytest.raises(InputError, match=r"line \d+: found RELAX_LENGTH_X = .* m by \[UNITS\], expected 0\.0031 to 3\.1 m"):
+    with pytest.raises(
+        InputError, match=r"line \d+: found RELAX_LENGTH_X = .* m by \[UNITS\], expected 0\.0031 to 3\.1 m"
+    ):
         read(file_of("mm-N-deg", 12, **wrong))
     for inside in (2 * RELAXED[0], 0.5 * RELAXED[1]):
         read(file_of("mm-N-deg", 12, RELAX_LENGTH_X=1e3 * inside * R))
@@ -228,7 +237,10 @@ def test_bad_files_are_refused_in_one_sentence(read, change):
 
 def test_a_pressure_and_turn_slip_are_refused(read):
     tyre = read(file_of())
-    for fields, said in (({"pressure": 2e5}, "pressure: found one for a tyre of version Fiala"), ({"turn_slip": True}, "turn_slip: ")):
+    for fields, said in (
+        ({"pressure": 2e5}, "pressure: found one for a tyre of version Fiala"),
+        ({"turn_slip": True}, "turn_slip: "),
+    ):
         with pytest.raises(InputError, match=said):
             MagicFormulaTyre(i="wheel", properties=tyre, **fields)
     without = {"RELAX_LENGTH_X": None, "RELAX_LENGTH_Y": None}

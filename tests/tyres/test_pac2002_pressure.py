@@ -34,7 +34,9 @@ def by_plain(tyre, states, pressures):
 
 def by_package(tyre, states, pressures):
     load, kappa, alpha, gamma, ratio = states.T
-    found = TyreProperties(coefficients=tyre).wrench(load, kappa, alpha, gamma, ratio * tyre["LONGVL"], pressure=pressures)
+    found = TyreProperties(coefficients=tyre).wrench(
+        load, kappa, alpha, gamma, ratio * tyre["LONGVL"], pressure=pressures
+    )
     return np.column_stack([found[name] for name in WRENCH])
 
 
@@ -59,16 +61,32 @@ def test_the_sign_of_each_coefficient_is_seen(name):
 
 def test_pure_slip_without_camber_is_that_of_6_1():
     """The pressure terms are those of Besselink, Schmeitz and Pacejka (2010)."""
-    tyre = {name: x for name, x in pressed_tyre(3).items() if not name.startswith(("QS", "QHZ", "PHY", "PVY", "PHX", "PVX"))}
+    tyre = {
+        name: x for name, x in pressed_tyre(3).items() if not name.startswith(("QS", "QHZ", "PHY", "PVY", "PHX", "PVX"))
+    }
     tyre |= dict.fromkeys(("LFZO", "LIP", "LMUY", "LKY", "LGAX", "LGAY", "LGAZ"), 1.0)
     names = {"QPZ1": "PPZ1", "QPZ2": "PPZ2", "QPX1": "PPMX1", "IP_NOM": "NOMPRES", "IP": "INFLPRES"}
-    later = dict.fromkeys(COEFFICIENTS_6, 0.0) | dict.fromkeys(SCALES_6, 1.0) | {**OF_THE_BODY, "PKY4": 2.0, "QSY7": 1.0, "LMUV": 0.0, "PHYP1": 1.0}
+    later = (
+        dict.fromkeys(COEFFICIENTS_6, 0.0)
+        | dict.fromkeys(SCALES_6, 1.0)
+        | {**OF_THE_BODY, "PKY4": 2.0, "QSY7": 1.0, "LMUV": 0.0, "PHYP1": 1.0}
+    )
     later |= {names.get(name, name): x for name, x in tyre.items()}
     rng = np.random.default_rng(5)
     package = TyreProperties(coefficients=tyre)
     for _ in range(50):
         load, alpha, pressure = rng.uniform(1000, 8000), rng.uniform(-0.3, 0.3), rng.uniform(1.6e5, 3e5)
-        state = {"Fz": load, "kappa": 0.0, "alpha": alpha, "gamma": 0.0, "p": pressure, "Vx": 16.0, "phit": None, "mu": 1.0, "Re": 0.3}
+        state = {
+            "Fz": load,
+            "kappa": 0.0,
+            "alpha": alpha,
+            "gamma": 0.0,
+            "p": pressure,
+            "Vx": 16.0,
+            "phit": None,
+            "mu": 1.0,
+            "Re": 0.3,
+        }
         expected = plain_wrench_6(later, state)
         found = package.steady_state(load, 0.0, alpha, 0.0, pressure, 16.0)
         for column in ("Fy", "Kya", "Kxk", "muy", "mux", "t"):
@@ -92,12 +110,16 @@ def test_a_wheel_on_the_road(given, hand):
     for speed in (20.0, -15.0):
         found = reported(wheel(tyre, 0.32, 0.02, 0.05, 0.03, speed, 1.02 * speed / 0.3133))
         assert found["load"] == pytest.approx(0.02 * stiffness, rel=1e-9)
-        state = properties.steady_state(found["load"], found["slip"], found["slip_angle"], found["camber"], pressure, speed)
+        state = properties.steady_state(
+            found["load"], found["slip"], found["slip_angle"], found["camber"], pressure, speed
+        )
         for channel, symbol in WRENCH.items():
             assert found[channel] == pytest.approx(float(state[symbol]), rel=1e-9, abs=1e-6), channel
         assert state["rho"] == pytest.approx(0.02, rel=1e-9)
     in_the_air = reported(wheel(tyre, 0.32, -0.01, 0.05, 0.0, 20.0, 60.0))
-    assert [in_the_air[name] for name in ("load", "longitudinal", "lateral", "aligning")] == pytest.approx([0, 0, 0, 0], abs=1e-9)
+    assert [in_the_air[name] for name in ("load", "longitudinal", "lateral", "aligning")] == pytest.approx(
+        [0, 0, 0, 0], abs=1e-9
+    )
 
 
 @pytest.fixture
@@ -137,7 +159,9 @@ def test_coefficients_without_a_nominal_pressure(read):
     alone = read(PRESSED.replace("LONGVL", "FITTYP = 6\nLONGVL"))
     assert alone.nominal_pressure is None
     assert any("PPX1" in note for note in alone.notes())
-    with pytest.raises(InputError, match="found a pressure for a tyre of version 5.2, expected a tyre of 6.1 or 6.2, or of PAC2002"):
+    with pytest.raises(
+        InputError, match="found a pressure for a tyre of version 5.2, expected a tyre of 6.1 or 6.2, or of PAC2002"
+    ):
         alone.steady_state(4000.0, p=PRESSURE)
     with pytest.raises(InputError, match="found PPX1 without FITTYP"):
         read(PRESSED.replace("PAC2002", "MF_05") + CONDITIONS)

@@ -309,7 +309,7 @@ class TyreProperties(Component):
             Forces ``Fx``, ``Fy`` (N) and torques ``Mx``, ``My``, ``Mz`` (N m); stiffnesses ``Kxk`` (N), ``Kya``,
             ``Kyg0`` (N/rad); peak friction ``mux``, ``muy``; pneumatic trail ``t`` (m) and residual torque ``Mzr`` (N
             m); ``omega`` (rad/s), effective radius ``Re``, deflection ``rho``, loaded radius ``Rl`` (m); relaxation
-            lengths ``sigma_x``, ``sigma_y`` (m); half length ``a`` and half width ``b`` of the contact patch (m).
+            lengths ``sigma_x``, ``sigma_y`` (m, 0 without them); half length ``a`` and half width ``b`` of the contact patch (m).
             ``Kyg0``, ``a`` and ``b`` are of 6.1 and 6.2 alone; ``rho`` and ``Rl`` are NaN for a load that no loaded
             radius carries. The arguments broadcast.
 
@@ -362,7 +362,18 @@ class TyreProperties(Component):
 
 PRESSED = "a tyre of 6.1 or 6.2, or of PAC2002 with IP_NOM"
 """Tyres that depend on inflation pressure, in messages."""
-POSITIVE = ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS", "NOMPRES", "IP", "IP_NOM", "LIP", "CSLIP", "CALPHA", "UMAX")
+POSITIVE = (
+    "FNOMIN",
+    "UNLOADED_RADIUS",
+    "VERTICAL_STIFFNESS",
+    "NOMPRES",
+    "IP",
+    "IP_NOM",
+    "LIP",
+    "CSLIP",
+    "CALPHA",
+    "UMAX",
+)
 """Numbers above zero."""
 WRENCH = dict(
     zip(("longitudinal", "lateral", "overturning", "rolling", "aligning"), ("Fx", "Fy", "Mx", "My", "Mz"), strict=True)

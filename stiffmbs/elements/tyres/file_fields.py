@@ -287,7 +287,9 @@ def _check_fiala(file: PropertyFile, formula: Version, found: Mapping[str, float
             _check_range(file, formula, name, found[name], (0.0, most))
 
 
-def relaxation_of(file: PropertyFile, formula: Version, found: Mapping[str, float], mode: int | None) -> Iterator[tuple[str, float, str]]:
+def relaxation_of(
+    file: PropertyFile, formula: Version, found: Mapping[str, float], mode: int | None
+) -> Iterator[tuple[str, float, str]]:
     """Yield relaxation lengths of a Fiala tyre, m, with a note on those that are left out.
 
     The lengths are in the unit of the file. A file in mm may have them in m: such lengths are left out if USE_MODE

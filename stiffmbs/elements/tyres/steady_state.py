@@ -55,8 +55,11 @@ def steady_state(
     rolled = _rolling(numbers, Fz, kappa, speed, dpi)
     rolling = (1 + kappa) * np.cos(alpha) * np.sign(speed) / rolled["Re"]
     state = (Fz, kappa, alpha, gamma, np.abs(speed) / numbers["LONGVL"], np.sign(speed), friction, dpi, turned, rolling)
-    found = _forces(numbers, turn is not None)(*_values(numbers), *state)
+    with np.errstate(divide="ignore", invalid="ignore"):  # relaxation lengths without stiffnesses
+        found = _forces(numbers, turn is not None)(*_values(numbers), *state)
     forces = {name: np.broadcast_to(x, Fz.shape).astype(float) for name, x in found.items()}
+    for name in ("sigma_x", "sigma_y"):
+        forces[name] = np.where(np.isfinite(forces[name]), forces[name], 0.0)
     free = rolled.pop("free")
     return forces | rolled | _deflected(numbers, Fz, gamma, dpi, rolled["omega"], free, forces)
 

@@ -58,5 +58,8 @@ class FialaTyre(Tyre):
         constants = Constants(
             e.slip_stiffness, e.cornering_stiffness, e.mu_static, e.mu_sliding, e.width, e.rolling_resistance
         )
-        slip = (getattr(rolling, name) for name in ("load", "slip", "slip_angle", "camber", "speed", "direction", "friction"))
+        slip = (
+            getattr(rolling, name)
+            for name in ("load", "slip", "slip_angle", "camber", "speed", "direction", "friction")
+        )
         return forces(constants, Slip(*slip), e.named).wrench
