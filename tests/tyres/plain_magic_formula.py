@@ -15,7 +15,7 @@ def _bend(B, x, E):
     return B * x - E * (B * x - atan(B * x))
 
 
-OF_PRESSURE = "PPX1 PPX2 PPX3 PPX4 PPY1 PPY2 PPY3 PPY4 QPZ1 QPZ2 QPX1 QSY8".split()
+OF_PRESSURE = ["PPX1", "PPX2", "PPX3", "PPX4", "PPY1", "PPY2", "PPY3", "PPY4", "QPZ1", "QPZ2", "QPX1", "QSY8"]
 
 
 def plain_wrench(coefficients, load, kappa, alpha, gamma, speed_ratio=1.0, dpi=0.0):

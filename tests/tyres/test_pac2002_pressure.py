@@ -160,7 +160,7 @@ def test_coefficients_without_a_nominal_pressure(read):
     assert alone.nominal_pressure is None
     assert any("PPX1" in note for note in alone.notes())
     with pytest.raises(
-        InputError, match="found a pressure for a tyre of version 5.2, expected a tyre of 6.1 or 6.2, or of PAC2002"
+        InputError, match=r"found a pressure for a tyre of version 5.2, expected a tyre of 6.1 or 6.2, or of PAC2002"
     ):
         alone.steady_state(4000.0, p=PRESSURE)
     with pytest.raises(InputError, match="found PPX1 without FITTYP"):

@@ -77,7 +77,7 @@ $--------------------------------------------------------------------------units
  1.0    0.0
  0.9    1.0
 """
-INCHES = """! lower case, no spaces
+INCHES = f"""! lower case, no spaces
 [units]
 length='inch'
 force='pound_force'
@@ -88,20 +88,17 @@ time='sec'
 property_file_format='fiala'
 use_mode=1
 [dimension]
-unloaded_radius={R!r}
-width={W!r}
+unloaded_radius={0.3099 / 0.0254!r}
+width={0.235 / 0.0254!r}
 [parameter]
-vertical_stiffness={k!r}
-vertical_damping={c!r}
-rolling_resistance={r!r}
-cslip={x!r}
-calpha={y!r}
+vertical_stiffness={3.1e5 * 0.0254 / 4.4482216152605!r}
+vertical_damping={3100 * 0.0254 / 4.4482216152605!r}
+rolling_resistance={0.002 / 0.0254!r}
+cslip={60000 / 4.4482216152605!r}
+calpha={800 / 4.4482216152605!r}
 umin=.9
 umax=1.
-""".format(
-    R=0.3099 / 0.0254, W=0.235 / 0.0254, r=0.002 / 0.0254, k=3.1e5 * 0.0254 / 4.4482216152605, c=3100 * 0.0254 / 4.4482216152605,
-    x=60000 / 4.4482216152605, y=800 / 4.4482216152605,
-)  # fmt: skip
+"""  # fmt: skip
 
 
 def fortran(x):

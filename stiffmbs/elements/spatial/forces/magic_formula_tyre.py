@@ -23,23 +23,30 @@ from ..tyre import Rolling, Touch, Tyre
 
 
 class MagicFormulaTyre(Tyre):
-    """Magic Formula tyre (Pacejka) of MF-Tyre 5.2, PAC2002, 6.1 and 6.2, with the coefficients of a property file (.tir).
+    """Magic Formula tyre (Pacejka) or Fiala tyre with the coefficients of a property file (.tir).
 
-    It gives longitudinal and lateral force, overturning, rolling and aligning torque. It includes pure and combined
-    slip, camber, load, and relaxation lengths; USE_MODE selects them. Slip angle and camber enter as angles; Pacejka's
-    book uses tan(alpha) and sin(gamma). FITTYP of the file selects the version.
+    The files are those of MF-Tyre 5.2, 6.1 and 6.2, of Adams' PAC2002, and of Adams' Fiala model. FITTYP of the file
+    selects the version, or PROPERTY_FILE_FORMAT.
+
+    The Magic Formula gives longitudinal and lateral force, overturning, rolling and aligning torque. It includes pure and
+    combined slip, camber, load, and relaxation lengths; USE_MODE selects them. Slip angle and camber enter as angles;
+    Pacejka's book uses tan(alpha) and sin(gamma).
 
     In version 5.2 the load is VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', or that of [DEFLECTION_LOAD_CURVE] with the
     same damping. The rolling radius is UNLOADED_RADIUS - d0 (DREFF atan(BREFF d/d0) + FREFF d/d0), with d0 =
-    FNOMIN/VERTICAL_STIFFNESS. In 6.1 and 6.2 load and radii depend on pressure, spin, camber and the forces along the
-    road (`stiffmbs.elements.tyres.deflection_6`), and turn slip can be included.
+    FNOMIN/VERTICAL_STIFFNESS. PAC2002 with IP_NOM depends on inflation pressure. In 6.1 and 6.2 load and radii depend on
+    pressure, spin, camber and the forces along the road (`stiffmbs.elements.tyres.deflection_6`), and turn slip can be
+    included.
 
     The load is never negative; the load in the formula is limited to FZMAX. With BOTTOMING_RADIUS and [BOTTOMING_CURVE],
     or in 6.1 and 6.2 with BOTTOM_STIFF, the rim adds to the normal force and the overturning torque only. A file without
     coefficients of combined slip uses the friction ellipse, and a note reports it.
 
-    Pacejka, Tire and Vehicle Dynamics (2012), sec. 4.3; MSC Adams/Tire, PAC2002; Besselink, Schmeitz, Pacejka, Vehicle
-    System Dynamics 48 suppl. 1 (2010) 337-352.
+    A file of the format FIALA has the forces of `fiala_tyre` with CSLIP, CALPHA, UMAX and UMIN, the load of 5.2, and the
+    loaded radius as rolling radius.
+
+    Pacejka, Tire and Vehicle Dynamics (2012), sec. 4.3; MSC Adams/Tire, PAC2002 and Fiala tire models; Besselink,
+    Schmeitz, Pacejka, Vehicle System Dynamics 48 suppl. 1 (2010) 337-352.
     """
 
     kind = "magic_formula_tyre"
@@ -66,7 +73,7 @@ class MagicFormulaTyre(Tyre):
         None, description="elliptical cams for short obstacles: their sizes, or 'file' for ELLIPS_LENGTH and so on"
     )
     pressure: si.PositivePressure | None = Field(
-        None, description="inflation pressure of a tyre of 6.1 or 6.2, Pa; INFLPRES of the file by default"
+        None, description="inflation pressure of a tyre of 6.1, 6.2 or PAC2002, Pa; that of the file by default"
     )
     turn_slip: bool | None = Field(
         None, description="whether the yaw rate acts on the forces (6.1, 6.2); as USE_MODE says by default"
