@@ -93,7 +93,7 @@ def test_pure_slip_without_camber_is_that_of_6_1():
             assert found[column] == pytest.approx(expected[column], rel=1e-9), column
 
 
-FIALA_LIKE = {
+SOFT = {
     "FNOMIN": 4000.0, "UNLOADED_RADIUS": 0.32, "VERTICAL_STIFFNESS": 2e5, "PCX1": 1.6, "PDX1": 1.1, "PKX1": 21.0, "PCY1": 1.3,
     "PDY1": 1.0, "PKY1": -14.0, "PKY2": 1.8, "PPX1": -0.4, "PPY1": 0.3, "PPY3": 0.1, "QPFZ1": 0.7, "IP_NOM": NOMINAL, "IP": PRESSURE,
 }  # fmt: skip
@@ -103,7 +103,7 @@ FIALA_LIKE = {
 @pytest.mark.parametrize("hand", [1.0, -1.0])
 def test_a_wheel_on_the_road(given, hand):
     """The pressure of the file, or of the scene, stiffens the tyre and changes its forces; also in reverse and mirrored."""
-    properties = TyreProperties(coefficients=FIALA_LIKE)
+    properties = TyreProperties(coefficients=SOFT)
     tyre = MagicFormulaTyre(i="wheel", properties=properties, pressure=given, hand=hand)
     pressure = PRESSURE if given is None else given
     stiffness = 2e5 * (1 + 0.7 * (pressure / NOMINAL - 1))
@@ -185,3 +185,21 @@ def test_a_written_file_is_read_as_the_same_tyre(tmp_path, units):
     copy = TyreProperties.from_file(tmp_path / "copy.tir")
     assert copy.remarks == ()
     assert copy.coefficients == pytest.approx(tyre.coefficients, rel=1e-14)
+
+
+def test_the_combined_slip_of_a_tyre_with_a_nominal_pressure_is_that_of_pac2002(tmp_path):
+    """Without weights of combined slip; the written file has the format PAC2002, which selects them too."""
+    tyre = TyreProperties(coefficients=SOFT)
+    tyre.to_file(tmp_path / "copy.tir")
+    state = {"Fz": 4000.0, "kappa": 0.1, "alpha": 0.08}
+    stated = TyreProperties(coefficients=SOFT, is_pac2002=True)
+    for other in (stated, TyreProperties.from_file(tmp_path / "copy.tir")):
+        assert tyre.steady_state(**state)["Fx"] == pytest.approx(float(other.steady_state(**state)["Fx"]), rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["PPX1", "QPFZ1", "IP"])
+def test_coefficients_by_name_need_a_nominal_pressure(name):
+    given = {key: x for key, x in SOFT.items() if key not in ("IP", "IP_NOM", *OF_PRESSURE)}
+    TyreProperties(coefficients=given)
+    with pytest.raises(InputError, match=f"found {name} without IP_NOM, expected the nominal pressure"):
+        TyreProperties(coefficients={**given, name: 2e5})

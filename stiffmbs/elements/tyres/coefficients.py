@@ -37,7 +37,7 @@ from .file_fields import (
     version_of,
     wrong_mode,
 )
-from .names import COMBINED, OF_THE_FILE, ONE_SIDED, REASONS, TURN_SLIP
+from .names import COMBINED, OF_PRESSURE, OF_THE_FILE, ONE_SIDED, REASONS, TURN_SLIP
 from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, read_property_file
 
 if TYPE_CHECKING:
@@ -93,6 +93,10 @@ class TyreProperties(Component):
                 raise ValueError(f"found {name} = {self.coefficients[name]:g}, expected a number above zero")
         if self.formula.is_6:
             self._check_stiffness()
+        elif "IP_NOM" not in self.coefficients:
+            for name in (*OF_PRESSURE, "IP"):
+                if self.coefficients.get(name):
+                    raise ValueError(f"found {name} without IP_NOM, expected the nominal pressure")
         return self
 
     def _check_stiffness(self) -> None:
@@ -190,6 +194,11 @@ class TyreProperties(Component):
         return self.nominal_pressure is not None
 
     @property
+    def of_adams(self) -> bool:
+        """True for PAC2002, as stated or by its nominal pressure."""
+        return self.is_pac2002 or "IP_NOM" in self.coefficients
+
+    @property
     def envelope(self) -> Envelope | None:
         """Cams of the enveloping contact by ELLIPS_SHIFT to ELLIPS_NWIDTH, for the contact patch at the nominal load."""
         p = SimpleNamespace(**{**self.formula.defaults, **self.coefficients})
@@ -207,7 +216,7 @@ class TyreProperties(Component):
     def in_equations(self) -> dict[str, Any]:
         """Return the names and values that the equations use."""
         own: dict[str, Any] = {
-            "ellipse": "" if self.is_combined else "pac2002" if self.is_pac2002 else "limit",
+            "ellipse": "" if self.is_combined else "pac2002" if self.of_adams else "limit",
             "belt": self.belt or None, "mode": str(self._slips), "is_mirrored": self.is_mirrored, "side": self.side,
             "deflection_load": self.deflection_load, "bottoming": self.bottoming, "formula": self.version,
         }  # fmt: skip

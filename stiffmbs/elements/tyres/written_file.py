@@ -64,9 +64,8 @@ def _line(key: str, value: str) -> str:
 
 def _entries(p: TyreProperties) -> Iterator[tuple[str, str, str | float, str]]:
     """Yield section, key, value in SI units, and dimension."""
-    pac2002 = p.is_pac2002 or p.has_pressure
     if not p.formula.is_6:
-        form = "FIALA" if not p.formula.is_magic else "PAC2002" if pac2002 else "MF_05"
+        form = "FIALA" if not p.formula.is_magic else "PAC2002" if p.of_adams else "MF_05"
         yield "MODEL", "PROPERTY_FILE_FORMAT", form, ""
     if p.formula.is_magic:
         yield "MODEL", "FITTYP", FITTYPS[p.version], ""
