@@ -20,7 +20,7 @@ OF_PRESSURE = ["PPX1", "PPX2", "PPX3", "PPX4", "PPY1", "PPY2", "PPY3", "PPY4", "
 
 def plain_wrench(coefficients, load, kappa, alpha, gamma, speed_ratio=1.0, dpi=0.0):
     """Fx, Fy, Mx, My, Mz of combined slip, rolling forward; dpi is the pressure increment of PAC2002."""
-    c = SimpleNamespace(**{**dict.fromkeys(OF_PRESSURE, 0.0), **coefficients})
+    c = SimpleNamespace(**{**dict.fromkeys(OF_PRESSURE, 0.0), "LIP": 1.0, **coefficients})
     Fz, Fz0, R0 = load, c.FNOMIN, c.UNLOADED_RADIUS
     Fz0s = Fz0 * c.LFZO
     dfz = (Fz - Fz0s) / Fz0s
@@ -67,7 +67,7 @@ def plain_wrench(coefficients, load, kappa, alpha, gamma, speed_ratio=1.0, dpi=0
     Mz = -t * (Fy - SVyk) + Dr * cos(atan(Br * areq)) * cos(alpha) + s * Fx
     Mx = R0 * Fz * (c.QSX1 * c.LVMX + (-c.QSX2 * (1 + c.QPX1 * dpi) * gamma + c.QSX3 * Fy / Fz0) * c.LMX)
     My = -R0 * Fz * (c.QSY1 + c.QSY2 * Fx / Fz0 + c.QSY3 * speed_ratio + c.QSY4 * speed_ratio**4) * c.LMY
-    My *= (1 + dpi) ** c.QSY8
+    My *= (c.LIP * (1 + dpi)) ** c.QSY8
     return Fx, Fy, Mx, My, Mz
 
 

@@ -168,7 +168,9 @@ def test_coefficients_without_a_nominal_pressure(read):
 
 
 def test_coefficients_of_6_1_stay_refused(read):
-    with pytest.raises(InputError, match="found PKY6 without FITTYP"):
+    with pytest.raises(
+        InputError, match=r"found PKY6 without FITTYP, .* that is not modelled in PAC2002, expected FITTYP = 61"
+    ):
         read(PRESSED.replace("PCX1 = 1.6", "PCX1 = 1.6\nPKY6 = -0.9") + CONDITIONS)
 
 

@@ -55,9 +55,13 @@ def version_of(file: PropertyFile) -> tuple[str, list[str]]:
     known = OF_PRESSURE if depends_on_pressure(file) else ()
     for name in LATER:
         if name not in known and file.entry(name, home(name)) and file.number(name, home=home(name)) != AS_BEFORE[name]:
-            more = ", or IP_NOM of PAC2002" if name in OF_PRESSURE and is_pac2002(file) else ""
+            more, why = "", ""
+            if is_pac2002(file):
+                more, why = (
+                    (", or IP_NOM of PAC2002", "") if name in OF_PRESSURE else ("", " that is not modelled in PAC2002")
+                )
             raise InputError(
-                f"{_where(file, name)}: found {name} without FITTYP, a coefficient of Magic Formula 6.0 or later, expected "
+                f"{_where(file, name)}: found {name} without FITTYP, a coefficient of Magic Formula 6.0 or later{why}, expected "
                 f"FITTYP = 61 or 62, or FITTYP = 5 where {name} has no effect{more}"
             )
     return "5.2", []

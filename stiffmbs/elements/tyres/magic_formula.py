@@ -257,7 +257,8 @@ def torques(p: Symbolic, s: Slip, fx: Expr, fy: Expr, f: Name) -> tuple[Expr, Ex
     by_camber = p.QSX2 * (1 + p.QPX1 * s.dpi) * s.gamma
     mx = R * s.load * (p.QSX1 * p.LVMX + (-by_camber + p.QSX3 * fy / p.FNOMIN) * p.LMX)
     resistance = p.QSY1 + p.QSY2 * fx / p.FNOMIN + p.QSY3 * s.speed + p.QSY4 * s.speed**4
-    return mx, -R * s.load * resistance * (1 + s.dpi) ** p.QSY8 * p.LMY * s.direction
+    pressed = 1 if s.dpi == 0 else (p.LIP * (1 + s.dpi)) ** p.QSY8  # of the nominal pressure without its scale factor
+    return mx, -R * s.load * resistance * pressed * p.LMY * s.direction
 
 
 def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Expr, Expr, Expr]:
