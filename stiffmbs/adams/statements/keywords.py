@@ -65,7 +65,7 @@ REFUSED = {
     "CLEARANCE": "distances between surfaces are not computed",
     "NFORCE": "fields between more than two markers are not read",
     **dict.fromkeys(("UCON", "GSE"), "it needs a user's own subroutine"),
-    "TIRE": "tyres belong to Adams' own libraries; a scene has tyres of its own",
+    "TIRE": "tyres belong to Adams' own libraries; a scene has tyres of its own, which read property files (.tir)",
     "PFORCE": "it is none of the forces that are read",
     **dict.fromkeys(("DEACTIVATE", "ACTIVATE"), "it is a command, which belongs into a command file"),
 }
