@@ -174,6 +174,15 @@ def test_coefficients_of_6_1_stay_refused(read):
         read(PRESSED.replace("PCX1 = 1.6", "PCX1 = 1.6\nPKY6 = -0.9") + CONDITIONS)
 
 
+def test_an_exponent_of_zero_is_neutral_in_pac2002(read):
+    """My is Fz (Fz/FNOMIN)^QSY7 in Pacejka (2012), 4.E70, and in PAC2002; FNOMIN (Fz/FNOMIN)^QSY7 in MF-Tyre."""
+    text = PRESSED + "[ROLLING_COEFFICIENTS]\nQSY1 = 0.01\nQSY7 = 0\nQSY8 = -0.5\n"
+    tyre = read(text + CONDITIONS)
+    assert tyre.steady_state(4000.0)["My"] == pytest.approx(-0.32 * 4000 * 0.01 * (PRESSURE / NOMINAL) ** -0.5)
+    with pytest.raises(InputError, match="found QSY7 without FITTYP"):
+        read(text.replace("QSY7 = 0", "QSY7 = 0.9") + CONDITIONS)
+
+
 def test_the_nominal_pressure_is_that_of_a_file_without_another(read):
     assert read(f"{PRESSED}[TIRE_CONDITIONS]\nIP_NOM = 0.00022\n").nominal_pressure == pytest.approx(NOMINAL)
     with pytest.raises(InputError, match=r"found IP_NOM = 2.2, 2.2e\+09 Pa by \[UNITS\], expected 10000 to 5e\+06 Pa"):

@@ -52,14 +52,13 @@ def version_of(file: PropertyFile) -> tuple[str, list[str]]:
         return OF_FITTYP[name], older
     if of_format not in ("", "5.2"):
         return of_format, []
-    known = OF_PRESSURE if depends_on_pressure(file) else ()
+    pressed, pac2002 = depends_on_pressure(file), is_pac2002(file)
     for name in LATER:
-        if name not in known and file.entry(name, home(name)) and file.number(name, home=home(name)) != AS_BEFORE[name]:
-            more, why = "", ""
-            if is_pac2002(file):
-                more, why = (
-                    (", or IP_NOM of PAC2002", "") if name in OF_PRESSURE else ("", " that is not modelled in PAC2002")
-                )
+        if (pressed and name in OF_PRESSURE) or not file.entry(name, home(name)):
+            continue
+        if file.number(name, home=home(name)) not in (AS_BEFORE[name], *((0.0,) if pressed else ())):
+            more = ", or IP_NOM of PAC2002" if pac2002 and name in OF_PRESSURE else ""
+            why = " that is not modelled in PAC2002" if pac2002 and not more else ""
             raise InputError(
                 f"{_where(file, name)}: found {name} without FITTYP, a coefficient of Magic Formula 6.0 or later{why}, expected "
                 f"FITTYP = 61 or 62, or FITTYP = 5 where {name} has no effect{more}"
