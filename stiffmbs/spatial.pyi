@@ -418,7 +418,7 @@ class LineForce(_LineForce):
     ) -> None: ...
 
 class MagicFormulaTyre(_MagicFormulaTyre):
-    """Magic Formula tyre (Pacejka) of MF-Tyre 5.2, PAC2002, 6.1 and 6.2, with the coefficients of a property file (.tir)."""
+    """Magic Formula tyre (Pacejka) or Fiala tyre with the coefficients of a property file (.tir)."""
     def __init__(
         self,
         *,

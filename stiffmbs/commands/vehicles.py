@@ -210,7 +210,9 @@ def handling(
 @click.command(short_help="Curves of a tyre; conversion of property files.")
 @click.argument("file")
 @click.option("--load", "loads", multiple=True, help="N, or with a unit; any number of times.")
-@click.option("--pressure", "pressures", multiple=True, help="Pa, or with a unit, of 6.1 and 6.2; any number of times.")
+@click.option(
+    "--pressure", "pressures", multiple=True, help="Pa, or with a unit, of 6.1, 6.2 and PAC2002; any number of times."
+)
 @click.option("--camber", default="0", help="rad, or with a unit.")
 @click.option("--speed", help="m/s, or with a unit; LONGVL by default.")
 @click.option("--points", type=int, default=61, show_default=True, help="Number of points of each curve.")
@@ -254,7 +256,8 @@ def tyre(
         curves = tyre_curves(properties, sweep)
         found = tyre_states(properties, [_state(text) for text in states])
         text = property_text(properties, dict(map(_unit, units))) if copy is not None else ""
-    title = f"{file}: Magic Formula {properties.version}, camber {sweep.camber:.4g} rad"
+    kind = "Magic Formula " * properties.formula.is_magic + properties.version
+    title = f"{file}: {kind}, camber {sweep.camber:.4g} rad"
     written = copy is None or is_written(copy, lambda: write_text(copy, text))
     if output is not None:
         written = is_written(output, lambda: write_sheet(output, tyre_figure(title, curves))) and written

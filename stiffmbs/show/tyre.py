@@ -53,5 +53,5 @@ def tyre_text(title: str, curves: Sequence[TyreCurve], states: Sequence[dict[str
                      *(f"{x:.5g}" for x in (*curve.constants.values(), *peaks))))  # fmt: skip
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = [title, *("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)]
-    lines += [", ".join(f"{name} {x:.9g}" for name, x in state.items()) for state in states]
+    lines += [", ".join(f"{name} {x + 0.0:.9g}" for name, x in state.items()) for state in states]
     return "\n".join([*lines, *(f"note: {note}" for note in notes)])

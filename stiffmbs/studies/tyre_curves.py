@@ -1,4 +1,4 @@
-"""Curves of a Magic Formula tyre: forces over slips, and friction ellipses, at several loads and pressures."""
+"""Curves of a tyre of a property file: forces over slips, and friction ellipses, at several loads and pressures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from ..elements.tyres.coefficients import TyreProperties
+from ..elements.tyres.coefficients import PRESSED, TyreProperties
 from ..errors import InputError
 from ..reading.fields import Described
 from ..reading.units import si
@@ -32,8 +32,12 @@ CONSTANTS = ("Kxk", "Kya", "mux", "muy", "Re", "rho", "Rl", "sigma_x", "sigma_y"
 class TyreSweep(Described):
     """Loads, pressures, camber and speed of the curves, and the number of points of each."""
 
-    load: tuple[si.PositiveForce, ...] = Field((), description="N; half, all and one and a half of FNOMIN by default")
-    pressure: tuple[si.PositivePressure, ...] = Field((), description="Pa, of 6.1 and 6.2; INFLPRES by default")
+    load: tuple[si.PositiveForce, ...] = Field(
+        (), description="N; half, all and one and a half of the nominal load by default"
+    )
+    pressure: tuple[si.PositivePressure, ...] = Field(
+        (), description="Pa, of 6.1, 6.2 and PAC2002; that of the file by default"
+    )
     camber: si.Angle = Field(0.0, description="rad")
     speed: si.PositiveVelocity | None = Field(None, description="m/s; LONGVL by default")
     points: int = Field(61, ge=3, le=10001, description="of each curve")
@@ -77,11 +81,11 @@ class TyreCurve:
 def tyre_curves(tyre: TyreProperties, sweep: TyreSweep) -> list[TyreCurve]:
     """Return the curves of a tyre, load by load and pressure by pressure.
 
-    Raises InputError for a pressure of a tyre of version 5.2.
+    Raises InputError for a pressure of a tyre that does not depend on it.
     """
-    if sweep.pressure and not tyre.formula.has_pressure:
-        raise InputError("found a pressure for a tyre of version 5.2, expected a tyre of 6.1 or 6.2")
-    loads = sweep.load or tuple(part * tyre.coefficients["FNOMIN"] for part in PARTS_OF_LOAD)
+    if sweep.pressure and not tyre.has_pressure:
+        raise InputError(f"found a pressure for a tyre of version {tyre.version}, expected {PRESSED}")
+    loads = sweep.load or tuple(part * tyre.nominal_load for part in PARTS_OF_LOAD)
     pressures = sweep.pressure or (tyre.nominal_pressure,)
     return [_curve(tyre, load, pressure, sweep) for load, pressure in itertools.product(loads, pressures)]
 

@@ -78,3 +78,46 @@ def test_a_driver_who_steers_against_a_held_rack_is_reported(examples):
     scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", "circle"), held])
     report = stiffmbs.check(scene)
     assert any("driver.steer_drive" in message for message in report.messages)
+
+
+FIALA = """[UNITS]
+LENGTH = 'mm'
+FORCE = 'newton'
+ANGLE = 'degree'
+MASS = 'kg'
+TIME = 'second'
+[MODEL]
+PROPERTY_FILE_FORMAT = 'FIALA'
+USE_MODE = {mode}
+[DIMENSION]
+UNLOADED_RADIUS = 316
+WIDTH = 205
+[PARAMETER]
+VERTICAL_STIFFNESS = 220
+VERTICAL_DAMPING = 0.3
+ROLLING_RESISTANCE = 3
+CSLIP = 88000
+CALPHA = 1040
+UMAX = 1.05
+UMIN = 0.85
+RELAX_LENGTH_X = 300
+RELAX_LENGTH_Y = 500
+"""
+
+
+@pytest.mark.parametrize("mode", [1, 11])
+def test_a_step_steer_on_tyres_of_a_fiala_file(examples, tmp_path, mode):
+    """The integrators agree; the steady turn is near that of the Magic Formula tyres, whose cornering stiffness is similar."""
+    (tmp_path / "fiala.tir").write_text(FIALA.format(mode=mode))
+    path = tmp_path / "car.yaml"
+    path.write_text((examples / "car.yaml").read_text().replace("properties: car.tir", "properties: fiala.tir"))
+    runs = []
+    for solver in ({"solver": "bdf"}, {"solver": "radau"}, {"solver": "projected", "scheme": "dop853"}):
+        scene = stiffmbs.load_scene(path, [("choose.manoeuvre", "step_steer")])
+        runs.append(stiffmbs.run(scene, duration=4, points=401, rtol=1e-6, **solver))
+        assert runs[-1].success
+    for channel, scale in (("yaw_rate", 0.2), ("front.left.tyre.lateral", 1500.0), ("front.right.tyre.load", 4000.0)):
+        for other in runs[1:]:
+            assert other[channel] == pytest.approx(runs[0][channel], abs=2e-5 * scale)
+    scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", "step_steer")])
+    assert runs[0]["yaw_rate"][-1] == pytest.approx(stiffmbs.run(scene, duration=4)["yaw_rate"][-1], rel=0.2)

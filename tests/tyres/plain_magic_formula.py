@@ -15,27 +15,31 @@ def _bend(B, x, E):
     return B * x - E * (B * x - atan(B * x))
 
 
-def plain_wrench(coefficients, load, kappa, alpha, gamma, speed_ratio=1.0):
-    """Fx, Fy, Mx, My, Mz of combined slip, rolling forward."""
-    c = SimpleNamespace(**coefficients)
+OF_PRESSURE = ["PPX1", "PPX2", "PPX3", "PPX4", "PPY1", "PPY2", "PPY3", "PPY4", "QPZ1", "QPZ2", "QPX1", "QSY8"]
+
+
+def plain_wrench(coefficients, load, kappa, alpha, gamma, speed_ratio=1.0, dpi=0.0):
+    """Fx, Fy, Mx, My, Mz of combined slip, rolling forward; dpi is the pressure increment of PAC2002."""
+    c = SimpleNamespace(**{**dict.fromkeys(OF_PRESSURE, 0.0), "LIP": 1.0, **coefficients})
     Fz, Fz0, R0 = load, c.FNOMIN, c.UNLOADED_RADIUS
     Fz0s = Fz0 * c.LFZO
     dfz = (Fz - Fz0s) / Fz0s
     gx, gy, gz = gamma * c.LGAX, gamma * c.LGAY, gamma * c.LGAZ
     # 4.E9 to 4.E18
     kx = kappa + (c.PHX1 + c.PHX2 * dfz) * c.LHX
-    mux = (c.PDX1 + c.PDX2 * dfz) * (1 - c.PDX3 * gx**2) * c.LMUX
+    mux = (c.PDX1 + c.PDX2 * dfz) * (1 - c.PDX3 * gx**2) * c.LMUX * (1 + c.PPX3 * dpi + c.PPX4 * dpi**2)
     Ex = min((c.PEX1 + c.PEX2 * dfz + c.PEX3 * dfz**2) * (1 - c.PEX4 * _sgn(kx)) * c.LEX, 1)
-    Kx = Fz * (c.PKX1 + c.PKX2 * dfz) * exp(c.PKX3 * dfz) * c.LKX
+    Kx = Fz * (c.PKX1 + c.PKX2 * dfz) * exp(c.PKX3 * dfz) * c.LKX * (1 + c.PPX1 * dpi + c.PPX2 * dpi**2)
     Cx, Dx = c.PCX1 * c.LCX, mux * Fz
     Fx0 = Dx * sin(Cx * atan(_bend(Kx / (Cx * Dx), kx, Ex))) + Fz * (c.PVX1 + c.PVX2 * dfz) * c.LVX * c.LMUX
     # 4.E19 to 4.E30
     SHy = (c.PHY1 + c.PHY2 * dfz) * c.LHY + c.PHY3 * gy
     SVy = Fz * ((c.PVY1 + c.PVY2 * dfz) * c.LVY + (c.PVY3 + c.PVY4 * dfz) * gy) * c.LMUY
     ay = alpha + SHy
-    muy = (c.PDY1 + c.PDY2 * dfz) * (1 - c.PDY3 * gy**2) * c.LMUY
+    muy = (c.PDY1 + c.PDY2 * dfz) * (1 - c.PDY3 * gy**2) * c.LMUY * (1 + c.PPY3 * dpi + c.PPY4 * dpi**2)
     Ey = min((c.PEY1 + c.PEY2 * dfz) * (1 - (c.PEY3 + c.PEY4 * gy) * _sgn(ay)) * c.LEY, 1)
-    Ky = c.PKY1 * Fz0 * sin(2 * atan(Fz / (c.PKY2 * Fz0s))) * c.LFZO * c.LKY * (1 - c.PKY3 * abs(gy))
+    Fzmax = c.PKY2 * Fz0s * (1 + c.PPY2 * dpi)
+    Ky = c.PKY1 * Fz0 * (1 + c.PPY1 * dpi) * sin(2 * atan(Fz / Fzmax)) * c.LFZO * c.LKY * (1 - c.PKY3 * abs(gy))
     Cy, Dy = c.PCY1 * c.LCY, muy * Fz
     By = Ky / (Cy * Dy)
     Fy0 = Dy * sin(Cy * atan(_bend(By, ay, Ey))) + SVy
@@ -53,16 +57,17 @@ def plain_wrench(coefficients, load, kappa, alpha, gamma, speed_ratio=1.0):
     at = alpha + c.QHZ1 + c.QHZ2 * dfz + (c.QHZ3 + c.QHZ4 * dfz) * gz
     ar = alpha + SHy + SVy / Ky
     Bt = (c.QBZ1 + c.QBZ2 * dfz + c.QBZ3 * dfz**2) * (1 + c.QBZ4 * gz + c.QBZ5 * abs(gz)) * c.LKY / c.LMUY
-    Dt = Fz * (c.QDZ1 + c.QDZ2 * dfz) * (1 + c.QDZ3 * gz + c.QDZ4 * gz**2) * R0 / Fz0 * c.LTR
+    Dt = Fz * (c.QDZ1 + c.QDZ2 * dfz) * (1 + c.QDZ3 * gz + c.QDZ4 * gz**2) * R0 / Fz0 * c.LTR * (1 - c.QPZ1 * dpi)
     Et = (c.QEZ1 + c.QEZ2 * dfz + c.QEZ3 * dfz**2) * (1 + (c.QEZ4 + c.QEZ5 * gz) * 2 / pi * atan(Bt * c.QCZ1 * at))
-    Dr = Fz * ((c.QDZ6 + c.QDZ7 * dfz) * c.LRES + (c.QDZ8 + c.QDZ9 * dfz) * gz) * R0 * c.LMUY
+    Dr = Fz * ((c.QDZ6 + c.QDZ7 * dfz) * c.LRES + (c.QDZ8 + c.QDZ9 * dfz) * (1 + c.QPZ2 * dpi) * gz) * R0 * c.LMUY
     Br = c.QBZ9 * c.LKY / c.LMUY + c.QBZ10 * By * Cy
     ateq, areq = (_sgn(a) * atan(sqrt(tan(a) ** 2 + (Kx / Ky * kappa) ** 2)) for a in (at, ar))
     t = Dt * cos(c.QCZ1 * atan(_bend(Bt, ateq, min(Et, 1)))) * cos(alpha)
     s = (c.SSZ1 + c.SSZ2 * Fy / Fz0 + (c.SSZ3 + c.SSZ4 * dfz) * gamma) * R0 * c.LS
     Mz = -t * (Fy - SVyk) + Dr * cos(atan(Br * areq)) * cos(alpha) + s * Fx
-    Mx = R0 * Fz * (c.QSX1 * c.LVMX + (-c.QSX2 * gamma + c.QSX3 * Fy / Fz0) * c.LMX)
+    Mx = R0 * Fz * (c.QSX1 * c.LVMX + (-c.QSX2 * (1 + c.QPX1 * dpi) * gamma + c.QSX3 * Fy / Fz0) * c.LMX)
     My = -R0 * Fz * (c.QSY1 + c.QSY2 * Fx / Fz0 + c.QSY3 * speed_ratio + c.QSY4 * speed_ratio**4) * c.LMY
+    My *= (c.LIP * (1 + dpi)) ** c.QSY8
     return Fx, Fy, Mx, My, Mz
 
 

@@ -37,7 +37,15 @@ def magic(transient, coefficients=ROLLING_ON):
     return MagicFormulaTyre(i="wheel", properties={"coefficients": coefficients}, transient=transient)
 
 
+def of_a_file(transient):
+    numbers = {"UNLOADED_RADIUS": 0.3, "WIDTH": 0.2, "VERTICAL_STIFFNESS": 2e5, "VERTICAL_DAMPING": 3000, "CSLIP": 8e4, "CALPHA": 6e4,
+               "UMAX": 1.0, "UMIN": 0.8, "RELAX_LENGTH_X": LENGTHS[0], "RELAX_LENGTH_Y": LENGTHS[1]}  # fmt: skip
+    return MagicFormulaTyre(i="wheel", properties={"coefficients": numbers, "version": "Fiala"}, transient=transient)
+
+
 TYRES = {
+    "file of fiala": of_a_file(False),
+    "lagging file of fiala": of_a_file(True),
     "fiala": fiala(),
     "lagging fiala": fiala(relaxation=LENGTHS),
     "magic": magic(False),
@@ -116,7 +124,7 @@ def test_a_cambered_wheel_that_rolls_has_its_thrust():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["lagging fiala", "lagging magic"])
+@pytest.mark.parametrize("name", ["lagging fiala", "lagging file of fiala", "lagging magic"])
 def test_a_blocked_wheel_is_in_equilibrium_on_a_slope_and_does_not_creep(name):
     model = standing(TYRES[name], camber=0.03, gravity=(1.5, 0.4, -9.7))
     model.add("blocked", Drive(joint="pin", velocity="0"))
@@ -130,7 +138,7 @@ def test_a_blocked_wheel_is_in_equilibrium_on_a_slope_and_does_not_creep(name):
 
 @pytest.mark.long
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["fiala", "magic"])
+@pytest.mark.parametrize("name", ["fiala", "file of fiala", "magic"])
 def test_a_tyre_without_lengths_has_no_equilibrium_on_a_slope(name):
     model = standing(TYRES[name], gravity=(1.5, 0.4, -9.7))
     model.add("blocked", Drive(joint="pin", velocity="0"))
@@ -138,7 +146,9 @@ def test_a_tyre_without_lengths_has_no_equilibrium_on_a_slope(name):
         stiffmbs.equilibrium(model)
 
 
-@pytest.mark.parametrize("tyre", [fiala(width=0.2, rolling_resistance=0.005), magic(False, SYMMETRIC)])
+@pytest.mark.parametrize(
+    "tyre", [fiala(width=0.2, rolling_resistance=0.005), of_a_file(False), magic(False, SYMMETRIC)]
+)
 def test_reverse_is_the_mirror_image_of_forward(tyre):
     """Mirrored in x: the trail lies on the other side, and forces along the road and the rolling torque turn round."""
     speed, angle, spin = 10.0, 0.04, 35.0

@@ -65,7 +65,7 @@ REFUSED = {
     "CLEARANCE": "distances between surfaces are not computed",
     "NFORCE": "fields between more than two markers are not supported",
     **dict.fromkeys(("UCON", "GSE"), "it needs a user subroutine"),
-    "TIRE": "its law is in Adams/Tire; use a tyre of a scene",
+    "TIRE": "its law is in Adams/Tire; use a tyre of a scene, which reads property files (.tir)",
     "PFORCE": "this force is not supported",
     **dict.fromkeys(("DEACTIVATE", "ACTIVATE"), "it is a command, expected in a command file"),
 }

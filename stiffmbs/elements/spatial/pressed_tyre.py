@@ -23,8 +23,12 @@ VARIABLES = ("radius", "camber", "vx", "vy", "vz", "spin", "friction")
 
 
 def pressure_increment(e: Symbolic) -> Expr:
-    """Return dpi, the relative deviation from the nominal pressure."""
+    """Return dpi, the relative deviation from the nominal pressure; 0 for a tyre without one."""
+    from sympy import Rational
+
     p = e.properties
+    if p.NOMPRES is None:
+        return Rational(0)
     return e.named((p.INFLPRES if e.pressure is None else e.pressure) / p.NOMPRES - 1)
 
 

@@ -1,4 +1,4 @@
-"""Coefficients of a Magic Formula tyre, from a property file or by name."""
+"""Coefficients of a tyre of the Magic Formula or of Fiala, from a property file or by name."""
 
 from __future__ import annotations
 
@@ -23,17 +23,22 @@ from .file_fields import (
     Bottoming,
     belt_of,
     bottoming_of,
+    check_numbers,
     curve_of,
+    is_pac2002,
+    missing_sections,
     mode_of,
+    nominal_load,
     ranges_of,
+    read_names,
+    relaxation_of,
     replaced_digits,
     side_of,
     version_of,
     wrong_mode,
 )
-from .names import COMBINED, OF_THE_FILE, ONE_SIDED, REASONS, REQUIRED, TURN_SLIP, home
-from .plausible import check_numbers, missing_sections
-from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, plain, read_property_file
+from .names import COMBINED, OF_PRESSURE, OF_THE_FILE, ONE_SIDED, REASONS, TURN_SLIP
+from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, read_property_file
 
 if TYPE_CHECKING:
     import numpy as np
@@ -43,7 +48,7 @@ WITH_TURN_SLIP = 5
 
 
 class TyreProperties(Component):
-    """Coefficients of the Magic Formula by their names in property files, in SI units.
+    """Coefficients of the Magic Formula, or of Fiala's formula, by their names in property files, in SI units.
 
     Parameters
     ----------
@@ -52,14 +57,16 @@ class TyreProperties(Component):
     """
 
     coefficients: dict[str, float] = Field(description="by name, SI units")
-    version: Literal["5.2", "6.1", "6.2"] = Field("5.2", description="of the Magic Formula; 5.2 includes PAC2002")
+    version: Literal["5.2", "6.1", "6.2", "Fiala"] = Field(
+        "5.2", description="of the Magic Formula; 5.2 includes PAC2002; or Fiala's formula"
+    )
     use_mode: int | None = Field(None, description="USE_MODE; 4, or 14 with relaxation lengths, by default")
     side: Literal["", "left", "right", "symmetric"] = Field("", description="TYRESIDE, that the tyre was measured on")
     ranges: dict[str, tuple[float, float]] = Field(
         {}, description="valid ranges of slip, slip_angle (rad), camber (rad), load (N) and pressure (Pa)"
     )
     deflection_load: Table | None = Field(
-        None, description="load (N) over deflection (m), in place of VERTICAL_STIFFNESS; 5.2 alone"
+        None, description="load (N) over deflection (m), in place of VERTICAL_STIFFNESS; 5.2 and Fiala"
     )
     bottoming: Bottoming | None = Field(None, description="contact of the rim with the road")
     is_pac2002: bool = Field(False, description="whether combined slip without coefficients is that of PAC2002")
@@ -72,20 +79,24 @@ class TyreProperties(Component):
         for name in self.coefficients:
             if name not in known:
                 raise ValueError(
-                    f"found the unknown coefficient '{quoted(name)}'{did_you_mean(name, known)}, expected one such as PCX1, FNOMIN, LMUX"
+                    f"found the unknown coefficient '{quoted(name)}'{did_you_mean(name, known)}, expected one such as {', '.join(self.formula.required[-3:])}"
                 )
-        for name in REQUIRED:
+        for name in self.formula.required:
             if name not in self.coefficients:
                 raise ValueError(f"found no {name}, expected one")
-            if not self.coefficients[name]:
+            if not self.coefficients[name] and name not in self.formula.may_vanish:
                 raise ValueError(f"found {name} = 0, expected a number other than zero")
         if self.use_mode is not None and not self.formula.has_mode(self.use_mode):
             raise ValueError(wrong_mode(self.use_mode, self.formula))
-        for name in ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS", "NOMPRES"):
+        for name in POSITIVE:
             if self.coefficients.get(name, 1.0) <= 0:
                 raise ValueError(f"found {name} = {self.coefficients[name]:g}, expected a number above zero")
-        if self.formula.has_pressure:
+        if self.formula.is_6:
             self._check_stiffness()
+        elif "IP_NOM" not in self.coefficients:
+            for name in (*OF_PRESSURE, "IP"):
+                if self.coefficients.get(name):
+                    raise ValueError(f"found {name} without IP_NOM, expected the nominal pressure")
         return self
 
     def _check_stiffness(self) -> None:
@@ -105,7 +116,7 @@ class TyreProperties(Component):
 
     @property
     def formula(self) -> Version:
-        """Version of the Magic Formula."""
+        """Version of the Magic Formula, or Fiala's formula."""
         return VERSIONS[self.version]
 
     @property
@@ -116,9 +127,15 @@ class TyreProperties(Component):
     @property
     def has_lengths(self) -> bool:
         """True if there are relaxation lengths, or the stiffnesses of 6.1 that give them."""
-        if self.formula.has_pressure:
-            return all(self.coefficients.get(f"{name}_STIFFNESS", 0.0) > 0 for name in ("LONGITUDINAL", "LATERAL"))
-        return any(self.coefficients.get(name, 0.0) for name in ("PTX1", "PTY1"))
+        given = [self.coefficients.get(name, 0.0) for name in self.names_of_lengths]
+        return min(given) > 0 if self.formula.is_6 else any(given)
+
+    @property
+    def names_of_lengths(self) -> tuple[str, str]:
+        """Coefficients without which there are no relaxation lengths."""
+        if not self.formula.is_magic:
+            return "RELAX_LENGTH_X", "RELAX_LENGTH_Y"
+        return ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS") if self.formula.is_6 else ("PTX1", "PTY1")
 
     @property
     def is_transient(self) -> bool:
@@ -133,12 +150,12 @@ class TyreProperties(Component):
     @property
     def _slips(self) -> int:
         """Last digit of USE_MODE, which selects the forces; combined slip by default."""
-        return 4 if self.use_mode is None else digits(self.use_mode)[2]
+        return 4 if self.use_mode is None or not self.formula.is_magic else digits(self.use_mode)[2]
 
     @property
     def has_turn_slip(self) -> bool:
         """True if there are coefficients of turn slip."""
-        return self.formula.has_pressure and any(self.coefficients.get(name, 0.0) for name in TURN_SLIP)
+        return self.formula.is_6 and any(self.coefficients.get(name, 0.0) for name in TURN_SLIP)
 
     @property
     def takes_turn_slip(self) -> bool:
@@ -159,18 +176,33 @@ class TyreProperties(Component):
         )
 
     @property
+    def nominal_load(self) -> float:
+        """FNOMIN, N, or of a Fiala tyre the load at a usual deflection."""
+        return nominal_load(self.coefficients)
+
+    @property
     def nominal_pressure(self) -> float | None:
-        """INFLPRES or NOMPRES, Pa; None for 5.2."""
-        if not self.formula.has_pressure:
-            return None
+        """Inflation pressure of the file, Pa; None for a tyre that does not depend on it."""
         numbers = {**self.formula.defaults, **self.coefficients}
-        return numbers["INFLPRES"] or numbers["NOMPRES"]
+        if self.formula.is_6:
+            return numbers["INFLPRES"] or numbers["NOMPRES"]
+        return numbers.get("IP", numbers["IP_NOM"]) if "IP_NOM" in numbers else None
+
+    @property
+    def has_pressure(self) -> bool:
+        """True for a tyre that depends on inflation pressure: of 6.1, 6.2, and of PAC2002 with IP_NOM."""
+        return self.nominal_pressure is not None
+
+    @property
+    def of_adams(self) -> bool:
+        """True for PAC2002, as stated or by its nominal pressure."""
+        return self.is_pac2002 or "IP_NOM" in self.coefficients
 
     @property
     def envelope(self) -> Envelope | None:
         """Cams of the enveloping contact by ELLIPS_SHIFT to ELLIPS_NWIDTH, for the contact patch at the nominal load."""
         p = SimpleNamespace(**{**self.formula.defaults, **self.coefficients})
-        if not self.formula.has_pressure or min(p.ELLIPS_SHIFT, p.ELLIPS_LENGTH, p.ELLIPS_HEIGHT, p.Q_RA1) <= 0:
+        if not self.formula.is_6 or min(p.ELLIPS_SHIFT, p.ELLIPS_LENGTH, p.ELLIPS_HEIGHT, p.Q_RA1) <= 0:
             return None
         from .deflection_6 import contact_patch
 
@@ -184,25 +216,28 @@ class TyreProperties(Component):
     def in_equations(self) -> dict[str, Any]:
         """Return the names and values that the equations use."""
         own: dict[str, Any] = {
-            "ellipse": "" if self.is_combined else "pac2002" if self.is_pac2002 else "limit",
+            "ellipse": "" if self.is_combined else "pac2002" if self.of_adams else "limit",
             "belt": self.belt or None, "mode": str(self._slips), "is_mirrored": self.is_mirrored, "side": self.side,
             "deflection_load": self.deflection_load, "bottoming": self.bottoming, "formula": self.version,
         }  # fmt: skip
-        if self.nominal_pressure is not None:
-            own["INFLPRES"] = self.nominal_pressure
-        return {**self.formula.defaults, **self.coefficients, **own}
+        numbers = {"NOMPRES": None, **self.formula.defaults, **self.coefficients, **own}
+        if self.has_pressure:
+            numbers["INFLPRES"] = self.nominal_pressure
+        if "IP_NOM" in numbers:
+            numbers["NOMPRES"] = numbers["LIP"] * numbers["IP_NOM"]
+        return numbers
 
     def notes(self) -> Iterator[str]:
         """Yield sentences on settings that the equations do not use."""
         yield from self.remarks
         if self._lags and not self.has_lengths:
-            missing = "LONGITUDINAL_STIFFNESS, LATERAL_STIFFNESS" if self.formula.has_pressure else "PTX1, PTY1"
+            missing = ", ".join(self.names_of_lengths)
             yield f"USE_MODE = {self.use_mode} asks for relaxation lengths, and there are none ({missing}): slips are those of the steady state"
         if self.use_mode is not None:
-            yield from replaced_digits(self.use_mode, self.is_transient)
+            yield from replaced_digits(self.use_mode, self.is_transient, self.formula)
         if self.belt and not self.has_lengths:
             yield "the gyroscopic couple of the belt (QTZ1) needs relaxation lengths, and there are none: it is left out"
-        if not self.is_combined:
+        if self.formula.is_magic and not self.is_combined:
             yield "there are no coefficients of combined slip (RBX1, RCX1, RBY1, RCY1): forces are held on the friction ellipse"
 
     def wrench(
@@ -230,7 +265,7 @@ class TyreProperties(Component):
         friction : array_like
             Friction factor of the road.
         pressure : array_like, optional
-            Inflation pressure, Pa, of 6.1 and 6.2; INFLPRES or NOMPRES by default.
+            Inflation pressure, Pa, of 6.1, 6.2 and PAC2002; that of the file by default.
 
         Returns
         -------
@@ -268,7 +303,7 @@ class TyreProperties(Component):
             Slip angle and camber, rad: a positive slip angle gives a negative side force, with positive camber the top
             leans to the right.
         p : array_like, optional
-            Inflation pressure, Pa; INFLPRES or NOMPRES by default. Version 5.2 has none.
+            Inflation pressure, Pa, of 6.1, 6.2 and PAC2002 with IP_NOM; that of the file by default.
         Vx : array_like, optional
             Forward speed of the contact point, m/s, negative in reverse; LONGVL by default.
         phit : array_like, optional
@@ -283,19 +318,19 @@ class TyreProperties(Component):
             Forces ``Fx``, ``Fy`` (N) and torques ``Mx``, ``My``, ``Mz`` (N m); stiffnesses ``Kxk`` (N), ``Kya``,
             ``Kyg0`` (N/rad); peak friction ``mux``, ``muy``; pneumatic trail ``t`` (m) and residual torque ``Mzr`` (N
             m); ``omega`` (rad/s), effective radius ``Re``, deflection ``rho``, loaded radius ``Rl`` (m); relaxation
-            lengths ``sigma_x``, ``sigma_y`` (m); half length ``a`` and half width ``b`` of the contact patch (m).
+            lengths ``sigma_x``, ``sigma_y`` (m, 0 without them); half length ``a`` and half width ``b`` of the contact patch (m).
             ``Kyg0``, ``a`` and ``b`` are of 6.1 and 6.2 alone; ``rho`` and ``Rl`` are NaN for a load that no loaded
             radius carries. The arguments broadcast.
 
         Raises
         ------
         InputError
-            For a negative load, a pressure or turn slip of a tyre of version 5.2, or turn slip without coefficients.
+            For a negative load, or a pressure or turn slip of a tyre without their coefficients.
         """
         from .steady_state import steady_state
 
-        if p is not None and not self.formula.has_pressure:
-            raise InputError("found a pressure for a tyre of version 5.2, expected a tyre of 6.1 or 6.2")
+        if p is not None and not self.has_pressure:
+            raise InputError(f"found a pressure for a tyre of version {self.version}, expected {PRESSED}")
         if phit is not None and not self.has_turn_slip:
             raise InputError(
                 "found turn slip for a tyre without its coefficients, expected one with PHYP1, PDYP1 or so"
@@ -334,6 +369,21 @@ class TyreProperties(Component):
         return _of_file(read_property_file(Path(path)))
 
 
+PRESSED = "a tyre of 6.1 or 6.2, or of PAC2002 with IP_NOM"
+"""Tyres that depend on inflation pressure, in messages."""
+POSITIVE = (
+    "FNOMIN",
+    "UNLOADED_RADIUS",
+    "VERTICAL_STIFFNESS",
+    "NOMPRES",
+    "IP",
+    "IP_NOM",
+    "LIP",
+    "CSLIP",
+    "CALPHA",
+    "UMAX",
+)
+"""Numbers above zero."""
 WRENCH = dict(
     zip(("longitudinal", "lateral", "overturning", "rolling", "aligning"), ("Fx", "Fy", "Mx", "My", "Mz"), strict=True)
 )
@@ -344,24 +394,29 @@ def _of_file(file: PropertyFile) -> TyreProperties:
     version, remarks = version_of(file)
     formula = VERSIONS[version]
     found = {
-        name: file.number(name, formula.dimensions.get(name, ""), home(name))
-        for name in formula.numbers
-        if name in REQUIRED or file.entry(name, home(name))
+        name: file.number(name, formula.dimensions.get(name, ""), formula.home(name))
+        for name in read_names(file, formula)
+        if name in formula.required or file.entry(name, formula.home(name))
     }
     read = {
         "coefficients": found, "version": version, "use_mode": mode_of(file, formula), "side": side_of(file),
         "ranges": dict(ranges_of(file, formula)), "bottoming": bottoming_of(file, formula),
     }  # fmt: skip
-    if not formula.has_pressure:
+    if not formula.is_6:
         read["deflection_load"] = curve_of(file, "DEFLECTION_LOAD_CURVE")
+    if version == "5.2":
         read["belt"] = belt_of(file)
-        read["is_pac2002"] = plain(file.text("PROPERTY_FILE_FORMAT")) == "PAC2002"
-    if formula.has_pressure and "NOMPRES" not in found:
+        read["is_pac2002"] = is_pac2002(file)
+    if version == "Fiala":
+        for name, length, note in relaxation_of(file, formula, found, read["use_mode"]):
+            found[name] = length
+            remarks += [note] if note else []
+    if formula.is_6 and "NOMPRES" not in found:
         found["NOMPRES"] = found.get("INFLPRES") or NOMINAL_PRESSURE
         remarks.append(f"there is no NOMPRES: the coefficients are taken to hold at {found['NOMPRES']:g} Pa")
     for name in OF_THE_FILE:
         file.entry(name)
-    remarks += missing_sections(file, found)
+    remarks += missing_sections(file, formula, found)
     remarks += unused_notes([*file.sections.values(), file.tables], REASONS)
     try:
         properties = TyreProperties(**read, remarks=tuple(f"{file.source}: {note}" for note in remarks))

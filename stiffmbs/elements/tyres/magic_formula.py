@@ -3,7 +3,9 @@
 The equations accept symbols and numbers: `p` has the coefficients by name, `f` names common subexpressions.
 
 Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2, with slip angle and camber as angles, and the nominal load FNOMIN
-in place of the adapted one, as in MF-Tyre 5.2 and MSC Adams/Tire (PAC2002).
+in place of the adapted one, as in MF-Tyre 5.2 and MSC Adams/Tire (PAC2002). The influence of the inflation pressure is
+that of PAC2002: the equations of Besselink, Schmeitz, Pacejka, Vehicle System Dynamics 48 suppl. 1 (2010) 337-352, with
+QPZ1, QPZ2, QPX1 and QPFZ1 for PPZ1, PPZ2, PPMX1 and PFZ1.
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ OF_MODES = {"0": "", "1": "fx my", "2": "fy mx mz", "3": "fx fy mx my mz"}
 
 @dataclass(frozen=True)
 class Slip:
-    """State of slip: load (N), kappa, alpha, gamma (rad), relative speed, direction, road friction factor."""
+    """State of slip: load (N), kappa, alpha, gamma (rad), relative speed, direction, road friction, pressure increment."""
 
     load: Expr
     kappa: Expr
@@ -38,6 +40,7 @@ class Slip:
     speed: Expr
     direction: Expr
     friction: Expr
+    dpi: Expr = Rational(0)
 
     @property
     def moving(self) -> Expr:
@@ -106,9 +109,10 @@ def longitudinal(p: Symbolic, s: Slip, dfz: Expr, f: Name) -> Curve:
     gamma = s.gamma * p.LGAX
     shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX * s.moving)
     kappa = f(s.kappa + shift)
-    mu = f((p.PDX1 + p.PDX2 * dfz) * (1 - p.PDX3 * gamma**2) * p.LMUX * s.friction)
+    pressure = 1 + p.PPX3 * s.dpi + p.PPX4 * s.dpi**2
+    mu = f((p.PDX1 + p.PDX2 * dfz) * pressure * (1 - p.PDX3 * gamma**2) * p.LMUX * s.friction)
     E = f(at_most_one((p.PEX1 + p.PEX2 * dfz + p.PEX3 * dfz**2) * (1 - p.PEX4 * sign(kappa)) * p.LEX))
-    K = f(s.load * (p.PKX1 + p.PKX2 * dfz) * exp(p.PKX3 * dfz) * p.LKX)
+    K = f(s.load * (p.PKX1 + p.PKX2 * dfz) * exp(p.PKX3 * dfz) * (1 + p.PPX1 * s.dpi + p.PPX2 * s.dpi**2) * p.LKX)
     C = p.PCX1 * p.LCX
     B = f(K / (C * mu * s.load + LEAST_LOAD))
     vertical = f(s.load * (p.PVX1 + p.PVX2 * dfz) * p.LVX * p.LMUX * s.friction * s.moving)
@@ -121,10 +125,11 @@ def lateral(p: Symbolic, s: Slip, dfz: Expr, f: Name) -> Curve:
     gamma = f(s.gamma * p.LGAY)
     shift = f(((p.PHY1 + p.PHY2 * dfz) * p.LHY + p.PHY3 * gamma) * s.moving)
     alpha = f(s.alpha + shift)
-    mu = f((p.PDY1 + p.PDY2 * dfz) * (1 - p.PDY3 * gamma**2) * p.LMUY * s.friction)
+    pressure = 1 + p.PPY3 * s.dpi + p.PPY4 * s.dpi**2
+    mu = f((p.PDY1 + p.PDY2 * dfz) * pressure * (1 - p.PDY3 * gamma**2) * p.LMUY * s.friction)
     E = f(at_most_one((p.PEY1 + p.PEY2 * dfz) * (1 - (p.PEY3 + p.PEY4 * gamma) * sign(alpha)) * p.LEY))
-    nominal = p.FNOMIN * p.LFZO
-    upright = p.PKY1 * p.FNOMIN * sin(2 * atan(s.load / (p.PKY2 * nominal))) * p.LFZO * p.LKY
+    stiffest = p.PKY2 * p.FNOMIN * p.LFZO * (1 + p.PPY2 * s.dpi)
+    upright = p.PKY1 * p.FNOMIN * (1 + p.PPY1 * s.dpi) * sin(2 * atan(s.load / stiffest)) * p.LFZO * p.LKY
     K = f(upright * (1 - p.PKY3 * magnitude(gamma)))
     C = p.PCY1 * p.LCY
     B = f(K / (C * mu * s.load + LEAST_LOAD))
@@ -158,7 +163,8 @@ def aligning(p: Symbolic, s: Slip, x: Curve, y: Curve, forces: tuple[Expr, Expr,
     gamma, R = f(s.gamma * p.LGAZ), p.UNLOADED_RADIUS
     stiffer = p.LKY / p.LMUY
     B = f((p.QBZ1 + p.QBZ2 * dfz + p.QBZ3 * dfz**2) * (1 + p.QBZ4 * gamma + p.QBZ5 * magnitude(gamma)) * stiffer)
-    D = f(s.load * (p.QDZ1 + p.QDZ2 * dfz) * (1 + p.QDZ3 * gamma + p.QDZ4 * gamma**2) * (R / p.FNOMIN) * p.LTR)
+    D = s.load * (p.QDZ1 + p.QDZ2 * dfz) * (1 - p.QPZ1 * s.dpi)
+    D = f(D * (1 + p.QDZ3 * gamma + p.QDZ4 * gamma**2) * (R / p.FNOMIN) * p.LTR)
     of_trail = f(s.alpha + p.QHZ1 + p.QHZ2 * dfz + (p.QHZ3 + p.QHZ4 * dfz) * gamma)
     of_rest = f(s.alpha + y.horizontal + y.vertical / (y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2))
     E = f(
@@ -170,7 +176,8 @@ def aligning(p: Symbolic, s: Slip, x: Curve, y: Curve, forces: tuple[Expr, Expr,
     driving = f((x.stiffness / (y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2) * s.kappa) ** 2)
     straight = cos(s.alpha) * s.direction  # reversed trail when rolling backward
     trail = f(D * cos(magic(B, f(equivalent(of_trail, driving)), p.QCZ1, E)) * straight)
-    residual_load = (p.QDZ6 + p.QDZ7 * dfz) * p.LRES + (p.QDZ8 + p.QDZ9 * dfz) * gamma
+    cambered = (p.QDZ8 + p.QDZ9 * dfz) * (1 + p.QPZ2 * s.dpi) * gamma
+    residual_load = (p.QDZ6 + p.QDZ7 * dfz) * p.LRES + cambered
     residual_most = f(s.load * residual_load * R * p.LMUY * s.friction)
     slope = f(p.QBZ9 * stiffer + p.QBZ10 * y.B * y.C)
     residual = f(residual_most * cos(atan(slope * equivalent(of_rest, driving))) * straight)
@@ -209,14 +216,15 @@ def uncombined(p: Symbolic, s: Slip, f: Name) -> tuple[Expr, Expr, Expr, Expr, E
 
 @dataclass(frozen=True)
 class Formula:
-    """Functions of a version: forces and torques of combined slip, and those of separate slips."""
+    """Functions of a version: forces and torques of combined slip, and those of separate slips.
+
+    `relaxation_lengths` and `rolling_radius` are those of a tyre whose load depends on its deflection alone.
+    """
 
     wrench: Callable[..., Forces]
     uncombined: Callable[..., tuple[Expr, Expr, Expr, Expr, Expr]]
-
-
-FORMULA = Formula(wrench, uncombined)
-"""MF-Tyre 5.2 and PAC2002."""
+    relaxation_lengths: Callable[..., tuple[Expr, Expr]] | None = None
+    rolling_radius: Callable[..., Expr] | None = None
 
 
 def of_mode(
@@ -246,9 +254,11 @@ def increment(p: Symbolic, load: Expr, f: Name) -> Expr:
 def torques(p: Symbolic, s: Slip, fx: Expr, fy: Expr, f: Name) -> tuple[Expr, Expr]:
     """Return the overturning and the rolling resistance torque."""
     R = p.UNLOADED_RADIUS
-    mx = R * s.load * (p.QSX1 * p.LVMX + (-p.QSX2 * s.gamma + p.QSX3 * fy / p.FNOMIN) * p.LMX)
+    by_camber = p.QSX2 * (1 + p.QPX1 * s.dpi) * s.gamma
+    mx = R * s.load * (p.QSX1 * p.LVMX + (-by_camber + p.QSX3 * fy / p.FNOMIN) * p.LMX)
     resistance = p.QSY1 + p.QSY2 * fx / p.FNOMIN + p.QSY3 * s.speed + p.QSY4 * s.speed**4
-    return mx, -R * s.load * resistance * p.LMY * s.direction
+    pressed = 1 if s.dpi == 0 else (p.LIP * (1 + s.dpi)) ** p.QSY8  # of the nominal pressure without its scale factor
+    return mx, -R * s.load * resistance * pressed * p.LMY * s.direction
 
 
 def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Expr, Expr, Expr]:
@@ -285,3 +295,7 @@ def rolling_radius(p: Symbolic, deflection: Expr, f: Name) -> Expr:
     nominal = f(p.FNOMIN / p.VERTICAL_STIFFNESS)
     part = f(deflection / nominal)
     return p.UNLOADED_RADIUS - nominal * (p.DREFF * atan(p.BREFF * part) + p.FREFF * part)
+
+
+FORMULA = Formula(wrench, uncombined, relaxation_lengths, rolling_radius)
+"""MF-Tyre 5.2 and PAC2002."""

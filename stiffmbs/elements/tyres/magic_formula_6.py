@@ -43,12 +43,11 @@ LEAST_SPIN = Float("1e-12")
 
 @dataclass(frozen=True)
 class PressedSlip(Slip):
-    """State of slip with the pressure increment dpi, and for turn slip phi_t and Omega/V, both 1/m.
+    """State of slip with phi_t and Omega/V of turn slip, both 1/m.
 
     phi_t is the yaw rate over the speed V of the contact point, positive in a turn to the left; None without turn slip.
     """
 
-    dpi: Expr = ZERO
     turn: Expr = None
     rolling: Expr = ZERO
 

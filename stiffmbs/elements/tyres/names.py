@@ -1,4 +1,4 @@
-"""Keys of property files of PAC2002, MF-Tyre 5.2, 6.1 and 6.2."""
+"""Keys of property files of PAC2002, MF-Tyre 5.2, 6.1 and 6.2, and Fiala."""
 
 from __future__ import annotations
 
@@ -40,6 +40,17 @@ LATER = _words(
     """
 )
 """Force coefficients of MF-Tyre 6.0 and later that MF-Tyre 5.2 does not have."""
+OF_PRESSURE = _words("PPX1 PPX2 PPX3 PPX4 PPY1 PPY2 PPY3 PPY4 QPZ1 QPZ2 QPX1 QPFZ1 QSY8")
+"""Pressure coefficients of PAC2002, zero by default; they need IP_NOM."""
+PRESSURES = {"IP": "pressure", "IP_NOM": "pressure", "LIP": ""}
+"""Numbers of the inflation pressure of PAC2002, with their dimensions."""
+FIALA = {
+    "UNLOADED_RADIUS": "length", "WIDTH": "length", "VERTICAL_STIFFNESS": "stiffness", "VERTICAL_DAMPING": "damping",
+    "ROLLING_RESISTANCE": "length", "CSLIP": "force", "CALPHA": "force per angle", "UMIN": "", "UMAX": "",
+    "RELAX_LENGTH_X": "length", "RELAX_LENGTH_Y": "length", "FZMAX": "force", "LONGVL": "velocity",
+}  # fmt: skip
+"""Numbers of a Fiala tyre, with their dimensions."""
+FIALA_REQUIRED = ("UNLOADED_RADIUS", "WIDTH", "VERTICAL_STIFFNESS", "CSLIP", "CALPHA", "UMIN", "UMAX")
 AS_BEFORE = {**dict.fromkeys(LATER, 0.0), "PKY4": 2.0, "QSY7": 1.0}
 """Values of these coefficients without effect."""
 TURN_SLIP = _words(
@@ -82,12 +93,13 @@ REASONS = {
     "[MODEL]": {
         "VXLOW": "the field slow of the tyre has its place", "ROAD_INCREMENT": "of the road", "ROAD_DIRECTION": "of the road",
     },
+    "[PARAMETER]": {"CGAMMA": "camber has no effect on Fiala's forces"},
     "[VERTICAL]": dict.fromkeys(("MC_CONTOUR_A", "MC_CONTOUR_B"), "the contact point is in the wheel's plane"),
 }  # fmt: skip
 """Reasons why keys have no effect, by section."""
 DEFAULT_VALUES = {
     "QTZ1": 0.0, "LGYR": 1.0, "GRAVITY": -9.81, **AS_BEFORE, "MC_CONTOUR_A": 0.0, "MC_CONTOUR_B": 0.0, "Q_CAM": 0.0, "PCMZ1": 0.0,
-    "ENV_C1": 0.0, "ENV_C2": 0.0, "ROAD_DIRECTION": 1.0,
+    "CGAMMA": 0.0, "ENV_C1": 0.0, "ENV_C2": 0.0, "ROAD_DIRECTION": 1.0,
     **dict.fromkeys(("LIP", "LKYC", "LKZC", "LMP", "LMUV", "LAMU", "LCZ", "LFZMAX"), 1.0),
 }  # fmt: skip
 """Values of unused keys that have no effect."""
@@ -110,8 +122,10 @@ _HOMES = {
     "CONTACT_PATCH": _words(
         "Q_RA1 Q_RA2 Q_RB1 Q_RB2 ELLIPS_SHIFT ELLIPS_LENGTH ELLIPS_HEIGHT ELLIPS_ORDER ELLIPS_NWIDTH"
     ),
-    "VERTICAL": tuple(DIMENSIONS_6),
-    "SCALING_COEFFICIENTS": (*SCALES, *SCALES_6, "LGYR"),
+    "TIRE_CONDITIONS": ("IP", "IP_NOM"),
+    "VERTICAL": (*DIMENSIONS_6, "QPFZ1"),
+    "SCALING_COEFFICIENTS": (*SCALES, *SCALES_6, "LGYR", "LIP"),
+    "PARAMETER": tuple(FIALA),
     "ALIGNING_COEFFICIENTS": ("QTZ1", "MBELT"),
     "OVERTURNING_COEFFICIENTS": ("PPMX1",),
     "TURNSLIP_COEFFICIENTS": TURN_SLIP,
@@ -142,3 +156,5 @@ SAMPLE_6 = {
     "Q_CAM1": 1.0, "Q_CAM2": 1.0, "Q_FYS1": 0.1, "Q_FCX": 4e-3, "Q_FCY": 2e-3,
 }  # fmt: skip
 """Coefficients of a tyre of 6.2, for compilation in advance."""
+SAMPLE_FIALA = {**dict.fromkeys(FIALA_REQUIRED, 1.0), "UMIN": 0.8}
+"""Numbers of a Fiala tyre, for compilation in advance."""

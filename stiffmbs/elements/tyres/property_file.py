@@ -4,24 +4,43 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...errors import InputError
 from ...reading.files.quoted import quoted
 from ...reading.files.requested import Fields
 from ...reading.files.text_file import file_text, finite_number, lines
 from ...reading.units.units import UNITS as SI
-from .names import AS_BEFORE, COEFFICIENTS, COEFFICIENTS_6, DEFAULT_VALUES, DIMENSIONS, DIMENSIONS_6, SCALES, SCALES_6
+from .names import (
+    AS_BEFORE,
+    COEFFICIENTS,
+    COEFFICIENTS_6,
+    DEFAULT_VALUES,
+    DIMENSIONS,
+    DIMENSIONS_6,
+    FIALA,
+    FIALA_REQUIRED,
+    OF_PRESSURE,
+    PRESSURES,
+    REQUIRED,
+    SCALES,
+    SCALES_6,
+    home,
+)
+
+if TYPE_CHECKING:
+    from .magic_formula import Formula
 
 _NAMES = {
-    "LENGTH": {"m": "meter m", "mm": "mm millimeter", "cm": "cm centimeter", "km": "km kilometer", "inch": "inch in", "ft": "foot feet ft"},
-    "FORCE": {"N": "newton n", "kN": "kn knewton kilonewton", "kgf": "kg_force kgf", "lbf": "pound_force lbf"},
+    "LENGTH": {"m": "meter meters m", "mm": "mm millimeter millimeters", "cm": "cm centimeter", "km": "km kilometer", "inch": "inch inches in", "ft": "foot feet ft"},
+    "FORCE": {"N": "newton newtons n", "kN": "kn knewton kilonewton", "kgf": "kg_force kgf", "lbf": "pound_force lbf"},
     "ANGLE": {"rad": "radian radians rad", "deg": "degree degrees deg"},
     "MASS": {"kg": "kg kilogram", "g": "gram", "tonne": "tonne", "lb": "pound_mass", "slug": "slug"},
     "TIME": {"s": "second seconds sec s", "ms": "millisecond", "min": "minute", "h": "hour"},
+    "PRESSURE": {"Pa": "pascal pa", "kPa": "kpascal kpa", "MPa": "mpascal mpa", "psi": "psi", "bar": "bar"},
 }  # fmt: skip
 """Names in Adams/Tire of the units of scenes."""
 UNITS = {
@@ -32,10 +51,22 @@ UNITS = {
 FRACTIONS: Mapping[str, tuple[str, str]] = {
     "": ("", ""), "length": ("LENGTH", ""), "force": ("FORCE", ""), "angle": ("ANGLE", ""), "velocity": ("LENGTH", "TIME"),
     "stiffness": ("FORCE", "LENGTH"), "damping": ("FORCE TIME", "LENGTH"), "pressure": ("FORCE", "LENGTH LENGTH"),
-    "per length": ("", "LENGTH"), "mass": ("MASS", ""),
+    "per length": ("", "LENGTH"), "mass": ("MASS", ""), "force per angle": ("FORCE", "ANGLE"),
 }  # fmt: skip
 """Units whose product makes a dimension, and those that divide it."""
+
+
+def composed_of(dimension: str, units: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Return the units whose product makes a dimension, and those that divide it.
+
+    `units`: those of the file; a pressure has its own unit, or that of a force on an area.
+    """
+    product, divisor = FRACTIONS[dimension] if dimension != "pressure" or "PRESSURE" not in units else ("PRESSURE", "")
+    return product.split(), divisor.split()
+
+
 _KEY = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(.*)$")
+_TEXT = re.compile(r"""^(['"])(?!.*\1\s*=).*\1$""")
 _QUOTED = re.compile(r"^'([^']*)'|^\"([^\"]*)\"")
 
 
@@ -130,7 +161,7 @@ class PropertyFile:
         InputError
             For an unknown unit.
         """
-        product, divisor = (self._units(kinds.split()) for kinds in FRACTIONS[dimension])
+        product, divisor = map(self._units, composed_of(dimension, self.sections.get("UNITS", ())))
         return math.prod(product) * math.prod(unit**-1 for unit in divisor)
 
     def _units(self, kinds: Sequence[str]) -> Iterator[float]:
@@ -163,15 +194,15 @@ def parse_properties(text: str, source: str) -> PropertyFile:
     for number, line in enumerate(lines(text), start=1):
         content = line.strip()
         where = f"{source}, line {number}"
-        if not content or content[0] in "!$#{(":
+        if not content or content[0] in "!$#{(" or _TEXT.match(content):
             continue
         if content.startswith("["):
             section = _section(content, where)
         elif key := _KEY.match(content):
             name, own = key[1].upper(), sections.setdefault(section, {})
-            if name in own:
+            entry = Entry(_value(key[2], where), number, section)
+            if own.setdefault(name, entry).text != entry.text:
                 raise InputError(f"{where}: found {name} again, which line {own[name].line} has too, expected it once")
-            own[name] = Entry(_value(key[2], where), number, section)
         elif section:
             row = tuple(finite_number(part, where) for part in re.split(r"[\s,]+", _uncommented(content)))
             rows.setdefault(section, (number, []))[1].append(row)
@@ -196,7 +227,7 @@ def _section(content: str, where: str) -> str:
 
 
 def _uncommented(text: str) -> str:
-    return re.split(r"[$!]", text)[0].strip()
+    return re.split(r"[$!#]", text)[0].strip()
 
 
 def _value(text: str, where: str) -> str:
@@ -215,7 +246,7 @@ NOMINAL_PRESSURE = 2e5
 
 @dataclass(frozen=True)
 class Version:
-    """Version of the Magic Formula.
+    """Version of the Magic Formula, or Fiala's formula.
 
     Attributes
     ----------
@@ -226,31 +257,59 @@ class Version:
         Default values; numbers without one are required.
     largest : tuple of int
         Largest digits of USE_MODE: contact method, dynamics, slip.
+    required : tuple of str
+        Numbers that a tyre must have.
+    may_vanish : tuple of str
+        Required numbers that may be zero.
+    vertical : str
+        Section of the vertical stiffness and damping.
     """
 
     name: str
     dimensions: Mapping[str, str]
     defaults: Mapping[str, float]
     largest: tuple[int, int, int]
+    required: tuple[str, ...] = REQUIRED
+    may_vanish: tuple[str, ...] = ()
+    vertical: str = "VERTICAL"
 
     @property
     def numbers(self) -> tuple[str, ...]:
         """Names of all numbers."""
         return tuple(dict.fromkeys((*self.defaults, *self.dimensions)))
 
+    def home(self, name: str) -> str:
+        """Return the section of a property file that a key belongs to."""
+        section = home(name)
+        return self.vertical if section == "VERTICAL" else section
+
     def has_mode(self, mode: float) -> bool:
-        """Return True if a USE_MODE of either sign has valid digits."""
-        return all(digit <= most for digit, most in zip(digits(mode), self.largest, strict=True)) and mode % 1 == 0
+        """Return True if a USE_MODE has valid digits; a negative one mirrors a tyre of the Magic Formula."""
+        valid = all(digit <= most for digit, most in zip(digits(mode), self.largest, strict=True)) and mode % 1 == 0
+        return valid and (self.is_magic or (mode > 0 and digits(mode)[2] > 0))
 
     @property
-    def has_pressure(self) -> bool:
-        """True for 6.1 and 6.2, whose tyres depend on inflation pressure."""
+    def is_magic(self) -> bool:
+        """True for the Magic Formula."""
+        return self.name != "Fiala"
+
+    @property
+    def is_6(self) -> bool:
+        """True for 6.1 and 6.2, whose contact depends on the forces along the road."""
         return "NOMPRES" in self.dimensions
+
+    @property
+    def equations(self) -> Formula:
+        """Equations of the forces, whose import loads SymPy."""
+        from . import fiala, magic_formula, magic_formula_6
+
+        later = magic_formula_6.FORMULA
+        return {"5.2": magic_formula.FORMULA, "Fiala": fiala.FORMULA}.get(self.name, later)
 
 
 _OF_5 = {
-    **dict.fromkeys(COEFFICIENTS, 0.0), **dict.fromkeys(SCALES, 1.0), "VERTICAL_DAMPING": 0.0, "BREFF": 0.0, "DREFF": 0.0,
-    "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
+    **dict.fromkeys((*COEFFICIENTS, *OF_PRESSURE), 0.0), **dict.fromkeys((*SCALES, "LIP"), 1.0), "VERTICAL_DAMPING": 0.0,
+    "BREFF": 0.0, "DREFF": 0.0, "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
 }  # fmt: skip
 """Default values; FREFF gives the unloaded radius less a third of the deflection as rolling radius."""
 _OF_6 = {
@@ -259,12 +318,17 @@ _OF_6 = {
     "PKY4": AS_BEFORE["PKY4"], "QSY7": AS_BEFORE["QSY7"], "PHYP1": 1.0, "QDRP1": 1.0,
 }  # fmt: skip
 """Default values; those of omitted coefficients of 6.1 have the effect of MF-Tyre 5.2, INFLPRES = 0 means NOMPRES."""
+_OF_FIALA = {
+    **dict.fromkeys(("VERTICAL_DAMPING", "ROLLING_RESISTANCE", "RELAX_LENGTH_X", "RELAX_LENGTH_Y"), 0.0),
+    "FZMAX": UNLIMITED, "LONGVL": 16.7,
+}  # fmt: skip
 VERSIONS = {
     version.name: version
     for version in (
-        Version("5.2", DIMENSIONS, _OF_5, (0, 2, 4)),
+        Version("5.2", {**DIMENSIONS, **PRESSURES}, _OF_5, (0, 2, 4)),
         Version("6.1", DIMENSIONS_6, _OF_6, (5, 3, 5)),
         Version("6.2", DIMENSIONS_6, _OF_6, (5, 3, 5)),
+        Version("Fiala", FIALA, _OF_FIALA, (0, 1, 2), FIALA_REQUIRED, ("WIDTH", "UMIN"), "PARAMETER"),
     )
 }
 OF_FITTYP = {
@@ -274,7 +338,7 @@ OF_FITTYP = {
 """Version by FITTYP; version 6.1 includes files of 6.0."""
 OF_FORMAT = {
     **dict.fromkeys(("PAC2002", "MF05", "MFTYRE", "MF52", "52"), "5.2"),
-    **dict.fromkeys(("MF61", "61"), "6.1"), **dict.fromkeys(("MF62", "62"), "6.2"), "USER": "",
+    **dict.fromkeys(("MF61", "61"), "6.1"), **dict.fromkeys(("MF62", "62"), "6.2"), "FIALA": "Fiala", "USER": "",
 }  # fmt: skip
 """Version by PROPERTY_FILE_FORMAT; empty if FITTYP states it."""
 

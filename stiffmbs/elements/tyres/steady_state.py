@@ -1,4 +1,4 @@
-"""Steady state of a Magic Formula tyre at arrays of loads, slips, camber angles, pressures and speeds.
+"""Steady state of a tyre of a property file at arrays of loads, slips, camber angles, pressures and speeds.
 
 The equations are those of the element, evaluated by NumPy.
 """
@@ -14,6 +14,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..element import Expr
+from .property_file import VERSIONS
 
 STATE = ("load", "kappa", "alpha", "gamma", "speed", "direction", "friction", "dpi", "turn", "rolling")
 """Arguments of the compiled equations of forces."""
@@ -41,8 +42,8 @@ def steady_state(
     friction: Any = 1.0,
 ) -> dict[str, np.ndarray]:
     """Return the steady state of a tyre by the symbols of the Magic Formula; see `TyreProperties.steady_state`."""
-    later = numbers["formula"] != "5.2"
-    pressure = numbers["INFLPRES"] if later and p is None else p
+    nominal = numbers["NOMPRES"]
+    pressure = p if p is not None or nominal is None else numbers["INFLPRES"]
     turn = None if phit is None else np.asarray(phit, dtype=float)
     speed = numbers["LONGVL"] if Vx is None else Vx
     given = (Fz, kappa, alpha, gamma, 1.0 if pressure is None else pressure, speed, 0.0 if turn is None else turn)
@@ -50,12 +51,15 @@ def steady_state(
         np.array(x, dtype=float) for x in np.broadcast_arrays(*given, friction)
     )
     _check(Fz, pressure)
-    dpi = pressure / numbers["NOMPRES"] - 1 if later else 0 * Fz
+    dpi = 0 * Fz if nominal is None else pressure / nominal - 1
     rolled = _rolling(numbers, Fz, kappa, speed, dpi)
     rolling = (1 + kappa) * np.cos(alpha) * np.sign(speed) / rolled["Re"]
     state = (Fz, kappa, alpha, gamma, np.abs(speed) / numbers["LONGVL"], np.sign(speed), friction, dpi, turned, rolling)
-    found = _forces(numbers, turn is not None)(*_values(numbers), *state)
+    with np.errstate(divide="ignore", invalid="ignore"):  # relaxation lengths without stiffnesses
+        found = _forces(numbers, turn is not None)(*_values(numbers), *state)
     forces = {name: np.broadcast_to(x, Fz.shape).astype(float) for name, x in found.items()}
+    for name in ("sigma_x", "sigma_y"):
+        forces[name] = np.where(np.isfinite(forces[name]), forces[name], 0.0)
     free = rolled.pop("free")
     return forces | rolled | _deflected(numbers, Fz, gamma, dpi, rolled["omega"], free, forces)
 
@@ -84,8 +88,8 @@ def _rolling(
     """
     radius = _compiled("rolling", *_key(numbers))
     values, forward = _values(numbers), speed + kappa * np.abs(speed)
-    if numbers["formula"] == "5.2":
-        Re = radius(*values, _deflection_at(numbers, Fz))["Re"]
+    if not VERSIONS[numbers["formula"]].is_6:
+        Re = radius(*values, _deflection_at(numbers, Fz, dpi))["Re"]
         return {"Re": Re + 0 * forward, "omega": forward / Re, "free": numbers["UNLOADED_RADIUS"] + 0 * forward}
     omega = forward / numbers["UNLOADED_RADIUS"]
     for _ in range(MOST_ITERATIONS):
@@ -106,8 +110,8 @@ def _deflected(
     forces: dict[str, np.ndarray],
 ) -> dict[str, np.ndarray]:
     """Return deflection and loaded radius, by iteration on the load for 6.1 and 6.2."""
-    if numbers["formula"] == "5.2":
-        rho = _deflection_at(numbers, Fz)
+    if not VERSIONS[numbers["formula"]].is_6:
+        rho = _deflection_at(numbers, Fz, dpi)
         return {"rho": rho, "Rl": free - rho}
     load = _compiled("load", *_key(numbers))
     values = _values(numbers)
@@ -122,9 +126,10 @@ def _deflected(
     return {"rho": carried["rho"] + 0 * Rl, "Rl": Rl}
 
 
-def _deflection_at(numbers: Mapping[str, Any], Fz: np.ndarray) -> np.ndarray:
-    """Return the deflection at a load by the linear stiffness or by [DEFLECTION_LOAD_CURVE]."""
+def _deflection_at(numbers: Mapping[str, Any], Fz: np.ndarray, dpi: np.ndarray) -> np.ndarray:
+    """Return the deflection at a load and pressure by the linear stiffness or by [DEFLECTION_LOAD_CURVE]."""
     curve = numbers["deflection_load"]
+    Fz = Fz / (1 + numbers.get("QPFZ1", 0.0) * dpi)
     if curve is None:
         return Fz / numbers["VERTICAL_STIFFNESS"]
     from scipy.interpolate import PchipInterpolator
@@ -179,7 +184,8 @@ def _compiled(
 
     numbers = sp.symbols(names, real=True)
     p = SimpleNamespace(**dict(zip(names, numbers, strict=True)), formula=formula, ellipse=ellipse)
-    arguments = {"forces": STATE, "load": OF_RADIUS, "rolling": ("load", "spin", "dpi")[: 1 if formula == "5.2" else 3]}
+    of_radius = ("load", "spin", "dpi")[: 3 if VERSIONS[formula].is_6 else 1]
+    arguments = {"forces": STATE, "load": OF_RADIUS, "rolling": of_radius}
     symbols = [sp.Symbol(name, real=True) for name in arguments[of]]
     outputs = {"forces": _force_outputs, "load": _load_outputs, "rolling": _radius_outputs}[of](p, symbols, turns)
     function = sp.lambdify([*numbers, *symbols], list(outputs.values()), "numpy", cse=True)
@@ -189,19 +195,20 @@ def _compiled(
 def _force_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
     from . import magic_formula, magic_formula_6
 
-    (*basic, dpi, turn, rolling), load, gamma = symbols, symbols[0], symbols[3]
-    if p.formula == "5.2":
-        forces = magic_formula.wrench(p, magic_formula.Slip(*basic), _same, p.ellipse)
-        lengths = magic_formula.relaxation_lengths(p, load, gamma, _same)
-        more: dict[str, Any] = {}
+    (*basic, turn, rolling), load, gamma, dpi = symbols, symbols[0], symbols[3], symbols[7]
+    equations = VERSIONS[p.formula].equations
+    more: dict[str, Any] = {}
+    if equations.relaxation_lengths is not None:
+        forces = equations.wrench(p, magic_formula.Slip(*basic), _same, p.ellipse)
+        lengths = equations.relaxation_lengths(p, load, gamma, _same)
     else:
         from .deflection_6 import contact_patch
 
-        state = magic_formula_6.PressedSlip(*(*basic, dpi, turn if turns else None, rolling))
-        forces = magic_formula_6.wrench(p, state, _same, p.ellipse)
+        state = magic_formula_6.PressedSlip(*(*basic, turn if turns else None, rolling))
+        forces = equations.wrench(p, state, _same, p.ellipse)
         lengths = magic_formula_6.relaxation_lengths(p, load, dpi, gamma, _same)
         dfz = magic_formula.increment(p, load, _same)
-        more = dict(zip("ab", contact_patch(p, load, dpi), strict=True))
+        more |= dict(zip("ab", contact_patch(p, load, dpi), strict=True))
         more["Kyg0"] = magic_formula_6.camber_stiffness(p, load, dpi, dfz)
     return {
         **dict(zip(("Fx", "Fy", "Mx", "My", "Mz"), forces.wrench, strict=True)),
@@ -219,10 +226,9 @@ def _load_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
 
 
 def _radius_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
-    if p.formula == "5.2":
-        from .magic_formula import rolling_radius
-
-        return {"Re": rolling_radius(p, symbols[0], _same)}
+    equations = VERSIONS[p.formula].equations
+    if equations.rolling_radius is not None:
+        return {"Re": equations.rolling_radius(p, symbols[0], _same)}
     from .deflection_6 import effective_radius, free_radius
 
     load, spin, dpi = symbols

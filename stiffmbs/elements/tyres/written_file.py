@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.quoted import quoted
-from .names import RANGES, home
-from .property_file import FRACTIONS, UNITS
+from .names import RANGES
+from .property_file import UNITS, composed_of
 
 if TYPE_CHECKING:
     from .coefficients import TyreProperties
@@ -54,7 +54,7 @@ def _checked(units: Mapping[str, str]) -> dict[str, str]:
 
 
 def _factor(dimension: str, units: Mapping[str, str]) -> float:
-    product, divisor = ([UNITS[kind][units[kind].lower()] for kind in kinds.split()] for kinds in FRACTIONS[dimension])
+    product, divisor = ([UNITS[kind][units[kind].lower()] for kind in kinds] for kinds in composed_of(dimension, units))
     return math.prod(product) / math.prod(divisor)
 
 
@@ -64,15 +64,17 @@ def _line(key: str, value: str) -> str:
 
 def _entries(p: TyreProperties) -> Iterator[tuple[str, str, str | float, str]]:
     """Yield section, key, value in SI units, and dimension."""
-    if p.version == "5.2":
-        yield "MODEL", "PROPERTY_FILE_FORMAT", "PAC2002" if p.is_pac2002 else "MF_05", ""
-    yield "MODEL", "FITTYP", FITTYPS[p.version], ""
+    if not p.formula.is_6:
+        form = "FIALA" if not p.formula.is_magic else "PAC2002" if p.of_adams else "MF_05"
+        yield "MODEL", "PROPERTY_FILE_FORMAT", form, ""
+    if p.formula.is_magic:
+        yield "MODEL", "FITTYP", FITTYPS[p.version], ""
     if p.use_mode is not None:
         yield "MODEL", "USE_MODE", p.use_mode, ""
     if p.side:
         yield "MODEL", "TYRESIDE", p.side.upper(), ""
     for name, value in p.coefficients.items():
-        yield home(name), name, value, p.formula.dimensions.get(name, "")
+        yield p.formula.home(name), name, value, p.formula.dimensions.get(name, "")
     for channel, ends in p.ranges.items():
         *names, dimension = RANGES[channel]
         for name, value in zip(names, ends, strict=True):
@@ -87,9 +89,9 @@ def _rim(p: TyreProperties) -> Iterator[tuple[str, str, float, str]]:
     rim = p.bottoming
     if rim is None:
         return
-    if p.version == "5.2":
+    if not p.formula.is_6:
         yield "DIMENSION", "BOTTOMING_RADIUS", rim.radius, "length"
-        if rim.width:
+        if rim.width and "WIDTH" not in p.coefficients:
             yield "DIMENSION", "WIDTH", rim.width, "length"
         return
     (x0, f0), (x1, f1) = rim.load.table[0], rim.load.table[-1]
@@ -99,7 +101,7 @@ def _rim(p: TyreProperties) -> Iterator[tuple[str, str, float, str]]:
 
 def _curves(p: TyreProperties, units: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of [DEFLECTION_LOAD_CURVE] and [BOTTOMING_CURVE]."""
-    bottoming = p.bottoming.load if p.bottoming is not None and p.version == "5.2" else None
+    bottoming = p.bottoming.load if p.bottoming is not None and not p.formula.is_6 else None
     for section, curve in (("DEFLECTION_LOAD_CURVE", p.deflection_load), ("BOTTOMING_CURVE", bottoming)):
         if curve is not None:
             length, force = _factor("length", units), _factor("force", units)

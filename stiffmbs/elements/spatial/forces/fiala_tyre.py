@@ -6,12 +6,8 @@ from pydantic import Field
 
 from ....reading.units import si
 from ...element import Expr, Symbolic
-from ...roads.road import above_zero, clipped, magnitude
 from ..relaxation import DEFLECTIONS
 from ..tyre import Rolling, Tyre
-
-TINY = 1e-30
-"""Offset of forces in divisors, for a wheel without contact."""
 
 
 class FialaTyre(Tyre):
@@ -55,24 +51,14 @@ class FialaTyre(Tyre):
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
         """Return forces and moments by Fiala's formulas."""
-        from sympy import Float, Rational, tan
+        from ...tyres.fiala import Constants, forces
+        from ...tyres.magic_formula import Slip
 
-        across, slip = e.named(tan(rolling.slip_angle)), rolling.slip
-        whole = e.named(clipped(magnitude(slip, across)))
-        mu = rolling.friction * (e.mu_static + (e.mu_sliding - e.mu_static) * whole)
-        most = e.named(mu * rolling.load + Float(str(TINY)))
-        critical = e.named(most / (2 * e.slip_stiffness))
-        above = larger(e, slip, critical)
-        below = e.named(critical * slip / above)
-        fx = e.slip_stiffness * below + most * Rational(1, 2) * e.named(slip - below) / above
-        sideways = e.named(e.cornering_stiffness * across / (3 * most))
-        left = e.named(sideways / larger(e, sideways, 1))
-        part = e.named(magnitude(left))
-        fy = -most * left * (3 - 3 * part + part**2)
-        mz = most * e.width * left * (1 - part) ** 3 * rolling.direction
-        return fx, fy, 0, -e.rolling_resistance * rolling.load * rolling.direction, mz
-
-
-def larger(e: Symbolic, x: Expr, least: Expr) -> Expr:
-    """Return the absolute value of a number, at least `least`; smooth at zero, and without rounding."""
-    return e.named(least + above_zero(e.named(magnitude(x) - least)))
+        constants = Constants(
+            e.slip_stiffness, e.cornering_stiffness, e.mu_static, e.mu_sliding, e.width, e.rolling_resistance
+        )
+        slip = (
+            getattr(rolling, name)
+            for name in ("load", "slip", "slip_angle", "camber", "speed", "direction", "friction")
+        )
+        return forces(constants, Slip(*slip), e.named).wrench

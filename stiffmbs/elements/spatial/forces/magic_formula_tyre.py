@@ -12,9 +12,10 @@ from ....reading.units import si
 from ...element import Expr, Symbolic
 from ...roads.envelope import Envelope
 from ...roads.road import above_zero, magnitude
-from ...tyres.coefficients import AnyProperties, TyreProperties
-from ...tyres.names import SAMPLE, SAMPLE_6
-from ...tyres.plausible import PLAUSIBLE
+from ...tyres.coefficients import PRESSED, AnyProperties, TyreProperties
+from ...tyres.file_fields import PLAUSIBLE
+from ...tyres.names import SAMPLE, SAMPLE_6, SAMPLE_FIALA
+from ...tyres.property_file import VERSIONS
 from ..contact_point import ContactPoint
 from ..pressed_tyre import pressed, pressure_increment
 from ..relaxation import DEFLECTIONS
@@ -22,23 +23,30 @@ from ..tyre import Rolling, Touch, Tyre
 
 
 class MagicFormulaTyre(Tyre):
-    """Magic Formula tyre (Pacejka) of MF-Tyre 5.2, PAC2002, 6.1 and 6.2, with the coefficients of a property file (.tir).
+    """Magic Formula tyre (Pacejka) or Fiala tyre with the coefficients of a property file (.tir).
 
-    It gives longitudinal and lateral force, overturning, rolling and aligning torque. It includes pure and combined
-    slip, camber, load, and relaxation lengths; USE_MODE selects them. Slip angle and camber enter as angles; Pacejka's
-    book uses tan(alpha) and sin(gamma). FITTYP of the file selects the version.
+    The files are those of MF-Tyre 5.2, 6.1 and 6.2, of Adams' PAC2002, and of Adams' Fiala model. FITTYP of the file
+    selects the version, or PROPERTY_FILE_FORMAT.
+
+    The Magic Formula gives longitudinal and lateral force, overturning, rolling and aligning torque. It includes pure and
+    combined slip, camber, load, and relaxation lengths; USE_MODE selects them. Slip angle and camber enter as angles;
+    Pacejka's book uses tan(alpha) and sin(gamma).
 
     In version 5.2 the load is VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', or that of [DEFLECTION_LOAD_CURVE] with the
     same damping. The rolling radius is UNLOADED_RADIUS - d0 (DREFF atan(BREFF d/d0) + FREFF d/d0), with d0 =
-    FNOMIN/VERTICAL_STIFFNESS. In 6.1 and 6.2 load and radii depend on pressure, spin, camber and the forces along the
-    road (`stiffmbs.elements.tyres.deflection_6`), and turn slip can be included.
+    FNOMIN/VERTICAL_STIFFNESS. PAC2002 with IP_NOM depends on inflation pressure. In 6.1 and 6.2 load and radii depend on
+    pressure, spin, camber and the forces along the road (`stiffmbs.elements.tyres.deflection_6`), and turn slip can be
+    included.
 
     The load is never negative; the load in the formula is limited to FZMAX. With BOTTOMING_RADIUS and [BOTTOMING_CURVE],
     or in 6.1 and 6.2 with BOTTOM_STIFF, the rim adds to the normal force and the overturning torque only. A file without
     coefficients of combined slip uses the friction ellipse, and a note reports it.
 
-    Pacejka, Tire and Vehicle Dynamics (2012), sec. 4.3; MSC Adams/Tire, PAC2002; Besselink, Schmeitz, Pacejka, Vehicle
-    System Dynamics 48 suppl. 1 (2010) 337-352.
+    A file of the format FIALA has the forces of `fiala_tyre` with CSLIP, CALPHA, UMAX and UMIN, the load of 5.2, and the
+    loaded radius as rolling radius.
+
+    Pacejka, Tire and Vehicle Dynamics (2012), sec. 4.3; MSC Adams/Tire, PAC2002 and Fiala tire models; Besselink,
+    Schmeitz, Pacejka, Vehicle System Dynamics 48 suppl. 1 (2010) 337-352.
     """
 
     kind = "magic_formula_tyre"
@@ -46,6 +54,8 @@ class MagicFormulaTyre(Tyre):
         {"properties": TyreProperties.model_construct(coefficients=SAMPLE)},
         {"properties": TyreProperties.model_construct(coefficients={**SAMPLE, "PTX1": 1.0, "PTY1": 1.0})},
         {"properties": TyreProperties.model_construct(coefficients=SAMPLE_6, version="6.2")},
+        {"properties": TyreProperties.model_construct(coefficients=SAMPLE_FIALA, version="Fiala")},
+        {"properties": TyreProperties.model_construct(coefficients={**SAMPLE, "PPX1": 0.1, "IP_NOM": 1.0, "IP": 1.2})},
     )
     reflected = {"j": "z", "hand": "angle"}
 
@@ -63,7 +73,7 @@ class MagicFormulaTyre(Tyre):
         None, description="elliptical cams for short obstacles: their sizes, or 'file' for ELLIPS_LENGTH and so on"
     )
     pressure: si.PositivePressure | None = Field(
-        None, description="inflation pressure of a tyre of 6.1 or 6.2, Pa; INFLPRES of the file by default"
+        None, description="inflation pressure of a tyre of 6.1, 6.2 or PAC2002, Pa; that of the file by default"
     )
     turn_slip: bool | None = Field(
         None, description="whether the yaw rate acts on the forces (6.1, 6.2); by default according to USE_MODE"
@@ -73,10 +83,10 @@ class MagicFormulaTyre(Tyre):
     def _has_coefficients(self) -> MagicFormulaTyre:
         p = self.properties
         if self.transient and not p.has_lengths:
-            missing = "LONGITUDINAL_STIFFNESS and LATERAL_STIFFNESS" if p.formula.has_pressure else "PTX1 and PTY1"
+            missing = " and ".join(p.names_of_lengths)
             raise ValueError(f"transient: found properties without {missing}, expected relaxation lengths")
-        if self.pressure is not None and not p.formula.has_pressure:
-            raise ValueError("pressure: found one for a tyre of version 5.2, expected properties of 6.1 or 6.2")
+        if self.pressure is not None and not p.has_pressure:
+            raise ValueError(f"pressure: found one for a tyre of version {p.version}, expected {PRESSED}")
         least, most = PLAUSIBLE["INFLPRES"]
         if self.pressure is not None and not least <= self.pressure <= most:
             raise ValueError(f"pressure: found {self.pressure:g} Pa, expected {least:g} to {most:g} Pa")
@@ -121,9 +131,9 @@ class MagicFormulaTyre(Tyre):
     @classmethod
     def touching(cls, e: Symbolic) -> Touch:
         """Return the contact with its load and slips."""
-        if e.properties.formula == "5.2":
-            return super().touching(e)
-        return pressed(e, cls.hand_of(e), cls.takes_turns(e))
+        if VERSIONS[e.properties.formula].is_6:
+            return pressed(e, cls.hand_of(e), cls.takes_turns(e))
+        return super().touching(e)
 
     @staticmethod
     def takes_turns(e: Symbolic) -> bool:
@@ -132,10 +142,10 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def relaxation_lengths(cls, e: Symbolic, load: Expr, camber: Expr) -> tuple[Expr, Expr]:
-        """Return the relaxation lengths of 5.2, by PTX1 to PTX3, and by PTY1, PTY2 and PKY3."""
-        from ...tyres.magic_formula import relaxation_lengths
-
-        return relaxation_lengths(e.properties, load, camber, e.named)
+        """Return the relaxation lengths of 5.2 or Fiala."""
+        lengths = VERSIONS[e.properties.formula].equations.relaxation_lengths
+        assert lengths is not None
+        return lengths(e.properties, load, camber, e.named)
 
     @staticmethod
     def unloaded_radius(e: Symbolic) -> Expr:
@@ -145,7 +155,8 @@ class MagicFormulaTyre(Tyre):
     def carried(e: Symbolic, deflection: Expr, rate: Expr) -> Expr:
         p = e.properties
         spring = p.deflection_load or (lambda x: p.VERTICAL_STIFFNESS * x)
-        return spring(deflection) + p.VERTICAL_DAMPING * rate
+        stiffer = 1 if p.NOMPRES is None else 1 + p.QPFZ1 * pressure_increment(e)
+        return spring(deflection) * stiffer + p.VERTICAL_DAMPING * rate
 
     @staticmethod
     def rim_contact(e: Symbolic, deflection: Expr, contact: ContactPoint) -> tuple[Expr, Expr] | None:
@@ -153,10 +164,10 @@ class MagicFormulaTyre(Tyre):
         p, rim = e.properties, e.properties.bottoming
         if rim is None:
             return None
-        if p.formula == "5.2":
-            depth = deflection - (p.UNLOADED_RADIUS - rim.radius)
-        else:
+        if VERSIONS[p.formula].is_6:
             depth = e.named(rim.radius - contact.radius)
+        else:
+            depth = deflection - (p.UNLOADED_RADIUS - rim.radius)
         return bottomed(e, rim, depth, contact.camber)
 
     @classmethod
@@ -174,16 +185,15 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Expr) -> Expr:
-        """Return the effective rolling radius of 5.2 by BREFF, DREFF and FREFF of the property file."""
-        from ...tyres.magic_formula import rolling_radius
-
-        return rolling_radius(e.properties, deflection, e.named)
+        """Return the effective rolling radius of 5.2 or Fiala."""
+        radius = VERSIONS[e.properties.formula].equations.rolling_radius
+        assert radius is not None
+        return radius(e.properties, deflection, e.named)
 
     @classmethod
     def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
-        """Return forces and moments by the Magic Formula."""
-        from ...tyres.magic_formula import FORMULA, Slip, of_mode
-        from ...tyres.magic_formula_6 import FORMULA as LATER
+        """Return forces and moments by the formula of the file."""
+        from ...tyres.magic_formula import Slip, of_mode
         from ...tyres.magic_formula_6 import PressedSlip
 
         p, hand = e.properties, cls.hand_of(e)
@@ -197,12 +207,13 @@ class MagicFormulaTyre(Tyre):
             e.named(rolling.speed / p.LONGVL),
             rolling.direction,
             rolling.friction,
+            pressure_increment(e),
         )
-        formula = FORMULA
-        if p.formula != "5.2":
-            formula, turn = LATER, None if rolling.turn is None else e.named(hand * rolling.turn)
-            slip = PressedSlip(*(*vars(slip).values(), pressure_increment(e), turn, rolling.rolling))
-        fx, fy, mx, my, mz = of_mode(formula, p.mode, p, slip, e.named, p.ellipse)
+        version = VERSIONS[p.formula]
+        if version.is_6:
+            turn = None if rolling.turn is None else e.named(hand * rolling.turn)
+            slip = PressedSlip(*(*vars(slip).values(), turn, rolling.rolling))
+        fx, fy, mx, my, mz = of_mode(version.equations, p.mode, p, slip, e.named, p.ellipse)
         return fx, hand * fy, hand * mx, my, hand * mz
 
     @staticmethod
