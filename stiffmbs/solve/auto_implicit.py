@@ -37,8 +37,9 @@ class Implicit:
         `explicit_steps`: explicit steps in place of implicit ones. `pieces`: number of starts and restarts.
         """
         if not self._created:
+            of_bdf = cost.ImplicitCost.of(self._dynamics)
             self._be("radau")
-            run_length = explicit_steps * self._of_bdf.step / (pieces * self.growth)
+            run_length = explicit_steps * of_bdf.step / (pieces * self.growth)
             self._be(implicit_solver(AUTO, stiffness.damping_ratio, self._settings.rtol, run_length))
 
     def _be(self, name: str) -> None:
@@ -55,8 +56,8 @@ class Implicit:
             self._estimate(self.integrator.factors)
 
     def _estimate(self, factors: float | None) -> None:
-        self._of_bdf = cost.ImplicitCost.of(self._dynamics, factors)
-        self.cost = radau.of_radau(self._of_bdf) if self.name == "radau" else self._of_bdf
+        of_steps = radau.of_radau if self.name == "radau" else cost.ImplicitCost.of
+        self.cost = of_steps(self._dynamics, factors)
 
     @property
     def growth(self) -> float:
