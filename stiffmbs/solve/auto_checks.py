@@ -6,7 +6,6 @@ import numpy as np
 
 from .auto_choice import Choice, Switch
 from .auto_decisions import AUTO, ExplicitSteps, loss_of_trial, since, tolerable_loss
-from .explicit import DOP853
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED
 from .ida.engine import Reached
@@ -31,7 +30,7 @@ class ExplicitCheck:
         accepted = work.count("steps")
         if accepted == self._counted.accepted:  # a return at output points only
             return False
-        spent = self._choice.explicit_step * (self._choice.evaluations - self._before) / DOP853.stages
+        spent = self._choice.spent(self._choice.evaluations - self._before, work.count("accelerations"))
         counted = ExplicitSteps(work.t, accepted, work.count("stiff_steps"), spent)
         steps, self._counted = since(self._counted, counted), counted
         if NOT_ASKED < work.stable < work.h:  # the bound holds the steps below what the integrator counts as limited

@@ -63,7 +63,7 @@ class Choice:
         self._dynamics, self._grid, self._settings = dynamics, grid, settings
         self.implicit = Implicit(dynamics, settings)
         self._breakpoints = dynamics.input_features(grid.start, grid.end).breakpoints
-        self.explicit_step = cost.of_explicit_step(dynamics)
+        self.explicit_step, self._evaluation = cost.of_explicit_step(dynamics), cost.of_kernels(dynamics)
         self._explicit_rate = np.inf  # cost per second of the motion
         self._implicit_rate = np.inf  # the same of implicit steps, before they were left
         self.thresholds = Thresholds()
@@ -93,7 +93,7 @@ class Choice:
             return None
         self.implicit.create()
         saving = explicit_cost - self._least_cost(pieces, decay)
-        if not saving > 0.0:
+        if not saving > self.implicit.start:  # what a failed trial loses
             return None
         reason = f"{self.implicit.name} (fastest rate {fastest:.3g} 1/s)"
         return Switch(reason, rate, self.thresholds.of_trial(saving / explicit_cost))
@@ -174,6 +174,11 @@ class Choice:
     def evaluations(self) -> int:
         """Return the number of evaluations of the equations so far, including those of event functions."""
         return self._dynamics.state.evaluations
+
+    def spent(self, evaluations: int, accelerations: int) -> float:
+        """Return the cost of explicit steps by their evaluations, some of which were accelerations."""
+        of_accelerations = self.explicit_step * accelerations / DOP853.stages
+        return of_accelerations + self._evaluation * (evaluations - accelerations)
 
     def remaining(self, t: float) -> float:
         """Return the time of the motion after t, s."""
