@@ -163,7 +163,7 @@ class Choice:
 
     def _breakpoints_after(self, t: float) -> int:
         """Return the number of input breakpoints after a time."""
-        return int(np.sum(self._breakpoints > t))
+        return len(self._breakpoints) - int(self._breakpoints.searchsorted(t, side="right"))
 
     def _justifying(self, t: float) -> float:
         """Return the saving that justifies a switch to implicit steps, with small steps after each breakpoint."""

@@ -24,6 +24,10 @@ class Implicit:
     cost : ImplicitCost
         Cost of the chosen integrator with its linear solver. Before it exists, a lower bound; before it is chosen, that
         of `bdf`, which is the least.
+    growth : float
+        Cost of the small steps after a start or a breakpoint.
+    start : float
+        Cost of a switch to these steps, including the small ones.
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
@@ -58,16 +62,8 @@ class Implicit:
     def _estimate(self, factors: float | None) -> None:
         of_steps = radau.of_radau if self.name == "radau" else cost.ImplicitCost.of
         self.cost = of_steps(self._dynamics, factors)
-
-    @property
-    def growth(self) -> float:
-        """Cost of the small steps after a start or a breakpoint."""
-        return -math.log10(self._settings.rtol) * self.cost.start_steps * self.cost.step
-
-    @property
-    def start(self) -> float:
-        """Cost of a switch to these steps, including the small ones."""
-        return self.cost.memory + self.growth
+        self.growth = -math.log10(self._settings.rtol) * self.cost.start_steps * self.cost.step
+        self.start = self.cost.memory + self.growth
 
     def traits(self) -> Traits:
         """Return the traits of the solver."""
