@@ -93,14 +93,15 @@ class Choice:
             return None
         self.implicit.create()
         saving = explicit_cost - self._least_cost(pieces, decay)
-        if not saving > self.implicit.start:  # what a failed trial loses
+        if not saving > self.implicit.growth:  # what a failed trial loses
             return None
         reason = f"{self.implicit.name} (fastest rate {fastest:.3g} 1/s)"
         return Switch(reason, rate, self.thresholds.of_trial(saving / explicit_cost))
 
     def _least_cost(self, pieces: int, decay: float = 0.0) -> float:
         """Return a lower bound of the cost of implicit steps from the start: small steps and a decay, at least a failed trial."""
-        return max(pieces * self.implicit.growth + decay * self.implicit.cost.step, self.implicit.start)
+        of_decay = self.implicit.cost.work(self.implicit.cost.step_residuals, 0) if decay else 0.0  # it keeps its matrices
+        return max(pieces * self.implicit.growth + decay * of_decay, self.implicit.start)
 
     def later_trial(self, steps: ExplicitSteps, segment: ExplicitSteps, work: Integration) -> Switch | None:
         """Return the decision to try the implicit integrator, because stability limits explicit steps; None to continue with these.
