@@ -100,7 +100,9 @@ class Choice:
 
     def _least_cost(self, pieces: int, decay: float = 0.0) -> float:
         """Return a lower bound of the cost of implicit steps from the start: small steps and a decay, at least a failed trial."""
-        of_decay = self.implicit.cost.work(self.implicit.cost.step_residuals, 0) if decay else 0.0  # it keeps its matrices
+        of_decay = (
+            self.implicit.cost.work(self.implicit.cost.step_residuals, 0) if decay else 0.0
+        )  # it keeps its matrices
         return max(pieces * self.implicit.growth + decay * of_decay, self.implicit.start)
 
     def later_trial(self, steps: ExplicitSteps, segment: ExplicitSteps, work: Integration) -> Switch | None:

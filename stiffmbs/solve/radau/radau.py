@@ -28,7 +28,7 @@ from .parameters import RADAU
 READ = ("formulation", "rtol", "atol", "max_step", "stages")
 """Settings that the solver reads."""
 CONTROL = tuned("error_test_of_radau", ErrorControl(margin=1.0))
-ITERATIONS, START_STEPS = 3, 3
+ITERATIONS, START_STEPS = 3, 4
 """Average number of Newton iterations in a step; small steps after a start per digit of the relative tolerance."""
 RESIDUAL = 4.0
 """Cost of a residual in that of a matrix, relative to bdf, by which a run chooses its stages and keeps its matrices.
