@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .auto_choice import Choice, Switch
-from .auto_decisions import AUTO, ExplicitSteps, loss_of_trial, since, tolerable_loss
-from .explicit import DOP853
+from .auto_decisions import AUTO, ExplicitSteps, cost_ahead, loss_of_trial, since, tolerable_loss
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED
 from .ida.engine import Reached
@@ -31,7 +30,7 @@ class ExplicitCheck:
         accepted = work.count("steps")
         if accepted == self._counted.accepted:  # a return at output points only
             return False
-        spent = self._choice.explicit_step * (self._choice.evaluations - self._before) / DOP853.stages
+        spent = self._choice.spent(self._choice.evaluations - self._before, work.count("accelerations"))
         counted = ExplicitSteps(work.t, accepted, work.count("stiff_steps"), spent)
         steps, self._counted = since(self._counted, counted), counted
         if NOT_ASKED < work.stable < work.h:  # the bound holds the steps below what the integrator counts as limited
@@ -41,7 +40,7 @@ class ExplicitCheck:
 
 
 class ImplicitCheck:
-    """Check of the implicit steps of a segment: they are kept while their loss is tolerable.
+    """Check of the implicit steps of a segment: they are kept while their loss is tolerable, or if the rest of them costs less.
 
     Attributes
     ----------
@@ -54,7 +53,7 @@ class ImplicitCheck:
     def __init__(self, choice: Choice, t: float) -> None:
         self._choice, self._implicit = choice, choice.implicit
         self._counted, self._begun = self._implicit.steps(t), self._implicit.integrator.steps()
-        self.rate, self.loss = np.inf, 0.0
+        self.rate, self.loss, self._covered = np.inf, 0.0, 0.0
         self._wait(t)
 
     def __call__(self, reached: Reached) -> bool:
@@ -63,11 +62,14 @@ class ImplicitCheck:
             return True  # an event between two checks
         counted = self._implicit.steps(reached.t)
         taken, self._counted = since(self._counted, counted), counted
-        self.rate = taken.cost / taken.time if taken.time else np.inf
+        before, apart = self.rate, 0.5 * (self._covered + taken.time)
+        self._covered, self.rate = taken.time, taken.cost / taken.time if taken.time else np.inf
         self.loss = loss_of_trial(
             self.loss, taken.cost, self._choice.explicit_cost(taken.time, taken.restarts, taken.long)
         )
-        return self._wait(reached.t) > 0.0
+        remaining = self._choice.remaining(reached.t)
+        gains = cost_ahead(before, self.rate, apart, remaining) < self._choice.explicit_cost(remaining, 0)
+        return self._wait(reached.t) > 0.0 or gains
 
     def _wait(self, t: float) -> float:
         """Set the next check, before which average steps do not exceed the tolerable loss; return the remaining loss."""

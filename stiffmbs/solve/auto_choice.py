@@ -63,7 +63,7 @@ class Choice:
         self._dynamics, self._grid, self._settings = dynamics, grid, settings
         self.implicit = Implicit(dynamics, settings)
         self._breakpoints = dynamics.input_features(grid.start, grid.end).breakpoints
-        self.explicit_step = cost.of_explicit_step(dynamics)
+        self.explicit_step, self._evaluation = cost.of_explicit_step(dynamics), cost.of_kernels(dynamics)
         self._explicit_rate = np.inf  # cost per second of the motion
         self._implicit_rate = np.inf  # the same of implicit steps, before they were left
         self.thresholds = Thresholds()
@@ -93,14 +93,17 @@ class Choice:
             return None
         self.implicit.create()
         saving = explicit_cost - self._least_cost(pieces, decay)
-        if not saving > 0.0:
+        if not saving > self.implicit.growth:  # what a failed trial loses
             return None
         reason = f"{self.implicit.name} (fastest rate {fastest:.3g} 1/s)"
         return Switch(reason, rate, self.thresholds.of_trial(saving / explicit_cost))
 
     def _least_cost(self, pieces: int, decay: float = 0.0) -> float:
         """Return a lower bound of the cost of implicit steps from the start: small steps and a decay, at least a failed trial."""
-        return max(pieces * self.implicit.growth + decay * self.implicit.cost.step, self.implicit.start)
+        of_decay = (
+            self.implicit.cost.work(self.implicit.cost.step_residuals, 0) if decay else 0.0
+        )  # it keeps its matrices
+        return max(pieces * self.implicit.growth + decay * of_decay, self.implicit.start)
 
     def later_trial(self, steps: ExplicitSteps, segment: ExplicitSteps, work: Integration) -> Switch | None:
         """Return the decision to try the implicit integrator, because stability limits explicit steps; None to continue with these.
@@ -163,7 +166,7 @@ class Choice:
 
     def _breakpoints_after(self, t: float) -> int:
         """Return the number of input breakpoints after a time."""
-        return int(np.sum(self._breakpoints > t))
+        return len(self._breakpoints) - int(self._breakpoints.searchsorted(t, side="right"))
 
     def _justifying(self, t: float) -> float:
         """Return the saving that justifies a switch to implicit steps, with small steps after each breakpoint."""
@@ -174,6 +177,11 @@ class Choice:
     def evaluations(self) -> int:
         """Return the number of evaluations of the equations so far, including those of event functions."""
         return self._dynamics.state.evaluations
+
+    def spent(self, evaluations: int, accelerations: int) -> float:
+        """Return the cost of explicit steps by their evaluations, some of which were accelerations."""
+        of_accelerations = self.explicit_step * accelerations / DOP853.stages
+        return of_accelerations + self._evaluation * (evaluations - accelerations)
 
     def remaining(self, t: float) -> float:
         """Return the time of the motion after t, s."""

@@ -144,6 +144,18 @@ def loss_of_trial(before: float, implicit_cost: float, explicit_cost: float) -> 
     return max(before + implicit_cost - explicit_cost, 0.0)
 
 
+def cost_ahead(before: float, rate: float, apart: float, remaining: float) -> float:
+    """Return the cost of implicit steps up to the end if their cost per second falls on as that of a decaying vibration does.
+
+    `before`, `rate`: cost per second in the last two intervals, s^-1, infinite if unknown; `apart`: time between their
+    centres, s. `remaining`: time up to the end of the run, s. Steps follow a root of the amplitude, an exponential too.
+    """
+    if not 0.0 < rate < before:
+        return rate * remaining
+    constant = apart / math.log(before / rate)
+    return -rate * constant * math.expm1(-remaining / constant) if constant else 0.0
+
+
 def tolerable_loss(start: float, allowed: float, remaining_cost: float) -> float:
     """Return the loss up to which a trial of implicit steps continues: a start and a fraction of the remaining explicit cost."""
     return start + allowed * remaining_cost

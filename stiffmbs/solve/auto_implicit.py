@@ -24,6 +24,10 @@ class Implicit:
     cost : ImplicitCost
         Cost of the chosen integrator with its linear solver. Before it exists, a lower bound; before it is chosen, that
         of `bdf`, which is the least.
+    growth : float
+        Cost of the small steps after a start or a breakpoint.
+    start : float
+        Cost of a switch to these steps, including the small ones.
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
@@ -37,8 +41,9 @@ class Implicit:
         `explicit_steps`: explicit steps in place of implicit ones. `pieces`: number of starts and restarts.
         """
         if not self._created:
+            of_bdf = cost.ImplicitCost.of(self._dynamics)
             self._be("radau")
-            run_length = explicit_steps * self._of_bdf.step / (pieces * self.growth)
+            run_length = explicit_steps * of_bdf.step / (pieces * self.growth)
             self._be(implicit_solver(AUTO, stiffness.damping_ratio, self._settings.rtol, run_length))
 
     def _be(self, name: str) -> None:
@@ -55,18 +60,10 @@ class Implicit:
             self._estimate(self.integrator.factors)
 
     def _estimate(self, factors: float | None) -> None:
-        self._of_bdf = cost.ImplicitCost.of(self._dynamics, factors)
-        self.cost = radau.of_radau(self._of_bdf) if self.name == "radau" else self._of_bdf
-
-    @property
-    def growth(self) -> float:
-        """Cost of the small steps after a start or a breakpoint."""
-        return -math.log10(self._settings.rtol) * self.cost.start_steps * self.cost.step
-
-    @property
-    def start(self) -> float:
-        """Cost of a switch to these steps, including the small ones."""
-        return self.cost.memory + self.growth
+        of_steps = radau.of_radau if self.name == "radau" else cost.ImplicitCost.of
+        self.cost = of_steps(self._dynamics, factors)
+        self.growth = -math.log10(self._settings.rtol) * self.cost.start_steps * self.cost.step
+        self.start = self.cost.memory + self.growth
 
     def traits(self) -> Traits:
         """Return the traits of the solver."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from ..dynamics.dynamics import Dynamics
 from ..tuning import tuned
+from .explicit import DOP853
 
 
 @dataclass(frozen=True)
@@ -80,8 +81,8 @@ class ImplicitCost:
     @classmethod
     def of(cls, dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
         """Return the cost for a scene; `factors` is the estimated time of the linear solver, None if unknown."""
-        n = dynamics.kept("unknowns", None, lambda: unknowns(dynamics))
-        factors = COSTS.least_solver * n if factors is None else factors
+        n = unknowns(dynamics)
+        factors = least_solver(dynamics) if factors is None else factors
         return cls(
             COSTS.residual + COSTS.residual_unknown * n,
             COSTS.matrix_operation * dynamics.system.n_operations("tangent") + COSTS.matrix_solver * factors,
@@ -116,9 +117,28 @@ def _of_elimination(multiplications: int) -> float:
     return min(COSTS.multiplication * multiplications, by_large_blocks)
 
 
+def of_evaluation(dynamics: Dynamics) -> float:
+    """Return the cost of a residual without solutions: kernels, as in a stage of DOP853, and vectors."""
+    return of_kernels(dynamics) + COSTS.residual_unknown * unknowns(dynamics)
+
+
+def of_kernels(dynamics: Dynamics) -> float:
+    """Return the cost of the kernels of a stage of DOP853, which that of another set of terms is about as high as."""
+    return COSTS.explicit_operation * dynamics.system.n_operations("acceleration") / DOP853.stages
+
+
+def least_solver(dynamics: Dynamics) -> float:
+    """Return a lower bound of the cost of a linear solver that is not yet chosen."""
+    return COSTS.least_solver * unknowns(dynamics)
+
+
 def unknowns(dynamics: Dynamics) -> int:
     """Return the number of unknowns of BDF: coordinates, velocities, and two multipliers per constraint."""
-    coordinates = dynamics.coordinates
-    solved_for = dynamics.system.active & ~coordinates.satisfied
-    free = coordinates.independent.sum() + coordinates.independent_u.sum()
-    return int(free) + 2 * int(solved_for.sum())
+
+    def counted() -> int:
+        coordinates = dynamics.coordinates
+        solved_for = dynamics.system.active & ~coordinates.satisfied
+        free = coordinates.independent.sum() + coordinates.independent_u.sum()
+        return int(free) + 2 * int(solved_for.sum())
+
+    return dynamics.kept("unknowns", None, counted)

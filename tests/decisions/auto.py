@@ -8,6 +8,7 @@ import numpy as np
 
 from stiffmbs.solve import auto, auto_checks, auto_choice, auto_decisions, subsystems
 from stiffmbs.solve.cost import ImplicitCost
+from stiffmbs.solve.radau import radau
 from stiffmbs.solve.radau.radau import of_radau
 from stiffmbs.solve.trajectory import Outcome, Trajectory
 from tests.decisions.common import Record, nothing, parameters
@@ -39,8 +40,25 @@ def switches_in_a_note():
     return auto._AutoRun._joined(run).note.count("switch")
 
 
+def mechanism():
+    """Return dynamics of 100 unknowns and 6000 operations."""
+    return Record(kept=lambda *_: 100, system=Record(n_operations=lambda _: 6000))
+
+
 def of_five_stages(name):
-    return getattr(of_radau(ImplicitCost(1.0, 1.0, 1.0, 1.0, 1.0, 1.0)), name)
+    return getattr(of_radau(mechanism(), 1.0), name)
+
+
+def residual_by_which_radau_chooses():
+    """Return the cost of a residual, in that of bdf, by which radau chooses the number of stages."""
+    costs = []
+    replaced = {
+        "chosen": lambda _: (None, None, 1000.0), "natural": nothing, "NativeEngine": nothing,
+        "Radau": lambda *given: costs.append(given[4]) or Record(pair_cost=1.0),
+    }  # fmt: skip
+    with patch.multiple(radau, **replaced):
+        radau.driven_by_radau(Record(state=None, **vars(mechanism())), Record(stages=3), None)
+    return costs[0].residual / ImplicitCost.of(mechanism(), 1.0).residual
 
 
 def slowest_mechanism_with_a_fast_one(implicit):
@@ -75,15 +93,14 @@ DECISIONS = {
     "solve.auto:MOST_MESSAGES": switches_in_a_note,
     "solve.radau.radau:ITERATIONS": lambda: of_five_stages("step_residuals"),
     "solve.radau.radau:START_STEPS": lambda: of_five_stages("start_steps"),
-    "solve.radau.radau:RESIDUAL": lambda: of_five_stages("residual"),
-    "solve.radau.radau:MATRIX": lambda: of_five_stages("matrix"),
+    "solve.radau.radau:RESIDUAL": residual_by_which_radau_chooses,
     "solve.subsystems:IMPLICIT_STEPS": lambda: slowest_mechanism_with_a_fast_one(True),
     "solve.subsystems:EXPLICIT_STEPS": lambda: slowest_mechanism_with_a_fast_one(False),
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
     "auto.steps_per_radian": 0.5, "auto.loose": 54, "auto.trial_margin": 31, "auto.check_interval": 250, "cost.restart_steps": 27,
-    "solve.auto:MOST_MESSAGES": 3, "solve.radau.radau:ITERATIONS": 15, "solve.radau.radau:START_STEPS": 4, "solve.radau.radau:RESIDUAL": 1.4,
-    "solve.radau.radau:MATRIX": 0.35, "solve.subsystems:IMPLICIT_STEPS": 75, "solve.subsystems:EXPLICIT_STEPS": 45,
+    "solve.auto:MOST_MESSAGES": 3, "solve.radau.radau:ITERATIONS": 15, "solve.radau.radau:START_STEPS": 4, "solve.radau.radau:RESIDUAL": 4.0,
+    "solve.subsystems:IMPLICIT_STEPS": 75, "solve.subsystems:EXPLICIT_STEPS": 45,
 }  # fmt: skip
 """The decisions of the default parameters."""

@@ -12,7 +12,7 @@ from ...dynamics.initial import InitialValues
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..bdf import integrated, refuse_untested_reactions
-from ..cost import ImplicitCost
+from ..cost import ImplicitCost, least_solver, of_evaluation
 from ..error_control.error_test import ErrorControl
 from ..error_control.stability_limit import HIGHEST_ORDER
 from ..formulations import READ_BY_FORMULATIONS
@@ -30,8 +30,8 @@ READ = ("formulation", "rtol", "atol", "max_step", "stages")
 CONTROL = tuned("error_test_of_radau", ErrorControl(margin=1.0))
 ITERATIONS, START_STEPS = 3, 4
 """Average number of Newton iterations in a step; small steps after a start per digit of the relative tolerance."""
-RESIDUAL, MATRIX = 1.4, 0.35
-"""Costs of a residual with its share of the solutions, and of one of the matrices of a step, in those of bdf.
+RESIDUAL = 4.0
+"""Cost of a residual in that of a matrix, relative to bdf, by which a run chooses its stages and keeps its matrices.
 
 Source: run times of the half car, the chain, the elastic bearing and the axle on bushings.
 """
@@ -63,10 +63,17 @@ def radau_integrator(dynamics: Dynamics, settings: RunSettings) -> Integrator:
     return Integrator(dynamics, settings, CONTROL, memory="radau", driver=driven_by_radau)
 
 
-def of_radau(cost: ImplicitCost) -> ImplicitCost:
-    """Return the cost of steps of five stages, with a real and two complex matrices."""
-    each = {"residual": RESIDUAL * cost.residual, "matrix": MATRIX * cost.matrix}
-    return replace(cost, **each, step_residuals=5 * ITERATIONS, step_matrices=3, start_steps=START_STEPS)
+def of_radau(dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
+    """Return the cost of steps of five stages, with a real and two complex matrices.
+
+    Most terms keep their values for several matrices, so that a matrix costs its factors alone. `factors`: mean cost of
+    the three linear systems, us; None if unknown.
+    """
+    of_bdf = ImplicitCost.of(dynamics, factors)
+    factors = least_solver(dynamics) if factors is None else factors
+    residual = of_evaluation(dynamics) + RADAU.solution_cost * factors * 3 / 5
+    each = {"step_residuals": 5 * ITERATIONS, "step_matrices": 3, "start_steps": START_STEPS}
+    return replace(of_bdf, residual=residual, matrix=factors, **each)
 
 
 def driven_by_radau(
@@ -75,7 +82,8 @@ def driven_by_radau(
     """Return the equations, their driver and the mean cost of a real and two complex linear systems, ns."""
     equations, matrix, cost = chosen(natural(dynamics, settings))
     stages = None if settings.stages == "auto" else settings.stages
-    of_steps = of_radau(ImplicitCost.of(dynamics, 1e-3 * cost))
+    of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
+    of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)
     formula = Radau(equations, matrix, dynamics.state, stages, of_steps, RADAU)
     engine = NativeEngine(equations, dynamics, matrix, settings, control, formula, Unlimited())
     return equations, engine, cost * (1 + 2 * formula.pair_cost) / 3
