@@ -47,7 +47,7 @@ def _units() -> dict[str, Quantity]:
         "kg m^2/s^3": {"W": 1, "mW": 1e-3, "kW": 1e3, "MW": 1e6},
         "m/s": {"mph": 0.44704},
         "m/s^2": {"g0": G0},
-        "kg/m s^2": {"Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": 4.4482216152605 / 0.0254**2},
+        "kg/m s^2": {"Pa": 1, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": 1e5, "psi": 4.4482216152605 / 0.0254**2},
         "1": {"rad": 1, "mrad": 1e-3, "deg": math.pi / 180, "rev": 2 * math.pi},
         "1/s": {"rpm": math.pi / 30, "Hz": 1, "kHz": 1e3},
     }  # fmt: skip

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ...elements.spatial.forces.wheel_torque import WheelTorque
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.parts.placing import placed_in_use
@@ -33,6 +35,9 @@ class Car:
         Sprung body.
     tyres, wheels, uprights : mapping of str to str
         By corner: ``front_left`` ... ``rear_right``.
+    rolling : tuple of str
+        Bodies that spin with the speed of the car: wheels, shafts on which a `wheel_torque` acts, and those of the
+        scene's own start.
     steering : str
         Joint that steers.
     angular : bool
@@ -51,6 +56,7 @@ class Car:
     tyres: Mapping[str, str]
     wheels: Mapping[str, str]
     uprights: Mapping[str, str]
+    rolling: tuple[str, ...]
     steering: str
     angular: bool
     wheelbase: float
@@ -94,7 +100,8 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
     )
     joint = _steering(scene, steering)
     return Car(
-        body, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()}, joint,
+        body, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()},
+        _rolling(scene, wheels.values()), joint,
         scene.joints[joint].kind == "revolute",
         float((at["front_left"] + at["front_right"] - at["rear_left"] - at["rear_right"])[0] / 2),
         float((at["front_left"] - at["front_right"] + at["rear_left"] - at["rear_right"])[1] / 2),
@@ -122,6 +129,12 @@ def _upright(scene: Scene, wheel: str) -> str:
         if joint.kind == "revolute" and wheel in (joint.i.body, joint.j.body):
             return joint.j.body if joint.i.body == wheel else joint.i.body  # type: ignore[no-any-return]
     raise InputError(f"found no revolute joint of the wheel '{wheel}', expected one that holds it")
+
+
+def _rolling(scene: Scene, wheels: Iterable[str]) -> tuple[str, ...]:
+    """Return wheels, shafts of a driveline and the scene's own rolling bodies, each once."""
+    shafts = (force.i.body for force in scene.forces.values() if isinstance(force, WheelTorque))
+    return tuple(dict.fromkeys([*wheels, *shafts, *getattr(scene.start, "rolling", ())]))
 
 
 def _steering(scene: Scene, given: str | None) -> str:
@@ -195,7 +208,7 @@ def _strip(content: dict[str, Any], car: Car) -> tuple[str, ...]:
         content.pop(section, None)
     use = content.get("use") or {}
     for name in [name for name, entry in use.items() if isinstance(entry, dict) and entry.get("part") == "driver"]:
-        content.setdefault("_driver", use.pop(name))
+        content.setdefault("_driver", {**use.pop(name), "name": name})
         gone.append(f"use.{name}.")
     joints = content.get("joints") or {}
     for name in [
@@ -234,9 +247,20 @@ def _brake_by(driver: dict[str, Any], use: Mapping[str, Any], content: dict[str,
             content["variables"] = {**(content.get("variables") or {}), "braking": f"{DRIVER}.braking_force"}
 
 
+def _renamed(formula: Any, old: str) -> Any:
+    """Return a formula that reads channels of the manoeuvre's driver in place of those of the scene's own."""
+    return re.sub(rf"(?<![\w.]){re.escape(old)}\.", f"{DRIVER}.", formula) if isinstance(formula, str) else formula
+
+
 def _attach(content: dict[str, Any], car: Car, manoeuvre: Manoeuvre) -> None:
     own = content.pop("_driver", None) or {}
-    mounts = {**car.wheels, **{f"{corner}_upright": upright for corner, upright in car.uprights.items()}}
+    if own:
+        formulas = content.get("variables") or {}
+        content["variables"] = {name: _renamed(formula, own["name"]) for name, formula in formulas.items()}
+    mounts = {
+        **(own.get("mounts") or {}), **car.wheels,
+        **{f"{corner}_upright": upright for corner, upright in car.uprights.items()},
+    }  # fmt: skip
     parameters = {
         **(own.get("parameters") or {}), "target": manoeuvre.speed, "begins": -1, "radius": car.radius, "rear": car.rear,
         "largest": 10.0 if car.angular else 0.12, "fastest": 20.0 if car.angular else 0.6, **(manoeuvre.driver or {}),
@@ -257,7 +281,7 @@ def _attach(content: dict[str, Any], car: Car, manoeuvre: Manoeuvre) -> None:
     else:
         drive = {"type": "drive", "joint": car.steering, "position": manoeuvre.steer or "0"}
         content["joints"] = {**(content.get("joints") or {}), STEER: drive}
-    content["start"] = {"velocity": [manoeuvre.speed, 0, 0], "speed": "found", "rolling": list(car.wheels.values())}
+    content["start"] = {"velocity": [manoeuvre.speed, 0, 0], "speed": "found", "rolling": list(car.rolling)}
     kept = {key: value for key, value in (content.get("run") or {}).items() if key in ("solver", "rtol", "atol")}
     content["run"] = {
         "rtol": 1e-4,
