@@ -146,7 +146,9 @@ class _Placed:
         if instance.part in shipped_parts():  # their frames have y to the left
             bodies = {name: body for name, (body, _) in further.items() if body != GROUND}
             to_left = in_ground.turned((0.0, 1.0, 0.0))
-            check_left_and_right(f"use.{instance.name}", bodies, lambda body: self._body(body).coordinates()[:3], to_left)
+            check_left_and_right(
+                f"use.{instance.name}", bodies, lambda body: self._body(body).coordinates()[:3], to_left
+            )
         self._add_markers(on, {f"{instance.name}.{name}": frame.placed(x) for name, x in found.markers.items()})
         for name, body in found.bodies.items():
             self._put("bodies", instance, name, in_ground.placed_body(body))
