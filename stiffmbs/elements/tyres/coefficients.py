@@ -32,7 +32,7 @@ from .file_fields import (
     wrong_mode,
 )
 from .names import COMBINED, OF_THE_FILE, ONE_SIDED, REASONS, REQUIRED, TURN_SLIP, home
-from .plausible import check_numbers, missing_sections
+from .plausible import check_numbers, doubts
 from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, plain, read_property_file
 
 if TYPE_CHECKING:
@@ -361,7 +361,7 @@ def _of_file(file: PropertyFile) -> TyreProperties:
         remarks.append(f"there is no NOMPRES: the coefficients are taken to hold at {found['NOMPRES']:g} Pa")
     for name in OF_THE_FILE:
         file.entry(name)
-    remarks += missing_sections(file, found)
+    remarks += doubts(file, found)
     remarks += unused_notes([*file.sections.values(), file.tables], REASONS)
     try:
         properties = TyreProperties(**read, remarks=tuple(f"{file.source}: {note}" for note in remarks))

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ...errors import InputError
-from .names import AS_BEFORE, home
+from .names import AS_BEFORE, RANGES, home
 from .property_file import PropertyFile, Version
 
 PLAUSIBLE = {
@@ -17,6 +17,8 @@ PLAUSIBLE = {
 """Ranges of numbers in SI units, from tyres of models to those of aircraft and mine trucks; other numbers have wrong units."""
 PRESSED = (1e-3, 1.0)
 """Range of the deflection by FNOMIN, unloaded radii: a rim that is nearly rigid, and one that lies on the road."""
+NARROW = math.radians(2)
+"""Slip angle, rad, that valid ranges of tyres exceed; radians read as degrees lie within it."""
 UNIT_OF = {"": "", "length": "m", "force": "N", "pressure": "Pa", "velocity": "m/s", "damping": "N s/m"}
 
 
@@ -62,8 +64,15 @@ def check_numbers(file: PropertyFile, formula: Version, found: Mapping[str, floa
         raise fault("PKY1", ", the cornering stiffness of SAE axes, expected the sign of ISO axes, below zero")
 
 
-def missing_sections(file: PropertyFile, found: Mapping[str, Any]) -> Iterator[str]:
-    """Yield notes on sections that the file does not have."""
+def doubts(file: PropertyFile, found: Mapping[str, Any]) -> Iterator[str]:
+    """Yield notes on sections that the file does not have, and on valid slip angles that may have another unit."""
+    for name in RANGES["slip_angle"][:2]:
+        entry, angle = file.entry(name), file.number(name, "angle") if file.entry(name) else math.inf
+        if entry and abs(angle) < NARROW:
+            yield (
+                f"line {entry.line}: {name} = {entry.text} is {math.degrees(angle):.3g} deg by [UNITS], a narrow range of slip "
+                "angles: its unit may be another one"
+            )
     if "UNITS" not in file.sections:
         yield "there is no [UNITS]: numbers are taken as SI units"
     if "ALIGNING_COEFFICIENTS" not in {home(name) for name in found}:

@@ -62,10 +62,10 @@ def test_mounts_on_the_other_sides_are_refused(chassis):
     car(chassis, **axle, bar=corner(part="anti_roll_bar", mounts=arms))
     car(chassis, **axle, bar=corner(part="anti_roll_bar", mounts=swapped, mirror="y"))
     for mounts, words in ((swapped, {}), (arms, {"mirror": "y"})):
-        with pytest.raises(InputError, match="bar.mounts.left: found '.*', to the right of '.*' of the mount right"):
+        with pytest.raises(InputError, match=r"bar.mounts.left: found '.*', to the right of '.*' of the mount right"):
             car(chassis, **axle, bar=corner(part="anti_roll_bar", mounts=mounts, **words))
     wheels = {"rear_left": "right.wheel", "rear_right": "left.wheel"}
-    with pytest.raises(InputError, match="main.mounts.rear_left: found 'right.wheel', to the right of 'left.wheel'"):
+    with pytest.raises(InputError, match=r"main.mounts.rear_left: found 'right.wheel', to the right of 'left.wheel'"):
         car(chassis, **axle, main=corner(part="driveline", drive="rear", mounts=wheels))
     outputs = {"left": "left.wheel", "right": "right.wheel"}
     first, behind = (corner(x, part="differential", mounts=outputs) for x in (1, -1))
