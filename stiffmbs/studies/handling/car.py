@@ -21,6 +21,8 @@ from ...reading.did_you_mean import did_you_mean
 DRIVER = "handling_driver"
 STEER = "handling_steer"
 ROAD = "handling_road"
+OF_A_STEERING_WHEEL = {"per_curvature": "m", "understeer": "s^2/m", "largest": "rad", "fastest": "rad/s"}
+"""Units of the driver's parameters that concern a joint with an angle; those of the part are of a rack."""
 MISPLACED = 0.01
 """Largest angle of the heading to x, rad, and distance of the wheels' centre from the x axis in wheelbases, at the start."""
 
@@ -265,6 +267,12 @@ def _attach(content: dict[str, Any], car: Car, manoeuvre: Manoeuvre) -> None:
         **(own.get("parameters") or {}), "target": manoeuvre.speed, "begins": -1, "radius": car.radius, "rear": car.rear,
         "largest": 10.0 if car.angular else 0.12, "fastest": 20.0 if car.angular else 0.6, **(manoeuvre.driver or {}),
     }  # fmt: skip
+    if car.angular:
+        parameters |= {
+            name: f"{float(parameters[name])!r} {unit}"
+            for name, unit in OF_A_STEERING_WHEEL.items()
+            if isinstance(parameters.get(name), int | float)
+        }
     driver = {
         "part": "driver", "on": car.body, "drive": own.get("drive", "rear"), "mounts": {**mounts, "steering": car.steering},
         "parameters": parameters, "path": "course" if manoeuvre.path else "none", "pace": "given",

@@ -72,10 +72,10 @@ DRIVELINE = {
 }  # fmt: skip
 
 
-def with_driveline(driver, **entries):
+def with_driveline(driver, parts=None, **entries):
     """Return the car with a driveline and a driver of its own in every manoeuvre."""
     content = read_yaml(CAR.read_text(), "car.yaml")
-    content["parts"]["driveline"] = DRIVELINE
+    content["parts"] |= {"driveline": DRIVELINE, **(parts or {})}
     chosen = content["options"].pop("manoeuvre")["straight"]
     content["parts"]["driver"] = {**chosen["parts"]["driver"], **driver}
     content["parts"]["driver"]["mounts"] = {**chosen["parts"]["driver"]["mounts"], "input": "driveline.main.input"}
@@ -97,6 +97,23 @@ def test_a_driveline_spins_with_the_wheels_and_is_driven_at_its_input():
     torque = rest["handling_driver.drive"] * car.radius / 3.15
     assert rest["driveline.main.shaft_torque"] == pytest.approx(3.15 * torque, rel=1e-6)
     assert rest["handling_driver.drive"] > 100, "drag and rolling resistance"
+
+
+@pytest.mark.long
+def test_a_steering_wheel_steers_the_lane_change():
+    """Its angle is the travel of the rack over the pinion's radius, apart from the twist of the torsion bar."""
+    column = {
+        "use": "steering_column",
+        "on": "chassis",
+        "mounts": {"rack": "steering.rack", "housing": "steering.housing"},
+    }
+    scene = with_driveline({}, parts={"column": column}, joints={})
+    found = stiffmbs.handling(scene, ["lane_change"], steering="column.bearing", workers=1)
+    assert found.car.angular and not found.tests["lane_change"].message
+    assert found["lane_change"]["largest lateral error"] < 0.2
+    by_rack = stiffmbs.handling(scene, ["lane_change"], workers=1)
+    turned = found["lane_change"]["largest steering"] * 0.05 / (2 * np.pi)
+    assert turned == pytest.approx(by_rack["lane_change"]["largest steering"], rel=0.2)
 
 
 def test_variables_read_the_driver_of_the_test():
