@@ -23,6 +23,8 @@ STEER = "handling_steer"
 ROAD = "handling_road"
 OF_A_STEERING_WHEEL = {"per_curvature": "m", "understeer": "s^2/m", "largest": "rad", "fastest": "rad/s"}
 """Units of the driver's parameters that concern a joint with an angle; those of the part are of a rack."""
+STEERING_JOINTS = ("steering_wheel", "guide")
+"""Last names of joints that steer: a steering wheel, and the rack of a car."""
 MISPLACED = 0.01
 """Largest angle of the heading to x, rad, and distance of the wheels' centre from the x axis in wheelbases, at the start."""
 
@@ -146,7 +148,7 @@ def _steering(scene: Scene, given: str | None) -> str:
             near = did_you_mean(given, known)
             raise InputError(f"found no prismatic or revolute joint '{given}'{near}, expected the joint that steers")
         return given
-    for last in ("steering_wheel", "guide"):
+    for last in STEERING_JOINTS:
         found = [name for name in known if name.rpartition(".")[2] == last]
         if len(found) == 1:
             return found[0]
@@ -214,12 +216,17 @@ def _strip(content: dict[str, Any], car: Car) -> tuple[str, ...]:
         gone.append(f"use.{name}.")
     joints = content.get("joints") or {}
     for name in [
-        name for name, entry in joints.items() if isinstance(entry, dict) and entry.get("joint") == car.steering
+        name for name, entry in joints.items() if isinstance(entry, dict) and _steers(entry.get("joint"), car)
     ]:
         del joints[name]
         gone.append(f"joints.{name}")
     _set_roads(content)
     return tuple(gone)
+
+
+def _steers(joint: object, car: Car) -> bool:
+    """Return True for the joint that steers, and for a rack or steering wheel that turns with it."""
+    return joint == car.steering or str(joint).rpartition(".")[2] in STEERING_JOINTS
 
 
 def _set_roads(content: Any) -> None:
