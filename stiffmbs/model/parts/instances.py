@@ -139,7 +139,10 @@ class Instances:
             update={"parameters": parameters_in_components(use.parameters, vectors, f"{where}.parameters")}
         )
         definition = definition_in_components(definition, vectors, f"parts.{use.part}")
-        own = parameters_of(use, where, definition.get("parameters"), parameters, definition.get("limits"))
+        try:
+            own = parameters_of(use, where, definition.get("parameters"), parameters, definition.get("limits"))
+        except InputError as error:
+            raise InputError(f"{error} (in {name})" if outer else str(error)) from None
         default = own
         if f"{WHEEL}_y" in use.parameters:
             default = parameters_of(

@@ -44,7 +44,7 @@ def test_values_without_a_meaning_are_refused(part, parameters, words, message):
 @pytest.mark.parametrize(
     ("part", "parameters", "message"),
     [
-        ("double_wishbone", {"spring": "-60 N/mm"}, "stiffness: found -60000, expected zero or more"),
+        ("double_wishbone", {"spring": "-60 N/mm"}, "stiffness: found -60000, expected zero or more (in p.strut)"),
         ("multi_link", {"strut_load": "-3 kN"}, "load: found -3000, expected zero or more"),
         ("macpherson", {"compression": "-900 N s/m"}, "compression: found -900, expected zero or more"),
         ("trailing_arm", {"bump_travel": "0 mm"}, "bump_travel: found 0, expected a value above zero"),
