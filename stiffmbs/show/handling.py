@@ -81,7 +81,7 @@ def _number(value: object) -> str:
 def _rows(one: Tested) -> list[tuple[str, str, str]]:
     """Return the metrics as cells; a value without a number was not reached."""
     return [
-        (name, f"{value:.5g}" if np.isfinite(value) else "not reached", unit)
+        (name, f"{value:.5g}", unit) if np.isfinite(value) else (name, "not reached", "")
         for name, (value, unit) in one.metrics.items()
     ]
 

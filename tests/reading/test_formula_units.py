@@ -270,6 +270,7 @@ def test_a_parameter_that_could_be_a_unit_is_to_be_renamed(formula):
         ("1 kgf", "force", 9.80665),
         ("1 slug*1 ft/s^2/1 lbf", "number", 1.0),
         ("1 psi*1 inch^2/1 lbf", "number", 1.0),
+        ("2.4 bar/240 kPa", "number", 1.0),
         ("60 mph/1 km*1 h", "number", 96.56064),
     ],
 )

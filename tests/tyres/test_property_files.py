@@ -305,6 +305,19 @@ def test_an_inflation_pressure_in_other_units_is_refused(read, pressure):
             MagicFormulaTyre(i="wheel", properties=tyre, pressure=value)
 
 
+@pytest.mark.parametrize(
+    ("unit", "angle", "narrow"),
+    [("degree", "0.6", True), ("degree", "1.9", True), ("degree", "2.1", False), ("rad", "0.6", False)],
+)
+def test_radians_read_as_degrees_are_noted(read, unit, angle, narrow):
+    limits = f"[SLIP_ANGLE_RANGE]\nALPMIN = -{angle}\nALPMAX = {angle}\n"
+    notes = " ".join(read(FILE.replace("'degree'", f"'{unit}'") + limits).notes())
+    for line, name, sign in ((32, "ALPMIN", "-"), (33, "ALPMAX", "")):
+        assert (
+            f"line {line}: {name} = {sign}{angle} is {sign}{angle} deg by [UNITS], a narrow range" in notes
+        ) == narrow
+
+
 def test_missing_sections_are_named(read):
     notes = " ".join(read().notes())
     assert "there are no [ALIGNING_COEFFICIENTS]: the aligning torque is zero" in notes and "[UNITS]" not in notes

@@ -26,7 +26,7 @@ from .file_fields import (
     check_numbers,
     curve_of,
     is_pac2002,
-    missing_sections,
+    doubts,
     mode_of,
     nominal_load,
     ranges_of,
@@ -416,7 +416,7 @@ def _of_file(file: PropertyFile) -> TyreProperties:
         remarks.append(f"there is no NOMPRES: the coefficients are taken to hold at {found['NOMPRES']:g} Pa")
     for name in OF_THE_FILE:
         file.entry(name)
-    remarks += missing_sections(file, formula, found)
+    remarks += doubts(file, formula, found)
     remarks += unused_notes([*file.sections.values(), file.tables], REASONS)
     try:
         properties = TyreProperties(**read, remarks=tuple(f"{file.source}: {note}" for note in remarks))

@@ -218,6 +218,8 @@ WIDEST = 5.0
 """Largest width of a Fiala tyre, unloaded radii; that of a drag racing tyre is about 1.2."""
 SLIGHTLY = 0.05
 """Deflection by the nominal load of a tyre without FNOMIN, unloaded radii; of a car's tyre at rest."""
+NARROW = math.radians(2)
+"""Slip angle, rad, that valid ranges of tyres exceed; radians read as degrees lie within it."""
 UNIT_OF = {"": "", "length": "m", "force": "N", "pressure": "Pa", "velocity": "m/s", "damping": "N s/m"}
 
 
@@ -319,8 +321,15 @@ def relaxation_of(
             yield name, 0.0, f"{wrong}: steady slip does without it"
 
 
-def missing_sections(file: PropertyFile, formula: Version, found: Mapping[str, Any]) -> Iterator[str]:
-    """Yield notes on sections that the file does not have."""
+def doubts(file: PropertyFile, formula: Version, found: Mapping[str, Any]) -> Iterator[str]:
+    """Yield notes on sections that the file does not have, and on valid slip angles that may have another unit."""
+    for name in RANGES["slip_angle"][:2]:
+        entry, angle = file.entry(name), file.number(name, "angle") if file.entry(name) else math.inf
+        if entry and abs(angle) < NARROW:
+            yield (
+                f"line {entry.line}: {name} = {entry.text} is {math.degrees(angle):.3g} deg by [UNITS], a narrow range of slip "
+                "angles: its unit may be another one"
+            )
     if "UNITS" not in file.sections:
         yield "there is no [UNITS]: numbers are taken as SI units"
     if formula.is_magic and "ALIGNING_COEFFICIENTS" not in {home(name) for name in found}:

@@ -1,9 +1,10 @@
-"""Checks of the hard points of a suspension for wrong units, for the wrong side of the car, and for points in one place."""
+"""Checks of parts for wrong units of hard points and angles, for the wrong side of the car, and for points in one place."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import Any
 
@@ -19,6 +20,9 @@ SAME_PLACE = 1e-3
 """Largest distance between two wheels, or two hard points, in one place, m."""
 FARTHEST = 5.0
 """Largest distance of a hard point from the centre of its wheel, m; those in millimetres lie farther away."""
+STATIC_ANGLES = ("toe", "camber")
+STEEPEST = math.radians(20)
+"""Largest toe and camber, rad: twice those of drift and speedway cars; degrees read as radians lie beyond it."""
 
 
 def check_hard_points(
@@ -27,13 +31,21 @@ def check_hard_points(
     """Return the centre of the wheel in the frame of a part; None for a part without one.
 
     Hard points that are far from the wheel, or that lie on the other side of the car, are refused, and two in one place:
-    points of one arm, rod or strut, and both ball joints of an upright. The sides of points that the use does not set are
-    those of the part: a twist beam has points on both. `default`: parameters of the part.
+    points of one arm, rod or strut, and both ball joints of an upright. So are toe and camber of more than 20 deg. The
+    sides of points that the use does not set are those of the part: a twist beam has points on both. `default`:
+    parameters of the part.
     """
     points = dict(_points(vectors, own))
     wheel = points.get(WHEEL)
     if wheel is None:
         return None
+    for name in STATIC_ANGLES:
+        angle = own[name].value if name in own else 0.0
+        if abs(angle) > STEEPEST:
+            raise InputError(
+                f"{where}.parameters.{name}: found {angle:g} rad, which is {math.degrees(angle):.3g} deg, expected "
+                f"{math.degrees(STEEPEST):g} deg or less: plain numbers are in rad"
+            )
     if wheel[1] * default[f"{WHEEL}_y"].value < 0:
         raise InputError(
             f"{where}.parameters.{WHEEL}: found ({', '.join(f'{x:g}' for x in wheel)}) m, on the other side of the car than "
@@ -87,6 +99,29 @@ def check_sides(wheels: Iterable[tuple[str, tuple[float, ...], str, Any]]) -> No
                 "mirror: 'y' makes a left suspension a right one"
             )
         seen.append((name, body, place))
+
+
+def check_left_and_right(
+    where: str, mounts: Mapping[str, str], centre: Callable[[str], Sequence[float]], to_left: Sequence[float]
+) -> None:
+    """Refuse mounts `left` and `right`, as of an anti-roll bar or a driver, whose bodies are on the other sides.
+
+    `mounts`: bodies by local name. `centre`: returns the centre of mass of a body. `to_left`: direction of the part's y
+    axis, like the centres in ground axes.
+    """
+    for name, body in mounts.items():
+        opposite = re.sub(r"(?<![^_])left(?![^_])", "right", name)
+        other = mounts.get(opposite, body)
+        apart = _along(to_left, centre(body)) - _along(to_left, centre(other)) if other != body else 0.0
+        if apart < -SAME_PLACE:
+            raise InputError(
+                f"{where}.mounts.{name}: found '{body}', to the right of '{other}' of the mount {opposite}, "
+                "expected them the other way round"
+            )
+
+
+def _along(direction: Sequence[float], point: Sequence[float]) -> float:
+    return sum(a * b for a, b in zip(direction, point, strict=True))
 
 
 def _points(vectors: Vectors, own: Mapping[str, Quantity]) -> Iterator[tuple[str, tuple[float, ...]]]:

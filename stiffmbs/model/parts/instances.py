@@ -18,7 +18,7 @@ from .definitions import NAMED, Definitions, definition_in_components
 from .frame import Use
 from .hard_points import WHEEL, check_hard_points
 from .options import OPTIONS, refuse_unknown_choices, with_chosen
-from .parameters import check_limits, mounts_of, parameters_of
+from .parameters import mounts_of, parameters_of
 from .vectors import Vectors, parameters_in_components, vectors_of
 
 REPEATED = ("bodies", "states", "joints", "forces")
@@ -139,8 +139,10 @@ class Instances:
             update={"parameters": parameters_in_components(use.parameters, vectors, f"{where}.parameters")}
         )
         definition = definition_in_components(definition, vectors, f"parts.{use.part}")
-        own = parameters_of(use, where, definition.get("parameters"), parameters)
-        check_limits(use, where, definition.get("limits"), own, definition.get("parameters") or {})
+        try:
+            own = parameters_of(use, where, definition.get("parameters"), parameters, definition.get("limits"))
+        except InputError as error:
+            raise InputError(f"{error} (in {name})" if outer else str(error)) from None
         default = own
         if f"{WHEEL}_y" in use.parameters:
             default = parameters_of(

@@ -25,11 +25,14 @@ LIMITS = {
 COMPONENT_ENDS = tuple(f"_{axis}" for axis in COMPONENTS)
 
 
-def parameters_of(use: Use, where: str, found: object, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
+def parameters_of(
+    use: Use, where: str, found: object, outside: Mapping[str, Quantity], limits: object = None
+) -> dict[str, Quantity]:
     """Return the parameters of an instance: outer ones, its own, and the values set by its use.
 
     A plain number takes the SI unit of the value that it replaces. `where`: path of the use in the scene. `found`:
-    parameters of the definition. Raises InputError if one is unknown, has a reserved name, or is not a number.
+    parameters of the definition. `limits`: those of the definition; a value is checked before others follow from it.
+    Raises InputError if one is unknown, has a reserved name, is not a number, or is beyond its limit.
     """
     own = {} if found is None else found
     if not isinstance(own, dict):
@@ -42,7 +45,7 @@ def parameters_of(use: Use, where: str, found: object, outside: Mapping[str, Qua
                 f"expected one of {', '.join(known) or 'none'}"
             )
     names: Mapping[str, Quantity]
-    inside = dict(outside)
+    inside, limited = dict(outside), _limits_of(limits, use.part, own)
     for name, value in own.items():
         place = f"parts.{use.part}."
         try:
@@ -57,32 +60,29 @@ def parameters_of(use: Use, where: str, found: object, outside: Mapping[str, Qua
             raise InputError(f"{place}parameters.{name}: {error}") from None
         except InputError as error:
             raise InputError(f"{place}{error}") from None
+        holds, expected = LIMITS.get(limited.get(name, ""), (None, ""))
+        if holds and not holds(value_here.value):
+            raise InputError(f"{where}.parameters.{name}: found {value_here.value:g}, expected {expected}")
     return inside
 
 
-def check_limits(use: Use, where: str, limits: object, values: Mapping[str, Quantity], own: Collection[str]) -> None:
-    """Refuse parameters beyond the limits of their part, ``limits: {ratio: positive, split: fraction}``.
+def _limits_of(limits: object, part: str, own: Collection[str]) -> dict[str, str]:
+    """Return the limit of each parameter by name, as in ``limits: {ratio: positive, split: fraction}``.
 
-    A limit of a vector is that of its components. `where`: path of the use. `values`: parameters of the instance, and those
-    around it. `own`: names of the part's parameters.
+    A limit of a vector is that of its components. `own`: names of the part's parameters.
     """
-    place = f"parts.{use.part}.limits"
-    for name, word in _limits(limits, place).items():
+    place = f"parts.{part}.limits"
+    if not isinstance(limits, dict | None):
+        raise InputError(f"{place}: found {written(limits)}, expected a mapping of parameters to {', '.join(LIMITS)}")
+    known: dict[str, str] = {}
+    for name, word in (limits or {}).items():
         found = [each for each in (name, *(f"{name}{end}" for end in COMPONENT_ENDS)) if each in own]
         if not found:
             raise InputError(f"{place}: found {written(name)}, expected a parameter of the part")
         if not isinstance(word, str) or word not in LIMITS:
             raise InputError(f"{place}.{name}: found {written(word)}, expected one of {', '.join(LIMITS)}")
-        holds, expected = LIMITS[word]
-        for each in found:
-            if not holds(values[each].value):
-                raise InputError(f"{where}.parameters.{each}: found {values[each].value:g}, expected {expected}")
-
-
-def _limits(limits: object, where: str) -> dict[str, object]:
-    if not isinstance(limits, dict | None):
-        raise InputError(f"{where}: found {written(limits)}, expected a mapping of parameters to {', '.join(LIMITS)}")
-    return limits or {}
+        known |= dict.fromkeys(found, word)
+    return known
 
 
 def _vector(name: Any, own: Mapping[Any, Any]) -> str:

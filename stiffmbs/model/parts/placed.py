@@ -26,8 +26,8 @@ from ...reading.formula.variables import meant_within
 from ...reading.marker import MarkerReference
 from ...reading.names import GROUND, MOUNT, Names
 from ...reading.units.units import Quantity, in_text
-from .definitions import NAMED, Definitions
-from .hard_points import check_sides
+from .definitions import NAMED, Definitions, shipped_parts
+from .hard_points import check_left_and_right, check_sides
 from .instances import Instance, Instances
 from .mirrored import Mirror
 
@@ -143,6 +143,12 @@ class _Placed:
         own = _Values({name: value for name, value in instance.parameters.items() if outside.get(name) != value})
         names = replace(self.context["names"], local=local, values=own, mounts=frozenset(mounts))
         found = self._read(instance, names)
+        if instance.part in shipped_parts():  # their frames have y to the left
+            bodies = {name: body for name, (body, _) in further.items() if body != GROUND}
+            to_left = in_ground.turned((0.0, 1.0, 0.0))
+            check_left_and_right(
+                f"use.{instance.name}", bodies, lambda body: self._body(body).coordinates()[:3], to_left
+            )
         self._add_markers(on, {f"{instance.name}.{name}": frame.placed(x) for name, x in found.markers.items()})
         for name, body in found.bodies.items():
             self._put("bodies", instance, name, in_ground.placed_body(body))

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ...elements.spatial.forces.wheel_torque import WheelTorque
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.parts.placing import placed_in_use
@@ -19,6 +21,10 @@ from ...reading.did_you_mean import did_you_mean
 DRIVER = "handling_driver"
 STEER = "handling_steer"
 ROAD = "handling_road"
+OF_A_STEERING_WHEEL = {"per_curvature": "m", "understeer": "s^2/m", "largest": "rad", "fastest": "rad/s"}
+"""Units of the driver's parameters that concern a joint with an angle; those of the part are of a rack."""
+STEERING_JOINTS = ("steering_wheel", "guide")
+"""Last names of joints that steer: a steering wheel, and the rack of a car."""
 MISPLACED = 0.01
 """Largest angle of the heading to x, rad, and distance of the wheels' centre from the x axis in wheelbases, at the start."""
 
@@ -33,6 +39,9 @@ class Car:
         Sprung body.
     tyres, wheels, uprights : mapping of str to str
         By corner: ``front_left`` ... ``rear_right``.
+    rolling : tuple of str
+        Bodies that spin with the speed of the car: wheels, shafts on which a `wheel_torque` acts, and those of the
+        scene's own start.
     steering : str
         Joint that steers.
     angular : bool
@@ -51,6 +60,7 @@ class Car:
     tyres: Mapping[str, str]
     wheels: Mapping[str, str]
     uprights: Mapping[str, str]
+    rolling: tuple[str, ...]
     steering: str
     angular: bool
     wheelbase: float
@@ -94,7 +104,8 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
     )
     joint = _steering(scene, steering)
     return Car(
-        body, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()}, joint,
+        body, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()},
+        _rolling(scene, wheels.values()), joint,
         scene.joints[joint].kind == "revolute",
         float((at["front_left"] + at["front_right"] - at["rear_left"] - at["rear_right"])[0] / 2),
         float((at["front_left"] - at["front_right"] + at["rear_left"] - at["rear_right"])[1] / 2),
@@ -124,6 +135,12 @@ def _upright(scene: Scene, wheel: str) -> str:
     raise InputError(f"found no revolute joint of the wheel '{wheel}', expected one as its bearing")
 
 
+def _rolling(scene: Scene, wheels: Iterable[str]) -> tuple[str, ...]:
+    """Return wheels, shafts of a driveline and the scene's own rolling bodies, each once."""
+    shafts = (force.i.body for force in scene.forces.values() if isinstance(force, WheelTorque))
+    return tuple(dict.fromkeys([*wheels, *shafts, *getattr(scene.start, "rolling", ())]))
+
+
 def _steering(scene: Scene, given: str | None) -> str:
     known = [name for name, joint in scene.joints.items() if joint.kind in ("prismatic", "revolute")]
     if given is not None:
@@ -131,7 +148,7 @@ def _steering(scene: Scene, given: str | None) -> str:
             near = did_you_mean(given, known)
             raise InputError(f"found no prismatic or revolute joint '{given}'{near}, expected the joint that steers")
         return given
-    for last in ("steering_wheel", "guide"):
+    for last in STEERING_JOINTS:
         found = [name for name in known if name.rpartition(".")[2] == last]
         if len(found) == 1:
             return found[0]
@@ -195,16 +212,21 @@ def _strip(content: dict[str, Any], car: Car) -> tuple[str, ...]:
         content.pop(section, None)
     use = content.get("use") or {}
     for name in [name for name, entry in use.items() if isinstance(entry, dict) and entry.get("part") == "driver"]:
-        content.setdefault("_driver", use.pop(name))
+        content.setdefault("_driver", {**use.pop(name), "name": name})
         gone.append(f"use.{name}.")
     joints = content.get("joints") or {}
     for name in [
-        name for name, entry in joints.items() if isinstance(entry, dict) and entry.get("joint") == car.steering
+        name for name, entry in joints.items() if isinstance(entry, dict) and _steers(entry.get("joint"), car)
     ]:
         del joints[name]
         gone.append(f"joints.{name}")
     _set_roads(content)
     return tuple(gone)
+
+
+def _steers(joint: object, car: Car) -> bool:
+    """Return True for the joint that steers, and for a rack or steering wheel that turns with it."""
+    return joint == car.steering or str(joint).rpartition(".")[2] in STEERING_JOINTS
 
 
 def _set_roads(content: Any) -> None:
@@ -234,13 +256,30 @@ def _brake_by(driver: dict[str, Any], use: Mapping[str, Any], content: dict[str,
             content["variables"] = {**(content.get("variables") or {}), "braking": f"{DRIVER}.braking_force"}
 
 
+def _renamed(formula: Any, old: str) -> Any:
+    """Return a formula that reads channels of the manoeuvre's driver in place of those of the scene's own."""
+    return re.sub(rf"(?<![\w.]){re.escape(old)}\.", f"{DRIVER}.", formula) if isinstance(formula, str) else formula
+
+
 def _attach(content: dict[str, Any], car: Car, manoeuvre: Manoeuvre) -> None:
     own = content.pop("_driver", None) or {}
-    mounts = {**car.wheels, **{f"{corner}_upright": upright for corner, upright in car.uprights.items()}}
+    if own:
+        formulas = content.get("variables") or {}
+        content["variables"] = {name: _renamed(formula, own["name"]) for name, formula in formulas.items()}
+    mounts = {
+        **(own.get("mounts") or {}), **car.wheels,
+        **{f"{corner}_upright": upright for corner, upright in car.uprights.items()},
+    }  # fmt: skip
     parameters = {
         **(own.get("parameters") or {}), "target": manoeuvre.speed, "begins": -1, "radius": car.radius, "rear": car.rear,
         "largest": 10.0 if car.angular else 0.12, "fastest": 20.0 if car.angular else 0.6, **(manoeuvre.driver or {}),
     }  # fmt: skip
+    if car.angular:
+        parameters |= {
+            name: f"{float(parameters[name])!r} {unit}"
+            for name, unit in OF_A_STEERING_WHEEL.items()
+            if isinstance(parameters.get(name), int | float)
+        }
     driver = {
         "part": "driver", "on": car.body, "drive": own.get("drive", "rear"), "mounts": {**mounts, "steering": car.steering},
         "parameters": parameters, "path": "course" if manoeuvre.path else "none", "pace": "given",
@@ -257,7 +296,7 @@ def _attach(content: dict[str, Any], car: Car, manoeuvre: Manoeuvre) -> None:
     else:
         drive = {"type": "drive", "joint": car.steering, "position": manoeuvre.steer or "0"}
         content["joints"] = {**(content.get("joints") or {}), STEER: drive}
-    content["start"] = {"velocity": [manoeuvre.speed, 0, 0], "speed": "found", "rolling": list(car.wheels.values())}
+    content["start"] = {"velocity": [manoeuvre.speed, 0, 0], "speed": "found", "rolling": list(car.rolling)}
     kept = {key: value for key, value in (content.get("run") or {}).items() if key in ("solver", "rtol", "atol")}
     content["run"] = {
         "rtol": 1e-4,

@@ -42,6 +42,8 @@ def corner(parameters, part="double_wishbone", **words):
             "left.parameters.strut_tower: found (0, 0.56, 0.185) m, in the place of strut_seat",
         ),
         ({"lower_bal": [0, 0, 0]}, "(did you mean 'lower_ball'?)"),
+        ({"camber": -0.5}, "left.parameters.camber: found -0.5 rad, which is -28.6 deg, expected 20 deg or less"),
+        ({"toe": "21 deg"}, "left.parameters.toe: found 0.366519 rad, which is 21 deg"),
     ],
 )
 def test_hard_points_that_are_no_car_are_refused(parameters, message):
@@ -52,6 +54,7 @@ def test_hard_points_that_are_no_car_are_refused(parameters, message):
 
 def test_points_near_the_middle_and_far_below_the_limit_are_read():
     corner({"lower_front_y": -0.3, "lower_rear_z": 5.1})
+    corner({"toe": "-19 deg", "camber": "19 deg"})
     corner({"strut_seat": [0, 0.70, 0.17]})  # at the lower ball joint
     corner({"lower_front_outer": [-0.02, 0.68, 0.17]}, "multi_link")  # two links that meet
     corner({"wheel_centre": [0, "0.8 m", "0.3 m"]}, "twist_beam")

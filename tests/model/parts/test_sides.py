@@ -53,6 +53,26 @@ def test_a_wheel_centre_on_the_right_of_a_left_part_is_refused():
         car(right=corner(parameters={"wheel_centre": [0, -0.76, 0.3]}))
 
 
+@pytest.mark.parametrize("chassis", [CHASSIS, ASKEW])
+def test_mounts_on_the_other_sides_are_refused(chassis):
+    """An anti-roll bar, and a driver's wheels; an inner differential may have its outputs along the car."""
+    axle = {"left": corner(z=-0.5), "right": corner(z=-0.5, mirror="y")}
+    arms = {"left": "left.lower.arm", "right": "right.lower.arm"}
+    swapped = {"left": "right.lower.arm", "right": "left.lower.arm"}
+    car(chassis, **axle, bar=corner(part="anti_roll_bar", mounts=arms))
+    car(chassis, **axle, bar=corner(part="anti_roll_bar", mounts=swapped, mirror="y"))
+    for mounts, words in ((swapped, {}), (arms, {"mirror": "y"})):
+        with pytest.raises(InputError, match=r"bar.mounts.left: found '.*', to the right of '.*' of the mount right"):
+            car(chassis, **axle, bar=corner(part="anti_roll_bar", mounts=mounts, **words))
+    wheels = {"rear_left": "right.wheel", "rear_right": "left.wheel"}
+    with pytest.raises(InputError, match=r"main.mounts.rear_left: found 'right.wheel', to the right of 'left.wheel'"):
+        car(chassis, **axle, main=corner(part="driveline", drive="rear", mounts=wheels))
+    outputs = {"left": "left.wheel", "right": "right.wheel"}
+    first, behind = (corner(x, part="differential", mounts=outputs) for x in (1, -1))
+    car(chassis, **axle, first=first, behind=behind,
+        main=corner(part="differential", mounts={"left": "first.input", "right": "behind.input"}))  # fmt: skip
+
+
 def test_suspensions_on_their_sides_are_read():
     for part in ("double_wishbone", "macpherson", "trailing_arm", "multi_link", "pushrod_wishbone"):
         for chassis in (CHASSIS, ASKEW):

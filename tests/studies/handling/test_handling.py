@@ -9,7 +9,9 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs.commands.main import main
+from stiffmbs.reading.files.yaml_text import read_yaml
 from stiffmbs.studies.handling import study
+from stiffmbs.studies.handling.car import Manoeuvre, _renamed, car_of, with_manoeuvre
 from stiffmbs.studies.handling.known import Known
 from stiffmbs.studies.handling.lane_changes import highest
 from stiffmbs.studies.handling.parameters import (
@@ -61,6 +63,67 @@ def test_a_car_that_does_not_stand_where_courses_begin_is_refused(changes, said)
     scene = stiffmbs.load_scene(CAR, [(f"bodies.chassis.{name}", value) for name, value in changes.items()])
     with pytest.raises(stiffmbs.InputError, match=said):
         stiffmbs.handling(scene, ["lane_change"])
+
+
+DRIVELINE = {
+    "use": "driveline", "on": "chassis", "drive": "rear", "position": [0, 0, "-height"],
+    "mounts": {f"{end}_{side}": f"{end}.{side}.wheel" for end in ("front", "rear") for side in ("left", "right")},
+    "parameters": {"speed": "V", "rolling_radius": "r", "ratio": 3.15},
+}  # fmt: skip
+
+
+def with_driveline(driver, parts=None, **entries):
+    """Return the car with a driveline and a driver of its own in every manoeuvre."""
+    content = read_yaml(CAR.read_text(), "car.yaml")
+    content["parts"] |= {"driveline": DRIVELINE, **(parts or {})}
+    chosen = content["options"].pop("manoeuvre")["straight"]
+    content["parts"]["driver"] = {**chosen["parts"]["driver"], **driver}
+    content["parts"]["driver"]["mounts"] = {**chosen["parts"]["driver"]["mounts"], "input": "driveline.main.input"}
+    content |= {"roads": chosen["roads"], "joints": chosen["joints"], **entries}
+    for tyre in content["forces"].values():
+        tyre["properties"] = str(EXAMPLES / "car.tir")
+    return stiffmbs.read_scene(json.dumps(content))
+
+
+def test_a_driveline_spins_with_the_wheels_and_is_driven_at_its_input():
+    """Its input turns as its ratio times the wheels, and carries the driver's traction by its ratio and that of the axle."""
+    scene = with_driveline({"drive": "driveline", "parameters": {"target": "V", "begins": -1, "ratio": 3.15}})
+    car = car_of(scene)
+    assert car.rolling == (*car.wheels.values(), "driveline.main.input")
+    tested = with_manoeuvre(scene, car, Manoeuvre(20.0, 1.0))
+    rest = stiffmbs.equilibrium(tested).channels
+    spins = [rest[f"rear.{side}.wheel.wy"] for side in ("left", "right")]
+    assert rest["driveline.main.input.wy"] == pytest.approx(3.15 * sum(spins) / 2, rel=1e-9)
+    torque = rest["handling_driver.drive"] * car.radius / 3.15
+    assert rest["driveline.main.shaft_torque"] == pytest.approx(3.15 * torque, rel=1e-6)
+    assert rest["handling_driver.drive"] > 100, "drag and rolling resistance"
+
+
+@pytest.mark.long
+def test_a_steering_wheel_steers_the_lane_change():
+    """Its angle is the travel of the rack over the pinion's radius, apart from the twist of the torsion bar."""
+    column = {
+        "use": "steering_column",
+        "on": "chassis",
+        "mounts": {"rack": "steering.rack", "housing": "steering.housing"},
+    }
+    scene = with_driveline({}, parts={"column": column})  # its own drive of the rack is left out
+    found = stiffmbs.handling(scene, ["lane_change"], steering="column.bearing", workers=1)
+    assert found.car.angular and not found.tests["lane_change"].message
+    assert found["lane_change"]["largest lateral error"] < 0.2
+    by_rack = stiffmbs.handling(scene, ["lane_change"], workers=1)
+    turned = found["lane_change"]["largest steering"] * 0.05 / (2 * np.pi)
+    assert turned == pytest.approx(by_rack["lane_change"]["largest steering"], rel=0.2)
+
+
+def test_variables_read_the_driver_of_the_test():
+    """A throttle that follows the scene's own driver follows the one of the test."""
+    driver = {"drive": "engine", "parameters": {"target": "V", "begins": -1}}
+    text = _renamed("my_driver.x + a.driver.x + driver.y", "driver")
+    assert text == "my_driver.x + a.driver.x + handling_driver.y"
+    scene = with_driveline(driver, variables={"throttle": "min(driver.throttle_position, 1)"})
+    tested = with_manoeuvre(scene, car_of(scene), Manoeuvre(20.0, 1.0))
+    assert "handling_driver.throttle_position" in tested.states
 
 
 def test_a_misspelt_test_and_a_scene_that_is_no_car_are_refused():
