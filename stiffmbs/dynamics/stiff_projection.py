@@ -13,6 +13,7 @@ from ..compile.machine.compiler import SHORT
 from ..compile.machine.layout import address, addresses
 from ..compile.machine.routines import together
 from .dynamics import Dynamics
+from .native.layouts import STEP_PARTS
 from .saddle_point import saddle_points
 
 FORCE_CHANGES, PROJECT = together(
@@ -21,8 +22,6 @@ FORCE_CHANGES, PROJECT = together(
     force_changes="void(int64, float64*, float64*, float64*, float64*, float64*, int64, int64*, int64*, float64*, float64*, float64*, int64*)",
     project_stiffly="int64(float64, float64, int64*, int64*, int64*, int64*)",
 )
-STEP_PARTS = 10.0
-"""Step of the solver relative to that of the matrix, in which unstable soft forces are small compared with inertia."""
 _MATRIX = (
     Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "u", "f_u", -1), Block("u", "q", "f_q", -1),
     Block("u", "lam", "J.T"), Block("lam", "u", "J"),

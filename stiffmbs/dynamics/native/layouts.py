@@ -28,6 +28,8 @@ tells the kind of the table `lists`.  `ready` is 1 if there are factors; `kept` 
 sizes of their pivots now and at most.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
 state; residuals of the block system, sizes of their terms, and the least allowed residual."""
 
+STEP_PARTS = 10.0
+"""Step of the solver relative to that of the matrix, in which unstable soft forces are small compared with inertia."""
 MOST_MOVES = 20
 """Largest number of Newton steps of the projection from a nearby state."""
 POSITION_TOLERANCE = 1e-12
