@@ -107,8 +107,8 @@ class Integrator:
                     chattering.look(reached.t, *self.split(reached.y), self.steps())
             if reached.failure:
                 return
-            if reached.fired:
-                chattering.note_event(reached.t, *self.split(reached.y), reached.fired[0])
+            if reached.t < stops[0]:
+                chattering.note_event(reached.t, *self.split(reached.y), reached.fired[0] if reached.fired else -1)
             before = t = reached.t
             if t < grid.end:
                 q, u = self.split(reached.y)

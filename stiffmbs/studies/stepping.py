@@ -163,13 +163,16 @@ class ImplicitSteps:
             if reached is None:  # end of the interval with known input features, up to rounding
                 self._end = self._t
                 self._look_through(self._t)
-                self._begin(
-                    restarted(self._dynamics, self._t, *self._integrator.split(self._engine.at(self._t))), self._t
-                )
+                self._begin(restarted(self._dynamics, self._t, *self._at(self._t)), self._t)
             else:
                 self._t = sound(self._integrator, reached).t
-        self.q[:], self.u[:] = self._integrator.split(self._engine.at(t))
+        self.q[:], self.u[:] = self._at(t)
         self._present, self.length = t, self._engine.step
+
+    def _at(self, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return q and u at a time within the last step."""
+        (q,), (u,) = self._integrator.equations.states(self._engine.at(t)[None])
+        return q, u
 
     def jump(self) -> None:
         """See `Stepper`."""

@@ -98,9 +98,9 @@ def corrections(ratio):
     """Return the number of corrections of a state that remains unbalanced."""
     sizes = iter(ratio ** np.arange(100))
     count = []
-    replaced = {"_corrected": lambda b, e: count.append(1) or next(sizes), "_look": nothing, "_left": lambda *_: 2.0}
+    replaced = {"_corrected": lambda *_: count.append(1) or next(sizes), "_look": nothing, "_left": lambda *_: 2.0}
     with interpreted(output_correction, **replaced):
-        output_correction._settled(Record(enough=0.0), None, None, 0.0)
+        output_correction._remaining(Record(enough=0.0, factored=1.0), None, None, 0.0)
     return len(count)
 
 

@@ -15,6 +15,7 @@ from stiffmbs.solve.events import chattering
 from stiffmbs.solve.events.chattering import CHATTERING, Chattering
 from stiffmbs.solve.events.discontinuity import sliding
 from stiffmbs.solve.explicit import fixed
+from stiffmbs.solve.ida.ida import NativeIda
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.tuning import parameters_of
 from tests.stress.families.roads.kinks import SLIDES, belts, follower
@@ -138,6 +139,13 @@ def spun_up():
     law = "branch(-vy(b.m) - 0.1, 5.66*vy(b.m), 0, -0.566 - 3*(vy(b.m) + 0.1))"
     model.add("push", FORCES["torque"](i="b", torque=law))
     return model
+
+
+def test_events_within_steps_count_too(monkeypatch):
+    """IDA knows no event function of events that the search within its steps has found: a run of them did not end."""
+    monkeypatch.setattr(NativeIda, "roots", lambda ida: np.zeros(ida.n_event_functions, dtype=int))
+    found = solve(spun_up(), "bdf", monkeypatch, duration=40.0)
+    assert found.outcome is Outcome.STOPPED and "chatters: it has passed breakpoints" in found.message
 
 
 @pytest.mark.parametrize("solver", [solver for solver in SOLVERS if solver != "callbacks"])

@@ -245,6 +245,18 @@ class NativeIda(Connection):
         )
         return int(self.cells["served"]), self._status()
 
+    def reported_at(self, t: float) -> np.ndarray:
+        """Return the reported unknowns at a time within the last step, corrected as at output times.
+
+        Raises ValueError if the time is outside the last step.
+        """
+        times, row, stop = np.array([t]), np.empty(len(self.reported)), float(self.cells["stopping"])
+        no_steps = 0
+        flag = self.run(ADVANCE, len(times), address(times), stop, no_steps, address(row), 0)
+        if flag < 0 or not self.cells["served"]:
+            raise ValueError(failure_sentence(flag) if flag < 0 else f"found t = {t:.9g} s, after the last step")
+        return row
+
     def advance_past(
         self, event_restarts: EventRestarts, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
     ) -> tuple[int, Status]:

@@ -224,8 +224,8 @@ class NativeEngine(Engine):
         return EventRestarts(self._starts, self._dynamics, least) if self._starts else None
 
     def at(self, t: float) -> np.ndarray:
-        """Return all unknowns at a time within the last step."""
-        return self._ida.interpolate(t)
+        """Return the reported unknowns at a time within the last step, corrected as at output times."""
+        return self._ida.reported_at(t)
 
     @property
     def step(self) -> float:

@@ -31,9 +31,8 @@ def _interpolated(b, t):
 
 
 @compiled
-def _factored(b, s, e, t):
+def _factored(b, s, e, t, cj):
     b.factored = 0.0
-    cj = b.current
     call_int(b.clear, (b.matrix,))
     load(s, e, b.y, b.yp)
     add_entries(e, evaluate(s, e.matrix_set, t), cj, floats(b.entries))
@@ -95,10 +94,9 @@ def _left(b, s, e, t):
 
 
 @compiled
-def _corrected(b, e):
+def _corrected(b, e, cj):
     """Apply one correction; return its size in units of the tolerance."""
     call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
-    cj = b.factored
     squares = 0.0
     for k in range(e.n):
         b.y[k] -= b.correction[k]
@@ -109,22 +107,67 @@ def _corrected(b, e):
 
 
 @compiled
-def _settled(b, s, e, t):
-    """Correct until the error is negligible, by the convergence rate, or forces balance; return False on failure."""
+def _remaining(b, s, e, t):
+    """Correct until the error is negligible, by the convergence rate, or forces balance; return 0, or the last correction."""
     rate = 1.0
     before = 0.0
+    size = 0.0
     for k in range(POLISHING.most_corrections):
-        size = _corrected(b, e)
+        size = _corrected(b, e, b.factored)
         if k > 0:
             rate = size / before
-            if not rate < POLISHING.slowest:
-                return size <= b.enough
-        if rate * size <= b.enough:
-            return True
+        if (size if k > 0 and not rate < POLISHING.slowest else rate * size) <= b.enough:
+            return 0.0
         before = size
         _look(b, s, e, t)
         if _left(b, s, e, t) <= 1.0:
+            return 0.0
+        if k > 0 and not rate < POLISHING.slowest:
+            break
+    return size
+
+
+@compiled
+def _first_correction(b, s, e, t, parts):
+    """Correct the interpolant by the matrix of a step that is shorter by a factor; return False on failure."""
+    if not (_interpolated(b, t) and _factored(b, s, e, t, parts * b.current)):
+        return False
+    _look(b, s, e, t)
+    _corrected(b, e, b.current)
+    _look(b, s, e, t)
+    return True
+
+
+@compiled
+def _by_new_factors(b, s, e, t):
+    """Correct the state by new factors while corrections become smaller; return 0, or the smallest correction."""
+    before = INFINITE
+    for _ in range(POLISHING.most_corrections):
+        if not _factored(b, s, e, t, b.current):
+            return INFINITE
+        size = _remaining(b, s, e, t)
+        if not 0.0 < size < before:
+            return min(size, before)
+        before = size
+    return before
+
+
+@compiled
+def _converged(b, s, e, t):
+    """Correct the interpolant by new factors; return False if it does not converge.
+
+    The geometric stiffness of forces by interpolation errors may exceed inertia. A matrix of a shorter step removes
+    these forces first. At convergence to the rounding of coordinates, forces may balance less than required.
+    """
+    unbalanced = _left(b, s, e, t)
+    parts = 1.0
+    for _ in range(POLISHING.most_corrections):
+        size = _by_new_factors(b, s, e, t)
+        if size == 0.0 or (size < 1.0 and _left(b, s, e, t) < unbalanced):
             return True
+        parts *= CONSISTENCY.step_parts
+        if not _first_correction(b, s, e, t, parts):
+            return False
     return False
 
 
@@ -142,8 +185,8 @@ def corrected(output_correction, state, equations, t):
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
     if b.factored > 0.0:
-        if _settled(b, s, e, t):
+        if _remaining(b, s, e, t) == 0.0:
             return True
         _interpolated(b, t)
         _look(b, s, e, t)
-    return _factored(b, s, e, t) and _settled(b, s, e, t)
+    return _converged(b, s, e, t)
