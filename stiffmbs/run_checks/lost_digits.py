@@ -48,6 +48,8 @@ def lost_digits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     state, t = dynamics.state, float(rows.t[-1])
     state.q[:], state.u[:] = rows.q[-1], rows.u[-1]
     name, lost, at_end = lost_digits(state, t)
+    if not lost > RUN_CHECKS.lost * at_end:
+        return
     linear = dynamics.system.per_velocity(1.0, 0.0) == 1.0
     inertia = np.abs(dynamics.system.mass * rows.acceleration)[:, linear]  # forces may vanish at the end of a run
     largest = max(at_end, float(np.nanmax(inertia, initial=0.0)))

@@ -40,8 +40,9 @@ def farthest_body():
 
 
 def largest_loss():
-    rows = Record(t=np.zeros(1), q=np.zeros((1, 1)), u=np.zeros((1, 1)))
-    dynamics = Record(state=Record(q=np.zeros(1), u=np.zeros(1)))
+    rows = Record(t=np.zeros(1), q=np.zeros((1, 1)), u=np.zeros((1, 1)), acceleration=np.zeros((1, 1)))
+    system = Record(mass=np.ones(1), per_velocity=lambda linear, angular: np.full(1, linear))
+    dynamics = Record(state=Record(q=np.zeros(1), u=np.zeros(1)), system=system)
 
     def is_silent(lost):
         with patch.object(lost_digits, "lost_digits", lambda *_: ("k", lost, 1.0)):
