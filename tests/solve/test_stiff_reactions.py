@@ -57,3 +57,15 @@ def test_simulations_and_followed_runs_correct_states_within_steps(rigid, solver
         for name in REACTIONS:
             found[name].append(simulation[name])
     assert error(found, rigid) < 0.01
+
+
+def interpolated(run):
+    """Return the notes on interpolated states of a run with a bushing of 1e14 N/m."""
+    return [note for note in stiffmbs.run(pendulum(run, 1e14)).notes if "interpolated" in note]
+
+
+def test_interpolated_states_that_cannot_be_corrected_are_told():
+    """One correction, in place of eight, does not suffice."""
+    (note,) = interpolated("solver: bdf, rtol: 1e-3, tuning: {polishing: {most_corrections: 1}}")
+    assert "stiff forces do not balance" in note and "solver: radau" in note
+    assert not interpolated("solver: bdf, rtol: 1e-4")

@@ -248,7 +248,8 @@ class NativeEngine(Engine):
         return np.concatenate([[self._ida.t, 1.0], self._ida.y, self._ida.yp])
 
     def note(self) -> str:
-        return "; ".join(filter(None, (self._order.note(self._ida.history.count), self._ida.unresolved())))
+        notes = self._order.note(self._ida.history.count), self._ida.unresolved(), self._ida.output_correction.note()
+        return "; ".join(filter(None, notes))
 
     def steps(self) -> int:
         return self._ida.history.count

@@ -78,9 +78,17 @@ class OutputCorrection:
         """
         self._cells["long"], self._cells["enough"], self._cells["balanced"] = long_step, part, balanced
 
+    def note(self) -> str:
+        """Return a sentence on states that could not be corrected; empty if there are none."""
+        count, first = int(self._cells["failed"]), float(self._cells["first_failed"])
+        return (
+            f"coordinates are interpolated at {count} output time{'s' * (count > 1)} from t = {first:.6g} s on, where stiff forces "
+            "do not balance: they and reactions may be wrong there; reduce rtol, or use solver: radau"
+        ) * (count > 0)
+
     def forget(self) -> None:
-        """Discard the factors and their pivots."""
-        self._cells["factored"] = 0.0
+        """Discard the factors and their pivots, and the number of states that could not be corrected."""
+        self._cells["factored"], self._cells["failed"] = 0.0, 0
         if self._assembled is not None and self._assembled.pivots is not None:
             self._assembled.pivots["ready"] = 0
 

@@ -77,7 +77,7 @@ factor of long steps and least residual within them; largest velocity change wit
 equal times; number of breakpoints passed, and steps before the last."""
 
 OUTPUT_CORRECTION = Layout({
-    "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
+    "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL, "failed": INT_CELL, "first_failed": FLOAT_CELL,
     "balanced": FLOAT_CELL, "force_end": INTS, "force_row": INTS,
     "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
     "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
@@ -88,7 +88,7 @@ OUTPUT_CORRECTION = Layout({
 """Newton's iteration on interpolated states (`stiffmbs.solve.ida.native.output_correction`).
 
 Cells: cj of the factors (0 for none), cj of IDA, part of the tolerance that may remain, step, s, above which states
-within it are corrected; allowed imbalance relative to the largest force.  Then rows of the equations of motion, forces
+within it are corrected; number of states that could not be corrected, time of the first, s; allowed imbalance relative to the largest force.  Then rows of the equations of motion, forces
 before moments, and their ends; rows of position constraints; system that closes joints; memory for a pose."""
 
 ITERATION = Layout({

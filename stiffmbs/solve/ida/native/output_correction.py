@@ -189,4 +189,9 @@ def corrected(output_correction, state, equations, t):
             return True
         _interpolated(b, t)
         _look(b, s, e, t)
-    return _converged(b, s, e, t)
+    if _converged(b, s, e, t):
+        return True
+    if b.failed == 0:
+        b.first_failed = t
+    b.failed = b.failed + 1
+    return False
