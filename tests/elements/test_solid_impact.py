@@ -60,7 +60,7 @@ def test_a_box_whose_middle_is_beyond_the_edge_tips_over():
 
 def test_solids_that_pass_into_each_other_stop_the_run():
     found = solved(f"{pair(BOX, PLATE)}, stiffness: 10", f"{BODY}, position: [0, 0, 0.2]", duration=1)
-    assert found.time[-1] < 1 and "found solids that overlap by a quarter of the least size" in found.message
+    assert found.time[-1] < 1 and "found solids that overlap by a quarter of the smallest size" in found.message
 
 
 def test_shapes_are_named():

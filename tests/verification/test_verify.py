@@ -130,15 +130,15 @@ def test_a_kinematic_run_says_that_it_is_exact():
 
 @pytest.mark.long
 def test_a_stiff_force_at_a_loose_tolerance_is_told(tmp_path):
-    """The cushioned parallelogram of the guide, stiffer still: force 32 times too large."""
+    """The cushioned parallelogram of the guide, stiffer still: the peak is a tenth too large."""
     text = (EXAMPLES.parent / "docs" / "guide" / "bushings.md").read_text(encoding="utf-8")
     scene, softer = (
         stiffmbs.read_scene(text.split("```yaml\n")[1].split("```")[0], [("k_b", k)]) for k in ("1e10 N/m", "1e9 N/m")
     )
     exact = np.abs(stiffmbs.run(scene, rtol=1e-10)["head3.fx"]).max()
-    found = stiffmbs.verify(scene, rtol=1e-3)
+    found = stiffmbs.verify(scene, rtol=1e-4)
     wrong = abs(np.abs(found["head3.fx"]).max() - exact)
-    assert wrong > 0.3 * exact
+    assert wrong > 0.05 * exact
     (told,) = [note for note in found.notes if "error bars of peaks" in note]
     assert "3.f" in told
     assert max(found.errors["head3.fx"].least, found.errors["head3.fx"].greatest) > wrong
