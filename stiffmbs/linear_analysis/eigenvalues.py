@@ -38,10 +38,18 @@ def eigen(matrix: np.ndarray, n_poses: int, n_states: int = 0) -> tuple[np.ndarr
     scale = np.ones(len(matrix))
     scale[n_poses:end] = _fastest_rate(matrix, n_poses, end) or 1.0
     values, vectors, levels = _deflated(matrix * scale / scale[:, None])
+    values, vectors = _real_if_double(values, vectors)
     at_zero = [scale[:, None] * level for level in levels]
     nothing = np.zeros((len(matrix), 0))
     generalised = np.hstack([nothing, *at_zero[1:]])
     return values, scale[:, None] * vectors, Zeros(at_zero[0] if at_zero else nothing, generalised)
+
+
+def _real_if_double(values: np.ndarray, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return eigenvalues and eigenvectors in which pairs with imaginary parts of the size of rounding are two real ones."""
+    double = np.abs(values.imag) <= ZERO_SINGULAR * len(values) * np.abs(values)
+    real = np.where(values.imag < 0.0, vectors.imag, vectors.real)
+    return np.where(double, values.real, values), np.where(double, real, vectors)
 
 
 def _fastest_rate(matrix: np.ndarray, n_poses: int, end: int) -> float:

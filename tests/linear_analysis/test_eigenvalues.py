@@ -37,3 +37,17 @@ def test_stiffness_of_rounding_hides_no_rate_of_a_state(rounding):
     expected = np.linalg.eigvals(matrix[2:, 2:])
     assert np.sort(values.real) == pytest.approx(np.sort(expected), rel=1e-9)
     assert zeros.eigenvectors.shape[1] + zeros.generalised.shape[1] == 2
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_double_real_eigenvalues_are_real(seed):
+    """Rounding makes a pair with imaginary parts of 1e-14 of some."""
+    rng = np.random.default_rng(seed)
+    basis = np.eye(6) + 0.3 * rng.standard_normal((6, 6))
+    blocks = np.diag([-100 / 3, -100 / 3, -1.0, -2.0, -3.0, -3.0])
+    blocks[4, 5], blocks[5, 4] = 5.0, -5.0
+    matrix = basis @ blocks @ np.linalg.inv(basis)
+    values, vectors, _ = eigen(matrix, 3)
+    assert np.sum(values.imag == 0) == 4
+    np.testing.assert_allclose(matrix @ vectors, vectors * values, atol=1e-10)
+    assert np.linalg.matrix_rank(vectors, tol=1e-6) == 6
