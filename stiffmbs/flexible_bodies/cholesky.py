@@ -61,13 +61,14 @@ class Cholesky:
 
     def __init__(self, matrix: csc_array, points: np.ndarray) -> None:
         parts = dissection(matrix, points)
-        self._order = (3 * np.concatenate(parts)[:, None] + np.arange(3)).ravel()
+        nodes = np.concatenate([np.empty(0, dtype=np.int64), *parts])
+        self._order = (3 * nodes[:, None] + np.arange(3)).ravel()
         ends = np.cumsum([3 * len(part) for part in parts])
         self._fronts = _fronts(csc_array(matrix[self._order][:, self._order]), ends.tolist())
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Return the solutions for right-hand sides, shape (3 n,) or (3 n, k)."""
-        x = right[self._order].reshape(len(right), -1)
+        x = np.atleast_2d(right.T).T[self._order]
         for front in self._fronts:
             part = dtrsm(1.0, front.own, x[front.begin : front.end], lower=1)
             x[front.begin : front.end] = part
@@ -134,7 +135,8 @@ def dissection(matrix: csc_array, points: np.ndarray) -> list[np.ndarray]:
     points : ndarray, shape (n, 3)
     """
     blocks = matrix.tobsr((3, 3))
-    graph = csr_array((np.ones(len(blocks.indices), dtype=np.int8), blocks.indices, blocks.indptr))
+    entries = np.ones(len(blocks.indices), dtype=np.int8), blocks.indices, blocks.indptr
+    graph = csr_array(entries, shape=(len(points), len(points)))
     parts: list[np.ndarray] = []
     waiting = [(np.arange(len(points)), True)]
     while waiting:

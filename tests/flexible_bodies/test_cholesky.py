@@ -9,10 +9,11 @@ from scipy.sparse import coo_array, csc_array
 from skfem.helpers import dot
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
+from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies import cholesky
 from stiffmbs.flexible_bodies.cholesky import Cholesky, dissection
 
-from .bars import DENSITY, NU, E, bar, face
+from .bars import DENSITY, LENGTH, NU, E, bar, face
 
 
 @settings(deadline=None, max_examples=60)
@@ -108,3 +109,18 @@ def test_the_stages_of_a_reduction_are_logged(tmp_path, caplog):
         "computing 3 normal modes",
         "computing the geometric stiffening of 9 modes",
     ]
+
+
+def test_a_body_of_interface_nodes_alone(tmp_path):
+    """An element between two rigid faces, whose axial displacement is linear."""
+    from stiffmbs.flexible_bodies.reduction import reduce
+
+    model = bar(tmp_path, "hexahedron", along=1, across=1)
+    ends = [face(model, 0.0, "a"), face(model, 0.4, "b")]
+    body = reduce(model, ends, 0)
+    assert len(body.frequencies) == 6
+    confined = E * (1 - NU) / ((1 + NU) * (1 - 2 * NU))  # the faces keep their size
+    axial = np.sqrt(12 * confined / DENSITY) / LENGTH / (2 * np.pi)
+    assert np.abs(body.frequencies / axial - 1).min() < 1e-9
+    with pytest.raises(InputError, match="modes: found 2, expected 0 or fewer"):
+        reduce(model, ends, 2)
