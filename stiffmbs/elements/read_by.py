@@ -43,6 +43,7 @@ def in_file(kind: type[Any], read: Callable[[Path], Any], description: str) -> R
     """Return the marker of a field that takes an object, or the name of a file from which it is read."""
 
     def found_in_file(found: object, context: Context) -> Any:
+        """Return the object, or that of the named file."""
         if isinstance(found, kind):
             return found
         if not isinstance(found, str | Path):

@@ -106,6 +106,7 @@ def one_of(expected: str, *kinds: type[Described]) -> ReadBy:
     by_name = {kind.model_fields["type"].default: kind for kind in kinds}
 
     def read(found: object, context: Context) -> Any:
+        """Return the entry validated by the class that its type selects."""
         if isinstance(found, kinds):
             return found
         if not isinstance(found, dict):

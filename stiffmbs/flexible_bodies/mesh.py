@@ -1,4 +1,4 @@
-"""Meshes of solid elements, read by meshio and assembled by scikit-fem."""
+"""Meshes of solid elements, read by meshio, with the shape functions of scikit-fem."""
 
 from __future__ import annotations
 

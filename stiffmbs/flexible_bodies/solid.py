@@ -64,9 +64,9 @@ class Solid:
 
     def mass(self, density: float) -> csr_array:
         """Return the consistent mass matrix for a density, kg/m^3, shape (3 n, 3 n), kg."""
-        values, weights = self._basis().basis, self._basis().dx
-        at_points = np.array([np.asarray(values[k][0]) for k in range(len(self.nodes))]).transpose(1, 0, 2)
-        return csr_array(kron(self.pairs.matrix(at_points, density * weights[:, None] * at_points), eye_array(3)))
+        basis = self._basis()
+        at_points = np.array([np.asarray(basis.basis[k][0]) for k in range(len(self.nodes))]).transpose(1, 0, 2)
+        return csr_array(kron(self.pairs.matrix(at_points, density * basis.dx[:, None] * at_points), eye_array(3)))
 
     def _constants(self) -> tuple[float, float]:
         """Return Lame's constants mu and lambda, N/m^2."""

@@ -32,14 +32,17 @@ class CollocationVariations(VariationalEquations):
         self._columns = np.broadcast_to(column * STAGES + stage[None, :, None], shape).ravel()
 
     def begin(self, t: float, first_step: float, s: np.ndarray, rates: np.ndarray) -> None:
+        """Begin at the sensitivities s; the stages need neither the first step nor rates."""
         self._t, self._s = t, s
         self._known = t, s[None]
 
     def advance(self, steps: np.ndarray) -> None:
+        """Solve the stage equations of some steps."""
         for step in steps:
             self._t, self._s = step[-1, 0], self._stages(step)[-1]
 
     def within(self, row: np.ndarray, step: np.ndarray) -> np.ndarray:
+        """Return the collocation polynomial of the next step at the time of a row."""
         place = (row[0] - self._t) / (step[-1, 0] - self._t)
         nodes = np.concatenate([[0.0], self._method.nodes])
         apart = place - nodes

@@ -136,6 +136,7 @@ def unknowns(dynamics: Dynamics) -> int:
     """Return the number of unknowns of BDF: coordinates, velocities, and two multipliers per constraint."""
 
     def counted() -> int:
+        """Count them once for each dynamics."""
         coordinates = dynamics.coordinates
         solved_for = dynamics.system.active & ~coordinates.satisfied
         free = coordinates.independent.sum() + coordinates.independent_u.sum()

@@ -14,42 +14,15 @@ from unittest.mock import patch
 import pytest
 
 from stiffmbs import tuning
-from tests.decisions import (
-    auto,
-    dynamics,
-    equilibria,
-    error_control,
-    event_search,
-    events,
-    explicit_steps,
-    linear_analysis,
-    linear_solvers,
-    presolve,
-    radau,
-    redundancy,
-    run_checks,
-    sensitivities,
-    verification,
-)
 from tests.parameters import changed, factors_of_tests
 
-MODULES = (
-    auto,
-    dynamics,
-    equilibria,
-    error_control,
-    event_search,
-    events,
-    explicit_steps,
-    linear_analysis,
-    linear_solvers,
-    presolve,
-    radau,
-    redundancy,
-    run_checks,
-    sensitivities,
-    verification,
-)
+MODULES = [
+    import_module(f"tests.decisions.{name}")
+    for name in (
+        "auto", "dynamics", "equilibria", "error_control", "event_search", "events", "explicit_steps", "linear_analysis",
+        "linear_solvers", "presolve", "radau", "redundancy", "run_checks", "sensitivities", "verification",
+    )
+]  # fmt: skip
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
 EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED.items()}
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import null_space
 
-from .system import State, difference
+from .elements import State
+from .system import difference
 
 STEP = 3e-4
 

@@ -80,6 +80,7 @@ class _WithoutInstants(ast.NodeTransformer):
     """
 
     def visit_Call(self, node: ast.Call) -> ast.Call:
+        """Replace the middle value of an IF."""
         self.generic_visit(node)
         match node:
             case ast.Call(ast.Name("branch"), [x, below, _, above]):

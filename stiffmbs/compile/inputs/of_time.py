@@ -194,6 +194,7 @@ class _WithoutRoots(ast.NodeTransformer):
     """Replace sqrt(x^2), sqrt(x*x) and (x^2)^0.5 by abs(x), whose breakpoint the range of a root does not show."""
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
+        """Replace the root of a square."""
         self.generic_visit(node)
         match node:
             case ast.Call(ast.Name("sqrt"), [inner]) if (x := _squared(inner)) is not None:
@@ -201,6 +202,7 @@ class _WithoutRoots(ast.NodeTransformer):
         return node
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        """Replace a square to the power of 0.5."""
         self.generic_visit(node)
         match node:
             case ast.BinOp(inner, ast.Pow(), ast.Constant(0.5)) if (x := _squared(inner)) is not None:

@@ -73,18 +73,22 @@ class NativeEngine(Engine):
         self.forget()
 
     def forget(self) -> None:
+        """Discard what earlier runs have left, so that results do not depend on them."""
         self._ida.forget()
         self._order.forget()
         self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
 
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
+        """Take the breakpoints and narrow features of the inputs."""
         self._ida.see_inputs(features, duration)
 
     def leave_out(self, masked: np.ndarray) -> None:
+        """Leave unknowns out of the error test."""
         self._ida.leave_out(masked)
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
+        """Start at consistent values, with the precision of Newton's iteration."""
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
         self._ida.error_norm.filter_always(self._order.held)
@@ -92,6 +96,7 @@ class NativeEngine(Engine):
         self._ida.begin(t, y, yp, highest_order=self._order.order)
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
+        """Start by one compiled call, from the second start on; return False where it does not apply."""
         if not self._started or self._starts is None:  # not worth their preparation for one start
             self._started = True
             return False
@@ -102,6 +107,7 @@ class NativeEngine(Engine):
         return True
 
     def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
+        """Restart after events by one compiled call; return None where it does not apply."""
         if self._starts is None or self._event_restarts is None:
             return None
         self._ida.error_norm.filter_always(self._order.held)
@@ -148,6 +154,7 @@ class NativeEngine(Engine):
             )  # IDA reads it only at a start
 
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+        """Integrate by compiled calls, past stops at which compiled restarts apply; report at output times."""
         status, served, passed = Status.GOING, 0, 0
         event_restarts = self._event_restarts if len(stops) > 1 else None
         if event_restarts is None or not (event_restarts.may_pass and self._ida.may_pass):
@@ -180,6 +187,7 @@ class NativeEngine(Engine):
         return served, status, passed
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
+        """Integrate by compiled calls, and report each step."""
         status = Status.GOING
         while status is Status.GOING:
             times, rows = np.empty(LOOP.most_steps), np.empty((LOOP.most_steps, self._width))

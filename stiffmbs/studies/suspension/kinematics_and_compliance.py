@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from numbers import Integral, Real
 from typing import Any
@@ -227,14 +227,7 @@ def kinematics_and_compliance(
     SolverError
         If the axle has no equilibrium on the rig.
     """
-    if not isinstance(points, Integral) or points < 5 or points % 2 == 0:
-        raise InputError(f"points: found {points}, expected an odd number, 5 or more")
-    for name, amplitude in amplitudes.items():
-        if name not in AMPLITUDES:
-            near = did_you_mean(name, AMPLITUDES)
-            raise InputError(f"{name}={amplitude!r}: found no such case{near}, expected {', '.join(AMPLITUDES)}")
-        if not isinstance(amplitude, Real) or not 0 <= amplitude < np.inf:
-            raise InputError(f"{name}: found {amplitude!r}, expected a number, zero or more, in the unit of the case")
+    _check(points, amplitudes)
     refuse_text("wheels", wheels, "bodies")
     data = data_of(model)
     if data.dimensions != 3:
@@ -262,18 +255,36 @@ def kinematics_and_compliance(
             start, compliance = pose.hubs, compliance_of(pose)
             measures = _at_start(pose, setup)
         rows.append(_measured(pose, start, case))
-    sweeps = {}
-    for k, case in enumerate(cases):
-        first = k * (2 * half + 2)
-        order = [*range(first + 2 * half + 1, first + half + 1, -1), *range(first, first + half + 1)]
-        abscissa = sizes[case.name] * np.linspace(-1, 1, points)
-        channels = {name: np.array([rows[k].get(name, np.nan) for k in order]) for name in rows[first]}
-        sweeps[case.name] = Sweep(case, abscissa, channels)
     assert compliance is not None
     message = f"{len(rows)} equilibria after {moves} moves"
     return KinematicsAndCompliance(
-        data.name, found, setup.vehicle, measures, compliance, sweeps, message, setup.angular
+        data.name, found, setup.vehicle, measures, compliance, _sweeps(cases, sizes, half, rows), message, setup.angular
     )
+
+
+def _check(points: object, amplitudes: Mapping[str, Any]) -> None:
+    """Refuse a number of points without a middle one, unknown load cases, and amplitudes that are not numbers."""
+    if not isinstance(points, Integral) or points < 5 or points % 2 == 0:
+        raise InputError(f"points: found {points}, expected an odd number, 5 or more")
+    for name, amplitude in amplitudes.items():
+        if name not in AMPLITUDES:
+            near = did_you_mean(name, AMPLITUDES)
+            raise InputError(f"{name}={amplitude!r}: found no such case{near}, expected {', '.join(AMPLITUDES)}")
+        if not isinstance(amplitude, Real) or not 0 <= amplitude < np.inf:
+            raise InputError(f"{name}: found {amplitude!r}, expected a number, zero or more, in the unit of the case")
+
+
+def _sweeps(
+    cases: Sequence[LoadCase], sizes: Mapping[str, float], half: int, rows: Sequence[Mapping[str, float]]
+) -> dict[str, Sweep]:
+    """Return the curves of the load cases; the equilibria of each go from its middle to the upper, then to the lower end."""
+    found = {}
+    for number, case in enumerate(cases):
+        first = number * (2 * half + 2)
+        order = [*range(first + 2 * half + 1, first + half + 1, -1), *range(first, first + half + 1)]
+        channels = {name: np.array([rows[k].get(name, np.nan) for k in order]) for name in rows[first]}
+        found[case.name] = Sweep(case, sizes[case.name] * np.linspace(-1, 1, 2 * half + 1), channels)
+    return found
 
 
 def _applies(case: LoadCase, axle: Axle) -> bool:

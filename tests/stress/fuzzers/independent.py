@@ -17,9 +17,10 @@ from stiffmbs.compile.bodies import BODY_KINDS
 from stiffmbs.errors import StiffmbsError
 from stiffmbs.linear_analysis.modes import Mode
 from stiffmbs.model.read_scene import read_scene
+from tests.oracle.elements import State
 from tests.oracle.linear import linear
 from tests.oracle.scenes import FEATURES, FORCES, random_content
-from tests.oracle.system import State, System
+from tests.oracle.system import System
 
 from ..case import Outcome, Verdict, measured
 from ..random_scenes import forces

@@ -48,6 +48,7 @@ class JointFriction(AnyJointFriction):
     )
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        """Yield fields that are invalid, also lengths that do not fit the joint's kind, with the reason."""
         yield from super().validation_errors(joints)
         joint = joints[self.joint.joint]
         for field, sorts in (("thrust_radius", (PIN,)), ("torsion_radius", (GUIDE,)), ("length", (PIN, SLEEVE, GUIDE))):

@@ -149,10 +149,12 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def unloaded_radius(e: Symbolic) -> Expr:
+        """Return the unloaded radius, m."""
         return e.properties.UNLOADED_RADIUS
 
     @staticmethod
     def carried(e: Symbolic, deflection: Expr, rate: Expr) -> Expr:
+        """Return the vertical force, N, by deflection, m, and its rate, m/s, of 5.2, PAC2002 with pressure, or Fiala."""
         p = e.properties
         spring = p.deflection_load or (lambda x: p.VERTICAL_STIFFNESS * x)
         stiffer = 1 if p.NOMPRES is None else 1 + p.QPFZ1 * pressure_increment(e)
