@@ -12,6 +12,7 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies import cholesky
 from stiffmbs.flexible_bodies.cholesky import Cholesky, dissection
+from stiffmbs.flexible_bodies.solid import NodePairs
 
 from .bars import DENSITY, LENGTH, NU, E, bar, face
 
@@ -124,3 +125,25 @@ def test_a_body_of_interface_nodes_alone(tmp_path):
     assert np.abs(body.frequencies / axial - 1).min() < 1e-9
     with pytest.raises(InputError, match="modes: found 2, expected 0 or fewer"):
         reduce(model, ends, 2)
+
+
+@pytest.mark.parametrize(("count", "parts"), [(64, 1), (65, 3)])
+def test_nodes_that_are_eliminated_together(count, parts):
+    """A chain of one node more has two halves and a separator."""
+    line = np.arange(count)
+    matrix = _of_edges(line[1:], line[:-1], count, np.random.default_rng(0))
+    assert len(dissection(matrix, line[:, None] * [1.0, 0.0, 0.0])) == parts
+
+
+def test_columns_that_are_added_together():
+    """Above the diagonal, the first row changes within the first columns only."""
+    target = np.zeros((600, 600), order="F")
+    cholesky._add_lower(target, np.arange(600), np.ones((600, 600)))
+    assert np.array_equal(np.tril(target), np.tril(np.ones((600, 600))))
+    assert np.count_nonzero(target[0]) == 256
+
+
+def test_elements_whose_matrices_are_computed_together():
+    """Ten functions of three components: 900 numbers for each element, 80 MB in all."""
+    pairs = NodePairs(np.arange(10)[:, None])
+    assert [part.stop for part in pairs.parts(20_000)] == [11_111, 22_222]

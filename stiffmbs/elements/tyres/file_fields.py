@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, Final
 
 from pydantic import Field
 
@@ -180,7 +180,7 @@ REPLACED = {2: "nonlinear transient slip", 3: "rigid ring dynamics"}
 """Dynamics that relaxation lengths replace, by the second digit of USE_MODE."""
 
 
-SMOOTHED = 2
+SMOOTHED: Final = 2
 """Last digit of USE_MODE of a Fiala tyre whose forces rise over the first tenth of a second."""
 
 

@@ -262,7 +262,7 @@ def kinematics_and_compliance(
     )
 
 
-def _check(points: object, amplitudes: Mapping[str, Any]) -> None:
+def _check(points: object, amplitudes: Mapping[str, float]) -> None:
     """Refuse a number of points without a middle one, unknown load cases, and amplitudes that are not numbers."""
     if not isinstance(points, Integral) or points < 5 or points % 2 == 0:
         raise InputError(f"points: found {points}, expected an odd number, 5 or more")
