@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,6 +44,8 @@ class Car:
         scene's own start.
     steering : str
         Joint that steers.
+    steered : tuple of str
+        That joint, and the steering wheel or rack that turns with it.
     angular : bool
         True if its coordinate is an angle.
     wheelbase, track : float
@@ -62,6 +64,7 @@ class Car:
     uprights: Mapping[str, str]
     rolling: tuple[str, ...]
     steering: str
+    steered: tuple[str, ...]
     angular: bool
     wheelbase: float
     track: float
@@ -105,7 +108,7 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
     joint = _steering(scene, steering)
     return Car(
         body, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()},
-        _rolling(scene, wheels.values()), joint,
+        _rolling(scene, wheels.values()), joint, tuple(dict.fromkeys([joint, *_steering_joints(scene)])),
         scene.joints[joint].kind == "revolute",
         float((at["front_left"] + at["front_right"] - at["rear_left"] - at["rear_right"])[0] / 2),
         float((at["front_left"] - at["front_right"] + at["rear_left"] - at["rear_right"])[1] / 2),
@@ -141,17 +144,27 @@ def _rolling(scene: Scene, wheels: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*wheels, *shafts, *getattr(scene.start, "rolling", ())]))
 
 
+def _sliding_or_turning(scene: Scene) -> list[str]:
+    return [name for name, joint in scene.joints.items() if joint.kind in ("prismatic", "revolute")]
+
+
+def _steering_joints(scene: Scene) -> Iterator[str]:
+    """Yield the steering wheel and the rack by their names, if a scene has one of each name only."""
+    for last in STEERING_JOINTS:
+        found = [name for name in _sliding_or_turning(scene) if name.rpartition(".")[2] == last]
+        if len(found) == 1:
+            yield found[0]
+
+
 def _steering(scene: Scene, given: str | None) -> str:
-    known = [name for name, joint in scene.joints.items() if joint.kind in ("prismatic", "revolute")]
+    known = _sliding_or_turning(scene)
     if given is not None:
         if given not in known:
             near = did_you_mean(given, known)
             raise InputError(f"found no prismatic or revolute joint '{given}'{near}, expected the joint that steers")
         return given
-    for last in STEERING_JOINTS:
-        found = [name for name in known if name.rpartition(".")[2] == last]
-        if len(found) == 1:
-            return found[0]
+    for name in _steering_joints(scene):
+        return name
     raise InputError(
         "found no single joint named steering_wheel or guide, expected the joint that steers: --steering JOINT"
     )
@@ -216,17 +229,18 @@ def _strip(content: dict[str, Any], car: Car) -> tuple[str, ...]:
         gone.append(f"use.{name}.")
     joints = content.get("joints") or {}
     for name in [
-        name for name, entry in joints.items() if isinstance(entry, dict) and _steers(entry.get("joint"), car)
+        name for name, entry in joints.items() if isinstance(entry, dict) and entry.get("joint") in car.steered
     ]:
         del joints[name]
         gone.append(f"joints.{name}")
+    held = [str(entry.get("joint")) for entry in joints.values() if isinstance(entry, dict)]
+    if car.angular and (racks := [joint for joint in held if joint.rpartition(".")[2] in STEERING_JOINTS]):
+        raise InputError(
+            f"found drives of {', '.join(racks)} in a car that is steered by {car.steering}, and several joints of these "
+            "names, expected none that holds its rack"
+        )
     _set_roads(content)
     return tuple(gone)
-
-
-def _steers(joint: object, car: Car) -> bool:
-    """Return True for the joint that steers, and for a rack or steering wheel that turns with it."""
-    return joint == car.steering or str(joint).rpartition(".")[2] in STEERING_JOINTS
 
 
 def _set_roads(content: Any) -> None:

@@ -1,6 +1,7 @@
 """`stiffmbs handling` on the example car, against relations of the bicycle model, and its messages."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import stiffmbs
 from stiffmbs.commands.main import main
 from stiffmbs.reading.files.yaml_text import read_yaml
 from stiffmbs.studies.handling import study
-from stiffmbs.studies.handling.car import Manoeuvre, _renamed, car_of, with_manoeuvre
+from stiffmbs.studies.handling.car import Manoeuvre, _renamed, _strip, car_of, with_manoeuvre
 from stiffmbs.studies.handling.known import Known
 from stiffmbs.studies.handling.lane_changes import highest
 from stiffmbs.studies.handling.parameters import (
@@ -114,6 +115,21 @@ def test_a_steering_wheel_steers_the_lane_change():
     by_rack = stiffmbs.handling(scene, ["lane_change"], workers=1)
     turned = found["lane_change"]["largest steering"] * 0.05 / (2 * np.pi)
     assert turned == pytest.approx(by_rack["lane_change"]["largest steering"], rel=0.2)
+
+
+def test_drives_of_the_steering_alone_are_left_out():
+    """A second rack, as of a steered rear axle, keeps its drive; where a steering wheel turns one of two racks, that is refused."""
+    car = car_of(stiffmbs.load_scene(CAR))
+    assert car.steered == ("steering.guide",)
+    drives = {name: {"type": "drive", "joint": f"{name}.guide", "position": "0"} for name in ("steering", "rear_rack")}
+    content = {"joints": dict(drives)}
+    _strip(content, car)
+    assert list(content["joints"]) == ["rear_rack"]
+    by_wheel = replace(car, steering="column.bearing", steered=("column.bearing",), angular=True)
+    with pytest.raises(
+        stiffmbs.InputError, match=r"drives of steering.guide, rear_rack.guide in a car that is steered by"
+    ):
+        _strip({"joints": dict(drives)}, by_wheel)
 
 
 def test_variables_read_the_driver_of_the_test():
