@@ -234,7 +234,8 @@ class Dynamics:
     def assemble(self, t: float, tolerance: float | None = None, most: int | None = None) -> int:
         """Correct positions by minimum-norm Newton moves until |C| <= tolerance; return their number or a failure."""
         allowed = CONSISTENCY.position_tolerance if tolerance is None else tolerance
-        return ASSEMBLE.short_call(t, allowed, most or CONSISTENCY.most_assembly_moves, self._at)
+        moves = CONSISTENCY.most_assembly_moves if most is None else most
+        return ASSEMBLE.short_call(t, allowed, moves, self._at)
 
     def correct_velocities(self, t: float) -> int:
         """Apply the smallest correction of u in the mass norm with J u + C_t = 0; return 0 or a failure."""
