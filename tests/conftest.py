@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, settings
 from scipy.integrate import solve_ivp
 
 from stiffmbs.commands.starting import scene_files
@@ -19,6 +20,8 @@ EXAMPLE_SCENES = scene_files()
 G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
 
 os.environ.setdefault("SYMPY_CACHE_SIZE", "None")  # as the command has it: deriving takes a fourth less
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")  # no test depends on the speed of a machine
 gc.set_threshold(NEW_OBJECTS)  # as the command has it: 3 % of a run
 
 

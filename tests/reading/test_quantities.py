@@ -2,11 +2,13 @@
 
 import contextlib
 import math
+import re
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import stiffmbs
 from stiffmbs.reading.formula.text import FormulaError
 from stiffmbs.reading.units.quantity import in_si, quantity
 from stiffmbs.reading.units.units import Quantity
@@ -131,3 +133,13 @@ def test_arithmetic_is_pythons(text):
 def test_numbers_whose_products_overflow_are_refused(found):
     with pytest.raises(FormulaError, match=r"expected a length below 1e\+100 m"):
         in_si(found, "length")
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [("t", "tonne"), ("Nm", "N m"), ("Nmm", "N mm"), ("Ns", "N s"), ("kgm", "kg m"), ("mm2", "mm^2"), ("m3", "m^3"), ("degrees", "deg"),
+     ("Newton", "N"), ("kph", "km/h"), ("sec", "s"), ("lbs", "lb"), ("Meters", "m"), ("hz", "Hz")],
+)  # fmt: skip
+def test_units_in_other_spellings_are_suggested(written, meant):
+    with pytest.raises(stiffmbs.InputError, match=re.escape(f"'{written}' (did you mean '{meant}'?)")):
+        stiffmbs.read_scene(f"{{bodies: {{a: {{mass: 2 {written}, inertia: 1}}}}, run: {{duration: 1}}}}")

@@ -13,7 +13,7 @@ from ..files.quoted import quoted, written
 from ..formula.functions import FUNCTIONS, IN_NUMBERS, check_functions
 from ..formula.measured import dimension_of
 from ..formula.text import OF_NUMBERS, UNIT, FormulaError, evaluate, parse
-from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_units, one
+from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_units, one, unit_of_spelling
 
 TEXTS = 4096
 """Number of cached texts."""
@@ -96,7 +96,9 @@ def of_name(
         if name in table:
             return table[name]
     listed = ", ".join(parameters) if parameters else "none"
-    near = did_you_mean(name, (*units, *parameters))
+    unit = unit_of_spelling(name)
+    of_units = f" (did you mean '{unit}'?)" if unit else did_you_mean(name, units)
+    near = did_you_mean(name, parameters) or of_units
     raise FormulaError(
         f"found the unknown name '{name}'{near}, expected a unit, pi or a parameter of the scene ({listed})"
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -74,6 +75,26 @@ DIMENSIONS: dict[str, tuple[Dimension, str]] = {
     }.items()
 }  # fmt: skip
 """Dimension and unit of the fields of elements, by name."""
+
+
+SPELLED = {
+    "t": "tonne", "lbs": "lb", "sec": "s", "second": "s", "hr": "h", "hour": "h", "degree": "deg", "radian": "rad", "meter": "m", "metre": "m",
+    "newton": "N", "\u03bcm": "um", "kph": "km/h", "kmh": "km/h", "revs": "rev",
+}  # fmt: skip
+"""Units as scenes write them, by other spellings in the singular."""
+
+
+def unit_of_spelling(name: str) -> str:
+    """Return a unit as scenes write it, by another spelling such as ``Nm``, ``mm2`` or ``degrees``; empty if unknown."""
+    lower = name.casefold()
+    for each in (lower, lower.removesuffix("s")):
+        if each in SPELLED:
+            return SPELLED[each]
+    power = re.fullmatch(r"(.+)([2-4])", name)
+    if power and power[1] in UNITS:
+        return f"{power[1]}^{power[2]}"
+    products = (f"{name[:k]} {name[k:]}" for k in range(1, len(name)) if name[:k] in UNITS and name[k:] in UNITS)
+    return next(products, "")
 
 
 def one(dimension: str) -> str:
