@@ -38,15 +38,6 @@ def file_of(units="SI", mode=1, more="", **changed):
     )
 
 
-@pytest.fixture
-def read(tmp_path):
-    def reader(text):
-        (tmp_path / "fiala.tir").write_text(text)
-        return TyreProperties.from_file(tmp_path / "fiala.tir")
-
-    return reader
-
-
 def published(load, kappa, alpha, direction=1.0, friction=1.0):
     """Fx, Fy, My, Mz of MSC Adams/Tire's Fiala model in ISO axes; arrays."""
     load = np.maximum(load, 1e-12)

@@ -122,15 +122,6 @@ def test_a_wheel_on_the_road(given, hand):
     )
 
 
-@pytest.fixture
-def read(tmp_path):
-    def reader(text):
-        (tmp_path / "front.tir").write_text(text)
-        return TyreProperties.from_file(tmp_path / "front.tir")
-
-    return reader
-
-
 PRESSED = FILE.replace("PCX1 = 1.6", "PCX1 = 1.6\nPPX1 = -0.4\nPPX3 = 0.1")
 CONDITIONS = "[TIRE_CONDITIONS]\nIP = 0.00027\nIP_NOM = 0.00022\n"
 

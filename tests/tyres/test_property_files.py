@@ -8,7 +8,6 @@ from stiffmbs import InputError, load_scene
 from stiffmbs.elements.tyres.names import AS_BEFORE, LATER
 from stiffmbs.elements.tyres.property_file import UNITS
 from stiffmbs.spatial import MagicFormulaTyre
-from stiffmbs.tyres import TyreProperties
 
 FILE = """$ a tyre
 [UNITS]
@@ -43,17 +42,8 @@ OWN1 = 3
 """
 
 
-@pytest.fixture
-def read(tmp_path):
-    def reader(text=FILE):
-        (tmp_path / "front.tir").write_text(text)
-        return TyreProperties.from_file(tmp_path / "front.tir")
-
-    return reader
-
-
 def test_numbers_have_the_units_of_the_file(read):
-    found = read().coefficients
+    found = read(FILE).coefficients
     assert found["UNLOADED_RADIUS"] == pytest.approx(0.32)
     assert found["VERTICAL_STIFFNESS"] == pytest.approx(2e5)
     assert found["VERTICAL_DAMPING"] == pytest.approx(500)
@@ -62,7 +52,7 @@ def test_numbers_have_the_units_of_the_file(read):
 
 
 def test_unknown_keys_and_missing_weights_are_noted(read):
-    notes = " ".join(read().notes())
+    notes = " ".join(read(FILE).notes())
     assert "OWN1" in notes
     assert "friction ellipse" in notes
     assert "table [SHAPE]" in notes
@@ -161,7 +151,7 @@ def test_a_pressure_outside_its_range_is_noted(read):
 
 def test_values_without_effect_are_not_noted(read):
     neutral = "[SCALING_COEFFICIENTS]\nLAMU = 1\nLGYR = 1.0\n[ALIGNING_COEFFICIENTS]\nQTZ1 = 0\n[MDI_HEADER]\nFILE_TYPE = 'tir'\n"
-    assert list(read(FILE + neutral).notes()) == list(read().notes())
+    assert list(read(FILE + neutral).notes()) == list(read(FILE).notes())
 
 
 def test_sections_are_namespaces(read):
@@ -216,7 +206,7 @@ run: {duration: 1 ms}
 
 @pytest.mark.long
 def test_a_scene_finds_the_file_beside_it(read, tmp_path):
-    read()
+    read(FILE)
     (tmp_path / "scene.yaml").write_text(SCENE)
     scene = load_scene(tmp_path / "scene.yaml")
     assert scene.forces["tyre"].properties.coefficients["FNOMIN"] == pytest.approx(4000)
@@ -319,7 +309,7 @@ def test_radians_read_as_degrees_are_noted(read, unit, angle, narrow):
 
 
 def test_missing_sections_are_named(read):
-    notes = " ".join(read().notes())
+    notes = " ".join(read(FILE).notes())
     assert "there are no [ALIGNING_COEFFICIENTS]: the aligning torque is zero" in notes and "[UNITS]" not in notes
     assert "ALIGNING" not in " ".join(read(f"{FILE}[ALIGNING_COEFFICIENTS]\nQDZ1 = 0.1\n").notes())
     si = FILE.partition("[MODEL]")[2].replace("16700", "16.7").replace("320", "0.32").replace("0.2\n", "2e5\n", 1)

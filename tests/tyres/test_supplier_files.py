@@ -139,15 +139,6 @@ FILES = {
 ENCODINGS = {"5.2 of Windows, Latin-1": "latin-1", "6.2 in UTF-16": "utf-16"}
 
 
-@pytest.fixture
-def read(tmp_path):
-    def reader(text, encoding="utf-8"):
-        (tmp_path / "tyre.tir").write_bytes(text.encode(encoding))
-        return TyreProperties.from_file(tmp_path / "tyre.tir")
-
-    return reader
-
-
 @pytest.mark.parametrize("ends", ["\n", "\r\n"], ids=["LF", "CRLF"])
 @pytest.mark.parametrize("name", FILES)
 def test_each_file_is_read_as_the_same_tyre(read, name, ends):
