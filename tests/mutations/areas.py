@@ -32,7 +32,7 @@ AREAS = {
         ("stiffmbs/elements/forces/*.py", "stiffmbs/elements/spatial/forces/*.py", "stiffmbs/elements/spatial/*impact.py"),
         ELEMENTS,
     ),
-    "tyres": Area(("stiffmbs/elements/tyres/*.py", "stiffmbs/elements/spatial/forces/*tyre.py"), ("tests/tyres", *ELEMENTS)),
+    "tyres": Area(("stiffmbs/elements/tyres/*.py", "stiffmbs/elements/spatial/forces/*tyre.py"), ("tests/tyres", "tests/roads", *ELEMENTS)),
     "friction": Area(
         ("stiffmbs/elements/forces/*friction.py", "stiffmbs/elements/spatial/forces/joint_friction.py"),
         ("tests/elements/test_joint_friction.py", "tests/elements/test_spatial_joint_friction.py", "tests/adams", *ELEMENTS),

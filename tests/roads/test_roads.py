@@ -11,7 +11,7 @@ from stiffmbs.compile.table_values import curve
 from stiffmbs.roads import CosineBump, FlatRoad, FormulaRoad, Iso8608Road, Road, SineSweep, StepRoad, TableRoad
 from stiffmbs.spatial import Body, Marker, Model, Prismatic, VelocityEquation, VerticalTyre
 
-from .wheels import reported, wheel
+from ..tyres.wheels import reported, wheel
 
 K = 1e5
 PROFILE = Table(table=[(0, 0), (1, 0.02), (2, 0.0), (3, 0.01)], lines=True)

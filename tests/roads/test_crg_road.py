@@ -10,7 +10,7 @@ from stiffmbs import InputError, load_scene, run
 from stiffmbs.roads import CrgRoad
 from stiffmbs.spatial import VerticalTyre
 
-from .wheels import reported, wheel
+from ..tyres.wheels import reported, wheel
 
 pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
 

@@ -11,7 +11,7 @@ from stiffmbs.reading.table import Table
 from stiffmbs.roads import CosineBump, FlatRoad, FormulaRoad, Iso8608Road, Road, SineSweep, StepRoad, TableRoad
 from stiffmbs.spatial import VerticalTyre
 
-from .wheels import reported, wheel
+from ..tyres.wheels import reported, wheel
 
 RADIUS = 0.3
 

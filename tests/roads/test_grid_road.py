@@ -9,7 +9,7 @@ from stiffmbs import InputError, load_scene, run
 from stiffmbs.roads import GridRoad
 from stiffmbs.spatial import VerticalTyre
 
-from .wheels import wheel
+from ..tyres.wheels import wheel
 
 FILE = """# x down, y across
   -1.0, 0.0, 2.0
