@@ -10,19 +10,21 @@ import struct
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
+from typing import Final
 from zlib import crc32
 
 import numpy as np
 
 from ..dynamics.storage import blocks, release
 
-VERSION = 45
+VERSION: Final = 45
 """Version of the ZIP format with sizes of 64 bits."""
-NAMES_IN_UTF8 = 0x800
-FIRST_OF_1980 = 33
+NAMES_IN_UTF8: Final = 0x800
+FIRST_OF_1980: Final = 33
 """Earliest date of the format; a constant one makes the same results the same file."""
-IN_64_BITS, MEMBERS_IN_64_BITS = 2**32 - 1, 2**16 - 1
-"""Entries whose values follow in fields of 64 bits."""
+IN_64_BITS: Final = 2**32 - 1
+MEMBERS_IN_64_BITS: Final = 2**16 - 1
+"""Entries of 32 and 16 bits whose values follow in fields of 64 bits."""
 
 
 def write_archive(path: Path, arrays: Mapping[str, np.ndarray]) -> None:

@@ -20,7 +20,7 @@ MODULES = [
     import_module(f"tests.decisions.{name}")
     for name in (
         "auto", "dynamics", "equilibria", "error_control", "event_search", "events", "explicit_steps", "linear_analysis",
-        "linear_solvers", "presolve", "radau", "redundancy", "run_checks", "sensitivities", "verification",
+        "linear_solvers", "presolve", "radau", "redundancy", "results", "run_checks", "sensitivities", "verification",
     )
 ]  # fmt: skip
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
@@ -62,6 +62,7 @@ def with_others(parameter):
         "linear_analysis",
         "presolve",
         "redundancy",
+        "results",
         "run_checks",
         "sensitivity_equations",
         "solve",

@@ -1,0 +1,185 @@
+"""Decisions on results: scales of channels, energy balances, error bars, joined runs."""
+
+from __future__ import annotations
+
+from unittest.mock import patch
+
+import numpy as np
+
+from stiffmbs.errors import InputError
+from stiffmbs.model.settings import RunSettings
+from stiffmbs.results import (
+    energy_balance,
+    energy_balance_notes,
+    error_bars,
+    flexible_motion,
+    joined,
+    requests,
+    saved_state,
+    scales,
+)
+from stiffmbs.results.joint_angles import JointAngles
+from tests.decisions.common import Record
+from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
+
+BDF = RunSettings(solver="bdf", rtol=1e-6)
+
+
+def scale_of(channel, unit="", size=1.0, **channels):
+    """Return the scale of a channel, from the end values of motions that begin at 0; dots are underscores."""
+    motions = {name.replace("_", "."): np.array([0.0, value]) for name, value in channels.items()}
+    return scales.scales(motions, size, {channel: unit} if unit else {})[channel]
+
+
+def balance(change, **fields):
+    """Return a balance of 1 J exchanged, with one interval within one step of a solver."""
+    usual = {
+        "within": np.zeros(1),
+        "steps": np.zeros(1, dtype=int),
+        "resolved": 0.0,
+        "scale": 1.0,
+        "keeps_energy": False,
+    }
+    return energy_balance.Balance(np.arange(2.0), np.array([0.0, change]), np.zeros(2), **{**usual, **fields})
+
+
+def instants_of_a_balance():
+    """Return the number of instants, in thousands, that a balance uses of a million."""
+    energies = {name: np.zeros(10**6) for name in ("kinetic", "potential", "power")}
+    rows = Record(t=np.arange(1e6), **energies)
+    return len(energy_balance.energy_balance(Record(keeps_energy=True), rows, np.empty(0)).t) // 1000
+
+
+def largest_energy_without_a_check():
+    return count_while(lambda energy: not balance(1e-4 * energy).may_be_broken, DOUBLES)
+
+
+def unresolved_work_without_a_note():
+    """Return the work between output times, in quarter octaves of 1e-8 J of 1 J, that is not noted."""
+
+    def is_silent(work):
+        intervals = {"steps": np.array([2, 0]), "within": np.zeros(2)}
+        exchanged = balance(0.0, **intervals)
+        exchanged = energy_balance.Balance(
+            np.arange(3.0), np.array([0.0, work, work]), np.zeros(3), intervals["within"], intervals["steps"], 0.0, 1.0, False
+        )  # fmt: skip
+        return not energy_balance_notes.unresolved_work(exchanged)
+
+    return count_while(lambda work: is_silent(1e-8 * work), DOUBLES)
+
+
+def accepted(rtol):
+    """Return the part of the exchanged energy that may be missing."""
+    return energy_balance_notes._accepted(RunSettings(solver="bdf", rtol=rtol))
+
+
+def smallest_certain_loss():
+    """Return the missing energy, in quarter octaves of an end correction, that may be an error of the quadrature."""
+    rows = Record(t=np.arange(2.0))
+    system = Record(bodies=[])
+
+    def is_silent(missing):
+        one = balance(missing, within=np.ones(1))
+        with patch.multiple(energy_balance_notes, within_steps=lambda *_: np.ones(1, dtype=bool), _where=lambda *_: ""):
+            return not [*energy_balance_notes._left(system, one, rows, np.empty(0), 0.0)]
+
+    return count_while(is_silent, DOUBLES)
+
+
+def ignored_energy(reaction, potential):
+    """Return the energy below tolerance and rounding of a mechanism of 1 m, J."""
+    places = {"reaction": Record(source=[0]), "potential": Record(source=[1])}
+    system = Record(term=lambda _, name: places[name], mass=np.zeros(1), size=1.0)
+    rows = Record(values=np.array([[reaction, potential]]), acceleration=np.zeros((1, 1)))
+    return energy_balance_notes._negligible(system, rows, BDF)
+
+
+def largest_step_between_joined_runs():
+    """Return the step of a position, in quarter octaves of 1e-9 of its size, that continues a motion."""
+
+    def continues(step):
+        before, after = (Record(channels={"a.x": np.array([value])}) for value in (0.0, step))
+        return joined._goes_on(before, after, {"position": 1.0})
+
+    return count_while(lambda step: continues(1e-9 * step), DOUBLES)
+
+
+def largest_difference_of_turns():
+    rows = Record(t=np.arange(2.0))
+
+    def is_silent(apart):
+        angles = Record(followed=["j.angle"], _changes=lambda _: (np.zeros((1, 1)), np.full((1, 1), apart)))
+        return not [*JointAngles.uncertain(angles, rows)]
+
+    return count_while(lambda apart: is_silent(0.1 * apart), DOUBLES[:20])
+
+
+def smallest_angle_of_axes():
+    """Return the angle between z axes, in quarter octaves of 1 rad, up to which an Euler angle is defined."""
+
+    def is_defined(angle):
+        leaning = Record(axis=lambda *_: np.array([[np.sin(angle), 0.0, np.cos(angle)]]))
+        return requests._phi(leaning, leaning)[0] != 0.0
+
+    return count_while(is_defined, HALVES)
+
+
+def farthest_saved_row():
+    """Return the distance from a saved instant, in quarter octaves of 1e-12 s, that finds its row."""
+
+    def finds(apart):
+        try:
+            saved_state._number_of_row("saved", np.arange(2.0), apart)
+        except InputError:
+            return False
+        return True
+
+    return count_while(lambda apart: finds(1e-12 * apart), DOUBLES)
+
+
+def parts_of_stresses():
+    """Return the number of parts in which the peaks of stresses at 200 000 instants are found, of a body of 1000 modes."""
+    lengths = []
+
+    def stress(part):
+        lengths.append(part)
+        return np.zeros((1, 1, 6))
+
+    body = Record(
+        reduced=Record(modes=range(1000)), t=np.zeros(200_000), stress=stress, model=Record(nodes=np.zeros((1, 3)))
+    )
+    flexible_motion.FlexibleMotion.peaks(body)
+    return len(lengths)
+
+
+DECISIONS = {
+    "results.energy_balance:MOST_INSTANTS": instants_of_a_balance,
+    "results.energy_balance:BROKEN": largest_energy_without_a_check,
+    "results.energy_balance_notes:PER_TOLERANCE": lambda: accepted(1e-3),
+    "results.energy_balance_notes:REPORTED": unresolved_work_without_a_note,
+    "results.energy_balance_notes:CERTAIN": smallest_certain_loss,
+    "results.energy_balance_notes:OF_TOLERANCE": lambda: ignored_energy(1.0, 0.0),
+    "results.energy_balance_notes:OF_POTENTIAL": lambda: ignored_energy(0.0, 1.0),
+    "results.error_bars:SAFETY": lambda: error_bars.error_bar(np.zeros(2), [np.ones(2)], None, 0.0).over_time,
+    "results.error_bars:FINER": lambda: error_bars.between(np.arange(3.0), np.array([0.0, 1.0, 0.0]), np.array([0, 2])),
+    "results.flexible_motion:AT_ONCE": parts_of_stresses,
+    "results.joined:SAME_VALUE": largest_step_between_joined_runs,
+    "results.joint_angles:UNCERTAIN_TURN": largest_difference_of_turns,
+    "results.requests:ALIGNED": smallest_angle_of_axes,
+    "results.scales:LITTLE": lambda: scale_of("a.x", a_x=0.0, b_x=1.0),
+    "results.scales:LITTLE_FORCE": lambda: scale_of("j.fx", j_fx=0.0, k_fx=1.0),
+    "results.scales:ROUNDING": farthest_saved_row,
+    "results.scales:FIXED": lambda: scale_of("a.x", a_x=0.0),
+    "results.scales:CROSSED": lambda: scale_of("j.torque", j_torque=0.0, j_fx=1.0),
+    "results.scales:REQUEST_ROUNDING": lambda: count_while(
+        lambda value: scale_of("r", unit="?", r=value, a_x=1.0) > 0.0, HALVES
+    ),
+}  # fmt: skip
+EXPECTED = {
+    "results.energy_balance:MOST_INSTANTS": 90, "results.energy_balance:BROKEN": 27, "results.energy_balance_notes:PER_TOLERANCE": 0.1,
+    "results.energy_balance_notes:REPORTED": 27, "results.energy_balance_notes:CERTAIN": 7, "results.energy_balance_notes:OF_TOLERANCE": 1e-5,
+    "results.energy_balance_notes:OF_POTENTIAL": 1e-10, "results.error_bars:SAFETY": 2.0, "results.error_bars:FINER": 1.1,
+    "results.flexible_motion:AT_ONCE": 8, "results.joined:SAME_VALUE": 40, "results.joint_angles:UNCERTAIN_TURN": 14,
+    "results.requests:ALIGNED": 160, "results.scales:LITTLE": 0.1, "results.scales:LITTLE_FORCE": 0.01, "results.scales:ROUNDING": 40,
+    "results.scales:FIXED": 1e-9, "results.scales:CROSSED": 1e-5, "results.scales:REQUEST_ROUNDING": 187,
+}  # fmt: skip
