@@ -417,7 +417,7 @@ def test_a_cantilever_is_twisted_stretched_and_bent_by_its_stiffness():
     [
         ({"stiffness": (1, 2, 3)}, "stiffness: found a list of 3, expected six numbers, two blocks (of three numbers or 3x3), or six rows of six"),
         ({"stiffness": [[[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0], [0, 2, 1]]]}, "found 0 in row 5, column 6"),
-        ({"damping": ("1 N/m", 0, 0, 0, 0, 0)}, "damping.0.0: found '1 N/m', which is in kg s^-2, expected a damping in N s/m"),
+        ({"damping": ("1 N/m", 0, 0, 0, 0, 0)}, "damping.0.0: found '1 N/m', which is in N/m, expected a damping in N s/m"),
         ({"stiffness": [[1, 2, 3], 4]}, "stiffness: found a list of 2, expected six numbers, two blocks"),
         ({"stiffness": [[1, 2, 3], [[1, 2], [3, 4], [5, 6]]]}, "stiffness: found a list of 2, expected six numbers, two"),
         ({"stiffness": "stiff"}, "stiffness: found 'stiff', expected six numbers"),

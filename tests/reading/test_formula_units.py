@@ -123,7 +123,7 @@ def test_laws_with_units(entry):
         ({"joint": "pin", "velocity": "1 m/s"}, "found '1 m/s', which is in m/s, expected a velocity in rad/s"),
         ({"joint": "pin", "velocity": "50 Hz"}, "found Hz in '50 Hz', which is 1/s, expected rad/s, rpm"),
         ({"joint": "pin", "position": "3 mm"}, "joints.e.position: found '3 mm', which is in m, expected a position in rad"),
-        ({"joint": "rail", "position": "20 deg"}, "which is in no unit, expected a position in m"),
+        ({"joint": "rail", "position": "20 deg"}, "which is without a unit, expected a position in m"),
         ({"coordinate": "a.x", "velocity": "3 m"}, "which is in m, expected a velocity in m/s"),
     ],
 )  # fmt: skip

@@ -18,7 +18,7 @@ from ...reading.joint_name import JointReference
 from ...reading.marker import MarkerReference
 from ...reading.table import Table
 from ...reading.units.quantity import refuse_cycles
-from ...reading.units.units import named_unit
+from ...reading.units.units import in_its_unit, named_unit
 from ..element import Expr, Joint, Matrix, Symbolic
 from .relation import unfit_joints
 
@@ -139,7 +139,7 @@ def _unfit(field: str, law: Formula | Table, expected: Known) -> str:
     if not found.agrees_with(expected):
         assert found.exponents is not None and expected.exponents is not None
         unit = named_unit(expected.exponents) if any(expected.exponents) else "rad"
-        return f"found {what} in {named_unit(found.exponents)}, expected a {field} in {unit}"
+        return f"found {what} {in_its_unit(found.exponents)}, expected a {field} in {unit}"
     if isinstance(law, Formula) and expected.exponents == ANGULAR_VELOCITY.exponents:
         try:
             refuse_cycles(law.text, law.tree)

@@ -13,7 +13,7 @@ from ...reading.formula.dimension import Known, measured_in, product
 from ...reading.formula.field import OfMotion
 from ...reading.formula.formula import Formula
 from ...reading.units import si
-from ...reading.units.units import named_unit
+from ...reading.units.units import in_its_unit, named_unit
 from .amount import Amount, AnyAmount, positive, stated_dimension
 
 Scale = Annotated[AnyAmount, AfterValidator(positive)]
@@ -162,7 +162,7 @@ def _refuse_other_dimension(field: str, formula: Formula, start: Amount, expecte
     if start.known.stated and not formula.dimension.agrees_with(expected):
         assert formula.dimension.exponents is not None and expected.exponents is not None
         raise ValueError(
-            f"{field}: found '{formula.text}', which is in {named_unit(formula.dimension.exponents)}, expected "
+            f"{field}: found '{formula.text}', which is {in_its_unit(formula.dimension.exponents)}, expected "
             f"{named_unit(expected.exponents)}, the unit of start{per}"
         )
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..joint_name import FREE_COORDINATES, ORDERS
-from ..units.units import ANY, DIMENSIONS, Quantity, named_unit, one
+from ..units.units import ANY, DIMENSIONS, Quantity, in_its_unit, one
 from .dimension import PLAIN, UNKNOWN, Known, alike, known_of, measured_in, power, product
 from .functions import FUNCTIONS
 from .text import OF_NUMBERS, FormulaError, evaluate
@@ -80,7 +80,7 @@ def check_dimension(what: str, found: Known, dimension: str) -> None:
     if dimension != ANY and not found.is_of(dimension):
         assert found.exponents is not None
         raise FormulaError(
-            f"found {what} in {named_unit(found.exponents)}, expected {one(dimension)} in {DIMENSIONS[dimension][1]}"
+            f"found {what} {in_its_unit(found.exponents)}, expected {one(dimension)} in {DIMENSIONS[dimension][1]}"
         )
 
 

@@ -13,7 +13,7 @@ from ..files.quoted import quoted, written
 from ..formula.functions import FUNCTIONS, IN_NUMBERS, check_functions
 from ..formula.measured import dimension_of
 from ..formula.text import OF_NUMBERS, UNIT, FormulaError, evaluate, parse
-from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_units, one, unit_of_spelling
+from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_its_unit, one, unit_of_spelling
 
 TEXTS = 4096
 """Number of cached texts."""
@@ -125,7 +125,7 @@ def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | No
             refuse_cycles(found, _parsed(found)[0])
         if dimension != ANY and result.dimension is not None and result.dimension != expected:
             raise FormulaError(
-                f"found '{quoted(found)}', which is in {in_units(result.dimension)}, expected {one(dimension)} in {unit}"
+                f"found '{quoted(found)}', which is {in_its_unit(result.dimension)}, expected {one(dimension)} in {unit}"
             )
         return _of_ordinary_size(result.value, dimension)
     if isinstance(found, bool) or not hasattr(found, "__float__") or getattr(found, "ndim", False):

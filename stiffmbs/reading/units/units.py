@@ -117,6 +117,11 @@ def named_unit(dimension: Dimension) -> str:
     return in_units(dimension)
 
 
+def in_its_unit(dimension: Dimension) -> str:
+    """Return the adverbial of a found value in a message: ``in N m``, or ``without a unit``."""
+    return f"in {named_unit(dimension)}" if any(dimension) else "without a unit"
+
+
 def in_text(quantity: Quantity) -> float | str:
     """Return a quantity in the form of a scene, in SI units: its number, or text with its unit."""
     if quantity.dimension is None:
