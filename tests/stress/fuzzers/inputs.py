@@ -95,6 +95,6 @@ def _driven(rng: np.random.Generator) -> Verdict:
     change = float(np.ptp(everywhere))
     error = float(np.max(np.abs(x - expected))) / max(change, 1e-300)
     unseen = max(np.max(everywhere) - np.max(x), np.min(x) - np.min(everywhere)) - DRIVE_ROUNDING
-    if unseen > UNSEEN * change and not any("output points" in note for note in solution.notes):
+    if unseen > UNSEEN * change and not any("between output times" in note for note in solution.notes):
         return Verdict(Outcome.WRONG, unseen / change, UNSEEN, f"a peak between output points is not told: {detail}")
     return measured(error, 1e-6 + DRIVE_ROUNDING / max(change, 1e-300), detail)
