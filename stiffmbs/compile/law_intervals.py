@@ -73,6 +73,15 @@ class Intervals(NamedTuple):
     kinks: np.ndarray
     zoned: int
 
+    def of_kinked(self, values: np.ndarray) -> list[int]:
+        """Return the number of the interval of each argument of a table with a kink, from the values of all functions."""
+        found = []
+        for k in np.flatnonzero(self.kinks):
+            breakpoints, period = self.breakpoints[self.first[k] : self.first[k + 1]], self.period[k]
+            argument = breakpoints[0] + (values[k] - breakpoints[0]) % period if period else values[k]
+            found.append(int(np.searchsorted(breakpoints, argument)))
+        return found
+
 
 def intervals_of(system: System) -> Intervals:
     """Return the intervals of all event functions of a system, cached for unchanged tables."""

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from ..compile.equations import ABSENT
+from ..compile.law_intervals import intervals_of
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import ChatteringError, SolverError
@@ -234,24 +235,25 @@ class Recorder(Integrator):
             return
         t, y, yp = rows[-1, 0], rows[-1, 2 : 2 + n].copy(), rows[-1, 2 + n :]
         back = SENSITIVITIES.rounding * max(abs(t), t - segment.first[0])
-        if segment.fired:
-            ahead = self._value(segment.fired[0], t + back, y + back * yp)
-            while back < SENSITIVITIES.furthest * (t - segment.first[0]):
-                if self._value(segment.fired[0], t - back, y - back * yp) * ahead < 0:
-                    break
+        furthest = SENSITIVITIES.furthest * (t - segment.first[0])
+        if back < furthest and self.dynamics.system.n_values("event_function"):
+            within = self._sides(segment, t - furthest, y - furthest * yp)
+            while back < furthest and self._sides(segment, t - back, y - back * yp) != within:
                 back *= 10.0
         rows[-1, 0] = t - back
         rows[-1, 2 : 2 + n] = y - back * yp
 
-    def _value(self, event: int, t: float, y: np.ndarray) -> float:
-        """Return an event function at a state."""
+    def _sides(self, segment: Segment, t: float, y: np.ndarray) -> list[int]:
+        """Return the sides of the event that ends a segment, and the intervals of tables with kinks, at a state."""
         state, lam = self.dynamics.state, self.equations.at["lam"]
         solved = lam != ABSENT
         with state.unchanged():
             state.q[:], state.u[:] = self.split(y)
             state.lam[solved] = y[lam[solved]]
             state.evaluate("event_function", t)
-            return float(state.values["event_function"][event])
+            values = state.values["event_function"]
+            events = [int(values[event] > 0.0) for event in segment.fired[:1]]
+            return events + intervals_of(self.dynamics.system).of_kinked(values)
 
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
         """Yield the progress as any integrator, stopping at each breakpoint; the steps are in `segments` afterwards."""

@@ -29,10 +29,11 @@ def reached(*_):
 
 
 def ended(duration=1.0, fired=()):
-    """Return how far the end of a segment at t = 1 s is moved back, and how often the event function is evaluated."""
+    """Return how far the end of a segment at t = 1 s is moved back, and how often the sides of events are evaluated."""
     evaluated = []
     rows = np.array([[1.0, 0.0, 0.0, -1.0]])
-    recorder = Record(equations=Record(n=1), _value=lambda *_: evaluated.append(1) or 1.0)
+    dynamics = Record(system=Record(n_values=lambda _: len(fired)))
+    recorder = Record(equations=Record(n=1), dynamics=dynamics, _sides=lambda *_: evaluated.append(1) or len(evaluated))
     Recorder._end_before_the_jump(recorder, Record(rows=rows, fired=fired, first=[1.0 - duration]))
     return rows[0, 2], len(evaluated)
 

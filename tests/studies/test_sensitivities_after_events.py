@@ -276,3 +276,28 @@ def test_a_drive_whose_velocity_jumps_pushes_the_other_bodies(name, value):
         for shift in (-h, h)
     ]
     assert found.to[name] == pytest.approx((ends[1] - ends[0]) / (2 * h), rel=2e-5)
+
+
+KINKS_OVER_A_STATE = """
+tables: {{ramp: {{table: [[0, 0], [0.3, 1], [0.5, -1], [0.8, 2], [3, 0]], lines: true}}}}
+bodies: {{a: {{mass: 1, inertia: 1, velocity: [{v}, 0]}}}}
+joints: {{rail: {{type: prismatic, i: a, j: ground}}}}
+states: {{z: {{rate: "a.x - z/5", start: -0.09}}, p: {{zero: "p - a.x - 0.1*a.vx", start: 0}}}}
+forces: {{push: {{type: force, i: a, force: ["40*ramp(t + z)", 0]}}}}
+run: {{duration: 0.5 s, points: 11}}
+"""
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_a_kink_over_a_state_ends_steps_on_its_own_side(solver):
+    """The last step before a kink has the slope before it at all nodes, although the kink is located with an error."""
+
+    def velocity(v):
+        scene = stiffmbs.read_scene(KINKS_OVER_A_STATE.format(v=v))
+        return stiffmbs.run(scene, solver="projected", scheme="dop853", rtol=1e-13)["a.vx"]
+
+    h = 1e-4
+    near, far = (velocity(0.7 + step) - velocity(0.7 - step) for step in (h, 2 * h))
+    name = "bodies.a.velocity.0"
+    found = stiffmbs.sensitivities(stiffmbs.read_scene(KINKS_OVER_A_STATE.format(v=0.7)), name, "a.vx", solver=solver)
+    assert found.to[name] == pytest.approx((8 * near - far) / (12 * h), abs=1e-8)
