@@ -8,7 +8,7 @@ from .auto_choice import Choice, Switch
 from .auto_decisions import AUTO, ExplicitSteps, cost_ahead, loss_of_trial, since, tolerable_loss
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED
-from .ida.engine import Reached
+from .ida.native_engine import Reached
 
 
 class ExplicitCheck:

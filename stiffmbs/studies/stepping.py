@@ -15,8 +15,7 @@ from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..solve import SOLVERS
 from ..solve.events.restart import just_after, just_before, restarted
-from ..solve.ida.engine import Reached
-from ..solve.ida.native_engine import NativeEngine
+from ..solve.ida.native_engine import Reached
 from ..solve.integrator import Integrator
 from ..solve.radau.radau import radau_integrator
 from ..solve.settings import changed
@@ -36,9 +35,8 @@ class StartedSteps:
     def __init__(self, job: Job, q: np.ndarray, u: np.ndarray) -> None:
         self._dynamics, self._q, self._u = job.dynamics, q, u
         self._integrator = Integrator(job.dynamics, _finer(job.settings), memory="starts")
-        engine = self._integrator.engine
-        assert isinstance(engine, NativeEngine)
-        self._engine, self.compiled = engine, engine.restarts(job.dynamics, q, u)
+        self._engine = self._integrator.engine
+        self.compiled = self._engine.restarts(job.dynamics, q, u)
         self._features: InputFeatures | None = None
 
     def advance(self, t: float, end: float, features: InputFeatures) -> None:
@@ -104,12 +102,10 @@ class Stepper(Protocol):
 
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
-    """Return a stepper: by the steps of bdf or radau if the native engine runs them, otherwise by short runs."""
+    """Return a stepper: by the steps of bdf or radau without sampled states, otherwise by short runs."""
     made = {"bdf": Integrator, "radau": radau_integrator}.get(job.settings.solver)
     if made is not None and not job.dynamics.system.sampled.any():
-        integrator = made(job.dynamics, job.settings)
-        if isinstance(integrator.engine, NativeEngine):
-            return ImplicitSteps(job, integrator, start, t)
+        return ImplicitSteps(job, made(job.dynamics, job.settings), start, t)
     return ShortRuns(job, start, t)
 
 
@@ -117,14 +113,13 @@ class ImplicitSteps:
     """Steps of bdf or radau, as long as in one run, with interpolation in the last step.
 
     After a jump of inputs, IDA restarts and ends a step at the end of the first simulation step, as inputs mostly jump
-    again there. `integrator`: integrator with the native engine. `t`: time, s.
+    again there. `t`: time, s.
     """
 
     def __init__(self, job: Job, integrator: Integrator, start: InitialValues, t: float) -> None:
         self._job, self._dynamics, self._integrator = job, job.dynamics, integrator
-        engine = integrator.engine
-        assert isinstance(engine, NativeEngine)
-        self._engine, self._first, self._end, self._changes = engine, t, t, self._dynamics.input_changes
+        self._engine, self._changes = integrator.engine, self._dynamics.input_changes
+        self._first = self._end = t
         self._look_through(t)
         self._begin(start, t)
         self._present, self.q, self.u, self.length = t, start.q.copy(), start.u.copy(), 0.0

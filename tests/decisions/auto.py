@@ -53,7 +53,7 @@ def residual_by_which_radau_chooses():
     """Return the cost of a residual, in that of bdf, by which radau chooses the number of stages."""
     costs = []
     replaced = {
-        "chosen": lambda _: (None, None, 1000.0), "natural": nothing, "NativeEngine": nothing,
+        "chosen": lambda _: (None, 1000.0), "natural": nothing, "NativeEngine": nothing,
         "Radau": lambda *given: costs.append(given[4]) or Record(pair_cost=1.0),
     }  # fmt: skip
     with patch.multiple(radau, **replaced):

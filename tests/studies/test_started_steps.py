@@ -49,7 +49,7 @@ def test_compiled_starts_give_the_states_of_starts_by_python(case, examples, mon
     monkeypatch.setattr(Restarts, "advance", counted)
     found = stepped(scene, name, value, settings)
     assert sum(done) > 25, "starts that were compiled"
-    monkeypatch.setattr(Restarts, "serve", lambda system, connection: False)
+    monkeypatch.setattr(Restarts, "serve", lambda system: False)
     off = (
         1e-8 if "over time" in case else 1e-11
     )  # how long a step may be follows from the stretch of time that is looked at

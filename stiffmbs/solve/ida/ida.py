@@ -17,8 +17,8 @@ from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 from ..error_control.error_test import ErrorControl
+from ..linear_solvers.fixed_order import FixedOrder
 from .connection import BDF, MODULE, Connection, Formula
-from .matrices import Matrix
 from .native.parameters import LOOP
 from .session import Session
 from .statistics import Statistics, Status, failure_sentence
@@ -51,7 +51,7 @@ class NativeIda(Connection):
     equations : Equations
     state : State
         Working memory of residual and Jacobian.
-    matrix : Matrix
+    matrix : FixedOrder
         Storage and factorisation of the iteration matrix (`stiffmbs.solve.ida.choice`).
     rtol : float
         Relative tolerance.
@@ -96,7 +96,7 @@ class NativeIda(Connection):
         self,
         equations: Equations,
         state: State,
-        matrix: Matrix,
+        matrix: FixedOrder,
         rtol: float,
         atol: np.ndarray,
         *,
@@ -108,7 +108,7 @@ class NativeIda(Connection):
         formula: Formula | None = None,
         reported: np.ndarray | None = None,
     ) -> None:
-        n, formula = equations.n, formula or BDF(matrix)
+        n, formula = equations.n, formula or BDF()
         session = Session(formula.libraries())
         self._finalizer = weakref.finalize(self, session.close)
         super().__init__(equations, state, matrix, np.arange(n) if reported is None else reported, session, formula)

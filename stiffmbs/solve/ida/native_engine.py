@@ -1,10 +1,10 @@
-"""Native driver of IDA for `bdf`, without Python in the step loop."""
+"""Driver of IDA or Radau methods, without Python in the step loop."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -18,11 +18,10 @@ from ..error_control.native.parameters import NEWTON, POLISHING
 from ..error_control.newton import Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
 from ..events.restart import just_after
+from ..linear_solvers.fixed_order import FixedOrder
 from ..trajectory import History
 from .connection import BDF, Formula
-from .engine import Engine, Reached
 from .ida import AT_THE_END, NativeIda
-from .matrices import Matrix
 from .native.parameters import LOOP
 from .statistics import Status
 
@@ -30,6 +29,26 @@ if TYPE_CHECKING:
     from ...dynamics.initial import InitialValues
     from .starting.after_event import Begun, EventRestarts, Restarts
     from .starting.starts import Starts
+
+
+class Reached(NamedTuple):
+    """Progress of an integrator since its last report.
+
+    - `times`, `rows` of shapes (k,), (k, 2 * independent): output times (or ends of steps), and the independent
+      coordinates and velocities there (`stiffmbs.compile.equations.Equations.states` computes all of them).
+    - `y` of shape (n,): current time and unknowns.
+    - `fired`: event functions whose sign changes stopped the integrator; empty if none did.
+    - `failure`: reason of a failure; empty if there is none.
+    - `passed`: number of breakpoints at which the integrator restarted.
+    """
+
+    times: np.ndarray
+    rows: np.ndarray
+    t: float
+    y: np.ndarray
+    fired: tuple[int, ...] = ()
+    failure: str = ""
+    passed: int = 0
 
 
 class OrderLimit(Protocol):
@@ -46,22 +65,22 @@ class OrderLimit(Protocol):
     def note(self, steps: int) -> str: ...
 
 
-class NativeEngine(Engine):
-    """IDA through its C interface (`NativeIda`); implements `stiffmbs.solve.ida.engine.Engine`.
+class NativeEngine:
+    """IDA through its C interface (`NativeIda`).
 
     `equations`: equations in the order of the matrix. `dynamics`: its state is the working memory of residual and
     Jacobian. `formula`: BDF by default. `order`: limit of the order of BDF; detected by default.
     """
 
     def __init__(
-        self, equations: Equations, dynamics: Dynamics, matrix: Matrix, settings: RunSettings, control: ErrorControl,
+        self, equations: Equations, dynamics: Dynamics, matrix: FixedOrder, settings: RunSettings, control: ErrorControl,
         formula: Formula | None = None, order: OrderLimit | None = None,
     ) -> None:  # fmt: skip
         tolerances, reported = control.tolerances(equations, settings), equations.independent
         self._ida = NativeIda(
             equations, dynamics.state, matrix, *tolerances, max_step=settings.max_step,
             reported=reported, growth=control.growth,
-            formula=formula or BDF(matrix, control.predicted_residual),
+            formula=formula or BDF(control.predicted_residual),
             renewal=control.renewal,
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
@@ -80,15 +99,19 @@ class NativeEngine(Engine):
         self._counted = {"steps": 0, "convergence_failures": 0}
 
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
-        """Take the breakpoints and narrow features of the inputs."""
+        """Resolve the features of inputs by sufficiently short steps from the next start."""
         self._ida.see_inputs(features, duration)
 
     def leave_out(self, masked: np.ndarray) -> None:
-        """Leave unknowns out of the error test."""
+        """Ignore each event function for a number of steps from the next start."""
         self._ida.leave_out(masked)
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
-        """Start at consistent values, with the precision of Newton's iteration."""
+        """Start or restart at consistent values.
+
+        `newton` is the part of the tolerance that Newton's iteration may leave.  States within steps that are long for
+        the `stiffness` are corrected.
+        """
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
         self._ida.error_norm.filter_always(self._order.held)
@@ -107,7 +130,7 @@ class NativeEngine(Engine):
         return True
 
     def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
-        """Restart after events by one compiled call; return None where it does not apply."""
+        """Restart after a state and events within `ahead`, s, by one compiled call; return None where it does not apply."""
         if self._starts is None or self._event_restarts is None:
             return None
         self._ida.error_norm.filter_always(self._order.held)
@@ -154,7 +177,10 @@ class NativeEngine(Engine):
             )  # IDA reads it only at a start
 
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
-        """Integrate by compiled calls, past stops at which compiled restarts apply; report at output times."""
+        """Integrate to the first stop, or past stops at which compiled restarts apply; report at output times.
+
+        Ends early at an event or a failure. `Reached.passed` counts the stops at which it has restarted.
+        """
         status, served, passed = Status.GOING, 0, 0
         event_restarts = self._event_restarts if len(stops) > 1 else None
         if event_restarts is None or not (event_restarts.may_pass and self._ida.may_pass):
@@ -187,7 +213,7 @@ class NativeEngine(Engine):
         return served, status, passed
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
-        """Integrate by compiled calls, and report each step."""
+        """Integrate to `stop` and report each step; end early at an event or a failure."""
         status = Status.GOING
         while status is Status.GOING:
             times, rows = np.empty(LOOP.most_steps), np.empty((LOOP.most_steps, self._width))
@@ -216,7 +242,7 @@ class NativeEngine(Engine):
         """Return compiled restarts of this integrator from the state q and u; None if they do not apply."""
         from .starting.after_event import Restarts
 
-        if self._starts is None or not Restarts.serve(dynamics.system, self._ida):
+        if self._starts is None or not Restarts.serve(dynamics.system):
             return None
         return Restarts(dynamics, self._starts, (q, u))
 
@@ -241,6 +267,7 @@ class NativeEngine(Engine):
         return float(self._ida.cells["size"])
 
     def pause_after(self, steps: int) -> None:
+        """Return from integration after about so many steps at the latest."""
         self._ida.pause_after(steps)
 
     def keep_steps(self, kept: bool, places: np.ndarray = AT_THE_END) -> None:
@@ -256,16 +283,20 @@ class NativeEngine(Engine):
         return np.concatenate([[self._ida.t, 1.0], self._ida.y, self._ida.yp])
 
     def note(self) -> str:
+        """Return a sentence on the integration for the user; empty if there is none."""
         notes = self._order.note(self._ida.history.count), self._ida.unresolved(), self._ida.output_correction.note()
         return "; ".join(filter(None, notes))
 
     def steps(self) -> int:
+        """Return the number of steps since the first start."""
         return self._ida.history.count
 
     def statistics(self) -> dict[str, int | float | str]:
+        """Return the name of the linear solver, and counters since the first start."""
         return {"linear_solver": self.matrix.sentence(), **self._ida.statistics()}
 
     def last_step(self) -> tuple[float, int] | None:
+        """Return the size, s, and order of the last step, if known."""
         return self._ida.history.last
 
     def end_steps_at_kinks(self) -> None:
@@ -273,11 +304,14 @@ class NativeEngine(Engine):
         self._ida.watch.end_steps_at_kinks()
 
     def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Return begins, ends and interior values of steps much longer than their predecessors; None if not stored."""
         log = self._ida.long_steps
         return log.kept() if log else None
 
     def displaced(self) -> np.ndarray:
+        """Return estimated errors of positions as displacements along velocities, shape (n_u,)."""
         return self._ida.error_sums.displaced()
 
     def history(self) -> History:
+        """Return the ends of the steps, and their orders."""
         return History(self._ida.history.t, self._ida.history.order)

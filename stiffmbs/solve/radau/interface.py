@@ -57,7 +57,7 @@ class RadauFunctions(Libraries):
     """SUNDIALS functions, with those of IDA replaced by Radau methods."""
 
     def __init__(self, libraries: Libraries) -> None:
-        super().__init__(libraries.loaded, libraries.index)
+        super().__init__(libraries.loaded)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("IDA"):

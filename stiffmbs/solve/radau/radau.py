@@ -17,7 +17,6 @@ from ..error_control.error_test import ErrorControl
 from ..error_control.stability_limit import HIGHEST_ORDER
 from ..formulations import READ_BY_FORMULATIONS
 from ..ida.choice import chosen, natural
-from ..ida.engine import Engine
 from ..ida.native_engine import NativeEngine
 from ..integrator import Integrator
 from ..solver import Traits
@@ -78,9 +77,10 @@ def of_radau(dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
 
 def driven_by_radau(
     dynamics: Dynamics, settings: RunSettings, control: ErrorControl
-) -> tuple[Equations, Engine, float]:
+) -> tuple[Equations, NativeEngine, float]:
     """Return the equations, their driver and the mean cost of a real and two complex linear systems, ns."""
-    equations, matrix, cost = chosen(natural(dynamics, settings))
+    equations = natural(dynamics, settings)
+    matrix, cost = chosen(equations)
     stages = None if settings.stages == "auto" else settings.stages
     of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
     of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)

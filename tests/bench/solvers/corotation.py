@@ -25,11 +25,11 @@ from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve.ida.native_engine import NativeEngine
-from stiffmbs.solve.ida.sundae import Callbacks
 from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.radau.collocation import radau
 from stiffmbs.solve.radau.radau import radau_integrator
 
+from ...by_callbacks import Callbacks
 from ..costs import SCENES
 from ..error_control import scene
 from .complex_factors import factors_of, least

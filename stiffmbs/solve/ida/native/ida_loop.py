@@ -3,7 +3,7 @@
 from typing import Final
 
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
-from stiffmbs.compile.machine.native.calls import call_int, copy_bytes, int32
+from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
@@ -69,8 +69,6 @@ def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
     output_correction_view(c.output_correction).current = cj
     iteration_view(c.iteration).age = MADE
     add_entries(e, evaluate(s, e.matrix_set, t), cj, a)
-    for k in range(0, 6, 3):
-        copy_bytes(c.pattern[k], c.pattern[k + 1], c.pattern[k + 2])
     return int32(OK if _finite(a, e.n_slots) else RECOVERABLE)
 
 

@@ -14,7 +14,6 @@ from ....dynamics.dynamics import Dynamics
 from ...error_control.native.parameters import POLISHING
 from ...events.discontinuity import JUMP, VELOCITY_JUMP, direction_of
 from ...events.native.parameters import INDISTINCT
-from ..connection import Connection
 from ..native.layouts import EVENT_RESTART, RESTART
 from .starts import Starts, integers
 
@@ -114,10 +113,9 @@ class Restarts:
         self._call, self._at = _RESTART.call, self.table.ctypes.data
 
     @staticmethod
-    def serve(system: System, connection: Connection) -> bool:
-        """Return True if there are no event functions, algebraic states or solver threads."""
-        excluded = system.n_event_functions or len(system.algebraic_coordinates)
-        return not excluded and connection.on_one_thread
+    def serve(system: System) -> bool:
+        """Return True if there are no event functions and no algebraic states."""
+        return not (system.n_event_functions or len(system.algebraic_coordinates))
 
     def advance(self, t: float, end: float) -> bool:
         """Integrate from the state at t, s, to a later time; False, with the state unchanged, if it needs a run."""
