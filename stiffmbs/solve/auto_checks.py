@@ -14,10 +14,7 @@ from .ida.native_engine import Reached
 class ExplicitCheck:
     """Check of the explicit steps of a segment: they may be left to the implicit integrator.
 
-    Attributes
-    ----------
-    switch : Switch or None
-        Switch that the last check decided on.
+    `switch`: switch that the last check decided on, or None.
     """
 
     def __init__(self, choice: Choice, t: float) -> None:
@@ -42,12 +39,8 @@ class ExplicitCheck:
 class ImplicitCheck:
     """Check of the implicit steps of a segment: they are kept while their loss is tolerable, or if the rest of them costs less.
 
-    Attributes
-    ----------
-    rate : float
-        Cost of implicit steps per second of the motion in the last interval.
-    loss : float
-        Cost in excess of explicit steps, since it was last lower.
+    `rate`: cost of implicit steps per second of the motion in the last interval. `loss`: cost in excess of explicit
+    steps, since it was last lower.
     """
 
     def __init__(self, choice: Choice, t: float) -> None:

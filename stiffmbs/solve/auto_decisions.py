@@ -81,14 +81,9 @@ def since(before: Steps, counted: Steps) -> Steps:
 class Thresholds:
     """Thresholds of a run, which rise with each switch to bound the number of switches.
 
-    Attributes
-    ----------
-    return_ratio : float
-        Ratio of explicit to implicit cost at which implicit steps are resumed.
-    loss : float
-        Fraction of the remaining explicit cost that a trial of implicit steps may lose in addition to a start.
-    penalty : float
-        Explicit cost of a segment before the next trial of implicit steps.
+    - `return_ratio`: ratio of explicit to implicit cost at which implicit steps are resumed.
+    - `loss`: fraction of the remaining explicit cost that a trial of implicit steps may lose in addition to a start.
+    - `penalty`: explicit cost of a segment before the next trial of implicit steps.
     """
 
     return_ratio: float = 1.0

@@ -63,10 +63,7 @@ class Integrator:
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
         """Yield the progress at the times of the grid, or after each step; a failure comes last.
 
-        Parameters
-        ----------
-        passing : bool
-            Whether the engine may restart at several breakpoints before it returns.
+        `passing`: True if the engine may restart at several breakpoints before it returns.
         """
         t = grid.start
         self._jumps.clear()

@@ -80,7 +80,7 @@ def limited(distance, third=0.0):
 
 
 def detection():
-    found = StabilityLimitDetection(None, RunSettings(duration=1.0, rtol=1e-6), tuning.parameters_of(STABILITY_LIMIT))
+    found = StabilityLimitDetection(None, RunSettings(duration=1.0, rtol=1e-6))
     found.__dict__["_atol"] = np.array([1e-6])
     return found
 
@@ -88,7 +88,7 @@ def detection():
 def next_check_after(wave):
     """Return the steps to the next check after samples of a wave of a height in tolerances."""
     found, k = detection(), np.arange(LOOP.samples)
-    found.begin(0.0, 0, 0.0)
+    found.begin(0.0, 0)
     found.changed(np.column_stack([1.0 + k, 1e-6 * wave * (-1.0) ** k]), 10_000)
     return found.wait(10_000)
 

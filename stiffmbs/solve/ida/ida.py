@@ -46,46 +46,20 @@ class NativeIda(Connection):
     Only one thread at a time may use an instance.  Several threads may use their own instances and states: the
     interpreter's lock is released while IDA works.
 
-    Parameters
-    ----------
-    equations : Equations
-    state : State
-        Working memory of residual and Jacobian.
-    matrix : FixedOrder
-        Storage and factorisation of the iteration matrix (`stiffmbs.solve.ida.choice`).
-    rtol : float
-        Relative tolerance.
-    atol : ndarray, shape (n,)
-        Absolute tolerance of each unknown, greater than zero; a huge one excludes it from the error test and from
-        Newton's convergence test.
-    max_step : float
-        Largest step, s; 0 for none.
-    max_order : int
-        Highest order of BDF, 1 to 5.
-    newton : float, optional
-        Part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); 0.33 by default.
-    renewal : float, optional
-        Relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); 0.25 by default.
-    growth : float
-        Least factor by which a step is enlarged (IDASetEtaFixedStepBounds); IDA's own by default.
-    formula : Formula, optional
-        BDF with IDA's own convergence test by default.
-    reported : ndarray of int, optional
-        Unknowns returned at output times; all by default.
+    - `state`: working memory of residual and Jacobian.
+    - `matrix`: storage and factorisation of the iteration matrix (`stiffmbs.solve.ida.choice`).
+    - `rtol`, `atol` of shape (n,): relative tolerance, and absolute tolerance of each unknown, greater than zero; a huge
+      one excludes it from the error test and from Newton's convergence test.
+    - `max_step`: largest step, s; 0 for none. `max_order`: highest order of BDF, 1 to 5.
+    - `newton`: part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); IDA's own by default.
+    - `renewal`: relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); IDA's own by default.
+    - `growth`: least factor by which a step is enlarged (IDASetEtaFixedStepBounds); IDA's own by default.
+    - `formula`: BDF with IDA's own convergence test by default.
+    - `reported`: unknowns returned at output times; all by default.
+    - `y`, `yp` of shape (n,): solution at `t`, overwritten by every call.
+    - `begun`: True if IDA was started since it was created or reset.
 
-    Attributes
-    ----------
-    y, yp : ndarrays, shape (n,)
-        Solution at `t`, overwritten by every call.
-    begun : bool
-        True if IDA was started since it was created or reset.
-
-    Raises
-    ------
-    Unavailable
-        If the SUNDIALS libraries cannot be used (`stiffmbs.solve.ida.libraries`).
-    ValueError
-        If IDA rejects a setting.
+    Raises Unavailable if the SUNDIALS libraries cannot be used, and ValueError if IDA rejects a setting.
 
     References
     ----------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -51,30 +51,16 @@ class Reached(NamedTuple):
     passed: int = 0
 
 
-class OrderLimit(Protocol):
-    """Highest order of a formula, checked every few steps."""
-
-    order: int
-    held: bool
-
-    def forget(self) -> None: ...
-    def begin(self, t: float, steps: int, fastest: float) -> None: ...
-    def due(self, steps: int) -> bool: ...
-    def wait(self, steps: int) -> int: ...
-    def changed(self, samples: np.ndarray, steps: int) -> bool: ...
-    def note(self, steps: int) -> str: ...
-
-
 class NativeEngine:
     """IDA through its C interface (`NativeIda`).
 
     `equations`: equations in the order of the matrix. `dynamics`: its state is the working memory of residual and
-    Jacobian. `formula`: BDF by default. `order`: limit of the order of BDF; detected by default.
+    Jacobian. `formula`: BDF by default.
     """
 
     def __init__(
         self, equations: Equations, dynamics: Dynamics, matrix: FixedOrder, settings: RunSettings, control: ErrorControl,
-        formula: Formula | None = None, order: OrderLimit | None = None,
+        formula: Formula | None = None,
     ) -> None:  # fmt: skip
         tolerances, reported = control.tolerances(equations, settings), equations.independent
         self._ida = NativeIda(
@@ -88,7 +74,9 @@ class NativeEngine:
         self._make_starts = partial(self._ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
         self._started = False
-        self._order = order or StabilityLimitDetection(equations, settings)
+        self._order = StabilityLimitDetection(
+            equations, settings, is_active=formula is None and settings.max_order is None
+        )
         self.forget()
 
     def forget(self) -> None:
@@ -153,7 +141,7 @@ class NativeEngine:
             max(stiffness.allowed_residual, NEWTON.precision / self._rtol),
             POLISHING.unbalanced * self._rtol,
         )
-        self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
+        self._order.begin(t, self._ida.history.count)
 
     def _adapt(self, stop: float) -> None:
         """Adapt Newton's tolerance and the highest order between two calls."""
@@ -209,7 +197,7 @@ class NativeEngine:
         passed, steps = event_restarts.passed
         if passed:
             self._stiffness, self._newton = event_restarts.starts.found()
-            self._order.begin(event_restarts.t, before + steps, float(np.sqrt(self._stiffness.of_positions)))
+            self._order.begin(event_restarts.t, before + steps)
         return served, status, passed
 
     def by_steps(self, stop: float) -> Iterator[Reached]:

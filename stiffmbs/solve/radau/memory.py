@@ -78,22 +78,10 @@ def _doubled(unknowns: np.ndarray) -> np.ndarray:
 class Radau:
     """Radau methods in place of IDA's BDF (`stiffmbs.solve.ida.connection.Formula`).
 
-    Parameters
-    ----------
-    equations : Equations
-    matrix : FixedOrder
-        Real iteration matrix with its linear solver.
-    state : State
-    stages : int or None
-        Number of stages; None to choose it by the convergence of Newton's iteration.
-    cost : ImplicitCost
-        Cost of a residual and of a real iteration matrix.
-    parameters : RadauParameters
-
-    Attributes
-    ----------
-    pair_cost : float
-        Cost of a complex matrix, in real ones.
+    - `matrix`: real iteration matrix with its linear solver.
+    - `stages`: number of stages; None to choose it by the convergence of Newton's iteration.
+    - `cost`: cost of a residual and of a real iteration matrix.
+    - `pair_cost`: cost of a complex matrix, in real ones.
     """
 
     def __init__(
