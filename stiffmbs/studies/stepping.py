@@ -29,14 +29,13 @@ PART, FINEST = 0.01, 1e-12
 class StartedSteps:
     """Restarts of IDA, each with the steps to the next instant, in one compiled call if possible.
 
-    `q`, `u`: memory of the current state. `compiled`: compiled restarts.
+    `q`, `u`: memory of the current state.
     """
 
     def __init__(self, job: Job, q: np.ndarray, u: np.ndarray) -> None:
         self._dynamics, self._q, self._u = job.dynamics, q, u
         self._integrator = Integrator(job.dynamics, _finer(job.settings), memory="starts")
         self._engine = self._integrator.engine
-        self.compiled = self._engine.restarts(job.dynamics, q, u)
         self._features: InputFeatures | None = None
 
     def advance(self, t: float, end: float, features: InputFeatures) -> None:
@@ -45,7 +44,7 @@ class StartedSteps:
         `t`, `end`: times, s. `features`: features of the inputs around these times. Raises SolverError if the end
         cannot be reached; the state is then unchanged.
         """
-        if not (self.compiled and self._quickly(t, end, features) and self.compiled.advance(t, end)):
+        if not (self._quickly(t, end, features) and self._engine.advance_from(self._q, self._u, t, end)):
             self._run(t, end)
 
     def _quickly(self, t: float, end: float, features: InputFeatures) -> bool:

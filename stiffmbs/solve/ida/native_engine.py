@@ -27,7 +27,7 @@ from .statistics import Status
 
 if TYPE_CHECKING:
     from ...dynamics.initial import InitialValues
-    from .starting.after_event import Begun, EventRestarts, Restarts
+    from .starting.after_event import Begun, EventRestarts
     from .starting.starts import Starts
 
 
@@ -226,13 +226,12 @@ class NativeEngine:
                 return f"; the largest error was in {system.name_of(k, labels)}"
         return ""
 
-    def restarts(self, dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> Restarts | None:
-        """Return compiled restarts of this integrator from the state q and u; None if they do not apply."""
-        from .starting.after_event import Restarts
+    def advance_from(self, q: np.ndarray, u: np.ndarray, t: float, end: float) -> bool:
+        """Integrate a state, which is overwritten, to a later time by one compiled call without history.
 
-        if self._starts is None or not Restarts.serve(dynamics.system):
-            return None
-        return Restarts(dynamics, self._starts, (q, u))
+        Returns False, with the state unchanged, if that needs a run.
+        """
+        return self._event_restarts is not None and self._event_restarts.advance((q, u), t, end, self._order.order)
 
     @cached_property
     def _starts(self) -> Starts | None:

@@ -50,12 +50,6 @@ positions among the unknowns; entries for the relaxations and the Newton toleran
 term set; IDA's counter functions, space for one number, and their sums; functions of SUNDIALS.  A start changes only
 both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave."""
 
-RESTART = Layout({
-    "start": INTS, "q": FLOATS, "u": FLOATS, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
-})  # fmt: skip
-"""Restart of IDA after a jump of inputs (`stiffmbs.solve.ida.starting.native.start`), with the state between calls, and revolution
-counters with their angles."""
-
 EVENT_RESTART = Layout({
     "start": INTS, "n_event_functions": INT, "first_limit": INT, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
     "reach": FLOAT_CELL, "along_q": FLOATS, "along_u": FLOATS, "q": FLOATS, "u": FLOATS, "values": FLOATS, "found": INTS,

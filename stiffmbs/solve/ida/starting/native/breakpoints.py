@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past
-from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call
+from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.layouts import EVENT_RESTART
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
@@ -194,4 +194,27 @@ def restarted_at_event(t, ahead, counted, highest_order, table):
     call_int(b.set_highest_order, (c.memory, int32(highest_order)))
     w.t = after
     w.meets = _meets(w, s, m, after) if w.n_event_functions > 0 else 0
+    return int32(OK)
+
+
+def advance_from(t, end, highest_order, table):
+    """Start at the current state at t and integrate to `end`, where the current state is the result; return OK.
+
+    Too many steps, an event or a failure give another number.
+    """
+    if restarted_at_event(t, 0.0, 0, highest_order, table) < 0:
+        return int32(UNFINISHED)
+    b = start_view(event_restart_view(table).start)
+    c = native_ida_view(ints(b.ida))
+    call_int(c.stop_at, (c.memory, end))
+    c.stopping = end
+    clear_call(c)
+    flag = int32(OK)
+    for _ in range(LOOP.most_steps):
+        if flag != OK:
+            break
+        flag = stepped(c, ints(b.ida), end, end)
+    if flag != STOP_RETURN:
+        return int32(UNFINISHED)
+    load(state_view(c.state), equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
     return int32(OK)
