@@ -132,7 +132,7 @@ class Recorder(Integrator):
             super().__init__(dynamics, settings, CONTROL, memory="radau recorder", driver=driven_by_radau)
         else:
             super().__init__(dynamics, settings, memory="recorder")
-        self.engine.end_steps_at_kinks()
+        self.engine.ida.watch.end_steps_at_kinks()
         self.segments: list[Segment] = []
         self.chatters = False
         self._numbers = 0
@@ -249,7 +249,7 @@ class Recorder(Integrator):
 
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
         """Yield the progress as any integrator, stopping at each breakpoint; the steps are in `segments` afterwards."""
-        self.engine.keep_steps(True, self.nodes)
+        self.engine.ida.keep_steps(True, self.nodes)
         try:
             for reached in super().run(start, grid):
                 self._keep(reached)
@@ -258,10 +258,10 @@ class Recorder(Integrator):
             self.chatters = True
             raise
         finally:
-            self.engine.keep_steps(False)
+            self.engine.ida.keep_steps(False)
 
     def _keep(self, reached: Reached) -> None:
-        rows = self.engine.kept_steps()
+        rows = self.engine.ida.kept_steps()
         if not len(rows):
             return
         segment = self.segments[-1]

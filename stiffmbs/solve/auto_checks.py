@@ -72,5 +72,5 @@ class ImplicitCheck:
         taken = integrator.steps() - self._begun
         every = max(int(left / self._implicit.cost.step), int(AUTO.check_interval * taken), 1)
         self._next = integrator.steps() + every
-        integrator.engine.pause_after(every)
+        integrator.engine.ida.pause_after(every)
         return left

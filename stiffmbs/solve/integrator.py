@@ -68,7 +68,7 @@ class Integrator:
         t = grid.start
         self._jumps.clear()
         features = self.dynamics.input_features(grid.start, grid.end)
-        self.engine.see_inputs(features, grid.end - grid.start)
+        self.engine.ida.see_inputs(features, grid.end - grid.start)
         self._of_inputs = features.note
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
         self._masked = MaskedEvents(self.dynamics, chattering)
@@ -111,7 +111,7 @@ class Integrator:
 
         Return consistent values to start from, or None if the engine has restarted, and their time.
         """
-        self.engine.leave_out(self._masked.steps)
+        self.engine.ida.leave_out(self._masked.steps)
         begun = self.engine.begin_restart(q, u, t, ahead)
         if begun is None:
             return self._consistent(q, u, before, t, ahead)
@@ -170,7 +170,7 @@ class Integrator:
             yield Reached(times, np.tile(y[self.equations.independent], (len(times), 1)), t, y)
 
     def _begin(self, start: InitialValues, t: float) -> None:
-        self.engine.leave_out(self._masked.steps)
+        self.engine.ida.leave_out(self._masked.steps)
         if not self.engine.begin_at(start, t):
             self._begin_step_by_step(start, t)
 

@@ -50,14 +50,14 @@ class StartedSteps:
     def _quickly(self, t: float, end: float, features: InputFeatures) -> bool:
         """Return True if no breakpoint lies between; the integrator then has the inputs."""
         if self._features is not features:
-            self._engine.see_inputs(features, end - t)
+            self._engine.ida.see_inputs(features, end - t)
             self._features = features
         between = features.breakpoints
         return not len(between) or not np.any((between >= just_before(t)) & (between <= just_after(end)))
 
     def _run(self, t: float, end: float) -> None:
         self._features = None  # the run has the inputs up to its end only
-        self._engine.pause_after(np.iinfo(np.int32).max)  # never
+        self._engine.ida.pause_after(np.iinfo(np.int32).max)  # never
         start = restarted(self._dynamics, t, self._q, self._u)
         for reached in self._integrator.run(start, Grid(t, end, np.array([end]))):
             last = sound(self._integrator, reached)
@@ -138,7 +138,7 @@ class ImplicitSteps:
 
     def _begin(self, start: InitialValues, t: float) -> None:
         self._t, self._jumped, self._ended = t, False, False
-        self._engine.pause_after(1)
+        self._engine.ida.pause_after(1)
         self._steps: Iterator[Reached] = self._integrator.run(start, Grid(t, self._end, None))
 
     def advance(self, t: float) -> None:
@@ -161,11 +161,11 @@ class ImplicitSteps:
             else:
                 self._t = sound(self._integrator, reached).t
         self.q[:], self.u[:] = self._at(t)
-        self._present, self.length = t, self._engine.step
+        self._present, self.length = t, float(self._engine.ida.cells["size"])
 
     def _at(self, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u at a time within the last step."""
-        (q,), (u,) = self._integrator.equations.states(self._engine.at(t)[None])
+        (q,), (u,) = self._integrator.equations.states(self._engine.ida.reported_at(t)[None])
         return q, u
 
     def jump(self) -> None:

@@ -18,7 +18,7 @@ def steps_of_a_call():
     count = []
     c = Record(served=0, stopping=0.0)
     with interpreted(ida_loop, _served=nothing, stepped=lambda *_: count.append(1) or 0):
-        ida_loop.advanced(c, None, 1, [1.0], 1.0, 10**9, None, None)
+        ida_loop.advanced(c, None, 1, [1.0], 1.0, 10**9, None)
     return len(count)
 
 

@@ -94,11 +94,11 @@ def states(job: Any, settings: Any, solver: str, grid: Any) -> tuple[Equations, 
     integrator = create(job.dynamics, settings)
     engine = integrator.engine
     assert isinstance(engine, NativeEngine)
-    engine.keep_steps(True)
+    engine.ida.keep_steps(True)
     kept = []
     for _ in integrator.run(job.start, grid):
-        kept.append(engine.kept_steps())
-    engine.keep_steps(False)
+        kept.append(engine.ida.kept_steps())
+    engine.ida.keep_steps(False)
     return integrator.equations, np.concatenate(kept)
 
 

@@ -101,7 +101,7 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
         flag = call_int(c.stop_at, (c.memory, stop))
         if flag < 0:
             return int32(flag)
-        flag = advanced(c, ida, count, times, stop, most, y_out, 0)
+        flag = advanced(c, ida, count, times, stop, most, y_out)
         if flag != STOP_RETURN or w.passed + 1 == n_stops or c.recorded + most > 2 * LOOP.most_steps:
             return int32(flag)
         t = c.returned + w.indistinct * abs(c.returned)
