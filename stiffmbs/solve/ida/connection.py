@@ -23,7 +23,7 @@ from .native.layouts import NATIVE_IDA
 from .native.parameters import LOOP
 from .output_correction import OutputCorrection
 from .session import Session
-from .statistics import StepLog, failure_sentence
+from .statistics import COUNTERS, StepLog, failure_sentence
 
 MODULE = "stiffmbs.solve.ida.native.ida_loop"
 RESIDUAL = Routine(MODULE, "residual", "int32(float64, int64, int64, int64, int64*)")
@@ -67,6 +67,10 @@ class Formula(Protocol):
         """Return the address of the formula's memory."""
         ...
 
+    def counters(self, memory: int, libraries: Libraries) -> np.ndarray:
+        """Return the functions of the counters and their arguments, shape (2, counters)."""
+        ...
+
     def connect(self, connection: Connection, session: Session, assembled: Assembled) -> None:
         """Prepare the memory for the system of a connection and its iteration matrix."""
         ...
@@ -94,6 +98,11 @@ class BDF:
     def memory(self, session: Session) -> int:
         """Return the address of IDA's memory in a session."""
         return session.ida()
+
+    def counters(self, memory: int, libraries: Libraries) -> np.ndarray:
+        """Return the functions of IDA's counters, and its memory as their argument, shape (2, counters)."""
+        functions = [libraries.address(function) for function in COUNTERS.values()]
+        return np.array([functions, [memory] * len(functions)])
 
     def connect(self, connection: Connection, session: Session, assembled: Assembled) -> None:
         """Give IDA the callbacks, the matrix, and the norm of error estimates."""

@@ -83,7 +83,7 @@ class NativeIda(Connection):
         session = Session(formula.libraries())
         self._finalizer = weakref.finalize(self, session.close)
         super().__init__(equations, state, matrix, np.arange(n) if reported is None else reported, session, formula)
-        self._statistics = Statistics(session.libraries, self.memory)
+        self._statistics = Statistics(session.libraries, self.memory, formula.counters(self.memory, session.libraries))
         self._flag, self.begun = 0, False
         self._batch = min(max(LOOP.most_items // n, 1), LOOP.most_steps)
         self._look = self._usual_batch = self._batch

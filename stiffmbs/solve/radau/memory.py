@@ -18,11 +18,12 @@ from ..cost import ImplicitCost
 from ..ida.choice import cost_of
 from ..ida.libraries import Libraries, ida_libraries
 from ..ida.session import Session
+from ..ida.statistics import COUNTERS
 from ..linear_solvers.block_lu import BlockLU
 from ..linear_solvers.fixed_order import Assembled, FixedOrder
 from .collocation import MOST_BETWEEN, Collocation, radau
 from .condensed import condensed_efforts, indices
-from .interface import REPEAT, RadauFunctions
+from .interface import COUNTER, REPEAT, RadauFunctions
 from .native.layouts import COLLOCATION, RADAU
 from .parameters import RadauParameters
 
@@ -120,6 +121,12 @@ class Radau:
     def memory(self, session: Session) -> int:
         """Return the address of the memory."""
         return self._words.ctypes.data
+
+    def counters(self, memory: int, libraries: Libraries) -> np.ndarray:
+        """Return the functions of the counters and their arguments, shape (2, counters)."""
+        first = memory + self._words.itemsize * list(RADAU).index("steps")
+        cells = first + self._words.itemsize * np.arange(len(COUNTERS))
+        return np.array([np.full(len(COUNTERS), COUNTER.address), cells])
 
     def connect(self, connection: Connection, session: Session, real: Assembled) -> None:
         """Create matrices and vectors, and fill the memory."""

@@ -42,12 +42,12 @@ START = Layout({
     "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "f_q_scale": FLOATS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS, "f_u_scale": FLOATS,
     "soft": FLOAT_CELL, "loosest": FLOAT_CELL, "tightest": FLOAT_CELL, "growth": FLOAT_CELL,
     "of_positions": FLOAT_CELL, "of_velocities": FLOAT_CELL, "newton": FLOAT_CELL,
-    "n_counters": INT, "counter": INTS, "count": INTS, "counts": INTS,
+    "n_counters": INT, "counter": INTS, "counted": INTS, "count": INTS, "counts": INTS,
     "set_newton": INT, "reinitialise": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
 })  # fmt: skip
 """Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): independent coordinates and velocities, and their
 positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
-term set; IDA's counter functions, space for one number, and their sums; functions of SUNDIALS.  A start changes only
+term set; counter functions, their arguments, space for one number, and their sums; functions of SUNDIALS.  A start changes only
 both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave."""
 
 EVENT_RESTART = Layout({

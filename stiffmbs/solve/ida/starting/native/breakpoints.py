@@ -81,7 +81,7 @@ def _restarted_at_breakpoint(w, b, c, t):
     if accelerated(s, m, t) < 0 or prepared(b, s, m, e, c, t) < 0:
         return UNFINISHED
     _limit(w, b, c)
-    keep_counters(b, c)
+    keep_counters(b)
     return begun(b, c, t)
 
 
@@ -188,7 +188,7 @@ def restarted_at_event(t, ahead, counted, highest_order, table):
     if prepared(b, s, m, equations_view(c.equations), c, after) < 0:
         return int32(UNFINISHED)
     if counted:
-        keep_counters(b, c)
+        keep_counters(b)
     if begun(b, c, after) < 0:
         return int32(UNFINISHED)
     call_int(b.set_highest_order, (c.memory, int32(highest_order)))

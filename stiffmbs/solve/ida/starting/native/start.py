@@ -155,9 +155,9 @@ def prepared(w, s, m, e, c, t):
 
 
 @compiled
-def keep_counters(w, c):
+def keep_counters(w):
     """Add IDA's counters to their sums before a start resets them."""
-    add_counters(w.n_counters, w.counter, c.memory, w.count, w.counts)
+    add_counters(w.n_counters, w.counter, w.counted, w.count, w.counts)
 
 
 def start(t, counted, highest_order, table):
@@ -174,7 +174,7 @@ def start(t, counted, highest_order, table):
     if prepared(w, s, m, equations_view(c.equations), c, t) < 0:
         return int32(UNFINISHED)
     if counted:
-        keep_counters(w, c)
+        keep_counters(w)
     if begun(w, c, t) < 0:
         return int32(UNFINISHED)
     call_int(w.set_highest_order, (c.memory, int32(highest_order)))
@@ -182,17 +182,17 @@ def start(t, counted, highest_order, table):
 
 
 @compiled
-def add_counters(count, functions, memory, value, sums):
-    """Add the results of some counter functions of IDA to sums; `value` has space for one number."""
+def add_counters(count, functions, arguments, value, sums):
+    """Add the results of some counter functions to sums; `value` has space for one number."""
     for k in range(count):
         value[0] = 0  # C's long may be shorter
-        call_int(functions[k], (memory, value))
+        call_int(functions[k], (arguments[k], value))
         sums[k] += value[0]
 
 
-def count(n, functions, memory, value, sums):
+def count(n, functions, arguments, value, sums):
     """Call `add_counters` from Python."""
-    add_counters(n, functions, memory, value, sums)
+    add_counters(n, functions, arguments, value, sums)
 
 
 @compiled
