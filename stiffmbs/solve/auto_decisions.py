@@ -18,18 +18,14 @@ class AutoParameters:
 
     Source: run times of ``python -m tests.bench.solvers.choice`` and of the scenes in ``tests/solve/test_auto.py``.
 
-    Attributes
-    ----------
-    steps_per_radian : float
-        Implicit steps per radian of a vibration that the start excites, until it has decayed to the tolerances.
-    trial_margin : float
-        Saving of a later trial of implicit steps, relative to the cost of their start and of their small steps, above which it
-        is justified; and run length above which radau replaces bdf for overdamped motions.
-    check_interval : float
-        Least number of steps up to the next check of implicit steps, relative to those of the segment so far.
-    loose : float
-        Smallest relative tolerance at which bdf is always taken for overdamped motions; at tighter ones the higher orders of
-        radau save more than its iterations cost.
+    - `steps_per_radian`: implicit steps per radian of a vibration that the start excites, until it has decayed to the
+      tolerances.
+    - `trial_margin`: saving of a later trial of implicit steps, relative to the cost of their start and of their small
+      steps, above which it is justified; and run length above which radau replaces bdf for overdamped motions.
+    - `check_interval`: least number of steps up to the next check of implicit steps, relative to those of the segment
+      so far.
+    - `loose`: smallest relative tolerance at which bdf is always taken for overdamped motions; at tighter ones the
+      higher orders of radau save more than its iterations cost.
     """
 
     steps_per_radian: float = 0.5
