@@ -64,7 +64,6 @@ SUBSYSTEMS = {
     "stability_bound": "solve.explicit.stable_step:STABILITY_BOUND",
     "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
     "storage": "dynamics.storage:STORAGE",
-    "sundae": "solve.ida.sundae:FALLBACK",
     "velocity_jumps": "solve.events.discontinuity:VELOCITY_JUMP",
     "verification": "verification.parameters:VERIFICATION",
 }

@@ -191,21 +191,16 @@ class Equations:
         lists |= {f"at_{name}": self.at.get(name, empty) for name in ("mu", "lam", "x")}
         return {name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}
 
-    def table(self, slots: np.ndarray | None = None) -> tuple[np.ndarray, list[np.ndarray]]:
-        """Return the table for compiled code, and the arrays that must live as long as it.
-
-        `slots`: position of each slot of the pattern in the solver's matrix; its own order by default.
-        """
-        slot = self._slot if slots is None else np.ascontiguousarray(slots[self._slot], dtype=np.int32)
-        n_slots = len(self.pattern[0]) if slots is None else int(slots.max()) + 1
+    def table(self) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Return the table for compiled code, and the arrays that must live as long as it."""
         sets = list(TERM_SETS)
-        lists = entry_lists(slot, self._source, self._constant, self._cj)
+        lists = entry_lists(self._slot, self._source, self._constant, self._cj)
         values = {
             "n": self.n, "residual_set": sets.index(self.formulation.residual_set),
             "matrix_set": sets.index(self.formulation.matrix_set),
             "n_plain": self._n_plain, "n_with_y": self._n_with_y, "n_with_yp": self._n_with_yp,
             "r_row": self._r_row, "r_source": self._r_source, "r_operand": self._r_operand, "r_factor": self._r_factor,
-            "integrated": self.formulation.integrated, "n_slots": n_slots, "n_entries": len(slot), **lists,
+            "integrated": self.formulation.integrated, "n_slots": len(self.pattern[0]), "n_entries": len(self._slot), **lists,
             "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
             "n_moving_q": len(self._index["moving_q"]), "n_moving_u": len(self._index["moving_u"]), "offset": self._offset,
             "q_ratio": self.coordinates.ratio, "u_ratio": self.coordinates.u_ratio, **self._index,

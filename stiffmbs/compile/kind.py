@@ -70,27 +70,14 @@ class Compilable(Protocol):
 class Kind:
     """Structure that elements with one kernel have in common.
 
-    Attributes
-    ----------
-    element : type
-        Class with the equations.
-    dimensions : int
-        2 or 3.
-    n_bodies : int
-        Bodies that one element acts on.
-    n_joints : int
-        Joints that it refers to.
-    n_states : int
-        User states that it reads or determines.
-    fields : tuple of (str, Shape)
-        Fields by name; a shape is the form of a field without its numbers.
-    spins : tuple of str
-        Principal axis of each body about which its quaternion does not rotate, ``x``, ``y``, ``z`` or ''; () if all
-        quaternions rotate with their bodies, or the equations need no derivative of the pose.
-    algebraic : tuple of int
-        Slots of the states without a rate.
-    n_own : int
-        Number of the element's own states, which come first.
+    - `element`: class with the equations.
+    - `n_bodies`, `n_joints`, `n_states`: bodies that one element acts on, joints that it refers to, and user states that
+      it reads or determines.
+    - `fields`: fields by name; a shape is the form of a field without its numbers.
+    - `spins`: principal axis of each body about which its quaternion does not rotate, ``x``, ``y``, ``z`` or ''; () if
+      all quaternions rotate with their bodies, or the equations need no derivative of the pose.
+    - `algebraic`: slots of the states without a rate.
+    - `n_own`: number of the element's own states, which come first.
     """
 
     element: type[Element]

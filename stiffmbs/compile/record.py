@@ -172,10 +172,7 @@ def _terms(kind: Kind) -> Derived:
 def loops_along(kind: Kind, term_set: str) -> str:
     """Return the source of the directional derivatives of a kind with kernels written as loops.
 
-    Raises
-    ------
-    InputError
-        If it has none.
+    Raises InputError if it has none.
     """
     terms = kind.element.compiled_terms(kind)  # type: ignore[attr-defined]
     if terms.along is None:

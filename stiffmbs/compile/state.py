@@ -22,20 +22,10 @@ relative to the size of mechanisms smaller than 1 m."""
 class State:
     """Current coordinates, velocities and multipliers of a system, and the values of its terms.
 
-    Parameters
-    ----------
-    system : System
-
-    Attributes
-    ----------
-    q, u, a, lam, mu : ndarrays
-        Kernel inputs, shapes (n_q,), (n_u,), (n_u,), (n_c,), (n_c,).
-    relaxations : ndarray, shape (2 * n_c,)
-        Relaxations of each constraint row, for mu and then lam, set by `relax`.
-    values : dict of str to ndarray
-        Kernel values of each loaded term set, followed by the system's constants.
-    table : ndarray of int
-        Addresses for compiled code (`stiffmbs.compile.machine.native.tables.STATE`).
+    - `q`, `u`, `a`, `lam`, `mu`: kernel inputs, shapes (n_q,), (n_u,), (n_u,), (n_c,), (n_c,).
+    - `relaxations` of shape (2 * n_c,): relaxations of each constraint row, for mu and then lam, set by `relax`.
+    - `values`: kernel values of each loaded term set, followed by the system's constants.
+    - `table`: addresses for compiled code (`stiffmbs.compile.machine.native.tables.STATE`).
     """
 
     def __init__(self, system: System) -> None:
@@ -80,15 +70,8 @@ class State:
     def restricted(self, used: Mapping[str, np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
         """Return a table of the same state in which term sets omit groups whose values are unused.
 
-        Parameters
-        ----------
-        used : mapping of str to ndarray of bool
-            Groups to keep for each of these term sets, which must be loaded.
-
-        Returns
-        -------
-        ndarray of int, list of ndarray
-            The table, and the arrays that must live as long as it.
+        `used`: masks of the groups to keep for each of these term sets, which must be loaded. The second result are the
+        arrays that must live as long as the table.
         """
         n_calls, calls_at, kept = self._n_calls.copy(), self._calls_at.copy(), []
         for term_set, groups in used.items():

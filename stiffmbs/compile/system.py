@@ -43,58 +43,38 @@ INITIAL_COUNT = 1e-9
 class System:
     """Compiled model.
 
-    Attributes
-    ----------
-    bodies : tuple of str
-        In the order of their coordinates.
-    states : tuple of str
-        User states, whose values are the last coordinates.
-    state_scales : ndarray, shape (states,)
-        Characteristic magnitudes of the states.
-    algebraic : ndarray of bool, shape (states,)
-        True for states without a rate, determined by an equation at every time.
-    sampling : ndarray, shape (states, 2)
-        Period and offset of the samples of each state, s; a period of 0 for states that are not sampled.
-    of_body : BodyKind
-        Coordinates and velocities of each body.
-    q, u : ndarrays
-        Initial coordinates (m, rad; quaternions) and velocities, as described. After the bodies' coordinates come the
-        turn counters (`stiffmbs.compile.symbolic.continuous_angle`) and the states.
-    open_rates : ndarray of bool, shape (n_u,)
-        True for initial velocities that are not given; constraints determine them first.
-    mass : ndarray, shape (n_u,)
-        Diagonal of the mass matrix: masses, and moments of inertia about principal axes.
-    followed : ndarray, shape (n_u,)
-        0 for angular velocities that a quaternion does not follow (`stiffmbs.presolve.spinning_bodies`), else 1.
-    principal_axes : ndarray, shape (bodies, 4)
-        Quaternions of the principal axes in each body's own axes, used by results; (bodies, 0) in the plane.
-    groups : tuple of Group
-        Elements by kind.
-    equations : tuple of (str, str)
-        Joint and equation name of each constraint row.
-    holonomic, active : ndarrays of bool, shape (n_c,)
-        True for rows with a position form, and for rows that are not redundant and therefore solved for.
-    size : float
-        Size of the mechanism at the start, m.
-    start_angles : dict of str to float
-        Continuous angles of joints at a start from a saved state or with joints that hold at the start alone, rad, by
-        channel; may be changed in place.
-    outputs : dict of str to Formula
-        Formulas for which names in other formulas stand, such as the values of inputs; may be changed in place.
-    n_q, n_u, n_c : int
-        Numbers of coordinates, velocities and constraint equations.
-    n_pose, n_counters : int
-        Numbers of body coordinates, which come first, and of turn counters.
-    first_state : int
-        Index of the first state among the coordinates.
-    has_inputs, has_functions : bool
-        True if an element has a formula or a table, or calls a Python function.
-    has_coupled_inertia : bool
-        True if the mass matrix is not diagonal, as that of flexible bodies.
-    has_laws : bool
-        True if forces or joints have breakpoints or laws (formulas, tables), which may change within one step.
-    forces_by_reactions : tuple of str
-        Elements whose forces depend on reactions, such as friction.
+    - `bodies`: in the order of their coordinates.
+    - `states`: user states, whose values are the last coordinates.
+    - `state_scales` of shape (states,): characteristic magnitudes of the states.
+    - `algebraic` of shape (states,): True for states without a rate, determined by an equation at every time.
+    - `sampling` of shape (states, 2): period and offset of the samples of each state, s; a period of 0 for states that
+      are not sampled.
+    - `of_body`: coordinates and velocities of each body.
+    - `q`, `u`: initial coordinates (m, rad; quaternions) and velocities, as described. After the bodies' coordinates
+      come the turn counters (`stiffmbs.compile.symbolic.continuous_angle`) and the states.
+    - `open_rates` of shape (n_u,): True for initial velocities that are not given; constraints determine them first.
+    - `mass` of shape (n_u,): diagonal of the mass matrix: masses, and moments of inertia about principal axes.
+    - `followed` of shape (n_u,): 0 for angular velocities that a quaternion does not follow
+      (`stiffmbs.presolve.spinning_bodies`), else 1.
+    - `principal_axes` of shape (bodies, 4): quaternions of the principal axes in each body's own axes, used by results;
+      (bodies, 0) in the plane.
+    - `groups`: elements by kind.
+    - `equations`: joint and equation name of each constraint row.
+    - `holonomic`, `active` of shape (n_c,): True for rows with a position form, and for rows that are not redundant and
+      therefore solved for.
+    - `size`: size of the mechanism at the start, m.
+    - `start_angles`: continuous angles of joints at a start from a saved state or with joints that hold at the start
+      alone, rad, by channel; may be changed in place.
+    - `outputs`: formulas for which names in other formulas stand, such as the values of inputs; may be changed in
+      place.
+    - `n_q`, `n_u`, `n_c`: numbers of coordinates, velocities and constraint equations.
+    - `n_pose`, `n_counters`: numbers of body coordinates, which come first, and of turn counters.
+    - `first_state`: index of the first state among the coordinates.
+    - `has_inputs`, `has_functions`: True if an element has a formula or a table, or calls a Python function.
+    - `has_coupled_inertia`: True if the mass matrix is not diagonal, as that of flexible bodies.
+    - `has_laws`: True if forces or joints have breakpoints or laws (formulas, tables), which may change within one
+      step.
+    - `forces_by_reactions`: elements whose forces depend on reactions, such as friction.
     """
 
     bodies: tuple[str, ...]

@@ -43,19 +43,13 @@ ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, CONTRADICTING, OUTPU
 class OutputRows:
     """Output rows, one per output time.
 
-    Attributes
-    ----------
-    t, q, u, acceleration, lam : ndarrays
-    values : ndarray
-        Output terms (`stiffmbs.compile.terms`).
-    kinetic, potential, power : ndarrays, shape (n,)
-        Energies, J, and the power of non-conservative forces, W.
-    position_violation, velocity_violation, drift : ndarrays
-        Largest violation of a joint (norm over its equations): of C, of J u + C_t, and of C before projection.
-    log_determinant : ndarray, shape (n,)
-        log |det| of [M J^T; J 0], without the logarithms of units: small near singular poses.
-    status : int
-        Failure after the last row (`stiffmbs.dynamics.storage`), or 0.
+    - `values`: output terms (`stiffmbs.compile.terms`).
+    - `kinetic`, `potential`, `power` of shape (n,): energies, J, and the power of non-conservative forces, W.
+    - `position_violation`, `velocity_violation`, `drift`: largest violation of a joint (norm over its equations): of C,
+      of J u + C_t, and of C before projection.
+    - `log_determinant` of shape (n,): log |det| of [M J^T; J 0], without the logarithms of units: small near singular
+      poses.
+    - `status`: failure after the last row (`stiffmbs.dynamics.storage`), or 0.
     """
 
     t: np.ndarray
@@ -92,19 +86,10 @@ class OutputRows:
 class Dynamics:
     """Block systems of one state, and the compiled routines that use them.
 
-    Parameters
-    ----------
-    system : System
-
-    Attributes
-    ----------
-    coordinates : Coordinates
-        Coordinates that integrators may take as unknowns, by default all. The block systems always contain all, so that
-        every reaction is computed.
-    state : State
-        Current q, u and lam.
-    table : ndarray of int
-        Addresses for compiled code.
+    - `coordinates`: coordinates that integrators may take as unknowns, by default all. The block systems always contain
+      all, so that every reaction is computed.
+    - `state`: current q, u and lam.
+    - `table`: addresses for compiled code.
     """
 
     def __init__(self, system: System) -> None:
@@ -252,17 +237,11 @@ class Dynamics:
     ) -> np.ndarray:  # fmt: skip
         """Return the numbers of the steps whose polynomial contradicts the accelerations at the midpoint.
 
-        Parameters
-        ----------
-        ends : tuple of ndarrays, shape (n,)
-            Begin and end of each step, s.
-        apart : float
-            Distance from the midpoint, as a fraction of the step, at which `states` are given on both sides.
-        states : tuple of ndarrays, shapes (n, 2, n_q), (n, 2, n_u)
-        tolerances : tuple of float and ndarray, shape (n_u,)
-            Of velocities: rtol and atol.
-        bounds : tuple of floats
-            Largest difference: as a fraction of the mass-weighted accelerations, and in tolerances over the step.
+        - `ends` of shape (n,): begin and end of each step, s.
+        - `apart`: distance from the midpoint, as a fraction of the step, at which `states` of shapes (n, 2, n_q),
+          (n, 2, n_u) are given on both sides.
+        - `tolerances`: rtol and atol, shape (n_u,), of velocities.
+        - `bounds`: largest difference, as a fraction of the mass-weighted accelerations, and in tolerances over the step.
         """
         (begin, end), (q, u), (rtol, atol) = ends, states, tolerances
         found, rate = np.empty(len(begin), dtype=np.int64), np.empty(self.system.n_u)
@@ -284,11 +263,7 @@ class Dynamics:
     def report(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
         """Return the output rows at given times and states, up to the first that has no solution.
 
-        Parameters
-        ----------
-        t, q, u : ndarrays, shapes (n,), (n, n_q), (n, n_u)
-        project : bool
-            Whether to project each state onto the constraints first.
+        `t`, `q`, `u` of shapes (n,), (n, n_q), (n, n_u). `project`: True to project each state onto the constraints first.
         """
         system, count, n_output = self.system, len(t), self._n_output
         widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 4)

@@ -23,16 +23,11 @@ from .turns import take_nearest_turns
 class InitialValues:
     """Consistent initial values.
 
-    Attributes
-    ----------
-    q, u, acceleration, lam : ndarrays
-        Coordinates, velocities, accelerations and multipliers that satisfy the constraints on every level.
-    moved : tuple of Move
-        Noticeable changes of bodies by the assembly.
-    size : float
-        Size of the mechanism as described, m.
-    notes : tuple of str
-        Notes, one sentence each.
+    - `q`, `u`, `acceleration`, `lam`: coordinates, velocities, accelerations and multipliers that satisfy the
+      constraints on every level.
+    - `moved`: noticeable changes of bodies by the assembly.
+    - `size`: size of the mechanism as described, m.
+    - `notes`: notes, one sentence each.
     """
 
     q: np.ndarray

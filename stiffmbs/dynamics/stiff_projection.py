@@ -37,10 +37,7 @@ _POSITIONS, _VELOCITIES = (
 class StiffProjection:
     """Projection of single states, and the changes of forces by projections.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-        Its state is used as memory.
+    - `dynamics`: its state is used as memory.
     """
 
     def __init__(self, dynamics: Dynamics) -> None:

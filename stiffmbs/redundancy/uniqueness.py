@@ -123,13 +123,8 @@ class Indeterminate(NamedTuple):
 def indeterminate(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> list[Indeterminate]:
     """Return the reactions that change along the null space of J^T.
 
-    Parameters
-    ----------
-    null_spaces : list of (Pose, ndarray)
-        Poses and null vectors of the scaled J^T there.
+    `null_spaces`: poses and null vectors of the scaled J^T there.
 
-    Notes
-    -----
     M u' = f - J^T lam leaves lam free along the null space of J^T; a reaction is unique if it does not change along it.
     A reaction that changes at one pose is not unique over time.
     """

@@ -57,7 +57,7 @@ class AlongRun:
         self._equations = recorder.equations
         self.block = BlockSystem(dynamics, directions)
         kind = CollocationVariations if len(recorder.nodes) else VariationalEquations
-        self._variations = kind(recorder.equations, recorder.native.matrix, dynamics.state, directions)
+        self._variations = kind(recorder.equations, recorder.engine.matrix, dynamics.state, directions)
         self._jumps = Jumps(
             dynamics, recorder.equations, directions, self.block, breakpoint_rates, recorder.settings.rtol
         )

@@ -14,8 +14,9 @@ from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.terms import TERM_SETS
 from ..errors import SolverError
-from ..solve.ida.matrices import Matrix
+from ..solve.ida.libraries import ida_libraries
 from ..solve.ida.session import Session
+from ..solve.linear_solvers.fixed_order import FixedOrder
 from .native.layouts import DEPTH, PART, VARIATIONS
 
 ADVANCE, WITHIN, DEFECTS = together(
@@ -24,7 +25,7 @@ ADVANCE, WITHIN, DEFECTS = together(
     within="int64(float64*, float64*, int64*)",
     defects="int64(float64*, float64*, float64*, int64*)",
 )
-FUNCTIONS = {"clear": "SUNMatZero", "setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve"}
+FUNCTIONS = {"setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve"}
 
 
 class VariationalEquations:
@@ -34,17 +35,16 @@ class VariationalEquations:
     matrix, and `directions` are variations of the parameters of the system.
     """
 
-    def __init__(self, equations: Equations, matrix: Matrix, state: State, directions: Sequence[Numbers]) -> None:
+    def __init__(self, equations: Equations, matrix: FixedOrder, state: State, directions: Sequence[Numbers]) -> None:
         self.equations, self._count = equations, len(directions)
         n = equations.n
-        self._session = Session(matrix.libraries())
+        self._session = Session(ida_libraries())
         self._vectors = {name: np.zeros(n) for name in ("defect", "correction")}
         handles = {f"at_{name}": self._session.vector(values) for name, values in self._vectors.items()}
         assembled = matrix.assembled(self._session, handles["at_defect"])
         libraries = self._session.libraries
         libraries.SUNLinSolInitialize(assembled.solver)
         row, column = (part.astype(np.int32) for part in equations.pattern)
-        place = np.arange(len(row)) if assembled.slots is None else assembled.slots
         formulation = equations.formulation
         state.load(formulation.residual_set)
         state.load(formulation.matrix_set)
@@ -56,12 +56,12 @@ class VariationalEquations:
         used, calls = state.restricted(equations.used())
         values = {
             "state": used, "equations": table, "n": n, "n_directions": len(directions), "n_slots": len(row),
-            "row": row, "column": column, "place": place.astype(np.int32),
+            "row": row, "column": column,
             "constant": np.zeros(len(row)), "rate": np.zeros(len(row)), "n_share": len(share), "share": share,
             "parts": np.array([part.table.ctypes.data for part in self._parts], dtype=np.int64),
             "by_time": self._by_time.table, "shift": self._shift, "of_time": np.zeros(n),
             **{name: libraries.address(function) for name, function in FUNCTIONS.items()},
-            "solver": assembled.solver, "matrix": assembled.matrix, "entries": assembled.values, "pattern": assembled.pattern,
+            "solver": assembled.solver, "matrix": assembled.matrix, "entries": assembled.values,
             **self._vectors, **handles, "s": np.zeros(n), "rates": np.zeros(n),
             "history": self._history, "times": self._times, "weight": np.zeros(DEPTH), "slope": np.zeros(DEPTH),
         }  # fmt: skip

@@ -16,8 +16,7 @@ from ..errors import ChatteringError, SolverError
 from ..model.settings import RunSettings
 from ..solve.events.chattering import Chattering
 from ..solve.events.native.parameters import INDISTINCT
-from ..solve.ida.engine import Reached
-from ..solve.ida.native_engine import NativeEngine
+from ..solve.ida.native_engine import Reached
 from ..solve.integrator import Integrator
 from ..solve.radau.collocation import radau
 from ..solve.radau.radau import CONTROL, driven_by_radau
@@ -134,12 +133,7 @@ class Recorder(Integrator):
             super().__init__(dynamics, settings, CONTROL, memory="radau recorder", driver=driven_by_radau)
         else:
             super().__init__(dynamics, settings, memory="recorder")
-        if not isinstance(self.engine, NativeEngine):
-            raise SolverError(
-                "sensitivities: found SUNDIALS' libraries in another form, expected those of scikit-sundae's wheels"
-            )
-        self.native: NativeEngine = self.engine
-        self.native.end_steps_at_kinks()
+        self.engine.ida.watch.end_steps_at_kinks()
         self.segments: list[Segment] = []
         self.chatters = False
         self._numbers = 0
@@ -226,7 +220,7 @@ class Recorder(Integrator):
         super()._begin(start, t)
         if self.segments:
             self._end_before_the_jump(self.segments[-1])
-        self.segments.append(Segment(start, self.native.present(), places=len(self.nodes)))
+        self.segments.append(Segment(start, self.engine.present(), places=len(self.nodes)))
 
     def _end_before_the_jump(self, segment: Segment) -> None:
         """Move the end of a segment back by some roundings of time, to where its force law holds."""
@@ -257,7 +251,7 @@ class Recorder(Integrator):
 
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
         """Yield the progress as any integrator, stopping at each breakpoint; the steps are in `segments` afterwards."""
-        self.native.keep_steps(True, self.nodes)
+        self.engine.ida.keep_steps(True, self.nodes)
         try:
             for reached in super().run(start, grid):
                 self._keep(reached)
@@ -266,10 +260,10 @@ class Recorder(Integrator):
             self.chatters = True
             raise
         finally:
-            self.native.keep_steps(False)
+            self.engine.ida.keep_steps(False)
 
     def _keep(self, reached: Reached) -> None:
-        rows = self.native.kept_steps()
+        rows = self.engine.ida.kept_steps()
         if not len(rows):
             return
         segment = self.segments[-1]

@@ -66,15 +66,7 @@ class _Left(NamedTuple):
 
 
 class _AutoRun:
-    """A run shared by two integrators.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-    grid : Grid
-    settings : RunSettings
-    watch : ProgressCallback
-    """
+    """A run shared by two integrators."""
 
     def __init__(self, dynamics: Dynamics, grid: Grid, settings: RunSettings, watch: ProgressCallback) -> None:
         self._dynamics, self._grid, self._watch = dynamics, grid, watch
@@ -113,13 +105,7 @@ class _AutoRun:
             explicit = not explicit
 
     def _explicit_segment(self, start: InitialValues, t: float) -> _Left | None:
-        """Integrate explicitly from t; return the state at which implicit steps are to follow, or None at the end of the run.
-
-        Raises
-        ------
-        _ExplicitFailure
-            If explicit steps fail.
-        """
+        """Integrate explicitly from t; return the state at which implicit steps are to follow, or None at the end of the run."""
         run = AdaptiveRun(DOP853, self._dynamics, start, self._rest(t), self._settings, self._watch)
         check = ExplicitCheck(self._choice, t)
         trajectory = run.integrate(Leaving(self._choice.first_check(), check))

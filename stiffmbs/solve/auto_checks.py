@@ -8,16 +8,13 @@ from .auto_choice import Choice, Switch
 from .auto_decisions import AUTO, ExplicitSteps, cost_ahead, loss_of_trial, since, tolerable_loss
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED
-from .ida.engine import Reached
+from .ida.native_engine import Reached
 
 
 class ExplicitCheck:
     """Check of the explicit steps of a segment: they may be left to the implicit integrator.
 
-    Attributes
-    ----------
-    switch : Switch or None
-        Switch that the last check decided on.
+    `switch`: switch that the last check decided on, or None.
     """
 
     def __init__(self, choice: Choice, t: float) -> None:
@@ -42,12 +39,8 @@ class ExplicitCheck:
 class ImplicitCheck:
     """Check of the implicit steps of a segment: they are kept while their loss is tolerable, or if the rest of them costs less.
 
-    Attributes
-    ----------
-    rate : float
-        Cost of implicit steps per second of the motion in the last interval.
-    loss : float
-        Cost in excess of explicit steps, since it was last lower.
+    `rate`: cost of implicit steps per second of the motion in the last interval. `loss`: cost in excess of explicit
+    steps, since it was last lower.
     """
 
     def __init__(self, choice: Choice, t: float) -> None:
@@ -79,5 +72,5 @@ class ImplicitCheck:
         taken = integrator.steps() - self._begun
         every = max(int(left / self._implicit.cost.step), int(AUTO.check_interval * taken), 1)
         self._next = integrator.steps() + every
-        integrator.engine.pause_after(every)
+        integrator.engine.ida.pause_after(every)
         return left

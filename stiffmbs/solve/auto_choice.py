@@ -27,13 +27,8 @@ from .trajectory import Grid
 class Switch(NamedTuple):
     """Switch to the implicit integrator.
 
-    Attributes
-    ----------
-    reason : str
-    explicit_rate : float
-        Cost of explicit steps per second of the motion, with which the implicit one is compared.
-    thresholds : Thresholds
-        Thresholds from then on.
+    `explicit_rate`: cost of explicit steps per second of the motion, with which the implicit one is compared.
+    `thresholds`: those from then on.
     """
 
     reason: str
@@ -44,19 +39,7 @@ class Switch(NamedTuple):
 class Choice:
     """Choice of the integrator in a run.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    grid : Grid
-    settings : RunSettings
-
-    Attributes
-    ----------
-    implicit : Implicit
-    thresholds : Thresholds
-        Current ones.
-    explicit_step : float
-        Cost of an explicit step.
+    `implicit`: the implicit integrator. `thresholds`: current ones. `explicit_step`: cost of an explicit step.
     """
 
     def __init__(self, dynamics: Dynamics, grid: Grid, settings: RunSettings) -> None:
@@ -108,13 +91,7 @@ class Choice:
     def later_trial(self, steps: ExplicitSteps, segment: ExplicitSteps, work: Integration) -> Switch | None:
         """Return the decision to try the implicit integrator, because stability limits explicit steps; None to continue with these.
 
-        Parameters
-        ----------
-        steps : ExplicitSteps
-            Steps since the last check.
-        segment : ExplicitSteps
-            Steps of the whole segment.
-        work : Integration
+        `steps`: those since the last check. `segment`: those of the whole segment.
         """
         if not steps.limited or segment.cost < self.thresholds.penalty:
             return None

@@ -18,18 +18,14 @@ class AutoParameters:
 
     Source: run times of ``python -m tests.bench.solvers.choice`` and of the scenes in ``tests/solve/test_auto.py``.
 
-    Attributes
-    ----------
-    steps_per_radian : float
-        Implicit steps per radian of a vibration that the start excites, until it has decayed to the tolerances.
-    trial_margin : float
-        Saving of a later trial of implicit steps, relative to the cost of their start and of their small steps, above which it
-        is justified; and run length above which radau replaces bdf for overdamped motions.
-    check_interval : float
-        Least number of steps up to the next check of implicit steps, relative to those of the segment so far.
-    loose : float
-        Smallest relative tolerance at which bdf is always taken for overdamped motions; at tighter ones the higher orders of
-        radau save more than its iterations cost.
+    - `steps_per_radian`: implicit steps per radian of a vibration that the start excites, until it has decayed to the
+      tolerances.
+    - `trial_margin`: saving of a later trial of implicit steps, relative to the cost of their start and of their small
+      steps, above which it is justified; and run length above which radau replaces bdf for overdamped motions.
+    - `check_interval`: least number of steps up to the next check of implicit steps, relative to those of the segment
+      so far.
+    - `loose`: smallest relative tolerance at which bdf is always taken for overdamped motions; at tighter ones the
+      higher orders of radau save more than its iterations cost.
     """
 
     steps_per_radian: float = 0.5
@@ -81,14 +77,9 @@ def since(before: Steps, counted: Steps) -> Steps:
 class Thresholds:
     """Thresholds of a run, which rise with each switch to bound the number of switches.
 
-    Attributes
-    ----------
-    return_ratio : float
-        Ratio of explicit to implicit cost at which implicit steps are resumed.
-    loss : float
-        Fraction of the remaining explicit cost that a trial of implicit steps may lose in addition to a start.
-    penalty : float
-        Explicit cost of a segment before the next trial of implicit steps.
+    - `return_ratio`: ratio of explicit to implicit cost at which implicit steps are resumed.
+    - `loss`: fraction of the remaining explicit cost that a trial of implicit steps may lose in addition to a start.
+    - `penalty`: explicit cost of a segment before the next trial of implicit steps.
     """
 
     return_ratio: float = 1.0

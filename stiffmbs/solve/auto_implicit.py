@@ -17,17 +17,11 @@ from .solver import Traits
 class Implicit:
     """Implicit integrator, created when it or its cost is needed.
 
-    Attributes
-    ----------
-    name : str
-        ``bdf`` or ``radau``; empty before it is chosen.
-    cost : ImplicitCost
-        Cost of the chosen integrator with its linear solver. Before it exists, a lower bound; before it is chosen, that
-        of `bdf`, which is the least.
-    growth : float
-        Cost of the small steps after a start or a breakpoint.
-    start : float
-        Cost of a switch to these steps, including the small ones.
+    - `name`: ``bdf`` or ``radau``; empty before it is chosen.
+    - `cost`: cost of the chosen integrator with its linear solver. Before it exists, a lower bound; before it is
+      chosen, that of `bdf`, which is the least.
+    - `growth`: cost of the small steps after a start or a breakpoint.
+    - `start`: cost of a switch to these steps, including the small ones.
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:

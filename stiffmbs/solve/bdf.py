@@ -16,7 +16,7 @@ from .error_control.relaxation import RELAXATION, refuse_drift
 from .events.refusals import DIVERGENCE, refuse_beyond_sense
 from .explicit.native.parameters import CONTROL
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
-from .ida.engine import Reached
+from .ida.native_engine import Reached
 from .integrator import Integrator
 from .solver import Traits
 from .step_logging import is_logged, log_step

@@ -19,13 +19,12 @@ from .events.discontinuity import VELOCITY_JUMP, VelocityJumps
 from .events.long_steps import LongSteps
 from .events.refusals import refuse_beyond_limits
 from .events.restart import just_after, restarted_past, straight_on
-from .ida.choice import dense_cost, driven_by_callbacks, driven_natively
-from .ida.engine import Engine, Reached
-from .ida.libraries import available
+from .ida.choice import driven_natively
 from .ida.native.parameters import LOOP
+from .ida.native_engine import NativeEngine, Reached
 from .trajectory import Grid
 
-Driver = Callable[[Dynamics, RunSettings, ErrorControl], tuple[Equations, Engine, float]]
+Driver = Callable[[Dynamics, RunSettings, ErrorControl], tuple[Equations, NativeEngine, float]]
 
 
 class Integrator:
@@ -43,31 +42,18 @@ class Integrator:
         control = control or CHOSEN[dynamics.system.of_body.dimensions]
         self.dynamics, self.settings, self.control = dynamics, settings, control
         self.reached: Reached | None = None
-        self._notes: list[str] = []
-        native, reason = available()
-        if native:
-            self.equations, self.engine, cost = dynamics.kept(
-                memory, (settings, control), lambda: driver(dynamics, settings, control)
-            )
-            self.engine.forget()
-        else:
-            self.equations, self.engine = driven_by_callbacks(dynamics, settings)
-            cost = dense_cost(self.equations.n)
-            self._notes.append(
-                f"IDA runs through the callbacks of scikit-sundae, which is slower, and less accurate with very stiff forces: {reason}"
-            )
-            if dynamics.system.n_values("event_function"):
-                self._notes.append(
-                    "contacts and other events that begin and end within one step are then missed; set max_step"
-                )
+        self.equations, self.engine, cost = dynamics.kept(
+            memory, (settings, control), lambda: driver(dynamics, settings, control)
+        )
+        self.engine.forget()
         self.factors = 1e-3 * cost
         self._jumps = VelocityJumps(dynamics)
         self._of_inputs = ""
         self._events = self._breakpoints = 0
 
     def note(self) -> str:
-        """Return the notes: how IDA runs, velocity jumps, an order held down."""
-        return "; ".join(filter(None, (*self._notes, self._of_inputs, self._jumps.sentence(), self.engine.note())))
+        """Return the notes on inputs, velocity jumps and the engine."""
+        return "; ".join(filter(None, (self._of_inputs, self._jumps.sentence(), self.engine.note())))
 
     def split(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u of a vector of unknowns."""
@@ -77,15 +63,12 @@ class Integrator:
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
         """Yield the progress at the times of the grid, or after each step; a failure comes last.
 
-        Parameters
-        ----------
-        passing : bool
-            Whether the engine may restart at several breakpoints before it returns.
+        `passing`: True if the engine may restart at several breakpoints before it returns.
         """
         t = grid.start
         self._jumps.clear()
         features = self.dynamics.input_features(grid.start, grid.end)
-        self.engine.see_inputs(features, grid.end - grid.start)
+        self.engine.ida.see_inputs(features, grid.end - grid.start)
         self._of_inputs = features.note
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
         self._masked = MaskedEvents(self.dynamics, chattering)
@@ -128,7 +111,7 @@ class Integrator:
 
         Return consistent values to start from, or None if the engine has restarted, and their time.
         """
-        self.engine.leave_out(self._masked.steps)
+        self.engine.ida.leave_out(self._masked.steps)
         begun = self.engine.begin_restart(q, u, t, ahead)
         if begun is None:
             return self._consistent(q, u, before, t, ahead)
@@ -187,12 +170,12 @@ class Integrator:
             yield Reached(times, np.tile(y[self.equations.independent], (len(times), 1)), t, y)
 
     def _begin(self, start: InitialValues, t: float) -> None:
-        self.engine.leave_out(self._masked.steps)
+        self.engine.ida.leave_out(self._masked.steps)
         if not self.engine.begin_at(start, t):
             self._begin_step_by_step(start, t)
 
     def _begin_step_by_step(self, start: InitialValues, t: float) -> None:
-        """Start without the compiled routine: algebraic states, infinite stiffness, callbacks of scikit-sundae."""
+        """Start without the compiled routine: the first start, algebraic states, infinite stiffness."""
         equations, at = self.equations, self.equations.at
         state, coordinates = self.dynamics.state, equations.coordinates
         rates = rates_of(self.dynamics, t, start)

@@ -25,15 +25,8 @@ def with_stiff_forces(
     The solver keeps stiff forces in equilibrium within its tolerance. The smallest move onto the constraints from there
     changes them by any amount. The state of `dynamics` is changed.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    states : tuple of ndarrays, shapes (n, n_q), (n, n_u)
-        States before the projections, for all rows at least.
-    rows : OutputRows
-    steps : ndarray, shape (n,)
-        Lengths of the implicit steps that contain the times, s; 0 for explicit steps, which are short for all forces.
-    rtol : float
+    `states` of shapes (n, n_q), (n, n_u): states before the projections, for all rows at least. `steps` of shape (n,):
+    lengths of the implicit steps that contain the times, s; 0 for explicit steps, which are short for all forces.
     """
     at = _suspects(dynamics, states, rows, steps, rtol)
     return _projected_again(dynamics, states, rows, at, steps) if len(at) else rows

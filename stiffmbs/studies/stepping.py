@@ -15,8 +15,7 @@ from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..solve import SOLVERS
 from ..solve.events.restart import just_after, just_before, restarted
-from ..solve.ida.engine import Reached
-from ..solve.ida.native_engine import NativeEngine
+from ..solve.ida.native_engine import Reached
 from ..solve.integrator import Integrator
 from ..solve.radau.radau import radau_integrator
 from ..solve.settings import changed
@@ -30,15 +29,13 @@ PART, FINEST = 0.01, 1e-12
 class StartedSteps:
     """Restarts of IDA, each with the steps to the next instant, in one compiled call if possible.
 
-    `q`, `u`: memory of the current state. `compiled`: compiled restarts.
+    `q`, `u`: memory of the current state.
     """
 
     def __init__(self, job: Job, q: np.ndarray, u: np.ndarray) -> None:
         self._dynamics, self._q, self._u = job.dynamics, q, u
         self._integrator = Integrator(job.dynamics, _finer(job.settings), memory="starts")
-        engine = self._integrator.engine
-        assert isinstance(engine, NativeEngine)
-        self._engine, self.compiled = engine, engine.restarts(job.dynamics, q, u)
+        self._engine = self._integrator.engine
         self._features: InputFeatures | None = None
 
     def advance(self, t: float, end: float, features: InputFeatures) -> None:
@@ -47,20 +44,20 @@ class StartedSteps:
         `t`, `end`: times, s. `features`: features of the inputs around these times. Raises SolverError if the end
         cannot be reached; the state is then unchanged.
         """
-        if not (self.compiled and self._quickly(t, end, features) and self.compiled.advance(t, end)):
+        if not (self._quickly(t, end, features) and self._engine.advance_from(self._q, self._u, t, end)):
             self._run(t, end)
 
     def _quickly(self, t: float, end: float, features: InputFeatures) -> bool:
         """Return True if no breakpoint lies between; the integrator then has the inputs."""
         if self._features is not features:
-            self._engine.see_inputs(features, end - t)
+            self._engine.ida.see_inputs(features, end - t)
             self._features = features
         between = features.breakpoints
         return not len(between) or not np.any((between >= just_before(t)) & (between <= just_after(end)))
 
     def _run(self, t: float, end: float) -> None:
         self._features = None  # the run has the inputs up to its end only
-        self._engine.pause_after(np.iinfo(np.int32).max)  # never
+        self._engine.ida.pause_after(np.iinfo(np.int32).max)  # never
         start = restarted(self._dynamics, t, self._q, self._u)
         for reached in self._integrator.run(start, Grid(t, end, np.array([end]))):
             last = sound(self._integrator, reached)
@@ -104,12 +101,10 @@ class Stepper(Protocol):
 
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
-    """Return a stepper: by the steps of bdf or radau if the native engine runs them, otherwise by short runs."""
+    """Return a stepper: by the steps of bdf or radau without sampled states, otherwise by short runs."""
     made = {"bdf": Integrator, "radau": radau_integrator}.get(job.settings.solver)
     if made is not None and not job.dynamics.system.sampled.any():
-        integrator = made(job.dynamics, job.settings)
-        if isinstance(integrator.engine, NativeEngine):
-            return ImplicitSteps(job, integrator, start, t)
+        return ImplicitSteps(job, made(job.dynamics, job.settings), start, t)
     return ShortRuns(job, start, t)
 
 
@@ -117,14 +112,13 @@ class ImplicitSteps:
     """Steps of bdf or radau, as long as in one run, with interpolation in the last step.
 
     After a jump of inputs, IDA restarts and ends a step at the end of the first simulation step, as inputs mostly jump
-    again there. `integrator`: integrator with the native engine. `t`: time, s.
+    again there. `t`: time, s.
     """
 
     def __init__(self, job: Job, integrator: Integrator, start: InitialValues, t: float) -> None:
         self._job, self._dynamics, self._integrator = job, job.dynamics, integrator
-        engine = integrator.engine
-        assert isinstance(engine, NativeEngine)
-        self._engine, self._first, self._end, self._changes = engine, t, t, self._dynamics.input_changes
+        self._engine, self._changes = integrator.engine, self._dynamics.input_changes
+        self._first = self._end = t
         self._look_through(t)
         self._begin(start, t)
         self._present, self.q, self.u, self.length = t, start.q.copy(), start.u.copy(), 0.0
@@ -144,7 +138,7 @@ class ImplicitSteps:
 
     def _begin(self, start: InitialValues, t: float) -> None:
         self._t, self._jumped, self._ended = t, False, False
-        self._engine.pause_after(1)
+        self._engine.ida.pause_after(1)
         self._steps: Iterator[Reached] = self._integrator.run(start, Grid(t, self._end, None))
 
     def advance(self, t: float) -> None:
@@ -167,11 +161,11 @@ class ImplicitSteps:
             else:
                 self._t = sound(self._integrator, reached).t
         self.q[:], self.u[:] = self._at(t)
-        self._present, self.length = t, self._engine.step
+        self._present, self.length = t, float(self._engine.ida.cells["size"])
 
     def _at(self, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u at a time within the last step."""
-        (q,), (u,) = self._integrator.equations.states(self._engine.at(t)[None])
+        (q,), (u,) = self._integrator.equations.states(self._engine.ida.reported_at(t)[None])
         return q, u
 
     def jump(self) -> None:

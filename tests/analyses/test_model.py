@@ -1,6 +1,5 @@
 """Models from Python and scenes from files say the same, and compiled systems do not depend on numbers."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +9,6 @@ import stiffmbs
 from stiffmbs import Body, InputError, Marker, Model, Prismatic, Revolute, SpringDamper
 from stiffmbs.compile import record
 from stiffmbs.compile.machine import compiler as machine
-from stiffmbs.solve.ida import sundae
-from stiffmbs.tuning import parameters_of
 
 
 def cart_pendulum():
@@ -125,31 +122,6 @@ def test_unknown_channels_are_told_with_their_neighbours():
     solution = stiffmbs.run(cart_pendulum(), duration=0.01)
     with pytest.raises(InputError, match=r"rail.fz.*rail.fx"):
         solution["rail.fz"]
-
-
-@pytest.mark.parametrize("count", [10, 40])
-def test_dense_and_sparse_solvers_agree_on_a_chain(count, monkeypatch):
-    text = f"""
-    parameters: {{N: {count}, L: 0.1}}
-    gravity: [0, -9.81]
-    bodies:
-      link{{k}}: {{for: k in 1..N, mass: 0.1, inertia: 1e-4, position: [(k - 0.5)*L, 0]}}
-    joints:
-      pin1: {{type: revolute, i: {{body: link1, point: [-L/2, 0]}}, j: ground}}
-      pin{{k}}:
-        for: k in 2..N
-        type: revolute
-        i: {{body: "link{{k}}", point: [-L/2, 0]}}
-        j: {{body: "link{{k-1}}", point: [L/2, 0]}}
-    run: {{duration: 0.3, points: 4, rtol: 1e-8}}
-    """
-    scene = stiffmbs.read_scene(text)
-    assert len(scene.bodies) == count
-    chosen = stiffmbs.run(scene)
-    changed = replace(parameters_of(sundae.FALLBACK), dense_up_to=10_000 if 10 * count > 90 else 0)
-    monkeypatch.setattr(sundae, "FALLBACK", changed)
-    other = stiffmbs.run(scene)
-    np.testing.assert_allclose(other[f"link{count}.x"], chosen[f"link{count}.x"], atol=1e-6)
 
 
 def test_numbers_without_names_are_refused():

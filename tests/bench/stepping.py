@@ -111,11 +111,12 @@ class _Alone:
     def seconds(self, dt: float, inputs: np.ndarray) -> float:
         """Time that the starts and steps with these inputs take."""
         self._q[:], self._u[:] = self._job.start.q, self._job.start.u
-        in_a_row, compiled = IN_A_ROW.call, self._steps.compiled
-        if compiled is None:
+        in_a_row, restarts = IN_A_ROW.call, self._steps._engine._event_restarts
+        if restarts is None:
             raise SolverError("found a model that compiled starts do not serve, expected one without events")
+        self._job.dynamics.state.q[:], self._job.dynamics.state.u[:] = self._q, self._u
         begun = time.process_time()
-        done = in_a_row(len(inputs), dt, inputs.ctypes.data, self._number.ctypes.data, compiled.table.ctypes.data)
+        done = in_a_row(len(inputs), dt, inputs.ctypes.data, self._number.ctypes.data, restarts.table)
         spent = time.process_time() - begun
         if done < len(inputs):
             raise SolverError(f"the integrator by itself: stopped after {done} of {len(inputs)} steps")

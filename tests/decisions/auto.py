@@ -18,7 +18,7 @@ from tests.solve.test_parameter_thresholds import HALVES, count_while
 def check_after_steps():
     """Return the steps up to the next check of implicit steps after 1000."""
     waits, counts = [], [0, 0, 1000, 1000]
-    engine = Record(pause_after=waits.append)
+    engine = Record(ida=Record(pause_after=waits.append))
     integrator = Record(steps=lambda: counts.pop(0) if len(counts) > 1 else counts[0], engine=engine)
     implicit = Record(integrator=integrator, steps=nothing, start=0.0, cost=Record(step=1.0))
     choice = Record(
@@ -53,7 +53,7 @@ def residual_by_which_radau_chooses():
     """Return the cost of a residual, in that of bdf, by which radau chooses the number of stages."""
     costs = []
     replaced = {
-        "chosen": lambda _: (None, None, 1000.0), "natural": nothing, "NativeEngine": nothing,
+        "chosen": lambda _: (None, 1000.0), "natural": nothing, "NativeEngine": nothing,
         "Radau": lambda *given: costs.append(given[4]) or Record(pair_cost=1.0),
     }  # fmt: skip
     with patch.multiple(radau, **replaced):

@@ -75,7 +75,7 @@ def eased(newton, failures=1000):
         counted=lambda: {"steps": 1000, "convergence_failures": failures}, t=0.0, y=np.zeros(1), yp=np.zeros(1)
     )
     engine = Record(
-        _ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _stiffness=None,
+        ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _stiffness=None,
         begin=lambda t, y, yp, eased, stiffness: begun.append(eased),
     )  # fmt: skip
     NativeEngine._ease_newton(engine)
@@ -89,7 +89,7 @@ def tolerance(of_positions, rtol=1e-6):
 def balance_between_steps():
     found = []
     ida = Record(correct_outputs=lambda *given: found.append(given[-1]), history=Record(count=0))
-    engine = Record(_stiffness=Stiffness(1.0, 1.0), _ida=ida, _dynamics=None, _rtol=1e-6, _order=Record(begin=nothing))
+    engine = Record(_stiffness=Stiffness(1.0, 1.0), ida=ida, _dynamics=None, _rtol=1e-6, _order=Record(begin=nothing))
     NativeEngine._follow_stiffness(engine, 0.0)
     return found[0]
 

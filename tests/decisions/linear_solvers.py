@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from stiffmbs.solve import sampling
 from stiffmbs.solve.ida.native import ida_loop
 from stiffmbs.solve.ida.statistics import StepLog
-from stiffmbs.solve.ida.sundae import SundaeEngine
 from stiffmbs.solve.linear_solvers.native import block_lu, block_trial, fixed_order
+from stiffmbs.solve.trajectory import Outcome
 from tests.decisions.common import Record, always, never, nothing
 from tests.interpreted import interpreted
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
@@ -17,7 +18,7 @@ def steps_of_a_call():
     count = []
     c = Record(served=0, stopping=0.0)
     with interpreted(ida_loop, _served=nothing, stepped=lambda *_: count.append(1) or 0):
-        ida_loop.advanced(c, None, 1, [1.0], 1.0, 10**9, None, None)
+        ida_loop.advanced(c, None, 1, [1.0], 1.0, 10**9, None)
     return len(count)
 
 
@@ -37,16 +38,26 @@ def tiny_steps():
     return count_while(lambda _: not ida_loop._stalled(c), range(1000))
 
 
-def output_times_of_a_call():
-    asked = []
+def samples_of_a_call():
+    """Return the largest number of samples that change nothing, over which one call integrates."""
+    taken, at_rest = [], np.zeros(1)
 
-    def several(times, stop):
-        asked.append(len(times))
-        return Record(times=times, fired=False, failure="")
+    def solve(dynamics, now, ends, settings, watch):
+        taken.append(len(ends))
+        return Record(t=np.array(ends), q=np.zeros((len(ends), 1)), u=np.zeros((len(ends), 0)), outcome=Outcome.DONE)
 
-    engine = Record(_several=several, _interrupted=False)
-    list(SundaeEngine.to_times(engine, np.linspace(0.0, 1.0, 1000), [1.0]))
-    return asked[0]
+    replaced = {
+        "samples": lambda system, grid: [sampling.Sample(float(k), np.zeros(0, int)) for k in range(1, 20_000)],
+        "next_values": lambda *_: at_rest, "_acting": lambda system: np.array([True]), "_joined": nothing,
+        "_up_to": lambda grid, t, ends: ends, "_up_to_row": lambda found, row: found,
+        "_restarted": lambda *_: (Record(q=at_rest), 0.0),
+    }  # fmt: skip
+    dynamics = Record(system=Record(sampled=np.array([True]), first_state=0), input_features=nothing)
+    with interpreted(sampling, **replaced):
+        sampling.solved_between_samples(
+            solve, dynamics, Record(q=at_rest, u=None), Record(start=0.0, end=1.0, times=[]), None, None
+        )
+    return max(taken)
 
 
 def steps_in_a_log():
@@ -112,7 +123,7 @@ DECISIONS = {
     "loop.samples": steps_in_memory,
     "loop.steps_apart": steps_in_memory,
     "loop.most_tiny": tiny_steps,
-    "loop.most_passed": output_times_of_a_call,
+    "loop.most_passed": samples_of_a_call,
     "loop.most_items": steps_in_a_log,
     "pivots.largest": largest_multiplier,
     "pivots.largest_residual": lambda: trial().allowed[0],

@@ -74,9 +74,9 @@ def discontinuity(part=1.0, noise=0.0):
 
 def kept(numbers):
     """Return whether one more step is recorded after a number of numbers."""
-    native = Record(kept_steps=lambda: np.ones((1, 4)))
+    engine = Record(ida=Record(kept_steps=lambda: np.ones((1, 4))))
     segment = Record(parts=[], first=np.zeros(4))
-    recorder = Record(native=native, segments=[segment], nodes=[], _numbers=int(numbers))
+    recorder = Record(engine=engine, segments=[segment], nodes=[], _numbers=int(numbers))
     return not raised(lambda: Recorder._keep(recorder, Record(fired=())), SolverError)
 
 

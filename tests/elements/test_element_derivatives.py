@@ -10,6 +10,7 @@ from stiffmbs.compile.terms import TERM_AXES
 from stiffmbs.elements.element import Joint
 from stiffmbs.solve.formulations import FORMULATIONS
 
+from ..by_callbacks import Callbacks
 from ..random_parts import CASES, add_joints, random_element, refers_to_joints, three_bodies, three_bodies_in_space
 
 T = 0.37
@@ -187,8 +188,6 @@ def test_counters_have_the_rates_of_their_angles(state):
 )
 def test_iteration_matrix_of_every_formulation(state, formulation):
     """dr/dy + cj dr/dy' of the whole residual, slot by slot."""
-    from stiffmbs.solve.ida.sundae import Callbacks
-
     rng = np.random.default_rng(3)
     equations = Equations(formulation(RunSettings(stabilisation=2.0)), state.system)
     state.relax(rng.uniform(0.1, 1, state.system.n_c), rng.uniform(0.1, 1, state.system.n_c))

@@ -9,15 +9,14 @@ import stiffmbs
 from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.solve.error_control import newton
-from stiffmbs.solve.ida.matrices import Dense, Sparse
 from stiffmbs.solve.ida.output_correction import OutputCorrection
-from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder
-from stiffmbs.sparse.elimination_order import elimination_order
+from stiffmbs.solve.linear_solvers.block_lu import BlockLU
+from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, Pivoted
 from stiffmbs.tuning import parameters_of
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
 from tests.stress.mechanisms.pendulum import bar_rate, swing
 
-from ..solve.ida.test_native_ida import Problem, hanging_chain
+from ..solve.ida.test_native_ida import Problem, hanging_chain, in_fixed_order
 
 GRAVITY = 9.81
 
@@ -113,14 +112,9 @@ def test_closing_a_joint_of_an_output_makes_no_force_in_a_stiff_bushing(rtol):
     assert np.max(np.abs(seen - expected)) < 100 * rtol * 20 * GRAVITY  # without it 46 kN, 2.5 kN and 6 N
 
 
-@pytest.mark.parametrize("kind", ["SuperLU_MT", "fixed order"])
+@pytest.mark.parametrize("kind", [FixedOrder, BlockLU])
 def test_every_matrix_serves(kind):
     chain, times = Problem(hanging_chain()), np.linspace(0.1, 0.4, 31)
-    n, pattern = chain.equations.n, chain.equations.pattern
-    matrix = {
-        "SuperLU_MT": Sparse(n, *pattern),
-        "fixed order": FixedOrder(n, *pattern, elimination_order(chain.equations)),
-    }[kind]
 
     def rows(matrix, long_step):
         dynamics = Dynamics(chain.system)
@@ -128,6 +122,7 @@ def test_every_matrix_serves(kind):
         ida.correct_outputs(dynamics, long_step, 1e-6, 0.0)
         return chain.through(ida, times)[0]
 
-    expected = rows(Dense(n, *pattern), 0.0)
+    expected = rows(in_fixed_order(chain.equations, Pivoted), 0.0)
+    matrix = in_fixed_order(chain.equations, kind)
     np.testing.assert_allclose(rows(matrix, 0.0), expected, atol=1e-6)
     assert np.max(np.abs(rows(matrix, np.inf) - expected)) > 1e-4

@@ -189,7 +189,7 @@ def test_a_step_that_an_event_ends_counts_up_to_the_event(make):
     integrator = make(job.dynamics, job.settings)
     found = integrated(integrator, job.start, job.grid, unwatched)
     assert found.statistics["events"] > 5
-    sums = integrator.engine._ida.error_sums.table.view(ACCUMULATED_ERRORS.cells)[0]
+    sums = integrator.engine.ida.error_sums.table.view(ACCUMULATED_ERRORS.cells)[0]
     np.testing.assert_allclose(sums["time"] + sums["span"], found.t[-1], rtol=1e-9)
 
 

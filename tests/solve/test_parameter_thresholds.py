@@ -30,8 +30,7 @@ from stiffmbs.solve.events.discontinuity import VelocityJumps
 from stiffmbs.solve.events.narrow_inputs import hidden_peak
 from stiffmbs.solve.events.refusals import exponential, refuse_beyond_sense
 from stiffmbs.solve.events.restart import straight_on
-from stiffmbs.solve.ida.choice import COSTS, _supplied, block_cost, sparse_cost
-from stiffmbs.solve.ida.matrices import Dense
+from stiffmbs.solve.ida.choice import COSTS, block_cost, sparse_cost
 from stiffmbs.solve.ida.native.parameters import LOOP
 from stiffmbs.solve.trajectory import Rows, unwatched
 from stiffmbs.sparse.elimination_order import EliminationOrder
@@ -76,16 +75,12 @@ def shortest_chain_in_blocks():
     return count_while(lambda rods: saved_by_blocks(rods) <= 0.0, range(5000))
 
 
-def dense_unknowns():
-    return count_while(lambda n: isinstance(_supplied(n, (np.arange(n), np.arange(n))), Dense), range(1, 400))
-
-
 def limited(distance, third=0.0):
     return limits_steps(CubicFit(distance, third), tuning.parameters_of(STABILITY_LIMIT))
 
 
 def detection():
-    found = StabilityLimitDetection(None, RunSettings(duration=1.0, rtol=1e-6), tuning.parameters_of(STABILITY_LIMIT))
+    found = StabilityLimitDetection(None, RunSettings(duration=1.0, rtol=1e-6))
     found.__dict__["_atol"] = np.array([1e-6])
     return found
 
@@ -93,7 +88,7 @@ def detection():
 def next_check_after(wave):
     """Return the steps to the next check after samples of a wave of a height in tolerances."""
     found, k = detection(), np.arange(LOOP.samples)
-    found.begin(0.0, 0, 0.0)
+    found.begin(0.0, 0)
     found.changed(np.column_stack([1.0 + k, 1e-6 * wave * (-1.0) ** k]), 10_000)
     return found.wait(10_000)
 
@@ -282,7 +277,6 @@ TABLE = {
         **dict.fromkeys(["fixed", "blocks", "cached_nodes", "far_node"], longest_chain_in_blocks),
         "worth_compiling": shortest_chain_in_blocks,
     },
-    "sundae": {"dense_up_to": dense_unknowns},
     "stability_limit": {
         "least_distance": lambda: count_while(lambda d: limited(10.0 * d), HALVES),
         "negligible": lambda: count_while(lambda d: limited(10.0 * d), DOUBLES),
@@ -345,7 +339,7 @@ TABLE = {
 
 EXPECTED = {
     "linear_solver.fixed": 1119, "linear_solver.blocks": 1119, "linear_solver.cached_nodes": 1119, "linear_solver.far_node": 1119,
-    "linear_solver.worth_compiling": 2, "sundae.dense_up_to": 90,
+    "linear_solver.worth_compiling": 2,
     "stability_limit.least_distance": 18, "stability_limit.negligible": 16, "stability_limit.gain": 105, "stability_limit.gain_if_faint": 117,
     "stability_limit.step_error": 105, "stability_limit.faint": 8, "stability_limit.interval": 2000, "stability_limit.growth": 5000, "stability_limit.damping_steps": 100,
     "precision.noise_of_positions": 119, "precision.noise_of_angles": 121, "precision.failed": 201, "narrow_inputs.hidden": 50, "velocity_jumps.least": 27,

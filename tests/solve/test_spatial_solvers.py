@@ -6,7 +6,6 @@ import pytest
 import stiffmbs
 from stiffmbs import spatial
 from stiffmbs.elements.spatial.orientation import matrix
-from stiffmbs.solve import integrator
 from stiffmbs.solve.error_control.error_test import CHOSEN, ErrorControl
 from tests.bench.error_bars import PROBLEMS
 from tests.bench.evenness import evenness
@@ -76,22 +75,15 @@ def off(found, expected):
 
 
 ERRORS = {"SI2": 4e-7, "SI2_exact": 4e-7, "SI1": 4e-7, "I3": 4e-4, "index1": 4e-7}
-COARSER = 5.0
-"""Times the errors of native IDA are those through scikit-sundae."""
 
 
-@pytest.mark.parametrize("engine", ["native", "through scikit-sundae"])
 @pytest.mark.parametrize("formulation", ERRORS)
 @pytest.mark.parametrize("scene", SCENES)
-def test_all_formulations_give_one_motion(scene, formulation, engine, exact, monkeypatch):
-    if engine != "native":
-        monkeypatch.setattr(integrator, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
+def test_all_formulations_give_one_motion(scene, formulation, exact):
     found = stiffmbs.run(SCENES[scene](), **SETTINGS, formulation=formulation)
-    assert any("callbacks" in note for note in found.notes) == (engine != "native")
     motion, forces = off(found, exact[scene])
-    allowed = ERRORS[formulation] * (1.0 if engine == "native" else COARSER)
-    assert motion < allowed
-    assert forces < 20 * allowed
+    assert motion < ERRORS[formulation]
+    assert forces < 20 * ERRORS[formulation]
 
 
 @pytest.mark.parametrize("settings", [
@@ -189,11 +181,8 @@ def bouncing_top():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("engine", ["native", "through scikit-sundae"])
-def test_corners_in_time_and_state_are_met_in_space(engine, monkeypatch):
+def test_corners_in_time_and_state_are_met_in_space():
     exact = stiffmbs.run(bouncing_top(), solver="projected", scheme="dop853", rtol=1e-12)
-    if engine != "native":
-        monkeypatch.setattr(integrator, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
     found = stiffmbs.run(bouncing_top())
     assert found.solver["events"] == exact.solver["events"] >= 4
     assert found.solver["breakpoints"] == exact.solver["breakpoints"] == 4

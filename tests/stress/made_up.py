@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.solve.ida.libraries import COMPRESSED_COLUMNS, Libraries
+from stiffmbs.solve.ida.libraries import Libraries
 from stiffmbs.solve.ida.session import Session
 
 NORMAL, ONE_STEP = 1, 2
+COMPRESSED_COLUMNS = 0
+"""CSC_MAT of sunmatrix_sparse.h."""
 _ADDRESS, _REAL = ctypes.c_void_p, ctypes.c_double
 RESIDUAL = ctypes.CFUNCTYPE(ctypes.c_int, _REAL, _ADDRESS, _ADDRESS, _ADDRESS, _ADDRESS)
 JACOBIAN = ctypes.CFUNCTYPE(ctypes.c_int, _REAL, _REAL, *(8 * [_ADDRESS]))
@@ -98,12 +100,12 @@ class MadeUp:
         return flag or self.call("IDASetJacFn", self.jacobian)
 
     def _with_sparse_matrix(self) -> int:
-        libraries, context = self.libraries, self.session.context
-        matrix = libraries.SUNSparseMatrix(1, 1, 1, COMPRESSED_COLUMNS, context)
-        matrix = self.session.keep(matrix, libraries.SUNMatDestroy, "a matrix")
-        solver = libraries.SUNLinSol_SuperLUMT(self.vectors[0], matrix, 1, context)
-        self.solver = self.session.keep(solver, libraries.SUNLinSolFree, "a solver")
-        return self.call("IDASetLinearSolver", ctypes.c_void_p(self.solver), ctypes.c_void_p(matrix))
+        """Give IDA a matrix whose derivatives it cannot find by differences."""
+        flag, create = self._with_dense_matrix(), self.function("SUNSparseMatrix")
+        create.restype, create.argtypes = _ADDRESS, [*3 * [ctypes.c_int64], ctypes.c_int, _ADDRESS]
+        matrix = create(1, 1, 1, COMPRESSED_COLUMNS, self.session.context)
+        matrix = self.session.keep(matrix, self.libraries.SUNMatDestroy, "a matrix")
+        return flag or self.call("IDASetLinearSolver", _ADDRESS(self.solver), _ADDRESS(matrix))
 
     def solve(self, until: float = 10.0, task: int = NORMAL) -> int:
         """Integrate; IDA's flag."""

@@ -47,15 +47,8 @@ def written(
 ) -> Written:  # fmt: skip
     """Return expressions as source code in which each common part is computed once.
 
-    Parameters
-    ----------
-    outputs : sequence of sympy.Expr
-    derivatives : Derivatives
-        Has the expressions of named symbols.
-    given : mapping
-        Symbols that replace some expressions.
-    printer : sympy.printing.printer.Printer
-        Prints functions.
+    `derivatives` has the expressions of named symbols. `given`: symbols that replace some expressions. `printer` prints
+    functions.
     """
     graph = _Graph(given, printer)
     for symbol in _used(outputs, derivatives):

@@ -11,7 +11,7 @@ of y' between the events of neighbouring motions.
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view, view_of
 from stiffmbs.compile.machine.native.along import direction_view, evaluate_along
-from stiffmbs.compile.machine.native.calls import call_int, copy_bytes
+from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import evaluate, load, share_one
 from stiffmbs.sensitivity_equations.native.layouts import DEPTH, PART, VARIATIONS
 
@@ -32,12 +32,9 @@ def _take_matrix(v, s, e, t, cj):
         value = values[e.m_source[k]]
         v.constant[e.m_slot[k]] += value * e.m_constant[k]
         v.rate[e.m_slot[k]] += value * e.m_cj[k]
-    call_int(v.clear, (v.matrix,))
     entries = floats(v.entries)
     for k in range(v.n_slots):
-        entries[v.place[k]] = v.constant[k] + cj * v.rate[k]
-    for k in range(0, 6, 3):
-        copy_bytes(v.pattern[k], v.pattern[k + 1], v.pattern[k + 2])
+        entries[k] = v.constant[k] + cj * v.rate[k]
     v.cj = cj
     return call_int(v.setup, (v.solver, v.matrix))
 

@@ -17,25 +17,17 @@ from .tolerances import independent_tolerances
 class ErrorControl:
     """Settings of IDA for a requested tolerance; the defaults are those of `bdf` (`docs/error_control.md`).
 
-    Attributes
-    ----------
-    margin : float
-        Part of the requested tolerance that IDA is given, because the errors of the steps accumulate.
-    multipliers : float
-        Absolute tolerance of multipliers.  A huge one excludes them from the error test, which fails for index-2
-        problems, and from Newton's convergence test.
-    newton : float or None
-        Coefficient of Newton's convergence test (IDASetNonlinConvCoef); None to choose it by the stiffness of the
-        scene (`stiffmbs.solve.error_control.newton`).
-    renewal : float
-        Relative change x of cj that causes a linear solver setup: the ratio of cj to that of the last setup leaves the
-        interval from (1 - x)/(1 + x) to (1 + x)/(1 - x) (IDASetDeltaCjLSetup).
-    growth : float
-        Least factor by which a step is enlarged (IDASetEtaFixedStepBounds).  With IDA's default 2, the steps of an
-        even motion keep the size that the start has given them.
-    predicted_residual : bool
-        If True, use the convergence test of `stiffmbs.solve.ida.native.iteration`: the convergence rate worsens with
-        the age of the iteration matrix, and short steps may leave a larger residual.
+    - `margin`: part of the requested tolerance that IDA is given, because the errors of the steps accumulate.
+    - `multipliers`: absolute tolerance of multipliers.  A huge one excludes them from the error test, which fails for
+      index-2 problems, and from Newton's convergence test.
+    - `newton`: coefficient of Newton's convergence test (IDASetNonlinConvCoef); None to choose it by the stiffness of
+      the scene (`stiffmbs.solve.error_control.newton`).
+    - `renewal`: relative change x of cj that causes a linear solver setup: the ratio of cj to that of the last setup
+      leaves the interval from (1 - x)/(1 + x) to (1 + x)/(1 - x) (IDASetDeltaCjLSetup).
+    - `growth`: least factor by which a step is enlarged (IDASetEtaFixedStepBounds).  With IDA's default 2, the steps of
+      an even motion keep the size that the start has given them.
+    - `predicted_residual`: if True, use the convergence test of `stiffmbs.solve.ida.native.iteration`: the convergence
+      rate worsens with the age of the iteration matrix, and short steps may leave a larger residual.
     """
 
     margin: float = 0.3

@@ -16,12 +16,7 @@ from .native.parameters import NEWTON, POLISHING
 class Stiffness(NamedTuple):
     """Bounds of the stiffness and damping of the forces near a state.
 
-    Attributes
-    ----------
-    of_positions : float
-        Largest row sum of M^-1/2 df/dq M^-1/2, 1/s^2.
-    of_velocities : float
-        Largest row sum of M^-1/2 df/du M^-1/2, 1/s.
+    `of_positions`, `of_velocities`: largest row sums of M^-1/2 df/dq M^-1/2, 1/s^2, and of M^-1/2 df/du M^-1/2, 1/s.
     """
 
     of_positions: float

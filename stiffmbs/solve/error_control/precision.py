@@ -37,14 +37,7 @@ PRECISION = tuned("precision", PrecisionParameters())
 def too_fine(dynamics: Dynamics, settings: RunSettings, t: float, q: np.ndarray) -> str:
     """Return a sentence that explains why the tolerance cannot be met at a state; empty if it can.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    settings : RunSettings
-    t : float
-        s.
-    q : ndarray, shape (n_q,)
-        Coordinates, m and rad.
+    `t`: s. `q` of shape (n_q,): coordinates, m and rad.
     """
     return _known_too_little(dynamics.system, settings, q) or _held_too_little(dynamics, settings, t, q)
 

@@ -47,16 +47,9 @@ RELAXATION = tuned("relaxation", RelaxationParameters())
 class Drift(NamedTuple):
     """Constraint drift of the velocities of a run, in units of their tolerances.
 
-    Attributes
-    ----------
-    mean : float
-        Mean over the output times of the largest drift at each; a singular pose raises it only briefly.
-    at_end : float
-        Drift expected from the multipliers at the last output time, before the steps have followed them.
-    velocity : str
-        Velocity with the largest drift.
-    joint : str
-        Joint with the largest multiplier at that time.
+    - `mean`: mean over the output times of the largest drift at each; a singular pose raises it only briefly.
+    - `at_end`: drift expected from the multipliers at the last output time, before the steps have followed them.
+    - `velocity`: velocity with the largest drift. `joint`: joint with the largest multiplier at that time.
     """
 
     mean: float
@@ -133,15 +126,8 @@ def drift_of(
 ) -> Drift:
     """Return the constraint drift of a run whose output states were projected onto the constraints.
 
-    Parameters
-    ----------
-    system : System
-    rows : OutputRows
-    trajectory : Trajectory
-        As integrated, at the times of the rows and possibly later.
-    settings : RunSettings
-    breakpoints : ndarray
-        Times at which prescribed velocities may jump, s; rows at these times are ignored.
+    `trajectory`: as integrated, at the times of the rows and possibly later. `breakpoints`: times at which prescribed
+    velocities may jump, s; rows at these times are ignored.
     """
     count = len(rows.t)
     jump = _at_one_of(rows.t, breakpoints)

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -70,8 +70,7 @@ class StabilityLimitParameters:
 STABILITY_LIMIT = tuned("stability_limit", StabilityLimitParameters())
 
 
-@dataclass(frozen=True)
-class CubicFit:
+class CubicFit(NamedTuple):
     """Comparison of the last states with the best-fitting cubics, in units of the tolerance.
 
     `distance`: largest RMS distance of one state. `third`: RMS of the cubic coefficients, with times scaled to -1 to 1.
@@ -81,20 +80,11 @@ class CubicFit:
     third: float
 
 
-@dataclass(frozen=True)
-class Limitation:
+class Limitation(NamedTuple):
     """Limitation of the order.
 
-    Attributes
-    ----------
-    t : float
-        Time of its beginning, s.
-    steps : int
-        Steps of the run up to there.
-    step : float
-        Mean step before, s.
-    faint : bool
-        True if the vibration was faint.
+    `t`: time of its beginning, s. `steps`: steps of the run up to there. `step`: mean step before, s. `faint`: True if
+    the vibration was faint.
     """
 
     t: float
@@ -106,12 +96,7 @@ class Limitation:
 def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray) -> CubicFit:
     """Return the distances of states from the best-fitting cubics.
 
-    Parameters
-    ----------
-    samples : ndarray, shape (`LOOP.samples`, 1 + n)
-        Times and states.
-    rtol : float
-    atol : ndarray, shape (n,)
+    `samples` of shape (`LOOP.samples`, 1 + n): times and states. `atol` of shape (n,).
     """
     count, n = len(samples), samples.shape[1] - 1
     samples, work, found = np.ascontiguousarray(samples), np.empty(n + 6 * count + 8), np.zeros(2)
@@ -139,25 +124,12 @@ def limits_steps(fit: CubicFit, parameters: StabilityLimitParameters) -> bool:
 class StabilityLimitDetection:
     """Decision when to limit the order of BDF and when to free it again.
 
-    Parameters
-    ----------
-    equations : Equations
-    settings : RunSettings
-    parameters : StabilityLimitParameters, optional
-        By default `STABILITY_LIMIT`.
-
-    Attributes
-    ----------
-    order : int
-        Highest order allowed.
+    `is_active`: False if the order is never limited. `order`: highest order allowed.
     """
 
-    def __init__(
-        self, equations: Equations, settings: RunSettings, parameters: StabilityLimitParameters | None = None
-    ) -> None:
-        self._equations, self._settings = equations, settings
-        self._parameters = parameters or STABILITY_LIMIT
-        self._is_active = settings.max_order is None
+    def __init__(self, equations: Equations, settings: RunSettings, is_active: bool = True) -> None:
+        self._equations, self._settings, self._is_active = equations, settings, is_active
+        self._parameters = STABILITY_LIMIT
         self._highest = settings.max_order or HIGHEST_ORDER
         self.order = self._highest
         self._next_check = self._parameters.interval  # in steps of the run
@@ -179,8 +151,8 @@ class StabilityLimitDetection:
         """Return True if the order is limited."""
         return self.order < self._highest
 
-    def begin(self, t: float, steps: int, fastest: float) -> None:
-        """Note a start or restart of the integrator at t, s; `fastest` is not used."""
+    def begin(self, t: float, steps: int) -> None:
+        """Note a start or restart of the integrator at t, s."""
         self._since = t, steps
 
     def due(self, steps: int) -> bool:
@@ -189,7 +161,9 @@ class StabilityLimitDetection:
 
     def wait(self, steps: int) -> int:
         """Return the number of steps until the next check is due."""
-        return self._next_check - steps if self._is_active and self._next_check > steps else self._parameters.interval
+        if not self._is_active:
+            return LOOP.most_steps
+        return self._next_check - steps if self._next_check > steps else self._parameters.interval
 
     def changed(self, samples: np.ndarray, steps: int) -> bool:
         """Check the last steps; return True if the highest order changes.

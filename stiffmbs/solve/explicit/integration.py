@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any, Generic, TypeVar
+
 import numpy as np
 
 from ...compile.machine.layout import address, addresses
@@ -17,17 +20,40 @@ from ..trajectory import Grid, Rows
 from .native.parameters import CONTROL
 from .scheme import Scheme, StepMemory
 
+T = TypeVar("T")
+
+
+class _Cell(Generic[T]):
+    """Number in the table of an `Integration`, under its name there."""
+
+    def __init__(self, kind: Callable[[Any], T]) -> None:
+        self._kind = kind
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, work: Integration, owner: type) -> T:
+        return self._kind(work._cells[self._name])
+
+    def __set__(self, work: Integration, value: T) -> None:
+        work._cells[self._name] = value
+
 
 class Integration:
     """State, stages and counters of one integration, and memory for the rows that one call stores.
 
     - `capacity`: largest number of steps, and of rows, of one call.
     - `step_times`: ends of the steps of each call.
-    - `q`, `u`: current positions and velocities.
+    - `t`: current time, s. `q`, `u`: current positions and velocities.
+    - `h`: length of the next step, s. `stable`: longest step that stability allows, s; 0 if not computed.
+    - `eliminates`: True if accelerations are computed by elimination where its pivots are accurate, False if by LU
+      always.
     - `at`: address of the table for compiled code.
     - `atol` of shape (n_q + n_u,): absolute tolerances.
     - `displaced`: function that returns the estimated position errors, shape (n_u,), as displacements along velocities.
     """
+
+    t, h, stable, eliminates = _Cell(float), _Cell(float), _Cell(float), _Cell(bool)
 
     def __init__(
         self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
@@ -60,42 +86,6 @@ class Integration:
         cells["t"] = cells["t_before"] = grid.start
         cells["h"], cells["repeats"] = settings.step, 1.0
         self.begin(start)
-
-    @property
-    def t(self) -> float:
-        """Current time, s."""
-        return float(self._cells["t"])
-
-    @t.setter
-    def t(self, value: float) -> None:
-        self._cells["t"] = value
-
-    @property
-    def h(self) -> float:
-        """Length of the next step, s."""
-        return float(self._cells["h"])
-
-    @h.setter
-    def h(self, value: float) -> None:
-        self._cells["h"] = value
-
-    @property
-    def stable(self) -> float:
-        """Longest step that stability allows, s; 0 if not computed."""
-        return float(self._cells["stable"])
-
-    @stable.setter
-    def stable(self, value: float) -> None:
-        self._cells["stable"] = value
-
-    @property
-    def eliminates(self) -> bool:
-        """True if accelerations are computed by elimination where its pivots are accurate, False if by LU always."""
-        return bool(self._cells["eliminates"])
-
-    @eliminates.setter
-    def eliminates(self, value: bool) -> None:
-        self._cells["eliminates"] = value
 
     def begin(self, start: InitialValues) -> int:
         """Restart from consistent values at the current time; return the event function of an event there, or -1."""

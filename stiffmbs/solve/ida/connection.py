@@ -16,14 +16,14 @@ from ..error_control.accumulated_errors import ErrorSums
 from ..events.event_functions import EventSearch, StepBound
 from ..events.long_steps import LongStepLog
 from ..events.native.layouts import LONG_STEPS
+from ..linear_solvers.fixed_order import Assembled, FixedOrder
 from .error_norm import ErrorNorm, Iteration
-from .libraries import Libraries
-from .matrices import Assembled, Matrix
+from .libraries import Libraries, ida_libraries
 from .native.layouts import NATIVE_IDA
 from .native.parameters import LOOP
 from .output_correction import OutputCorrection
 from .session import Session
-from .statistics import StepLog, failure_sentence
+from .statistics import COUNTERS, StepLog, failure_sentence
 
 MODULE = "stiffmbs.solve.ida.native.ida_loop"
 RESIDUAL = Routine(MODULE, "residual", "int32(float64, int64, int64, int64, int64*)")
@@ -67,6 +67,10 @@ class Formula(Protocol):
         """Return the address of the formula's memory."""
         ...
 
+    def counters(self, memory: int, libraries: Libraries) -> np.ndarray:
+        """Return the functions of the counters and their arguments, shape (2, counters)."""
+        ...
+
     def connect(self, connection: Connection, session: Session, assembled: Assembled) -> None:
         """Prepare the memory for the system of a connection and its iteration matrix."""
         ...
@@ -84,16 +88,21 @@ class BDF:
 
     repeat = 0
 
-    def __init__(self, matrix: Matrix, predicted_residual: bool = False) -> None:
-        self._matrix, self._predicted_residual = matrix, predicted_residual
+    def __init__(self, predicted_residual: bool = False) -> None:
+        self._predicted_residual = predicted_residual
 
     def libraries(self) -> Libraries:
-        """Return the libraries of the matrix and its linear solver."""
-        return self._matrix.libraries()
+        """Return the libraries of IDA."""
+        return ida_libraries()
 
     def memory(self, session: Session) -> int:
         """Return the address of IDA's memory in a session."""
         return session.ida()
+
+    def counters(self, memory: int, libraries: Libraries) -> np.ndarray:
+        """Return the functions of IDA's counters, and its memory as their argument, shape (2, counters)."""
+        functions = [libraries.address(function) for function in COUNTERS.values()]
+        return np.array([functions, [memory] * len(functions)])
 
     def connect(self, connection: Connection, session: Session, assembled: Assembled) -> None:
         """Give IDA the callbacks, the matrix, and the norm of error estimates."""
@@ -138,7 +147,7 @@ class Connection:
         self,
         equations: Equations,
         state: State,
-        matrix: Matrix,
+        matrix: FixedOrder,
         reported: np.ndarray,
         session: Session,
         formula: Formula,
@@ -170,7 +179,7 @@ class Connection:
         history, formulation = self.history.rows(2 * LOOP.most_steps), self._equations.formulation
         for term_set in (formulation.residual_set, formulation.matrix_set):
             self._state.load(term_set)
-        self.equations_table, self._slots = self._equations.table(self._assembled.slots)
+        self.equations_table, self._slots = self._equations.table()
         system = self._equations.system
         self.error_sums = ErrorSums(
             system, self._equations.coordinates, self._equations.at["u"], system.term(formulation.matrix_set, "f_u")
@@ -181,7 +190,7 @@ class Connection:
             {
                 "state": self.state_table, "equations": self.equations_table,
                 **functions,
-                "matrix": self._assembled.values, "pattern": self._assembled.pattern,
+                "matrix": self._assembled.values,
                 "n_event_functions": self.n_event_functions, "signs": self.signs, "masked": self.masked,
                 "memory": self.memory, "repeat": self._formula.repeat, "y": self.y_vector, "yp": self.yp_vector,
                 "at_output": self.output_vector, "output": self.output,
@@ -211,11 +220,6 @@ class Connection:
     def address(self, function: str) -> int:
         """Return the address of a SUNDIALS function, for compiled code."""
         return self._session.libraries.address(function)
-
-    @property
-    def on_one_thread(self) -> bool:
-        """Return True if the linear solver never starts threads."""
-        return not self._session.libraries.may_start_threads
 
     def ask(self, function: str, *arguments: Any) -> None:
         """Call a function of IDA. Raises ValueError if IDA reports an error."""

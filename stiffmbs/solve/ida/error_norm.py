@@ -6,8 +6,7 @@ import numpy as np
 
 from ...compile.machine.layout import fill
 from ...compile.machine.routines import Routine
-from .libraries import Unavailable
-from .matrices import Assembled
+from ..linear_solvers.fixed_order import Assembled
 from .native.layouts import ERROR_NORM, ITERATION
 from .operations import take_norm
 from .session import Session
@@ -32,8 +31,7 @@ class ErrorNorm:
     ) -> None:  # fmt: skip
         """Replace the norm of IDA's vectors, which are cloned from this one.
 
-        If the SUNDIALS libraries lay out vectors differently, the norm stays, and IDA takes more steps. `memory`: IDA
-        memory. `tables`: tables of the state and of the equations, for compiled code. `assembled`: iteration matrix of
+        `memory`: IDA memory. `tables`: tables of the state and of the equations, for compiled code. `assembled`: iteration matrix of
         IDA and its solver. `iteration`: table of Newton's iteration (`stiffmbs.solve.ida.native.iteration`).
         """
         libraries, (state, equations) = session.libraries, tables
@@ -53,10 +51,7 @@ class ErrorNorm:
                 "at_filtered": session.vector(self._filtered), "filtered": self._filtered,
             },
         )  # fmt: skip
-        try:
-            take_norm(session, y_vector, NORM.address, self.table)
-        except Unavailable:
-            return
+        take_norm(session, y_vector, NORM.address, self.table)
 
     def filter_always(self, asked: bool) -> None:
         """Filter all error estimates, or only those after many failed error tests."""

@@ -17,8 +17,8 @@ from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 from ..error_control.error_test import ErrorControl
+from ..linear_solvers.fixed_order import FixedOrder
 from .connection import BDF, MODULE, Connection, Formula
-from .matrices import Matrix
 from .native.parameters import LOOP
 from .session import Session
 from .statistics import Statistics, Status, failure_sentence
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .starting.after_event import EventRestarts
     from .starting.starts import Starts
 
-ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)", level=SHORT)
+ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64*)", level=SHORT)
 ADVANCE_PAST = Routine(
     "stiffmbs.solve.ida.starting.native.breakpoints",
     "advance_past",
@@ -46,46 +46,19 @@ class NativeIda(Connection):
     Only one thread at a time may use an instance.  Several threads may use their own instances and states: the
     interpreter's lock is released while IDA works.
 
-    Parameters
-    ----------
-    equations : Equations
-    state : State
-        Working memory of residual and Jacobian.
-    matrix : Matrix
-        Storage and factorisation of the iteration matrix (`stiffmbs.solve.ida.choice`).
-    rtol : float
-        Relative tolerance.
-    atol : ndarray, shape (n,)
-        Absolute tolerance of each unknown, greater than zero; a huge one excludes it from the error test and from
-        Newton's convergence test.
-    max_step : float
-        Largest step, s; 0 for none.
-    max_order : int
-        Highest order of BDF, 1 to 5.
-    newton : float, optional
-        Part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); 0.33 by default.
-    renewal : float, optional
-        Relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); 0.25 by default.
-    growth : float
-        Least factor by which a step is enlarged (IDASetEtaFixedStepBounds); IDA's own by default.
-    formula : Formula, optional
-        BDF with IDA's own convergence test by default.
-    reported : ndarray of int, optional
-        Unknowns returned at output times; all by default.
+    - `state`: working memory of residual and Jacobian.
+    - `matrix`: storage and factorisation of the iteration matrix (`stiffmbs.solve.ida.choice`).
+    - `rtol`, `atol` of shape (n,): relative tolerance, and absolute tolerance of each unknown, greater than zero; a huge
+      one excludes it from the error test and from Newton's convergence test.
+    - `max_step`: largest step, s; 0 for none.
+    - `renewal`: relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); IDA's own by default.
+    - `growth`: least factor by which a step is enlarged (IDASetEtaFixedStepBounds); IDA's own by default.
+    - `formula`: BDF with IDA's own convergence test by default.
+    - `reported`: unknowns returned at output times; all by default.
+    - `y`, `yp` of shape (n,): solution at `t`, overwritten by every call.
+    - `begun`: True if IDA was started since it was created or reset.
 
-    Attributes
-    ----------
-    y, yp : ndarrays, shape (n,)
-        Solution at `t`, overwritten by every call.
-    begun : bool
-        True if IDA was started since it was created or reset.
-
-    Raises
-    ------
-    Unavailable
-        If the SUNDIALS libraries cannot be used (`stiffmbs.solve.ida.libraries`).
-    ValueError
-        If IDA rejects a setting.
+    Raises Unavailable if the SUNDIALS libraries cannot be used, and ValueError if IDA rejects a setting.
 
     References
     ----------
@@ -96,32 +69,27 @@ class NativeIda(Connection):
         self,
         equations: Equations,
         state: State,
-        matrix: Matrix,
+        matrix: FixedOrder,
         rtol: float,
         atol: np.ndarray,
         *,
         max_step: float = 0.0,
-        max_order: int = 5,
-        newton: float | None = None,
         renewal: float | None = None,
         growth: float = 2.0,
         formula: Formula | None = None,
         reported: np.ndarray | None = None,
     ) -> None:
-        n, formula = equations.n, formula or BDF(matrix)
+        n, formula = equations.n, formula or BDF()
         session = Session(formula.libraries())
         self._finalizer = weakref.finalize(self, session.close)
         super().__init__(equations, state, matrix, np.arange(n) if reported is None else reported, session, formula)
-        self._statistics = Statistics(session.libraries, self.memory)
+        self._statistics = Statistics(session.libraries, self.memory, formula.counters(self.memory, session.libraries))
         self._flag, self.begun = 0, False
         self._batch = min(max(LOOP.most_items // n, 1), LOOP.most_steps)
         self._look = self._usual_batch = self._batch
         self._trace = np.empty((0, 2 + 2 * n))
         self._set_tolerances(rtol, atol)
         self.ask("IDASetMaxStep", max_step)
-        self.ask("IDASetMaxOrd", max_order)
-        if newton is not None:
-            self.ask("IDASetNonlinConvCoef", newton)
         if renewal is not None:
             self.ask("IDASetDeltaCjLSetup", renewal)
         self._growth = growth
@@ -180,7 +148,7 @@ class NativeIda(Connection):
         return self.watch.note()
 
     def leave_to_newton(self, part: float) -> None:
-        """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
+        """Set the part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef)."""
         self.ask("IDASetNonlinConvCoef", part)
 
     def forget(self) -> None:
@@ -225,24 +193,18 @@ class NativeIda(Connection):
             return None
         return Starts(dynamics, equations, self, self._statistics, settings, control)
 
-    def advance(
-        self, times: np.ndarray, stop: float, y_out: np.ndarray, yp_out: np.ndarray | None = None
-    ) -> tuple[int, Status]:
+    def advance(self, times: np.ndarray, stop: float, y_out: np.ndarray) -> tuple[int, Status]:
         """Integrate towards `stop`, and report at output times.
 
         Returns early with `Status.GOING` after about 0.1 s of work: call it again with the remaining times. `times`:
-        increasing output times, s, from `t` to `stop`. `stop`: time beyond which no residual is evaluated, s. `y_out`,
-        `yp_out` of shape (len(times), number of reported unknowns): output of the solution, and of its derivative.
+        increasing output times, s, from `t` to `stop`. `stop`: time beyond which no residual is evaluated, s. `y_out`
+        of shape (len(times), number of reported unknowns): output of the solution.
         Returns `served`: number of output times reported; `status`.
         """
         times = np.ascontiguousarray(times, dtype=float)
-        for rows in (y_out,) if yp_out is None else (y_out, yp_out):
-            self._check_rows(rows, len(times))
+        self._check_rows(y_out, len(times))
         self.ask("IDASetStopTime", stop)
-        derivatives = 0 if yp_out is None else address(yp_out)
-        self._flag = self.run(
-            ADVANCE, len(times), address(times), stop, min(self._batch, self._look), address(y_out), derivatives
-        )
+        self._flag = self.run(ADVANCE, len(times), address(times), stop, min(self._batch, self._look), address(y_out))
         return int(self.cells["served"]), self._status()
 
     def reported_at(self, t: float) -> np.ndarray:
@@ -252,7 +214,7 @@ class NativeIda(Connection):
         """
         times, row, stop = np.array([t]), np.empty(len(self.reported)), float(self.cells["stopping"])
         no_steps = 0
-        flag = self.run(ADVANCE, len(times), address(times), stop, no_steps, address(row), 0)
+        flag = self.run(ADVANCE, len(times), address(times), stop, no_steps, address(row))
         if flag < 0 or not self.cells["served"]:
             raise ValueError(failure_sentence(flag) if flag < 0 else f"found t = {t:.9g} s, after the last step")
         return row
@@ -306,13 +268,6 @@ class NativeIda(Connection):
         found = np.zeros(self.n_event_functions, dtype=np.intc)
         self.ask("IDAGetRootInfo", address(found))
         return found * self.signs.astype(np.intc)
-
-    def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:
-        """Return the solution, or a derivative of it up to the last order, at a time within the last step.
-
-        Raises ValueError if the time is outside the last step, or the derivative above its order.
-        """
-        return self.answer("IDAGetDky", t, derivative)
 
     def counted(self) -> dict[str, int]:
         """Return the counters since the first start (`stiffmbs.solve.ida.statistics.COUNTERS`)."""

@@ -7,8 +7,6 @@ import importlib.util
 import os
 import re
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
@@ -16,41 +14,41 @@ from typing import Any, Final
 
 import numpy as np
 
+from ...errors import SolverError
+
 VERSION: Final = 7
 """Major version of SUNDIALS that the declarations and the loop are written for."""
 IDA_LIBRARIES = ("core", "ida")
-SPARSE_LIBRARIES = ("core", "sunmatrixsparse", "sunlinsolsuperlumt")
-COMPRESSED_COLUMNS: Final = 0
-"""CSC_MAT of sunmatrix_sparse.h."""
 
 
-class Unavailable(Exception):
-    """Error if libraries are missing or unknown; the text is a sentence with the reason."""
+class Unavailable(SolverError):
+    """Error if the libraries are missing or unknown."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(
+            f"solvers bdf and radau: {reason}; expected the libraries of a wheel of scikit-sundae with SUNDIALS {VERSION}; "
+            "use solver projected"
+        )
 
 
 @dataclass(frozen=True)
 class Libraries:
-    """SUNDIALS functions, as attributes by their C names. `index`: type of `sunindextype`."""
+    """SUNDIALS functions, as attributes by their C names."""
 
     loaded: tuple[ctypes.PyDLL, ...]
-    index: type[Any]
 
     def __getattr__(self, name: str) -> Any:
         function = self._found(name)
-        function.restype, function.argtypes = self._declared[name]
+        function.restype, function.argtypes = declared()[name]
         object.__setattr__(self, name, function)
         return function
-
-    @cached_property
-    def _declared(self) -> dict[str, tuple[Any, list[Any]]]:
-        return declared(self.index)
 
     def _found(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
         for library in self.loaded:
             if hasattr(library, name):
-                return library[name]  # a new object, so that two index types never share a prototype
+                return library[name]
         raise Unavailable(f"the SUNDIALS libraries have no function {name}")
 
     def address(self, name: str) -> int:
@@ -65,69 +63,28 @@ class Libraries:
     def _addresses(self) -> dict[str, int]:
         return {}
 
-    @cached_property
-    def _with_threads(self) -> ctypes.PyDLL | None:
-        """Return the library that uses OpenMP, if any."""
-        return next((lib for lib in self.loaded if hasattr(lib, "omp_set_num_threads")), None)
-
-    @property
-    def may_start_threads(self) -> bool:
-        """Return True if a library uses OpenMP."""
-        return self._with_threads is not None
-
-    @contextmanager
-    def on_one_thread(self) -> Iterator[None]:
-        """Restrict OpenMP, which SuperLU_MT uses, to one thread; on a busy machine, further ones only delay it."""
-        chosen = self._with_threads
-        if chosen is None:
-            yield
-            return
-        before = chosen.omp_get_max_threads()
-        chosen.omp_set_num_threads(1)  # affects the calling thread only
-        try:
-            yield
-        finally:
-            chosen.omp_set_num_threads(before)
-
-    @property
-    def index_dtype(self) -> np.dtype[Any]:
-        """Return `sunindextype` as a NumPy dtype."""
-        return np.dtype(self.index)
-
-
-def available() -> tuple[bool, str]:
-    """Return True if IDA's libraries can be used, or False and a sentence with the reason."""
-    try:
-        ida_libraries()
-    except Unavailable as reason:
-        return False, str(reason)
-    return True, ""
-
 
 @cache
 def ida_libraries() -> Libraries:
-    """Load IDA with vectors, and dense matrices.
+    """Load IDA with its vectors, matrices and solvers.
 
-    Raises Unavailable if they are not found, cannot be loaded, or have another version or other number types.
+    Raises Unavailable if they are not found, cannot be loaded, or have another version or precision.
     """
-    return _tried(_loaded(IDA_LIBRARIES))
+    libraries = Libraries(_loaded())
+    try:
+        _check_version(libraries)
+        _check_precision(libraries)
+    except AttributeError as error:
+        raise Unavailable(f"the SUNDIALS libraries lack a function: {error}") from None
+    return libraries
 
 
-@cache
-def sparse_libraries() -> Libraries:
-    """Load IDA, sparse matrices and SuperLU_MT with the libraries that it depends on.
-
-    Raises Unavailable if scikit-sundae was built without SuperLU_MT.
-    """
-    return _tried((*_loaded(IDA_LIBRARIES), *_loaded(SPARSE_LIBRARIES)))
-
-
-def _loaded(names: tuple[str, ...]) -> tuple[ctypes.PyDLL, ...]:
+def _loaded() -> tuple[ctypes.PyDLL, ...]:
     folder = _folder()
     if hasattr(os, "add_dll_directory"):
         os.add_dll_directory(str(folder))  # Windows searches dependencies in declared folders only
     try:
-        return tuple(ctypes.PyDLL(str(_file(folder, name))) for name in names)  # keeps the GIL in short calls
+        return tuple(ctypes.PyDLL(str(_file(folder, name))) for name in IDA_LIBRARIES)  # keeps the GIL in short calls
     except OSError as error:
         raise Unavailable(f"the SUNDIALS libraries in {folder} cannot be loaded: {error}") from None
 
@@ -163,16 +120,6 @@ def _matching(folder: Path, name: str) -> list[Path]:
     return sorted(path for path in folder.glob(f"*sundials_{name}*") if pattern.match(path.name))
 
 
-def _tried(loaded: tuple[ctypes.PyDLL, ...]) -> Libraries:
-    """Validate the version and the number types of libraries."""
-    try:
-        trial = Libraries(loaded, ctypes.c_int64)  # small positive numbers are the same in both types
-        _check_version(trial)
-        return Libraries(loaded, _index_type(trial))
-    except AttributeError as error:
-        raise Unavailable(f"the SUNDIALS libraries lack a function: {error}") from None
-
-
 def _check_version(libraries: Libraries) -> None:
     parts = [ctypes.c_int() for _ in range(3)]
     label = ctypes.create_string_buffer(32)
@@ -182,30 +129,15 @@ def _check_version(libraries: Libraries) -> None:
         raise Unavailable(f"scikit-sundae carries SUNDIALS {found}, the native driver is made for version {VERSION}")
 
 
-def _index_type(libraries: Libraries) -> type[Any]:
-    """Return the type of `sunindextype`, found by the column starts 0 2 4 of a full matrix made sparse."""
-    context = ctypes.c_void_p()
+def _check_precision(libraries: Libraries) -> None:
+    context, ones = ctypes.c_void_p(), np.ones(4)
     libraries.SUNContext_Create(0, ctypes.byref(context))
-    ones = np.ones(4)
-    vector = libraries.N_VMake_Serial(4, ones.ctypes.data, context)
-    dense = libraries.SUNDenseMatrix(2, 2, context)
-    try:
-        if libraries.N_VL1Norm_Serial(vector) != 4.0:
-            raise Unavailable("the SUNDIALS libraries do not work in double precision")
-        ctypes.memmove(libraries.SUNDenseMatrix_Data(dense), ones.ctypes.data, ones.nbytes)
-        sparse = libraries.SUNSparseFromDenseMatrix(dense, 0.0, COMPRESSED_COLUMNS)
-        starts = ctypes.string_at(libraries.SUNSparseMatrix_IndexPointers(sparse), 12)
-        libraries.SUNMatDestroy(sparse)
-    finally:
-        libraries.SUNMatDestroy(dense)
-        libraries.N_VDestroy(vector)
-        libraries.SUNContext_Free(ctypes.byref(context))
-    match tuple(np.frombuffer(starts, dtype=np.int32)):
-        case (0, 2, 4):
-            return ctypes.c_int32
-        case (0, 0, 2):
-            return ctypes.c_int64
-    raise Unavailable("the SUNDIALS libraries count with integers that are neither of 32 nor of 64 bits")
+    vector = libraries.N_VMake_Serial(len(ones), ones.ctypes.data, context)
+    norm = libraries.N_VL1Norm_Serial(vector)
+    libraries.N_VDestroy(vector)
+    libraries.SUNContext_Free(ctypes.byref(context))
+    if norm != np.sum(ones):
+        raise Unavailable("the SUNDIALS libraries do not work in double precision")
 
 
 DECLARATIONS = """
@@ -225,17 +157,11 @@ SUNMatrix SUNBandMatrix(sunindextype, sunindextype, sunindextype, SUNContext)
 double* SUNBandMatrix_Data(SUNMatrix)
 sunindextype SUNBandMatrix_LDim(SUNMatrix)
 sunindextype SUNBandMatrix_StoredUpperBandwidth(SUNMatrix)
-SUNMatrix SUNSparseMatrix(sunindextype, sunindextype, sunindextype, int, SUNContext)
-SUNMatrix SUNSparseFromDenseMatrix(SUNMatrix, double, int)
-double* SUNSparseMatrix_Data(SUNMatrix)
-void* SUNSparseMatrix_IndexValues(SUNMatrix)
-void* SUNSparseMatrix_IndexPointers(SUNMatrix)
 int SUNMatZero(SUNMatrix)
 void SUNMatDestroy(SUNMatrix)
 
 SUNLinearSolver SUNLinSol_Dense(N_Vector, SUNMatrix, SUNContext)
 SUNLinearSolver SUNLinSol_Band(N_Vector, SUNMatrix, SUNContext)
-SUNLinearSolver SUNLinSol_SuperLUMT(N_Vector, SUNMatrix, int, SUNContext)
 int SUNLinSolInitialize(SUNLinearSolver)
 int SUNLinSolSetup(SUNLinearSolver, SUNMatrix)
 int SUNLinSolSolve(SUNLinearSolver, SUNMatrix, N_Vector, N_Vector, double)
@@ -287,16 +213,19 @@ void IDAFree(void**)
 """
 
 _DECLARATION = re.compile(r"^([\w ]+?\**) (\w+)\((.*)\)$", re.MULTILINE)
-_NUMBERS: dict[str, Any] = {"int": ctypes.c_int, "long": ctypes.c_long, "double": ctypes.c_double, "void": None}
+_NUMBERS: dict[str, Any] = {
+    "int": ctypes.c_int, "long": ctypes.c_long, "double": ctypes.c_double, "void": None,
+    "sunindextype": ctypes.c_int64,  # small positive numbers are also valid arguments of 32 bits
+}  # fmt: skip
 
 
-def declared(index: type[Any]) -> dict[str, tuple[Any, list[Any]]]:
-    """Return the result and argument types of each function; pointers are passed as addresses.
+@cache
+def declared() -> dict[str, tuple[Any, list[Any]]]:
+    """Return the result and argument types of each function; pointers are passed as addresses."""
 
-    `index`: type of `sunindextype`: ``c_int32`` or ``c_int64``.
-    """
-    numbers = _NUMBERS | {"sunindextype": index}
+    def of(name: str) -> Any:
+        return _NUMBERS.get(name.strip(), ctypes.c_void_p)
+
     return {
-        name: (numbers.get(result, ctypes.c_void_p), [numbers.get(a.strip(), ctypes.c_void_p) for a in rest.split(",")])
-        for result, name, rest in _DECLARATION.findall(DECLARATIONS)
+        name: (of(result), list(map(of, rest.split(",")))) for result, name, rest in _DECLARATION.findall(DECLARATIONS)
     }

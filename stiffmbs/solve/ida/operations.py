@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Iterator, Mapping
-from functools import cache
 from itertools import takewhile
 from typing import Final
 
 import numpy as np
 
 from ...compile.machine.native.statuses import CONTENT, NORM_TABLE, OPERATIONS
-from .libraries import Libraries, Unavailable
+from .libraries import Unavailable
 from .session import Session
 
 MOST_WORDS: Final = 16
@@ -30,7 +29,7 @@ def take_place(session: Session, solver: int, size: int, functions: Mapping[str,
     replaced = {session.libraries.address(name): address for name, address in functions.items()}
     own = list(takewhile(lambda word: word != session.context.value, _words(solver, MOST_WORDS)))
     table = next((t for t in own[1:] if t and set(replaced) <= set(_words(t, MOST_WORDS))), None)
-    if table is None or session.libraries.index.from_address(own[CONTENT]).value != size:
+    if table is None or ctypes.c_int32.from_address(own[CONTENT]).value != size:
         raise Unavailable("the SUNDIALS libraries lay out linear solvers in another way")
     for k, address in enumerate(_words(table, MOST_WORDS)):
         if address in replaced:
@@ -53,24 +52,6 @@ def take_norm(session: Session, vector: int, norm: int, table: np.ndarray) -> No
         raise Unavailable("the SUNDIALS libraries lay out vectors in another way")
     _write(operations, words.index(own), norm)
     _write(operations, NORM_TABLE, table.ctypes.data)
-
-
-@cache
-def replaceable(libraries: Libraries) -> bool:
-    """Return True if `take_place` works with these libraries; tested on a solver of two unknowns."""
-    session = Session(libraries)
-    values = np.zeros(2)
-    try:
-        matrix = session.keep(libraries.SUNBandMatrix(2, 0, 0, session.context), libraries.SUNMatDestroy, "a matrix")
-        made = libraries.SUNLinSol_Band(session.vector(values), matrix, session.context)
-        solver = session.keep(made, libraries.SUNLinSolFree, "a linear solver")
-        unchanged = {name: libraries.address(name) for name in ("SUNLinSolSetup_Band", "SUNLinSolSolve_Band")}
-        take_place(session, solver, 2, unchanged, np.zeros(3, dtype=np.int64))
-    except Unavailable:
-        return False
-    finally:
-        session.close()
-    return True
 
 
 def _words(address: int, count: int) -> Iterator[int]:

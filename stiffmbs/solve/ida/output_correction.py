@@ -7,7 +7,7 @@ import numpy as np
 from ...compile.equations import ABSENT, Equations
 from ...compile.machine.layout import fill
 from ...dynamics.dynamics import Dynamics
-from .matrices import Assembled, Matrix
+from ..linear_solvers.fixed_order import Assembled, FixedOrder
 from .native.layouts import OUTPUT_CORRECTION
 from .session import Session
 
@@ -33,7 +33,7 @@ class OutputCorrection:
         """Return True if the memory exists."""
         return self._assembled is not None
 
-    def make_ready(self, session: Session, matrix: Matrix, memory: int, y_vector: int, dynamics: Dynamics) -> None:
+    def make_ready(self, session: Session, matrix: FixedOrder, memory: int, y_vector: int, dynamics: Dynamics) -> None:
         """Create the matrix, its solver and the vectors.
 
         `session`: owner of these objects. `memory`: IDA memory. `y_vector`: vector like those of the iteration.
@@ -46,7 +46,7 @@ class OutputCorrection:
         joint_row, pose = _rows_of_joints(self._equations), np.zeros(self._equations.system.n_q)
         functions = {
             "interpolate": "IDAGetDky", "weights": "IDAGetErrWeights",
-            "clear": "SUNMatZero", "setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve",
+            "setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve",
         }  # fmt: skip
         fill(
             self.table,
@@ -55,7 +55,7 @@ class OutputCorrection:
                 "memory": memory,
                 **{name: libraries.address(function) for name, function in functions.items()},
                 "solver": assembled.solver, "matrix": assembled.matrix,
-                "entries": assembled.values, "pattern": assembled.pattern,
+                "entries": assembled.values,
                 "force_row": force_row, "force_end": force_end,
                 "n_joint_rows": len(joint_row), "joint_row": joint_row, "dynamics": dynamics.table, "pose": pose,
                 **vectors, **{f"at_{name}": session.vector(values) for name, values in vectors.items()},

@@ -42,12 +42,8 @@ class Session:
         self._needed.append(routines)
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Call compiled code with libraries on one thread; afterwards raise errors from the compilation of routines."""
-        if self.libraries.may_start_threads:
-            with self.libraries.on_one_thread():
-                found = function(*arguments)
-        else:
-            found = function(*arguments)
+        """Call compiled code; afterwards raise errors from the compilation of routines."""
+        found = function(*arguments)
         for routines in self._needed:
             routines.raise_fault()
         return found

@@ -7,13 +7,13 @@ from enum import Enum
 
 import numpy as np
 
-from ...compile.machine.layout import address, addresses
+from ...compile.machine.layout import addresses
 from ...compile.machine.routines import Routine
 from .libraries import Libraries
 from .native.layouts import STEP
 from .native.parameters import LOOP
 
-_COUNT = Routine("stiffmbs.solve.ida.starting.native.start", "count", "void(int64, int64*, int64, int64*, int64*)")
+_COUNT = Routine("stiffmbs.solve.ida.starting.native.start", "count", "void(int64, int64*, int64*, int64*, int64*)")
 
 COUNTERS = {
     "steps": "IDAGetNumSteps",
@@ -31,23 +31,23 @@ COUNTERS = {
 class Statistics:
     """Counters of one integrator.
 
-    `memory`: IDA memory. `arrays`: arrays for compiled code (`stiffmbs.solve.ida.native.layouts.START`): counter
-    functions, space for one number, and the counts before the last start.
+    `memory`: IDA memory. `counters` of shape (2, counters): their functions and the arguments of these. `arrays`: arrays
+    for compiled code (`stiffmbs.solve.ida.native.layouts.START`), with space for one number, and the counts before the
+    last start.
     """
 
-    def __init__(self, libraries: Libraries, memory: int) -> None:
+    def __init__(self, libraries: Libraries, memory: int, counters: np.ndarray) -> None:
         self._libraries, self._memory = libraries, memory
         self._before = np.zeros(len(COUNTERS), dtype=np.int64)
         self._order = ctypes.c_int()
-        self._functions = np.array([libraries.address(function) for function in COUNTERS.values()], dtype=np.int64)
+        self._functions, self._counted = counters
         self._value = np.zeros(1, dtype=np.int64)
         self.arrays = {
-            "n_counters": len(COUNTERS), "counter": self._functions, "count": self._value, "counts": self._before,
+            "n_counters": len(COUNTERS), "counter": self._functions, "counted": self._counted, "count": self._value, "counts": self._before,
         }  # fmt: skip
 
     def _add_to(self, sums: np.ndarray) -> None:
-        functions, value = addresses(self._functions, self._value)
-        _COUNT.short_call(len(sums), functions, self._memory, value, address(sums))
+        _COUNT.short_call(len(sums), *addresses(self._functions, self._counted, self._value, sums))
 
     def total(self) -> dict[str, int]:
         """Return all counters."""

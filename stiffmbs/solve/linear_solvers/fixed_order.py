@@ -11,8 +11,6 @@ from ...compile.machine.layout import Layout, packed_with_memory
 from ...compile.machine.native.tables import FACTORS
 from ...compile.machine.routines import Routine
 from ...sparse.elimination_order import EliminationOrder, factors_of
-from ..ida.libraries import Libraries, ida_libraries
-from ..ida.matrices import Assembled
 from ..ida.operations import take_place
 from ..ida.session import Session, WhenNeeded
 from .native.layouts import FIXED_ORDER, PIVOTED
@@ -23,6 +21,23 @@ SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
 _PIVOTED = "stiffmbs.solve.linear_solvers.native.pivoted"
 SETUP_PIVOTED = Routine(_PIVOTED, "setup", "int32(int64*, int64)")
 SOLVE_PIVOTED = Routine(_PIVOTED, "solve", "int32(int64*, int64, int64, int64, float64)")
+
+
+class Assembled(NamedTuple):
+    """SUNDIALS matrix and the data to fill it.
+
+    - `matrix`, `solver`: the SUNMatrix and its SUNLinearSolver.
+    - `values`: address of the values of the matrix, in the order of the pattern.
+    - `memory`: memory of the solver, which must stay alive.
+    - `pivots`: cells of a linear solver that stores its pivots, with "ready" zero to search them again; None for
+      others.
+    """
+
+    matrix: int
+    solver: int
+    values: int
+    memory: Memory
+    pivots: np.void | None
 
 
 class Memory(NamedTuple):
@@ -54,10 +69,6 @@ class FixedOrder:
     columns: np.ndarray
     order: EliminationOrder
 
-    def libraries(self) -> Libraries:
-        """Return the libraries of IDA alone."""
-        return ida_libraries()
-
     def sentence(self) -> str:
         """Return a description for the summary."""
         return f"fixed order, {self.n} unknowns, {len(self.rows)} entries"
@@ -74,7 +85,7 @@ class FixedOrder:
         take_place(session, solver, self.n, functions, memory.content)
         pivots = memory.content.view(self.layout.cells)[0] if "ready" in self.layout else None
         values = memory.factors["a"].ctypes.data
-        return Assembled(matrix, solver, values, None, np.zeros(6, dtype=np.int64), (memory,), pivots)
+        return Assembled(matrix, solver, values, memory, pivots)
 
     def memory(self, array_of: int) -> Memory:
         """Return the memory of the compiled routines, given the address of N_VGetArrayPointer."""

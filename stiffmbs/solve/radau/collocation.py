@@ -23,26 +23,19 @@ class Collocation:
     The polynomial through y_n and the stages Y_i = y_n + Z_i satisfies the equations at all nodes; its derivative there
     is (1/h) sum_j D_ij Z_j with D = A^-1.
 
-    Attributes
-    ----------
-    nodes : ndarray, shape (s,)
-        c_i; the last is 1.
-    derivative : ndarray, shape (s, s)
-        D.
-    transform, inverse : ndarrays, shape (s, s)
-        T and T^-1, with T^-1 D T = diag(gamma, blocks [[alpha, -beta], [beta, alpha]]).
-    gamma : float
-    alpha, beta : ndarrays, shape ((s - 1) / 2,)
-    error : ndarray, shape (s,)
-        d with y_hat - y = (gamma/h M - f_y)^-1 (f(y_n) + M sum_i d_i Z_i / h), a difference of order s.
-    between : ndarray, shape (s + 3,)
-        Places at which corrections of the polynomial are interpolated: the nodes within the step, then the best others.
-    weights : ndarray, shape (s + 1,)
-        Barycentric weights of the nodes 0, c_1 to c_s.
-    bubble : ndarray, shape (s + 2,)
-        Coefficients of the polynomial, zero at 0 and 1, by which the error estimate corrects the solution within the
-        step.  The polynomial of the stages has the defect f(y_n) - u'(0) = K prod_i (-c_i) at 0, hence K prod_i (x - c_i)
-        within the step up to the next order, whose integral is the correction.
+    - `nodes` of shape (s,): c_i; the last is 1.
+    - `derivative` of shape (s, s): D.
+    - `transform`, `inverse` of shape (s, s): T and T^-1, with T^-1 D T = diag(gamma, blocks [[alpha, -beta], [beta,
+      alpha]]).
+    - `gamma`; `alpha`, `beta` of shape ((s - 1) / 2,): eigenvalues of D.
+    - `error` of shape (s,): d with y_hat - y = (gamma/h M - f_y)^-1 (f(y_n) + M sum_i d_i Z_i / h), a difference of
+      order s.
+    - `between` of shape (s + 3,): places at which corrections of the polynomial are interpolated: the nodes within the
+      step, then the best others.
+    - `weights` of shape (s + 1,): barycentric weights of the nodes 0, c_1 to c_s.
+    - `bubble` of shape (s + 2,): coefficients of the polynomial, zero at 0 and 1, by which the error estimate corrects
+      the solution within the step.  The polynomial of the stages has the defect f(y_n) - u'(0) = K prod_i (-c_i) at 0,
+      hence K prod_i (x - c_i) within the step up to the next order, whose integral is the correction.
     """
 
     nodes: np.ndarray

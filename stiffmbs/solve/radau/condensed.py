@@ -21,7 +21,7 @@ def condensed_efforts(equations: Equations) -> dict[str, Any]:
     slopes = [np.concatenate(columns) for columns in zip(*parts, strict=True)]
     source = _sources(equations)
     return {
-        "n_efforts": len(source), "effort_source": _indices(source),
+        "n_efforts": len(source), "effort_source": indices(source),
         **_listed("lever", levers), **_listed("slope", slopes),
     }  # fmt: skip
 
@@ -29,12 +29,13 @@ def condensed_efforts(equations: Equations) -> dict[str, Any]:
 def _listed(name: str, entries: Any) -> dict[str, Any]:
     source, row, unknown, factor = entries
     return {
-        f"n_{name}s": len(source), f"{name}_source": _indices(source), f"{name}_effort": _indices(row),
-        f"{name}_unknown": _indices(unknown), f"{name}_factor": np.ascontiguousarray(factor, dtype=float),
+        f"n_{name}s": len(source), f"{name}_source": indices(source), f"{name}_effort": indices(row),
+        f"{name}_unknown": indices(unknown), f"{name}_factor": np.ascontiguousarray(factor, dtype=float),
     }  # fmt: skip
 
 
-def _indices(numbers: np.ndarray) -> np.ndarray:
+def indices(numbers: np.ndarray) -> np.ndarray:
+    """Return indices for compiled code."""
     return np.ascontiguousarray(numbers, dtype=np.int32)
 
 

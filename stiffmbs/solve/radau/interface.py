@@ -8,7 +8,7 @@ from ...compile.machine.compiler import FULL
 from ...compile.machine.routines import together
 from ..ida.libraries import Libraries
 
-_GET, _SET = "int32(int64, int64*)", "int32(int64, float64)"
+_SET = "int32(int64, float64)"
 _SIGNATURES = {
     "solve": ("IDASolve", "int32(int64, float64, float64*, int64, int64, int32)"),
     "interpolate": ("IDAGetDky", "int32(int64, float64, int32, int64)"),
@@ -28,17 +28,10 @@ _SIGNATURES = {
     "weights_of": ("IDAGetErrWeights", "int32(int64, int64)"),
     "order_of": ("IDAGetLastOrder", "int32(int64, int32*)"),
     "roots_of": ("IDAGetRootInfo", "int32(int64, int32*)"),
-    "steps_of": ("IDAGetNumSteps", _GET),
-    "residuals_of": ("IDAGetNumResEvals", _GET),
-    "jacobians_of": ("IDAGetNumJacEvals", _GET),
-    "factorizations_of": ("IDAGetNumLinSolvSetups", _GET),
-    "error_failures_of": ("IDAGetNumErrTestFails", _GET),
-    "step_failures_of": ("IDAGetNumStepSolveFails", _GET),
-    "iterations_of": ("IDAGetNumNonlinSolvIters", _GET),
-    "newton_failures_of": ("IDAGetNumNonlinSolvConvFails", _GET),
+    "counter_of": ("counter", "int32(int64*, int64*)"),
     "repeat": ("repeat", "int32(int64, float64, float64)"),
 }
-"""Names of IDA's functions, which has none for `repeat`, and signatures of those in `stiffmbs.solve.radau.native.interface`."""
+"""Names of IDA's functions, which has none for `repeat` and one for each counter, and signatures of those in `stiffmbs.solve.radau.native.interface`."""
 _ROUTINES = dict(
     zip(
         (name for name, _ in _SIGNATURES.values()),
@@ -50,14 +43,14 @@ _ROUTINES = dict(
         strict=True,
     )
 )
-REPEAT = _ROUTINES["repeat"]
+REPEAT, COUNTER = _ROUTINES["repeat"], _ROUTINES["counter"]
 
 
 class RadauFunctions(Libraries):
     """SUNDIALS functions, with those of IDA replaced by Radau methods."""
 
     def __init__(self, libraries: Libraries) -> None:
-        super().__init__(libraries.loaded, libraries.index)
+        super().__init__(libraries.loaded)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("IDA"):

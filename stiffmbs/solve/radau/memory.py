@@ -16,13 +16,14 @@ from ...sparse.elimination_order import EliminationOrder
 from ...tuning import parameters_of
 from ..cost import ImplicitCost
 from ..ida.choice import cost_of
-from ..ida.libraries import Libraries
-from ..ida.matrices import Assembled, Matrix
+from ..ida.libraries import Libraries, ida_libraries
 from ..ida.session import Session
+from ..ida.statistics import COUNTERS
 from ..linear_solvers.block_lu import BlockLU
+from ..linear_solvers.fixed_order import Assembled, FixedOrder
 from .collocation import MOST_BETWEEN, Collocation, radau
-from .condensed import condensed_efforts
-from .interface import REPEAT, RadauFunctions
+from .condensed import condensed_efforts, indices
+from .interface import COUNTER, REPEAT, RadauFunctions
 from .native.layouts import COLLOCATION, RADAU
 from .parameters import RadauParameters
 
@@ -42,14 +43,14 @@ class Pairs(NamedTuple):
     of the real one. `im_re`, `re_im`: entry of each imaginary part.
     """
 
-    matrix: Matrix
+    matrix: FixedOrder
     re_re: np.ndarray
     im_im: np.ndarray
     im_re: np.ndarray
     re_im: np.ndarray
 
 
-def in_pairs(matrix: Any, imaginary: np.ndarray) -> Pairs:
+def in_pairs(matrix: FixedOrder, imaginary: np.ndarray) -> Pairs:
     """Return a complex matrix whose given slots have an imaginary part, with the linear solver of a real matrix."""
     rows, columns = matrix.rows, matrix.columns
     row, column = rows[imaginary], columns[imaginary]
@@ -60,11 +61,13 @@ def in_pairs(matrix: Any, imaginary: np.ndarray) -> Pairs:
     place[order] = np.arange(len(order))
     parts = np.split(place, np.cumsum([len(rows), len(rows), len(row)]))
     fields: dict[str, Any] = {"n": 2 * matrix.n, "rows": all_rows[order], "columns": all_columns[order]}
-    if hasattr(matrix, "order"):
-        own, blocks = matrix.order, isinstance(matrix, BlockLU)
-        work = (2 * own.fill, 4 * own.updates) if blocks else (4 * own.fill, 8 * own.updates)
-        fields["order"] = EliminationOrder(_doubled(own.unknowns), *work)
-        fields |= {"nodes": matrix.nodes, "kinds": np.repeat(matrix.kinds, 2), "parts": 2} if blocks else {}
+    own = matrix.order
+    if isinstance(matrix, BlockLU):
+        work = 2 * own.fill, 4 * own.updates
+        fields |= {"nodes": matrix.nodes, "kinds": np.repeat(matrix.kinds, 2), "parts": 2}
+    else:
+        work = 4 * own.fill, 8 * own.updates
+    fields["order"] = EliminationOrder(_doubled(own.unknowns), *work)
     return Pairs(type(matrix)(**fields), *parts)
 
 
@@ -76,34 +79,22 @@ def _doubled(unknowns: np.ndarray) -> np.ndarray:
 class Radau:
     """Radau methods in place of IDA's BDF (`stiffmbs.solve.ida.connection.Formula`).
 
-    Parameters
-    ----------
-    equations : Equations
-    matrix : Matrix
-        Real iteration matrix with its linear solver.
-    state : State
-    stages : int or None
-        Number of stages; None to choose it by the convergence of Newton's iteration.
-    cost : ImplicitCost
-        Cost of a residual and of a real iteration matrix.
-    parameters : RadauParameters
-
-    Attributes
-    ----------
-    pair_cost : float
-        Cost of a complex matrix, in real ones.
+    - `matrix`: real iteration matrix with its linear solver.
+    - `stages`: number of stages; None to choose it by the convergence of Newton's iteration.
+    - `cost`: cost of a residual and of a real iteration matrix.
+    - `pair_cost`: cost of a complex matrix, in real ones.
     """
 
     def __init__(
         self,
         equations: Equations,
-        matrix: Matrix,
+        matrix: FixedOrder,
         state: State,
         stages: int | None,
         cost: ImplicitCost,
         parameters: RadauParameters,
     ) -> None:
-        self._equations, self._matrix, self._parameters = equations, matrix, parameters
+        self._equations, self._parameters = equations, parameters
         for term_set in ("effort", "effort_tangent"):
             state.load(term_set)
         self._pairs = in_pairs(matrix, equations.slots_with_rates)
@@ -125,11 +116,17 @@ class Radau:
 
     def libraries(self) -> Libraries:
         """Return the SUNDIALS functions, with those of IDA replaced."""
-        return RadauFunctions(self._matrix.libraries())
+        return RadauFunctions(ida_libraries())
 
     def memory(self, session: Session) -> int:
         """Return the address of the memory."""
         return self._words.ctypes.data
+
+    def counters(self, memory: int, libraries: Libraries) -> np.ndarray:
+        """Return the functions of the counters and their arguments, shape (2, counters)."""
+        first = memory + self._words.itemsize * list(RADAU).index("steps")
+        cells = first + self._words.itemsize * np.arange(len(COUNTERS))
+        return np.array([np.full(len(COUNTERS), COUNTER.address), cells])
 
     def connect(self, connection: Connection, session: Session, real: Assembled) -> None:
         """Create matrices and vectors, and fill the memory."""
@@ -154,14 +151,13 @@ class Radau:
         values = {
             "state": connection.state_table, "equations": self._of_equations[0], "array_of": session.libraries.address("N_VGetArrayPointer"), "n": n,
             "methods": self._addresses(0), "below": self._addresses(-2), "n_methods": len(self._methods),
-            "clear": session.libraries.address("SUNMatZero"), "setup": session.libraries.address("SUNLinSolSetup"),
+            "setup": session.libraries.address("SUNLinSolSetup"),
             "solve": session.libraries.address("SUNLinSolSolve"),
             "solver": np.array([each.solver for each in solvers]), "matrix": np.array([each.matrix for each in solvers]),
-            "values": np.array([each.values for each in solvers]), "patterns": np.concatenate([each.pattern for each in solvers]),
-            "n_slots": len(number), "slot": _at(real, np.arange(len(number))),
-            "re_re": _at(complexes[0], pairs.re_re), "im_im": _at(complexes[0], pairs.im_im),
+            "values": np.array([each.values for each in solvers]), "n_slots": len(number),
+            "re_re": indices(pairs.re_re), "im_im": indices(pairs.im_im),
             "n_imaginary": len(imaginary), "imaginary_of": number.astype(np.int32),
-            "im_re": _at(complexes[0], pairs.im_re), "re_im": _at(complexes[0], pairs.re_im),
+            "im_re": indices(pairs.im_re), "re_im": indices(pairs.re_im),
             "entries": np.zeros(len(number)), **vectors, **at, "output_correction": connection.output_correction.table, "error_norm": connection.error_norm.table,
             "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
             "misfit": np.zeros(self._most * n_efforts), "r": np.zeros(self._most * n),
@@ -200,9 +196,3 @@ def _costs(stages: int, cost: ImplicitCost, pair_cost: float, parameters: RadauP
     setup = cost.matrix * (1 + pair_cost * (stages // 2))
     iteration = stages * cost.residual + parameters.solution_cost * setup
     return {"setup_cost": setup, "iteration_cost": iteration, "keep": parameters.keep_matrix * setup / iteration}
-
-
-def _at(assembled: Assembled, entries: np.ndarray) -> np.ndarray:
-    """Return the positions of entries of a pattern among the values of a matrix."""
-    places = entries if assembled.slots is None else assembled.slots[entries]
-    return np.ascontiguousarray(places, dtype=np.int32)

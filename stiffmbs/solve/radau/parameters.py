@@ -11,30 +11,20 @@ from ...tuning import tuned
 class RadauParameters:
     """Parameters of step size, number of stages and Newton's iteration; after the code RADAU of Hairer and Wanner.
 
-    Attributes
-    ----------
-    tolerance : float
-        Factor c of the tolerance c rtol^((s + 1)/(2 s)) of the error estimate, whose order is s instead of 2 s - 1.
-    least_factor, largest_factor : float
-        Bounds of the ratio of successive steps; the first is the factor of a first step after a failed error test too.
-    keep_matrix : float
-        Convergence rate of Newton's iteration below which the matrices are kept for the next step, if they cost as much as
-        an iteration; in proportion to their cost otherwise.
-    keep_high : float
-        Ratio of successive steps below which the step and the factors stay unchanged.
-    stages_after : int
-        Steps after which the number of stages is chosen again.
-    gain : float
-        Ratio of costs per time below which another number of stages is chosen.
-    solution_cost : float
-        Cost of the solutions of an iteration, in those of the matrices of a step.
-    slowest : float
-        Convergence rate of Newton's iteration that the next step may have.
-    converging : float
-        Ratio of successive Chebyshev coefficients of a step's polynomial above which the error estimate has no order, and its
-        tolerance is the requested one.
-    after_failure : float
-        Factor of the step after a failed iteration.
+    - `tolerance`: factor c of the tolerance c rtol^((s + 1)/(2 s)) of the error estimate, whose order is s instead of 2
+      s - 1.
+    - `least_factor`, `largest_factor`: bounds of the ratio of successive steps; the first is the factor of a first step
+      after a failed error test too.
+    - `keep_matrix`: convergence rate of Newton's iteration below which the matrices are kept for the next step, if they
+      cost as much as an iteration; in proportion to their cost otherwise.
+    - `keep_high`: ratio of successive steps below which the step and the factors stay unchanged.
+    - `stages_after`: steps after which the number of stages is chosen again.
+    - `gain`: ratio of costs per time below which another number of stages is chosen.
+    - `solution_cost`: cost of the solutions of an iteration, in those of the matrices of a step.
+    - `slowest`: convergence rate of Newton's iteration that the next step may have.
+    - `converging`: ratio of successive Chebyshev coefficients of a step's polynomial above which the error estimate has
+      no order, and its tolerance is the requested one.
+    - `after_failure`: factor of the step after a failed iteration.
     """
 
     tolerance: float = 0.01

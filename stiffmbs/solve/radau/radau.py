@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
@@ -14,10 +12,8 @@ from ...tuning import tuned
 from ..bdf import integrated, refuse_untested_reactions
 from ..cost import ImplicitCost, least_solver, of_evaluation
 from ..error_control.error_test import ErrorControl
-from ..error_control.stability_limit import HIGHEST_ORDER
 from ..formulations import READ_BY_FORMULATIONS
 from ..ida.choice import chosen, natural
-from ..ida.engine import Engine
 from ..ida.native_engine import NativeEngine
 from ..integrator import Integrator
 from ..solver import Traits
@@ -48,10 +44,7 @@ def solve(
 ) -> Trajectory:
     """Integrate by Radau IIA methods; the contract is in `stiffmbs.solve.trajectory`.
 
-    Raises
-    ------
-    InputError
-        When the formulation does not test velocities and forces depend on reactions.
+    Raises InputError when the formulation does not test velocities and forces depend on reactions.
     """
     refuse_untested_reactions(dynamics.system, settings)
     dynamics.forget_pivots()
@@ -78,40 +71,13 @@ def of_radau(dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
 
 def driven_by_radau(
     dynamics: Dynamics, settings: RunSettings, control: ErrorControl
-) -> tuple[Equations, Engine, float]:
+) -> tuple[Equations, NativeEngine, float]:
     """Return the equations, their driver and the mean cost of a real and two complex linear systems, ns."""
-    equations, matrix, cost = chosen(natural(dynamics, settings))
+    equations = natural(dynamics, settings)
+    matrix, cost = chosen(equations)
     stages = None if settings.stages == "auto" else settings.stages
     of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
     of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)
     formula = Radau(equations, matrix, dynamics.state, stages, of_steps, RADAU)
-    engine = NativeEngine(equations, dynamics, matrix, settings, control, formula, Unlimited())
+    engine = NativeEngine(equations, dynamics, matrix, settings, control, formula)
     return equations, engine, cost * (1 + 2 * formula.pair_cost) / 3
-
-
-class Unlimited:
-    """Order without a limit (`stiffmbs.solve.ida.native_engine.OrderLimit`)."""
-
-    order, held = HIGHEST_ORDER, False
-
-    def forget(self) -> None:
-        """Do nothing."""
-
-    def begin(self, t: float, steps: int, fastest: float) -> None:
-        """Do nothing."""
-
-    def due(self, steps: int) -> bool:
-        """Return False: no check is ever due."""
-        return False
-
-    def wait(self, steps: int) -> int:
-        """Return a number of steps beyond any call."""
-        return 2**31
-
-    def changed(self, samples: np.ndarray, steps: int) -> bool:
-        """Return False."""
-        return False
-
-    def note(self, steps: int) -> str:
-        """Return an empty sentence."""
-        return ""

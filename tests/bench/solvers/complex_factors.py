@@ -44,7 +44,7 @@ def factors_of(dynamics: Dynamics, settings: RunSettings) -> tuple[Radau, list[l
     """Return the formula after a run, and the times of factorisations and of solutions, real and complex, us."""
     engine = radau_integrator(dynamics, settings).engine
     assert isinstance(engine, NativeEngine)
-    ida = engine._ida
+    ida = engine.ida
     formula: Any = ida._formula
     values, solvers = formula._kept
     nothing = least(OF_TYPE(ida._session.libraries.address("SUNLinSolGetType")), solvers[0].solver)

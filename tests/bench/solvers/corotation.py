@@ -25,11 +25,11 @@ from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve.ida.native_engine import NativeEngine
-from stiffmbs.solve.ida.sundae import Callbacks
 from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.radau.collocation import radau
 from stiffmbs.solve.radau.radau import radau_integrator
 
+from ...by_callbacks import Callbacks
 from ..costs import SCENES
 from ..error_control import scene
 from .complex_factors import factors_of, least
@@ -94,11 +94,11 @@ def states(job: Any, settings: Any, solver: str, grid: Any) -> tuple[Equations, 
     integrator = create(job.dynamics, settings)
     engine = integrator.engine
     assert isinstance(engine, NativeEngine)
-    engine.keep_steps(True)
+    engine.ida.keep_steps(True)
     kept = []
     for _ in integrator.run(job.start, grid):
-        kept.append(engine.kept_steps())
-    engine.keep_steps(False)
+        kept.append(engine.ida.kept_steps())
+    engine.ida.keep_steps(False)
     return integrator.equations, np.concatenate(kept)
 
 

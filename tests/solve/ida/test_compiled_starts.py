@@ -30,7 +30,7 @@ def left_behind(job, integrator, start, t, compiled):
         assert engine.begin_at(start, t)
     else:
         integrator._begin_step_by_step(start, t)
-    connection = engine._ida
+    connection = engine.ida
     tables = connection.cells, connection.output_correction._cells, connection.error_norm._cells
     relaxed = [
         values[-1 - 2 * job.dynamics.system.n_c :] for name, values in state.values.items() if values is not None
@@ -54,7 +54,7 @@ def test_a_compiled_start_leaves_the_same_numbers(name, examples):
     job = prepare(stiffmbs.load_scene(examples / f"{name}.yaml"), solver="bdf", duration=0.05, **SCENES[name])
     integrator = Integrator(job.dynamics, job.settings)
     list(integrator.run(job.start, job.grid))
-    q, u = integrator.split(integrator.engine._ida.y)
+    q, u = integrator.split(integrator.engine.ida.y)
     start = restarted(job.dynamics, 0.05, q, u)
     by_python, by_call = (left_behind(job, integrator, start, 0.05, compiled) for compiled in (False, True))
     assert len(by_python[0]) and np.any(by_python[1])

@@ -5,8 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.errors import InputError
-from stiffmbs.solve.ida import connection, error_norm
-from stiffmbs.solve.ida.libraries import Unavailable
+from stiffmbs.solve.ida import connection
 from tests.stress.families.stiffness.overdamped_nodes import node
 
 
@@ -32,14 +31,6 @@ def test_a_run_that_creeps_comes_off_order_1(examples, rtol):
     counted = stiffmbs.run(scene, solver="bdf", rtol=rtol).solver
     assert counted["steps"] < 4000  # 16 800 and 9100 where each step after a failure is doubled
     assert counted["jacobians"] < 0.5 * counted["residuals"]
-
-
-def test_other_libraries_do_without_the_filter(monkeypatch):
-    def refuse(*arguments):
-        raise Unavailable("other vectors")
-
-    monkeypatch.setattr(error_norm, "take_norm", refuse)
-    assert solved(node(1e-7).model(), 1e-4)["m0.y"][-1] == pytest.approx(0.1886, abs=1e-3)
 
 
 def test_the_highest_order_is_the_users_choice(examples):

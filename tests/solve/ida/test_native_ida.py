@@ -1,4 +1,4 @@
-"""The native driver of IDA: the same steps as scikit-sundae's, its history, events, failures, and what it frees."""
+"""The driver of IDA: the same steps as scikit-sundae's, its history, events, failures, and what it frees."""
 
 import gc
 import os
@@ -14,18 +14,16 @@ from stiffmbs import AppliedForce, Body, Contact, Model, Revolute
 from stiffmbs.analyses.job import prepare
 from stiffmbs.compile.equations import Equations
 from stiffmbs.compile.state import State
-from stiffmbs.solve.error_control.newton import Stiffness
 from stiffmbs.solve.formulations.si2 import SI2_EXACT
-from stiffmbs.solve.ida import choice, libraries, operations
+from stiffmbs.solve.ida import choice, operations
 from stiffmbs.solve.ida.choice import chosen
 from stiffmbs.solve.ida.ida import NativeIda
-from stiffmbs.solve.ida.matrices import Dense, Sparse
 from stiffmbs.solve.ida.statistics import Status
-from stiffmbs.solve.ida.sundae import FALLBACK, SundaeEngine
 from stiffmbs.solve.linear_solvers.block_lu import BlockLU
 from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, Pivoted
 from stiffmbs.sparse.elimination_order import EliminationOrder, elimination_order
 from stiffmbs.tuning import parameters_of
+from tests.by_callbacks import ByScikitSundae
 
 
 class Problem:
@@ -44,14 +42,13 @@ class Problem:
         self.yp[at["q"]], self.yp[at["u"]] = start.u, start.acceleration
 
     def native(self, **options):
-        kind = Dense if self.equations.n <= FALLBACK.dense_up_to else Sparse
-        matrix = options.pop("matrix", kind(self.equations.n, *self.equations.pattern))
+        matrix = options.pop("matrix", None) or in_fixed_order(self.equations, Pivoted)
         atol, state = options.pop("atol", self.atol), options.pop("state", None) or State(self.system)
         return NativeIda(self.equations, state, matrix, self.rtol, atol, **options)
 
-    def through(self, ida, times, first_step=0.0):
+    def through(self, ida, times, first_step=0.0, highest_order=None):
         """Begin, and report at the times, however many calls that takes."""
-        ida.begin(0.0, self.y, self.yp, first_step)
+        ida.begin(0.0, self.y, self.yp, first_step, highest_order)
         rows = np.empty((len(times), self.equations.n))
         done, status = 0, Status.GOING
         while status is Status.GOING:
@@ -60,10 +57,8 @@ class Problem:
         return rows[:done], status
 
     def through_scikit_sundae(self, times):
-        ida = SundaeEngine(self.equations, State(self.system), self.rtol, self.atol, max_step=0.0)
-        ida.begin(0.0, self.y, self.yp, newton=0.33, stiffness=Stiffness(0.0, 0.0))
-        blocks = [(reached.rows.copy(), reached.y.copy()) for reached in ida.to_times(times, times[-1:])]
-        return np.concatenate([rows for rows, _ in blocks]), blocks[-1][1], ida
+        ida = ByScikitSundae(self.equations, State(self.system), self.rtol, self.atol)
+        return ida.rows(self.y, self.yp, times), ida
 
 
 @pytest.fixture(scope="module")
@@ -100,23 +95,18 @@ def ball():
     return Problem(model, rtol=1e-8)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("name", "end"), [("pendulum", 2.0), ("chain", 2.0), ("squeezer", 0.03)]
-)  # dense, sparse, dense
+@pytest.mark.parametrize(("name", "end"), [("pendulum", 0.5), ("chain", 0.5), ("squeezer", 0.01)])
 def test_the_steps_are_those_of_scikit_sundae(name, end, request):
+    """The linear solvers differ by rounding, which the steps amplify."""
     problem, times = request.getfixturevalue(name), np.linspace(0, end, 101)[1:]
     native = problem.native()
     rows, status = problem.through(native, times)
-    expected, at_end, sundae = problem.through_scikit_sundae(times)
-    at = problem.equations.at
+    expected, sundae = problem.through_scikit_sundae(times)
     assert status is Status.STOP
     counted = native.statistics()
-    expected_counts = {key: count for key, count in sundae.statistics().items() if key != "linear_solver"}
-    assert {key: counted[key] for key in expected_counts} == expected_counts
-    np.testing.assert_array_equal(native.history.t, sundae.history().t)
-    np.testing.assert_allclose(rows[:, np.concatenate([at["q"], at["u"]])], expected, rtol=1e-12, atol=1e-12)
-    np.testing.assert_allclose(rows[-1], at_end, rtol=1e-12, atol=1e-12)  # multipliers too
+    assert (counted["residuals"], counted["jacobians"]) == pytest.approx((sundae.residuals, sundae.jacobians), rel=0.02)
+    at = np.concatenate([problem.equations.at[name] for name in "qu"])
+    np.testing.assert_allclose(rows[:, at], expected[:, at], rtol=0.1 * problem.rtol, atol=0.1 * problem.rtol)
 
 
 def in_fixed_order(equations, kind=FixedOrder):
@@ -124,39 +114,29 @@ def in_fixed_order(equations, kind=FixedOrder):
     return BlockLU.of(equations, order) if kind is BlockLU else kind(equations.n, *equations.pattern, order)
 
 
-KINDS = ["SuperLU_MT", "fixed order", "pivots searched in every matrix", "blocks in a fixed order"]
+KINDS = {"fixed order": FixedOrder, "blocks in a fixed order": BlockLU}
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_all_matrices_give_the_same_motion(chain, kind):
-    equations = chain.equations
-    n, pattern = equations.n, equations.pattern
-    matrix = {
-        "SuperLU_MT": Sparse(n, *pattern),
-        "fixed order": in_fixed_order(equations),
-        "pivots searched in every matrix": in_fixed_order(equations, Pivoted),
-        "blocks in a fixed order": in_fixed_order(equations, BlockLU),
-    }
-    assert matrix[kind].sentence().startswith(kind)
-    times = np.array([0.2, 0.4])
-    rows, status = chain.through(chain.native(matrix=matrix[kind]), times)
-    expected, _ = chain.through(chain.native(matrix=Dense(n, *pattern)), times)
+    equations, times = chain.equations, np.array([0.2, 0.4])
+    matrix, searched = in_fixed_order(equations, KINDS[kind]), in_fixed_order(equations, Pivoted)
+    assert matrix.sentence().startswith(kind)
+    assert searched.sentence().startswith("pivots searched in every matrix")
+    rows, status = chain.through(chain.native(matrix=matrix), times)
+    expected, _ = chain.through(chain.native(matrix=searched), times)
     assert status is Status.STOP
     at = np.concatenate([equations.at["q"], equations.at["u"]])
     np.testing.assert_allclose(rows[:, at], expected[:, at], atol=1e-7)
 
 
-def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, squeezer, monkeypatch):
+def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, monkeypatch):
     monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), worth_compiling=np.inf))
-    assert type(chosen(chain.equations)[1]) is FixedOrder, "blocks would save too little to be compiled"
+    assert type(chosen(chain.equations)[0]) is FixedOrder, "blocks would save too little to be compiled"
     monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), worth_compiling=0.0))
-    assert isinstance(chosen(chain.equations)[1], BlockLU)
+    assert isinstance(chosen(chain.equations)[0], BlockLU)
     monkeypatch.setattr(choice, "block_cost", lambda *_: np.inf)
-    assert type(chosen(chain.equations)[1]) is FixedOrder
-    monkeypatch.undo()
-    monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
-    assert isinstance(chosen(chain.equations)[1], Sparse)
-    assert isinstance(chosen(squeezer.equations)[1], Dense)
+    assert type(chosen(chain.equations)[0]) is FixedOrder
 
 
 def test_blocks_of_a_long_chain_come_from_memory():
@@ -168,16 +148,6 @@ def test_blocks_of_a_long_chain_come_from_memory():
         return choice.block_cost(n, order, nodes) / choice.sparse_cost(n, order, choice.COSTS.fixed)
 
     assert cost(100) < 1 < cost(3000)
-
-
-def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):
-    def missing():
-        raise libraries.Unavailable("no SuperLU_MT")
-
-    monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
-    assert isinstance(chosen(chain.equations)[1], Sparse)
-    monkeypatch.setattr("stiffmbs.solve.ida.matrices.sparse_libraries", missing)
-    assert isinstance(chosen(chain.equations)[1], Dense)
 
 
 @pytest.mark.parametrize("kind", [FixedOrder, Pivoted, BlockLU])
@@ -194,15 +164,15 @@ def test_pivots_are_sought_anew_where_they_have_become_small(chain, kind):
     np.testing.assert_allclose(rows[:, at], expected[:, at], atol=1e-6)
 
 
-def test_other_layouts_of_linear_solvers_are_noticed(monkeypatch):
-    found = libraries.ida_libraries()
-    operations.replaceable.cache_clear()
-    assert operations.replaceable(found)
+def test_other_layouts_of_linear_solvers_are_refused(examples, monkeypatch):
+    """A run stops with a sentence that names the remedy, and nothing is written into unknown memory."""
     monkeypatch.setattr(operations, "MOST_WORDS", 1)
-    operations.replaceable.cache_clear()
-    assert not operations.replaceable(found)
-    monkeypatch.undo()
-    operations.replaceable.cache_clear()
+    scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
+    with pytest.raises(
+        stiffmbs.SolverError, match="lay out linear solvers in another way; expected the libraries of a"
+    ):
+        stiffmbs.run(scene, solver="bdf")
+    assert stiffmbs.run(scene, solver="projected").message == "completed"
 
 
 def test_history_tells_time_order_and_size_of_each_step(pendulum):
@@ -219,8 +189,8 @@ def test_history_tells_time_order_and_size_of_each_step(pendulum):
 
 
 def test_order_and_step_stay_below_their_limits(pendulum):
-    ida = pendulum.native(max_order=2, max_step=1e-3)
-    pendulum.through(ida, np.array([0.5]))
+    ida = pendulum.native(max_step=1e-3)
+    pendulum.through(ida, np.array([0.5]), highest_order=2)
     assert ida.history.order.max() == 2
     assert ida.history.step.max() <= 1e-3 * (1 + 1e-12)
 
@@ -235,22 +205,6 @@ def test_own_steps_are_those_of_the_history(pendulum):
     np.testing.assert_allclose(t[:count], ida.history.t, atol=1e-14)
     assert t[count - 1] == ida.t == 1.0
     np.testing.assert_array_equal(q[count - 1], ida.y[pendulum.equations.at["q"]])
-
-
-def test_derivatives_are_those_of_the_motion(pendulum):
-    at, times = pendulum.equations.at, np.array([0.5, 1.0])
-    ida = pendulum.native()
-    ida.begin(0.0, pendulum.y, pendulum.yp)
-    y, yp = np.empty((2, ida.y.size)), np.empty((2, ida.y.size))
-    served, status = 0, Status.GOING
-    while status is Status.GOING:
-        more, status = ida.advance(times[served:], 1.0, y[served:], yp[served:])
-        served += more
-    np.testing.assert_allclose(yp[:, at["q"]], y[:, at["u"]], atol=1e-5)
-    np.testing.assert_allclose(ida.interpolate(1.0), ida.y, rtol=1e-12, atol=1e-12)
-    np.testing.assert_allclose(ida.interpolate(1.0, 1)[at["q"]], ida.y[at["u"]], atol=1e-5)
-    with pytest.raises(ValueError, match="outside the last step"):
-        ida.interpolate(0.1)
 
 
 def test_it_begins_again_as_new(pendulum):
@@ -385,7 +339,7 @@ def test_closing_twice_and_failing_at_the_start_are_harmless(pendulum):
     with pytest.raises(ValueError, match=r"atol: found shape \(3,\), expected \(20,\)"):
         pendulum.native(atol=np.ones(3))
     with pytest.raises(ValueError, match="invalid argument"):
-        pendulum.native(max_order=9)
+        pendulum.native(max_step=-1.0)
 
 
 def test_a_forked_process_goes_on_by_itself(pendulum):

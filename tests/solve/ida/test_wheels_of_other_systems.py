@@ -51,7 +51,7 @@ def test_libraries_are_found_in_the_wheel_of_each_system(unpacked, monkeypatch):
     monkeypatch.setattr(libraries.importlib.util, "find_spec", lambda name: _Spec(folder / name))
     found = libraries._folder()
     assert found.is_relative_to(folder)
-    for name in {*libraries.IDA_LIBRARIES, *libraries.SPARSE_LIBRARIES}:
+    for name in libraries.IDA_LIBRARIES:
         assert EXTENSIONS[system] in libraries._file(found, name).name
         assert len(libraries._matching(found, name)) == 1
 
@@ -65,13 +65,10 @@ class _Spec:
 
 def test_every_function_is_exported_by_a_library_that_is_loaded(unpacked, monkeypatch):
     """Windows looks for a function in the one library that is asked, not in those which it needs."""
-    import ctypes
-
     folder, _ = unpacked
     monkeypatch.setattr(libraries.importlib.util, "find_spec", lambda name: _Spec(folder / name))
     place = libraries._folder()
-    names = {*libraries.IDA_LIBRARIES, *libraries.SPARSE_LIBRARIES}
-    offered = set().union(*(_exported(libraries._file(place, name)) for name in names))
-    wanted = set(declared(ctypes.c_int32))
+    offered = set().union(*(_exported(libraries._file(place, name)) for name in libraries.IDA_LIBRARIES))
+    wanted = set(declared())
     assert len(wanted) == DECLARATIONS.strip().count("(")
     assert wanted <= offered, f"missing: {sorted(wanted - offered)}"

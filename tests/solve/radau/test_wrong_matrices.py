@@ -25,7 +25,9 @@ class Falsifier:
         self.rows, self.columns = formula._equations.pattern
         self.diagonal = self.rows == self.columns
         self._change, self._random = change, np.random.default_rng(seed)
-        self._places = [[arrays["slot"]] if k == 0 else [arrays["re_re"], arrays["im_im"]] for k in range(len(solvers))]
+        self._places = [
+            [np.arange(len(self.rows))] if k == 0 else [arrays["re_re"], arrays["im_im"]] for k in range(len(solvers))
+        ]
         self._imaginary = [arrays["im_re"], arrays["re_im"]]
         self._numbers = {solver.solver: k for k, solver in enumerate(solvers)}
         self._values = [

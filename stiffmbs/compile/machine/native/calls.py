@@ -1,4 +1,4 @@
-"""Calls of C functions by address, and copies of memory, in compiled routines."""
+"""Calls of C functions by address in compiled routines."""
 
 from __future__ import annotations
 
@@ -35,11 +35,3 @@ def call_address(code: Code, function: Operand, argument: Value) -> Value:
 def _called(code: Code, kind: str, function: Operand, arguments: tuple[Value, ...]) -> Value:
     given = ", ".join(argument.typed for argument in arguments)
     return code.put_value(kind, f"call {LLVM_TYPES[kind]} {ints.lower(code, function).text}({given})")
-
-
-@builtin
-def copy_bytes(code: Code, target: Operand, source: Operand, count: Operand) -> None:
-    """Copy a number of bytes from one address to another."""
-    code.unit.declare("declare void @llvm.memcpy.p0.p0.i64(ptr, ptr, i64, i1)")
-    to, of = (ints.lower(code, address) for address in (target, source))
-    code.put(f"call void @llvm.memcpy.p0.p0.i64({to.typed}, {of.typed}, {code.integer(count).typed}, i1 false)")

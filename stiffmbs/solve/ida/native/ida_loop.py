@@ -3,7 +3,7 @@
 from typing import Final
 
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
-from stiffmbs.compile.machine.native.calls import call_int, copy_bytes, int32
+from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
@@ -69,8 +69,6 @@ def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
     output_correction_view(c.output_correction).current = cj
     iteration_view(c.iteration).age = MADE
     add_entries(e, evaluate(s, e.matrix_set, t), cj, a)
-    for k in range(0, 6, 3):
-        copy_bytes(c.pattern[k], c.pattern[k + 1], c.pattern[k + 2])
     return int32(OK if _finite(a, e.n_slots) else RECOVERABLE)
 
 
@@ -272,29 +270,27 @@ def _stalled(c):
 
 
 @compiled
-def _report_at(c, t, derivative, current, row):
-    """Report the solution, or its derivative, at a time within the last step."""
+def _report_at(c, t, row):
+    """Report the solution at a time within the last step."""
     if t == c.returned:
-        _report(c, array_of(c, current), row)
+        _report(c, array_of(c, c.y), row)
         return int32(OK)
     b = output_correction_view(c.output_correction)
     if b.interpolate != 0 and c.size > b.long and corrected(c.output_correction, c.state, c.equations, t):
-        _report(c, b.yp if derivative else b.y, row)
+        _report(c, b.y, row)
         return int32(OK)
-    flag = call_int(c.interpolate, (c.memory, t, int32(derivative), c.at_output))
+    flag = call_int(c.interpolate, (c.memory, t, int32(0), c.at_output))
     _report(c, c.output, row)
     return flag
 
 
 @compiled
-def _served(c, times, count, y_out, yp_out):
-    """Report at the output times up to the returned time; `yp_out` may be null."""
+def _served(c, times, count, y_out):
+    """Report at the output times up to the returned time."""
     flag = int32(OK)
     while c.served < count and times[c.served] <= c.returned:
         k = c.served
-        flag = _report_at(c, times[k], 0, c.y, shifted(y_out, k * c.n_reported))
-        if flag >= 0 and yp_out != 0:
-            flag = _report_at(c, times[k], 1, c.yp, shifted(floats(yp_out), k * c.n_reported))
+        flag = _report_at(c, times[k], shifted(y_out, k * c.n_reported))
         if flag < 0:
             break
         c.served = k + 1
@@ -302,20 +298,20 @@ def _served(c, times, count, y_out, yp_out):
 
 
 @compiled
-def advanced(c, ida, count, times, stop, most, y_out, yp_out):
+def advanced(c, ida, count, times, stop, most, y_out):
     """Take at most `most` steps towards `stop`, and report at output times; return IDA's last flag.
 
     The first step's size follows from the distance to the first output time, as in IDA's normal mode.
     """
     c.stopping = stop
-    flag = _served(c, times, count, y_out, yp_out)
+    flag = _served(c, times, count, y_out)
     for _ in range(min(most, LOOP.most_steps)):
         if flag != OK:
             break
         toward = times[c.served] if c.served < count else stop
         flag = stepped(c, ida, min(toward, stop), stop)
         if flag >= 0:
-            outcome = _served(c, times, count, y_out, yp_out)
+            outcome = _served(c, times, count, y_out)
             flag = outcome if outcome < 0 else flag
     return int32(flag)
 
@@ -328,11 +324,11 @@ def clear_call(c):
     c.traced = 0
 
 
-def advance(count, times, stop, most, y_out, yp_out, ida):
+def advance(count, times, stop, most, y_out, ida):
     """Call `advanced` from Python."""
     c = native_ida_view(ida)
     clear_call(c)
-    return advanced(c, ida, count, times, stop, most, y_out, yp_out)
+    return advanced(c, ida, count, times, stop, most, y_out)
 
 
 def steps(most, stop, t_out, y_out, ida):

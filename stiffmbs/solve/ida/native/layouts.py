@@ -5,15 +5,8 @@ from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, I
 NO_EVENT, EVENT, PASSED_INTERVAL = range(3)
 """Results of `stiffmbs.solve.ida.native.ida_events.look_within`."""
 
-IDA = Layout({
-    "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
-    "last_time": FLOAT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "n_ends": INT, "ends": FLOATS,
-})  # fmt: skip
-"""Tables of scikit-sundae's callbacks.  `array_header` is the size of the header before the data pointer of a NumPy
-array.  The callbacks note the last time, count accepted and rejected steps, and store the first ends of steps."""
-
 NATIVE_IDA = Layout({
-    "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
+    "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT,
     "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
@@ -26,7 +19,7 @@ NATIVE_IDA = Layout({
     "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL, "seen": FLOAT_CELL,
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
-functions and objects, values and pattern of the matrix, and reported unknowns; function by which a one-step method
+functions and objects, values of the matrix, and reported unknowns; function by which a one-step method
 repeats its last step with another length, 0 for a multistep method; absolute and relative tolerances.
 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
@@ -49,19 +42,13 @@ START = Layout({
     "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "f_q_scale": FLOATS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS, "f_u_scale": FLOATS,
     "soft": FLOAT_CELL, "loosest": FLOAT_CELL, "tightest": FLOAT_CELL, "growth": FLOAT_CELL,
     "of_positions": FLOAT_CELL, "of_velocities": FLOAT_CELL, "newton": FLOAT_CELL,
-    "n_counters": INT, "counter": INTS, "count": INTS, "counts": INTS,
+    "n_counters": INT, "counter": INTS, "counted": INTS, "count": INTS, "counts": INTS,
     "set_newton": INT, "reinitialise": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
 })  # fmt: skip
 """Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): independent coordinates and velocities, and their
 positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
-term set; IDA's counter functions, space for one number, and their sums; functions of SUNDIALS.  A start changes only
+term set; counter functions, their arguments, space for one number, and their sums; functions of SUNDIALS.  A start changes only
 both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave."""
-
-RESTART = Layout({
-    "start": INTS, "q": FLOATS, "u": FLOATS, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
-})  # fmt: skip
-"""Restart of IDA after a jump of inputs (`stiffmbs.solve.ida.starting.native.start`), with the state between calls, and revolution
-counters with their angles."""
 
 EVENT_RESTART = Layout({
     "start": INTS, "n_event_functions": INT, "first_limit": INT, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
@@ -80,8 +67,8 @@ OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL, "failed": INT_CELL, "first_failed": FLOAT_CELL,
     "balanced": FLOAT_CELL, "force_end": INTS, "force_row": INTS,
     "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
-    "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
-    "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
+    "memory": INT, "interpolate": INT, "weights": INT, "setup": INT, "solve": INT,
+    "solver": INT, "matrix": INT, "entries": INT,
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
     "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS, "size": FLOATS,
 })  # fmt: skip

@@ -8,7 +8,7 @@ iteration has its own factors, used as long as they converge.
 """
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
-from stiffmbs.compile.machine.native.calls import call_int, copy_bytes, int32
+from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, add_sizes, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
@@ -33,11 +33,8 @@ def _interpolated(b, t):
 @compiled
 def _factored(b, s, e, t, cj):
     b.factored = 0.0
-    call_int(b.clear, (b.matrix,))
     load(s, e, b.y, b.yp)
     add_entries(e, evaluate(s, e.matrix_set, t), cj, floats(b.entries))
-    for k in range(0, 6, 3):
-        copy_bytes(b.pattern[k], b.pattern[k + 1], b.pattern[k + 2])
     if call_int(b.setup, (b.solver, b.matrix)) != OK:
         return False
     b.factored = cj

@@ -21,8 +21,7 @@ class LoopParameters:
     """Number of successive tiny steps at which the run stops: IDA would continue forever. A step below as many roundings
     of the time is tiny."""
     most_passed: int = 64
-    """Largest number of breakpoints, of samples that change nothing that acts, or of output times of scikit-sundae, in a
-    call."""
+    """Largest number of breakpoints, or of samples that change nothing that acts, in a call."""
     most_items: int = 1_000_000
     """Largest number of items that are stored (steps, which are only counted afterwards, or numbers in states) or computed
     in a call (steps times unknowns). A call takes about 0.1 s, for progress and interruption. A clock would make results depend on the

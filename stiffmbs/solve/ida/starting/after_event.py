@@ -9,21 +9,16 @@ import numpy as np
 from ....compile.machine.compiler import SHORT
 from ....compile.machine.layout import packed
 from ....compile.machine.routines import Routine
-from ....compile.system import System
 from ....dynamics.dynamics import Dynamics
 from ...error_control.native.parameters import POLISHING
 from ...events.discontinuity import JUMP, VELOCITY_JUMP, direction_of
 from ...events.native.parameters import INDISTINCT
-from ..connection import Connection
-from ..native.layouts import EVENT_RESTART, RESTART
+from ..native.layouts import EVENT_RESTART
 from .starts import Starts, integers
 
-_EVENT_RESTART = Routine(
-    "stiffmbs.solve.ida.starting.native.breakpoints",
-    "restarted_at_event",
-    "int32(float64, float64, int64, int64, int64*)",
-    level=SHORT,
-)
+_MODULE = "stiffmbs.solve.ida.starting.native.breakpoints"
+RESTARTED = Routine(_MODULE, "restarted_at_event", "int32(float64, float64, int64, int64, int64*)", level=SHORT)
+ADVANCE = Routine(_MODULE, "advance_from", "int32(float64, float64, int64, int64*)")
 
 
 class Begun(NamedTuple):
@@ -63,6 +58,7 @@ class EventRestarts:
         self.starts, self._kept = starts, values
         self._table = packed(EVENT_RESTART, values)
         self._cells, self.table = self._table.view(EVENT_RESTART.cells)[0], self._table.ctypes.data
+        self._has_events = n > 0
         self.may_pass = not n and not len(system.term("acceleration", "f_lam").row)
 
     def begin(
@@ -75,10 +71,21 @@ class EventRestarts:
         there are no consistent values or a force is beyond its limits.
         """
         self._state.q[:], self._state.u[:] = state
-        if _EVENT_RESTART.short_call(t, ahead, counted, highest_order, self.table) < 0:
+        if RESTARTED.short_call(t, ahead, counted, highest_order, self.table) < 0:
             return None
         cells = self._cells
         return Begun(float(cells["t"]), float(cells["jump"]), bool(cells["meets"]))
+
+    def advance(self, state: tuple[np.ndarray, np.ndarray], t: float, end: float, highest_order: int) -> bool:
+        """Integrate a state, which is overwritten, to a later time; False, with the state unchanged, if it needs a run."""
+        if self._has_events:
+            return False
+        (q, u), own = state, self._state
+        own.q[:], own.u[:] = q, u
+        if ADVANCE.call(t, end, highest_order, self.table) != 0:
+            return False
+        q[:], u[:] = own.q, own.u
+        return True
 
     @property
     def t(self) -> float:
@@ -89,37 +96,3 @@ class EventRestarts:
     def passed(self) -> tuple[int, int]:
         """Return the number of breakpoints passed by the last call, and its steps before the last of them."""
         return int(self._cells["passed"]), int(self._cells["steps_before"])
-
-
-_RESTART = Routine("stiffmbs.solve.ida.starting.native.start", "restart", "int32(float64, float64, int64*)")
-
-
-class Restarts:
-    """Current state, with integration to later times without history.
-
-    `starts`: compiled starts of IDA. `present` of shapes (n_q,), (n_u,): memory of the current q and u, read and
-    written by `advance`. `table`: table for compiled code (`stiffmbs.solve.ida.native.layouts.RESTART`).
-    """
-
-    def __init__(self, dynamics: Dynamics, starts: Starts, present: tuple[np.ndarray, np.ndarray]) -> None:
-        q, u = present
-        term = dynamics.system.term("position", "continuous_angle")
-        if len(term.row):
-            dynamics.state.load("position")
-        source, row = (np.ascontiguousarray(places, dtype=np.int64) for places in (term.source, term.row))
-        self._kept = starts, q, u, source, row
-        self.table = packed(RESTART, {
-            "start": starts.table, "q": q, "u": u, "n_counted": len(row), "counted_source": source, "counted_row": row,
-        })  # fmt: skip
-        self._call, self._at = _RESTART.call, self.table.ctypes.data
-
-    @staticmethod
-    def serve(system: System, connection: Connection) -> bool:
-        """Return True if there are no event functions, algebraic states or solver threads."""
-        excluded = system.n_event_functions or len(system.algebraic_coordinates)
-        return not excluded and connection.on_one_thread
-
-    def advance(self, t: float, end: float) -> bool:
-        """Integrate from the state at t, s, to a later time; False, with the state unchanged, if it needs a run."""
-        done: bool = self._call(t, end, self._at) == 0
-        return done

@@ -20,12 +20,16 @@ from stiffmbs.compile.machine.native.memory import FLOAT, holds
 from stiffmbs.compile.machine.native.statuses import CONTENT, FAILED, NOT_COMPILED, OK
 from stiffmbs.solve.linear_solvers.native.block_trial import panel, refine, solved, trusted
 from stiffmbs.solve.linear_solvers.native.layouts import BLOCK_LU
-from stiffmbs.solve.linear_solvers.native.node_factors import add_one_quad, add_two_quads, factor_node
-from stiffmbs.solve.linear_solvers.native.pair_factors import (
+from stiffmbs.solve.linear_solvers.native.node_factors import (
+    add_one_quad,
     add_one_quad_of_pairs,
+    add_two_quads,
     add_two_quads_of_pairs,
-    factor_pair_node,
+    inverted,
+    multiplied,
+    triangular,
 )
+from stiffmbs.solve.linear_solvers.native.pair_factors import inverted_of_pairs, triangular_of_pairs
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
 from stiffmbs.solve.linear_solvers.native.pivoted import pivoted_view
 from stiffmbs.sparse import block_updates
@@ -64,6 +68,21 @@ def _taken_out(s, k):
 
 
 @compiled
+def _factor_node(s, k, first):
+    """Factor supernode k; its pivots are stored from unknown `first` on."""
+    down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
+    size, width, stride = s.size[k], s.node_start[k + 1] - s.node_start[k], s.down_width[k]
+    lower = shifted(right, size * s.right_width[k])
+    if s.parts == 2:
+        triangular_of_pairs(s, down, stride, lower, width, size, first)
+        inverted_of_pairs(s, down, stride, width, size)
+    else:
+        triangular(s, down, stride, lower, width, size, first)
+        inverted(s, down, stride, width, size)
+    multiplied(s, lower, width, right, s.right_width[k], size)
+
+
+@compiled
 def _eliminated(s, f):
     panels = floats(s.panels)
     for p in range(s.n_lu):
@@ -72,11 +91,7 @@ def _eliminated(s, f):
         panels[s.slot[p]] = f.a[p]
     first = 0
     for k in range(s.n_nodes):
-        down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
-        if s.parts == 2:
-            factor_pair_node(s, k, down, right, first)
-        else:
-            factor_node(s, k, down, right, first)
+        _factor_node(s, k, first)
         _taken_out(s, k)
         first += s.size[k]
 

@@ -11,6 +11,7 @@ Du Croz and Higham, Stability of methods for matrix inversion, IMA J. Numer. Ana
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.quads import (
+    add_pair_products,
     add_products,
     by_case,
     plus_product,
@@ -74,7 +75,7 @@ def _reduced(s, line, by, first, width):
 
 
 @compiled
-def _triangular(s, d, stride, t, width, size, first):
+def triangular(s, d, stride, t, width, size, first):
     """Factor a supernode's columns as L U with row pivoting; `t` becomes L^-1 P, later rows are multiplied by U^-1."""
     in_natural_order(s, size)
     for k in range(size):
@@ -103,7 +104,7 @@ def _triangular(s, d, stride, t, width, size, first):
 
 
 @compiled
-def _inverted(s, d, stride, width, size):
+def inverted(s, d, stride, width, size):
     """Replace U, above the diagonal of a supernode's columns, by its inverse."""
     for j in range(size):
         line = shifted(d, j * stride)
@@ -120,7 +121,9 @@ def _inverted(s, d, stride, width, size):
 
 add_two_quads = by_case(add_products, {rows: (rows, 2) for rows in ROWS})
 add_one_quad = by_case(add_products, {rows: (rows, 1) for rows in ROWS})
-"""Products for one to four rows of two quads, and of one."""
+add_two_quads_of_pairs = by_case(add_pair_products, {rows: (rows, 2) for rows in ROWS})
+add_one_quad_of_pairs = by_case(add_pair_products, {rows: (rows, 1) for rows in ROWS})
+"""Products for one to four rows of two quads, and of one, of real and of complex numbers."""
 
 
 @compiled
@@ -130,35 +133,26 @@ def rows_at_once(left):
 
 
 @compiled
-def _multiplied(s, d, stride, u, width, size):
+def multiplied(s, d, stride, u, width, size):
     """Multiply a supernode's rows right of its diagonal block by L^-1 P, `d`, and by -1."""
-    zero = spread(0.0)
-    minus = spread(-1.0)
     for column in range(0, width, 8):
         two = column + 4 < width
         for i in range(size):
-            place = i * width + column
-            set_quad(s.scratch, 8 * i, plus_product(zero, minus, quad(u, place)))
-            set_quad(u, place, zero)
-            if two:
-                set_quad(s.scratch, 8 * i + 4, plus_product(zero, minus, quad(u, place + 4)))
-                set_quad(u, place + 4, zero)
+            for at in range(0, 8 if two else 4, 4):
+                place = i * width + column + at
+                set_quad(s.scratch, 8 * i + at, product_of(spread(-1.0), quad(u, place)))
+                set_quad(u, place, spread(0.0))
         line = 0
         while line < size:
             rows = rows_at_once(size - line)
-            into = shifted(u, line * width + column)
-            if two:
-                add_two_quads(rows, into, width, shifted(d, line), stride, s.scratch, 8, size)
+            into, of = shifted(u, line * width + column), shifted(d, s.parts * line)
+            if s.parts == 2:
+                if two:
+                    add_two_quads_of_pairs(rows, into, width, of, stride, s.scratch, 8, size)
+                else:
+                    add_one_quad_of_pairs(rows, into, width, of, stride, s.scratch, 8, size)
+            elif two:
+                add_two_quads(rows, into, width, of, stride, s.scratch, 8, size)
             else:
-                add_one_quad(rows, into, width, shifted(d, line), stride, s.scratch, 8, size)
+                add_one_quad(rows, into, width, of, stride, s.scratch, 8, size)
             line += rows
-
-
-@compiled
-def factor_node(s, k, down, right, first):
-    """Factor supernode k, given its panels; its pivots are stored from unknown `first` on."""
-    size, width, stride = s.size[k], s.node_start[k + 1] - s.node_start[k], s.down_width[k]
-    lower = shifted(right, size * s.right_width[k])
-    _triangular(s, down, stride, lower, width, size, first)
-    _inverted(s, down, stride, width, size)
-    _multiplied(s, lower, width, right, s.right_width[k], size)

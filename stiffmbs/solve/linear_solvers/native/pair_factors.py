@@ -7,7 +7,6 @@ the supernode.
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.quads import (
     add_pair_products,
-    by_case,
     plus_product,
     product_of,
     quad,
@@ -17,12 +16,7 @@ from stiffmbs.compile.machine.native.quads import (
     sum_of,
     times_i,
 )
-from stiffmbs.solve.linear_solvers.native.node_factors import in_natural_order, magnitude, pivoted, rows_at_once
-from stiffmbs.sparse.block_updates import ROWS
-
-add_two_quads_of_pairs = by_case(add_pair_products, {rows: (rows, 2) for rows in ROWS})
-add_one_quad_of_pairs = by_case(add_pair_products, {rows: (rows, 1) for rows in ROWS})
-"""Products for one to four rows of two quads, and of one."""
+from stiffmbs.solve.linear_solvers.native.node_factors import in_natural_order, magnitude, pivoted
 
 
 @compiled
@@ -36,7 +30,7 @@ def _reduced(s, line, k, first, width):
 
 
 @compiled
-def _triangular(s, d, stride, t, width, size, first):
+def triangular_of_pairs(s, d, stride, t, width, size, first):
     """Factor a supernode's columns as L U with row pivoting; `t` becomes L^-1 P, later rows are multiplied by U^-1."""
     in_natural_order(s, size)
     for k in range(size):
@@ -70,7 +64,7 @@ def _triangular(s, d, stride, t, width, size, first):
 
 
 @compiled
-def _inverted(s, d, stride, width, size):
+def inverted_of_pairs(s, d, stride, width, size):
     """Replace U, above the diagonal of a supernode's columns, by its inverse."""
     for j in range(size):
         line = shifted(d, j * stride)
@@ -86,37 +80,6 @@ def _inverted(s, d, stride, width, size):
             add_pair_products(1, 1, shifted(line, at), 0, s.scratch, 2, shifted(d, at), stride, j)
         line[2 * j] = real
         line[2 * j + 1] = imaginary
-
-
-@compiled
-def _multiplied(s, d, stride, u, width, size):
-    """Multiply a supernode's rows right of its diagonal block by L^-1 P, `d`, and by -1."""
-    for column in range(0, width, 8):
-        two = column + 4 < width
-        for i in range(size):
-            for at in range(0, 8 if two else 4, 4):
-                place = i * width + column + at
-                set_quad(s.scratch, 8 * i + at, product_of(spread(-1.0), quad(u, place)))
-                set_quad(u, place, spread(0.0))
-        line = 0
-        while line < size:
-            rows = rows_at_once(size - line)
-            into = shifted(u, line * width + column)
-            if two:
-                add_two_quads_of_pairs(rows, into, width, shifted(d, 2 * line), stride, s.scratch, 8, size)
-            else:
-                add_one_quad_of_pairs(rows, into, width, shifted(d, 2 * line), stride, s.scratch, 8, size)
-            line += rows
-
-
-@compiled
-def factor_pair_node(s, k, down, right, first):
-    """Factor supernode k, given its panels; its pivots are stored from unknown `first` on."""
-    size, width, stride = s.size[k], s.node_start[k + 1] - s.node_start[k], s.down_width[k]
-    lower = shifted(right, size * s.right_width[k])
-    _triangular(s, down, stride, lower, width, size, first)
-    _inverted(s, down, stride, width, size)
-    _multiplied(s, lower, width, right, s.right_width[k], size)
 
 
 @compiled

@@ -327,59 +327,9 @@ def weights_of(memory, target):
     return int32(OK)
 
 
-def steps_of(memory, result):
-    """Store the number of steps (IDAGetNumSteps)."""
-    x = radau_view(ints(memory))
-    result[0] = x.steps
-    return int32(OK)
-
-
-def residuals_of(memory, result):
-    """Store the number of residuals (IDAGetNumResEvals)."""
-    x = radau_view(ints(memory))
-    result[0] = x.residuals
-    return int32(OK)
-
-
-def jacobians_of(memory, result):
-    """Store the number of matrices (IDAGetNumJacEvals)."""
-    x = radau_view(ints(memory))
-    result[0] = x.jacobians
-    return int32(OK)
-
-
-def factorizations_of(memory, result):
-    """Store the number of factorisations (IDAGetNumLinSolvSetups)."""
-    x = radau_view(ints(memory))
-    result[0] = x.factorizations
-    return int32(OK)
-
-
-def error_failures_of(memory, result):
-    """Store the number of failed error tests (IDAGetNumErrTestFails)."""
-    x = radau_view(ints(memory))
-    result[0] = x.error_failures
-    return int32(OK)
-
-
-def step_failures_of(memory, result):
-    """Store the number of steps that failed to converge (IDAGetNumStepSolveFails)."""
-    x = radau_view(ints(memory))
-    result[0] = x.step_failures
-    return int32(OK)
-
-
-def iterations_of(memory, result):
-    """Store the number of iterations (IDAGetNumNonlinSolvIters)."""
-    x = radau_view(ints(memory))
-    result[0] = x.iterations
-    return int32(OK)
-
-
-def newton_failures_of(memory, result):
-    """Store the number of failed iterations (IDAGetNumNonlinSolvConvFails)."""
-    x = radau_view(ints(memory))
-    result[0] = x.newton_failures
+def counter_of(cell, result):
+    """Store the counter in a cell of the memory (IDAGetNumSteps and others)."""
+    result[0] = cell[0]
     return int32(OK)
 
 

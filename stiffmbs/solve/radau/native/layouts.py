@@ -12,8 +12,8 @@ which matrices are kept."""
 
 RADAU = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "n": INT, "n_tested": INT_CELL, "methods": INTS, "n_methods": INT, "below": INTS,
-    "clear": INT, "setup": INT, "solve": INT, "solver": INTS, "matrix": INTS, "values": INTS, "patterns": INTS,
-    "n_slots": INT, "slot": INDICES, "re_re": INDICES, "im_im": INDICES, "n_imaginary": INT, "imaginary_of": INDICES, "im_re": INDICES, "re_im": INDICES,
+    "setup": INT, "solve": INT, "solver": INTS, "matrix": INTS, "values": INTS,
+    "n_slots": INT, "re_re": INDICES, "im_im": INDICES, "n_imaginary": INT, "imaginary_of": INDICES, "im_re": INDICES, "re_im": INDICES,
     "entries": FLOATS, "n_all": INT, "n_efforts": INT, "acting": INT_CELL, "effort_source": INDICES,
     "n_levers": INT, "lever_source": INDICES, "lever_effort": INDICES, "lever_unknown": INDICES, "lever_factor": FLOATS, "lever": FLOATS,
     "n_slopes": INT, "slope_source": INDICES, "slope_effort": INDICES, "slope_unknown": INDICES, "slope_factor": FLOATS, "slope": FLOATS, "misfit": FLOATS, "at_b": INT, "b": FLOATS, "at_x": INT, "x": FLOATS, "at_pair_b": INT, "pair_b": FLOATS, "at_pair_x": INT, "pair_x": FLOATS,

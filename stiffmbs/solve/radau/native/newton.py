@@ -8,7 +8,7 @@ complex ones with (alpha + i beta)/h.
 from math import isfinite, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view
-from stiffmbs.compile.machine.native.calls import call_int, copy_bytes
+from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import (
     EFFORT,
     EFFORT_TANGENT,
@@ -107,18 +107,8 @@ def size_in_tolerances(x, values):
 
 
 @compiled
-def _filled(x, number):
-    """Clear a matrix; return its values."""
-    call_int(x.clear, (x.matrix[number],))
-    return floats(x.values[number])
-
-
-@compiled
 def _set_up(x, number):
     """Factor a filled matrix; return True unless it is singular."""
-    pattern = shifted(x.patterns, 6 * number)
-    for k in range(0, 6, 3):
-        copy_bytes(pattern[k], pattern[k + 1], pattern[k + 2])
     x.factorizations += 1
     return call_int(x.setup, (x.solver[number], x.matrix[number])) == OK
 
@@ -138,15 +128,15 @@ def factored(x, c, h, t, y, yp, renewed):
     values = floats(s.values[e.matrix_set])
     a = x.entries
     add_entries(e, values, c.gamma / h, a)
-    into = _filled(x, 0)
+    into = floats(x.values[0])
     total = 0.0
     for k in range(x.n_slots):
-        into[x.slot[k]] = a[k]
+        into[k] = a[k]
         total += 0.0 * a[k]
     if total != 0.0 or not _set_up(x, 0):
         return False
     for pair in range(c.pairs):
-        into = _filled(x, pair + 1)
+        into = floats(x.values[pair + 1])
         for k in range(x.n_slots):
             into[x.re_re[k]] = a[k]
             into[x.im_im[k]] = a[k]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import Job, prepare
-from stiffmbs.solve.ida.engine import Engine, Reached
+from stiffmbs.solve.ida.native_engine import NativeEngine, Reached
 from stiffmbs.solve.integrator import Integrator
 
 from ...benchmark import Row
@@ -24,7 +24,7 @@ RTOL, ROUNDS = 1e-4, 15
 class _Watched:
     """An engine, and how long it waits from the end of each stretch of steps to the beginning of the next, s."""
 
-    engine: Engine
+    engine: NativeEngine
     waits: list[float] = field(default_factory=list)
     ended: float | None = None
 

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from stiffmbs.solve.ida.libraries import ida_libraries, sparse_libraries
+from stiffmbs.solve.ida.libraries import ida_libraries
 from stiffmbs.solve.ida.statistics import FAILURES, failure_sentence
 
 from ...case import Case, Outcome, Verdict
@@ -75,7 +75,7 @@ def _of_nothing() -> int:
 
 def _without_jacobian() -> int:
     """A sparse matrix whose Jacobian nobody gives."""
-    problem = MadeUp(sparse_libraries())
+    problem = _made_up()
     _succeeded(problem.begin(sparse=True))
     return problem.solve()
 

@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past
-from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call
+from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.layouts import EVENT_RESTART
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
@@ -81,7 +81,7 @@ def _restarted_at_breakpoint(w, b, c, t):
     if accelerated(s, m, t) < 0 or prepared(b, s, m, e, c, t) < 0:
         return UNFINISHED
     _limit(w, b, c)
-    keep_counters(b, c)
+    keep_counters(b)
     return begun(b, c, t)
 
 
@@ -101,7 +101,7 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
         flag = call_int(c.stop_at, (c.memory, stop))
         if flag < 0:
             return int32(flag)
-        flag = advanced(c, ida, count, times, stop, most, y_out, 0)
+        flag = advanced(c, ida, count, times, stop, most, y_out)
         if flag != STOP_RETURN or w.passed + 1 == n_stops or c.recorded + most > 2 * LOOP.most_steps:
             return int32(flag)
         t = c.returned + w.indistinct * abs(c.returned)
@@ -188,10 +188,33 @@ def restarted_at_event(t, ahead, counted, highest_order, table):
     if prepared(b, s, m, equations_view(c.equations), c, after) < 0:
         return int32(UNFINISHED)
     if counted:
-        keep_counters(b, c)
+        keep_counters(b)
     if begun(b, c, after) < 0:
         return int32(UNFINISHED)
     call_int(b.set_highest_order, (c.memory, int32(highest_order)))
     w.t = after
     w.meets = _meets(w, s, m, after) if w.n_event_functions > 0 else 0
+    return int32(OK)
+
+
+def advance_from(t, end, highest_order, table):
+    """Start at the current state at t and integrate to `end`, where the current state is the result; return OK.
+
+    Too many steps, an event or a failure give another number.
+    """
+    if restarted_at_event(t, 0.0, 0, highest_order, table) < 0:
+        return int32(UNFINISHED)
+    b = start_view(event_restart_view(table).start)
+    c = native_ida_view(ints(b.ida))
+    call_int(c.stop_at, (c.memory, end))
+    c.stopping = end
+    clear_call(c)
+    flag = int32(OK)
+    for _ in range(LOOP.most_steps):
+        if flag != OK:
+            break
+        flag = stepped(c, ints(b.ida), end, end)
+    if flag != STOP_RETURN:
+        return int32(UNFINISHED)
+    load(state_view(c.state), equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
     return int32(OK)

@@ -14,20 +14,19 @@ from stiffmbs.compile.machine.native.access import (
     view_of,
 )
 from stiffmbs.compile.machine.native.calls import call_int, int32
-from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, POSITION, TANGENT, evaluate, load
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, TANGENT, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
+from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.dynamics.native.consistent import consistent_accelerations, to_constraints
 from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import event_search_view
 from stiffmbs.solve.explicit.native.stages import add_trailing_rates
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
-from stiffmbs.solve.ida.native.ida_loop import clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.iteration import iteration_view
-from stiffmbs.solve.ida.native.layouts import RESTART, START
+from stiffmbs.solve.ida.native.layouts import START
 from stiffmbs.solve.ida.native.parameters import LOOP
 
 UNFINISHED: Final = -1
@@ -156,9 +155,9 @@ def prepared(w, s, m, e, c, t):
 
 
 @compiled
-def keep_counters(w, c):
+def keep_counters(w):
     """Add IDA's counters to their sums before a start resets them."""
-    add_counters(w.n_counters, w.counter, c.memory, w.count, w.counts)
+    add_counters(w.n_counters, w.counter, w.counted, w.count, w.counts)
 
 
 def start(t, counted, highest_order, table):
@@ -175,7 +174,7 @@ def start(t, counted, highest_order, table):
     if prepared(w, s, m, equations_view(c.equations), c, t) < 0:
         return int32(UNFINISHED)
     if counted:
-        keep_counters(w, c)
+        keep_counters(w)
     if begun(w, c, t) < 0:
         return int32(UNFINISHED)
     call_int(w.set_highest_order, (c.memory, int32(highest_order)))
@@ -183,20 +182,17 @@ def start(t, counted, highest_order, table):
 
 
 @compiled
-def add_counters(count, functions, memory, value, sums):
-    """Add the results of some counter functions of IDA to sums; `value` has space for one number."""
+def add_counters(count, functions, arguments, value, sums):
+    """Add the results of some counter functions to sums; `value` has space for one number."""
     for k in range(count):
         value[0] = 0  # C's long may be shorter
-        call_int(functions[k], (memory, value))
+        call_int(functions[k], (arguments[k], value))
         sums[k] += value[0]
 
 
-def count(n, functions, memory, value, sums):
+def count(n, functions, arguments, value, sums):
     """Call `add_counters` from Python."""
-    add_counters(n, functions, memory, value, sums)
-
-
-restart_view = view_of("Restart", RESTART)
+    add_counters(n, functions, arguments, value, sums)
 
 
 @compiled
@@ -213,43 +209,3 @@ def accelerated(s, m, t):
         return status
     copied(s.a, factors_view(m.acceleration_factors).b, s.n_u)
     return 0
-
-
-def restart(t, end, restarts):
-    """Integrate from the state in the table at t to `end`, and store the result; return OK.
-
-    Too many steps, an event or a failure give another number, with the state unchanged.
-    """
-    w = restart_view(restarts)
-    b = start_view(w.start)
-    m = dynamics_view(b.dynamics)
-    s = state_view(m.state)
-    ida = ints(b.ida)
-    c = native_ida_view(ida)
-    e = equations_view(c.equations)
-    copied(s.q, w.q, s.n_q)
-    copied(s.u, w.u, s.n_u)
-    if brought_back(s, m, t) < 0:
-        return int32(UNFINISHED)
-    if w.n_counted:
-        values = evaluate(s, POSITION, t)
-        for k in range(w.n_counted):
-            s.q[w.counted_row[k]] = values[w.counted_source[k]]
-    if accelerated(s, m, t) < 0:
-        return int32(UNFINISHED)
-    if prepared(b, s, m, e, c, t) < 0 or begun(b, c, t) < 0:
-        return int32(UNFINISHED)
-    call_int(c.stop_at, (c.memory, end))
-    c.stopping = end
-    clear_call(c)
-    flag = int32(OK)
-    for _ in range(LOOP.most_steps):
-        if flag != OK:
-            break
-        flag = stepped(c, ida, end, end)
-    if flag != STOP_RETURN:
-        return int32(UNFINISHED)
-    load(s, e, array_of(c, c.y), array_of(c, c.yp))
-    copied(w.q, s.q, s.n_q)
-    copied(w.u, s.u, s.n_u)
-    return int32(OK)
