@@ -61,19 +61,21 @@ class Kink:
     sides: tuple[Linearised, Linearised]
 
 
-def linearised_at(found: Instant, scale: np.ndarray) -> tuple[Linearised, StateMatrix, Kink | None]:
+def linearised_at(
+    found: Instant, scale: np.ndarray, moves: Moves = MOVES
+) -> tuple[Linearised, StateMatrix, Kink | None]:
     """Return the linearised equations, those of one side on a breakpoint of a force, with that breakpoint or None.
 
     Raise a SolverError if a force is discontinuous at the state, so that no linearisation exists.
     """
     linear = linearised(found.dynamics, found.t, found.acceleration)
     state = state_matrix(linear, scale)
-    kink, side = _breakpoint(found, state, linear, scale) if len(state.matrix) else (None, None)
+    kink, side = _breakpoint(found, state, linear, scale, moves) if len(state.matrix) else (None, None)
     return (linear, state, kink) if side is None else (side, state_matrix(side, scale), kink)
 
 
 def _breakpoint(
-    found: Instant, state: StateMatrix, linear: Linearised, scale: np.ndarray, moves: Moves = MOVES
+    found: Instant, state: StateMatrix, linear: Linearised, scale: np.ndarray, moves: Moves
 ) -> tuple[Kink | None, Linearised | None]:
     """Return the breakpoint of a force or rate at a state or None, and the equations of a side if they replace those there."""
     system = found.dynamics.system
