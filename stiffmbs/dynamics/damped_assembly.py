@@ -64,7 +64,7 @@ def damped_assembly(dynamics: Dynamics, t: float, q: np.ndarray) -> bool:
 def _in_open_mechanisms(gaps: np.ndarray, slopes: np.ndarray, n_u: int) -> np.ndarray:
     """Return True for the velocities, `n_u` of each body, of bodies that joints connect with a gap, directly or not."""
     of_bodies = (slopes != 0.0).reshape(len(gaps), -1, n_u).any(axis=2)
-    found, reached = of_bodies[np.abs(gaps) > CONSISTENCY.position_tolerance].any(axis=0), np.zeros(of_bodies.shape[1], dtype=bool)
+    found, reached = of_bodies[np.abs(gaps) > CONSISTENCY.position_tolerance].any(axis=0), np.zeros(0, dtype=bool)
     while not np.array_equal(found, reached):
         reached = found
         found = of_bodies[(of_bodies & reached).any(axis=1)].any(axis=0)
