@@ -173,5 +173,18 @@ forces:
   spring: {type: bushing, i: block, j: ground, stiffness: [100, 0, 0]}
   pull: {type: force, i: block, force: ["26/(1 - block.x)", 0]}
 """
-    with pytest.raises(SolverError, match="no equilibrium was found: the forces grow without bound"):
+    with pytest.raises(SolverError, match="the derivatives of forces grow without bound"):
+        stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+
+
+def test_a_line_force_of_zero_length_balances_nothing():
+    """It pulls the points together, and has no direction there that could balance the load across it."""
+    scene = """
+    gravity: [0, 0]
+    bodies: {b: {mass: 1, inertia: 1, position: [0.4, 0.3]}}
+    forces:
+      cable: {type: line_force, i: b, j: ground, force: -8}
+      load: {type: force, i: b, force: [2.5, 0]}
+    """
+    with pytest.raises(SolverError, match="distances that become zero"):
         stiffmbs.equilibrium(stiffmbs.read_scene(scene))
