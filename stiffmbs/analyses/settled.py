@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..dynamics.algebraic_states import failure
+from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..equilibria.equilibrium import Equilibrium, find_equilibrium
@@ -17,6 +18,7 @@ from ..errors import SolverError
 from ..linear_analysis.eigenvalues import eigen
 from ..linear_analysis.stability import lowest
 from ..linear_analysis.state_space import state_matrix
+from ..reading.files.quoted import listed
 from ..results.scales import ROUNDING
 from .far_away import far_away
 from .linearised.sides import MOVES, Instant, Kink, Moves, linearised_at
@@ -73,9 +75,9 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     system, state = dynamics.system, dynamics.state
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
-    notes: list[str] = []
+    notes = list(_family(system))
     if system.states:
-        return _settled(found, start, list(_growth(dynamics, t)))
+        return _settled(found, start, [*notes, *_growth(dynamics, t)])
     for _ in range(MOST_BRANCHES):
         unstable, free = _directions(dynamics, t)
         if unstable is None:
@@ -136,6 +138,17 @@ def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], fre
         start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=tuple(notes)
     )
     return Settled(resting, found.moves, found.imbalance, tuple(free), tuple(notes))
+
+
+def _family(system: System) -> Iterator[str]:
+    """Yield a note if constraints of velocities alone carry forces, so that equilibria are not isolated."""
+    rows = np.flatnonzero(system.active & ~system.holonomic)
+    names = list(dict.fromkeys(system.equations[row][0] for row in rows))
+    if names:
+        yield (
+            f"{listed(names)} constrain{'s' * (len(names) == 1)} velocities alone and can hold many poses at rest: the equilibrium "
+            "given is one of them, which depends on the described pose"
+        )
 
 
 def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:

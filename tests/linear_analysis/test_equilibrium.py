@@ -188,3 +188,18 @@ def test_a_line_force_of_zero_length_balances_nothing():
     """
     with pytest.raises(SolverError, match="distances that become zero"):
         stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+
+
+@pytest.mark.parametrize(
+    "joint", ['{type: velocity_equation, zero: "b.vx - 0.3*b.y*b.vy"}', "{type: drive, coordinate: b.x, velocity: 0}"]
+)
+def test_constraints_of_velocities_hold_many_poses(joint):
+    scene = f"""
+    gravity: [0, 0]
+    bodies: {{b: {{mass: 1, inertia: 1, position: [0.4, 0.3]}}}}
+    joints: {{edge: {joint}}}
+    forces: {{f: {{type: force, i: b, force: ["-b.x", "-b.y"]}}, g: {{type: torque, i: b, torque: "-b.angle"}}}}
+    """
+    found = stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+    assert found.channels["edge.fx"] == pytest.approx(found.channels["b.x"])
+    assert [note[:52] for note in found.notes] == ["edge constrains velocities alone and can hold many p"]
