@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..dynamics.algebraic_states import failure
 from ..compile.system import System
+from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..equilibria.equilibrium import Equilibrium, find_equilibrium
