@@ -21,7 +21,7 @@ from ..linear_analysis.state_space import state_matrix
 from ..reading.files.quoted import listed
 from ..results.scales import ROUNDING
 from .far_away import far_away
-from .linearised.sides import MOVES, Instant, Kink, Moves, linearised_at
+from .linearised.sides import MOVES, ForceJumpError, Instant, Kink, Moves, linearised_at
 
 MOST_FOR_EIGENVALUES = 1500
 """Largest number of velocities for eigenvalues (dense matrices)."""
@@ -168,7 +168,10 @@ def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
             if np.max(farther.real, initial=0.0) > BY_DISTANCE * np.max(growing.real):
                 return
     except SolverError as error:
-        yield f"the dynamic stability of the equilibrium was not checked: {error}"
+        one = "a law has its value at exactly this state, while sign(v) at rest can hold many poses; " * isinstance(
+            error, ForceJumpError
+        )
+        yield f"{one}the dynamic stability of the equilibrium was not checked: {error}"
         return
     if len(growing):
         fastest = growing[np.argmax(growing.real)]

@@ -21,6 +21,10 @@ class Instant:
     acceleration: np.ndarray
 
 
+class ForceJumpError(SolverError):
+    """Force or rate that is discontinuous at a state."""
+
+
 @dataclass(frozen=True)
 class Moves:
     """Perturbations by which the equations on both sides of a state are compared.
@@ -66,7 +70,7 @@ def linearised_at(
 ) -> tuple[Linearised, StateMatrix, Kink | None]:
     """Return the linearised equations, those of one side on a breakpoint of a force, with that breakpoint or None.
 
-    Raise a SolverError if a force is discontinuous at the state, so that no linearisation exists.
+    Raise a ForceJumpError if a force is discontinuous at the state, so that no linearisation exists.
     """
     linear = linearised(found.dynamics, found.t, found.acceleration)
     state = state_matrix(linear, scale)
@@ -90,7 +94,7 @@ def _breakpoint(
     smooth = moves.steep * 2 * moves.narrow * np.maximum(narrow[0].parts, narrow[1].parts) @ np.abs(move)
     jumps = jump > smooth + moves.rounding * np.max(np.abs(narrow[0].forces), initial=0.0)
     if jumps.any():
-        raise SolverError(
+        raise ForceJumpError(
             f"a force or rate of {rows[int(np.argmax(np.where(jumps, jump, 0.0)))]} is discontinuous at the state at t = {found.t:g} s, where "
             "no linearisation exists; expected a state away from the discontinuity, or a continuous law, such as step()"
         )
