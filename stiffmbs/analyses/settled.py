@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..compile.system import System
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
@@ -16,10 +17,11 @@ from ..equilibria.steady_motion import at_rest
 from ..errors import SolverError
 from ..linear_analysis.eigenvalues import eigen
 from ..linear_analysis.stability import lowest
-from ..linear_analysis.state_space import StateMatrix, state_matrix
+from ..linear_analysis.state_space import state_matrix
+from ..reading.files.quoted import listed
 from ..results.scales import ROUNDING
 from .far_away import far_away
-from .linearised.sides import Instant, linearised_at
+from .linearised.sides import MOVES, ForceJumpError, Instant, Kink, Moves, linearised_at
 
 MOST_FOR_EIGENVALUES = 1500
 """Largest number of velocities for eigenvalues (dense matrices)."""
@@ -34,6 +36,12 @@ GROWING = 1e-6
 """Real part above which a motion grows, relative to the largest eigenvalue: the accuracy of double zeros."""
 ROUNDED = 1e-10
 """Real part above which an eigenvalue is unstable, relative to the largest magnitude, in addition to `GROWING` of its own."""
+
+FARTHER = replace(MOVES, wide=10 * MOVES.wide, narrow=10 * MOVES.narrow)
+"""Perturbations to more distant states on both sides of a breakpoint, whose eigenvalues show the effect of the distance."""
+BY_DISTANCE = (FARTHER.wide / MOVES.wide) ** 0.25
+"""Ratio of the growth in more distant states above which it vanishes at the breakpoint: that of double zeros, which change
+with the root of the distance, has the square of it."""
 
 
 @dataclass(frozen=True)
@@ -67,9 +75,9 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     system, state = dynamics.system, dynamics.state
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
-    notes: list[str] = []
+    notes = list(_family(system))
     if system.states:
-        return _settled(found, start, list(_growth(dynamics, t)))
+        return _settled(found, start, [*notes, *_growth(dynamics, t)])
     for _ in range(MOST_BRANCHES):
         unstable, free = _directions(dynamics, t)
         if unstable is None:
@@ -78,11 +86,6 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
         poses = [_branch(dynamics, found, sign * unstable, t) for sign in (1.0, -1.0)]
         notes.append(_branch_sentence(dynamics, unstable, poses))
         if not any(poses):
-            if not found.imbalance < 1.0:  # within rounding of a pole, where derivatives exceed all forces
-                raise SolverError(
-                    "no equilibrium was found: the forces grow without bound where the search ended, and do not balance; "
-                    "start nearer to the equilibrium, or check divisions in the forces"
-                )
             return _settled(found, start, notes)
         found = next(pose for pose in poses if pose is not None)
         state.q[:] = found.q
@@ -137,6 +140,17 @@ def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], fre
     return Settled(resting, found.moves, found.imbalance, tuple(free), tuple(notes))
 
 
+def _family(system: System) -> Iterator[str]:
+    """Yield a note if constraints of velocities alone carry forces, so that equilibria are not isolated."""
+    rows = np.flatnonzero(system.active & ~system.holonomic)
+    names = list(dict.fromkeys(system.equations[row][0] for row in rows))
+    if names:
+        yield (
+            f"{listed(names)} constrain{'s' * (len(names) == 1)} velocities alone and can hold many poses at rest: the equilibrium "
+            "given is one of them, which depends on the described pose"
+        )
+
+
 def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
     """Yield a note if an equilibrium is dynamically unstable, or if this was not assessed."""
     system = dynamics.system
@@ -146,14 +160,19 @@ def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
         yield f"the dynamic stability of the equilibrium was not checked: the model has {system.n_u} velocities, more than {MOST_FOR_EIGENVALUES}"
         return
     _, acceleration = dynamics.accelerate(t)
-    scale = system.per_velocity(system.size, 1.0)
+    instant = Instant(dynamics, t, acceleration)
     try:
-        _, state, kink = linearised_at(Instant(dynamics, t, acceleration), scale)
+        growing, kink = _growing(instant, MOVES)
+        if kink is not None and len(growing):
+            farther, _ = _growing(instant, FARTHER)
+            if np.max(farther.real, initial=0.0) > BY_DISTANCE * np.max(growing.real):
+                return
     except SolverError as error:
-        yield f"the dynamic stability of the equilibrium was not checked: {error}"
+        one = "a law has its value at exactly this state, while sign(v) at rest can hold many poses; " * isinstance(
+            error, ForceJumpError
+        )
+        yield f"{one}the dynamic stability of the equilibrium was not checked: {error}"
         return
-    sides = [state] if kink is None else [state_matrix(side, scale) for side in kink.sides]
-    growing = np.concatenate([_growing(side) for side in sides])
     if len(growing):
         fastest = growing[np.argmax(growing.real)]
         how = f" and oscillate at {abs(fastest.imag) / (2 * np.pi):.3g} Hz" if fastest.imag else ""
@@ -161,11 +180,17 @@ def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
         yield f"the equilibrium is unstable{where}: disturbances grow at {fastest.real:.3g} 1/s{how}"
 
 
-def _growing(state: StateMatrix) -> np.ndarray:
-    """Return the eigenvalues of growing motions, 1/s."""
-    values, _, _ = eigen(state.matrix, state.n_poses, state.n_states)
-    sizes = np.abs(values)
-    return np.asarray(values[values.real > GROWING * sizes + ROUNDED * np.max(sizes, initial=0.0)])
+def _growing(instant: Instant, moves: Moves) -> tuple[np.ndarray, Kink | None]:
+    """Return the eigenvalues of growing motions, 1/s, and the breakpoint at the state; of both sides on a breakpoint."""
+    system = instant.dynamics.system
+    scale = system.per_velocity(system.size, 1.0)
+    _, state, kink = linearised_at(instant, scale, moves)
+    found = []
+    for side in [state] if kink is None else [state_matrix(side, scale) for side in kink.sides]:
+        values, _, _ = eigen(side.matrix, side.n_poses, side.n_states)
+        sizes = np.abs(values)
+        found.append(values[values.real > GROWING * sizes + ROUNDED * np.max(sizes, initial=0.0)])
+    return np.concatenate(found), kink
 
 
 def _is_conservative(dynamics: Dynamics, t: float) -> bool:

@@ -37,7 +37,10 @@ def damped_assembly(dynamics: Dynamics, t: float, q: np.ndarray) -> bool:
         state.q[:] = before
         return False
     weights, damping = 1.0 / sizes, CONSISTENCY.close
-    pose = system.of_body.moved(q, CONSISTENCY.nudge * unit * np.cos(np.arange(system.n_u) ** 2))
+    nudge = CONSISTENCY.nudge * unit * np.cos(np.arange(system.n_u) ** 2)
+    gaps, _ = gaps_at(q)
+    _, slopes = gaps_at(system.of_body.moved(q, nudge))  # without the zeros of a drawing along the axes
+    pose = system.of_body.moved(q, nudge * _in_open_mechanisms(gaps, slopes, system.of_body.n_u))
     gaps, slopes = gaps_at(pose)
     for _ in range(CONSISTENCY.most_damped_moves):
         least = np.linalg.norm(slopes.T @ gaps) <= CONSISTENCY.close * np.linalg.norm(gaps)
@@ -56,3 +59,13 @@ def damped_assembly(dynamics: Dynamics, t: float, q: np.ndarray) -> bool:
         return True
     state.q[:] = before
     return False
+
+
+def _in_open_mechanisms(gaps: np.ndarray, slopes: np.ndarray, n_u: int) -> np.ndarray:
+    """Return True for the velocities, `n_u` of each body, of bodies that joints connect with a gap, directly or not."""
+    of_bodies = (slopes != 0.0).reshape(len(gaps), -1, n_u).any(axis=2)
+    found, reached = of_bodies[np.abs(gaps) > CONSISTENCY.position_tolerance].any(axis=0), np.zeros(0, dtype=bool)
+    while not np.array_equal(found, reached):
+        reached = found
+        found = of_bodies[(of_bodies & reached).any(axis=1)].any(axis=0)
+    return np.repeat(reached, n_u)

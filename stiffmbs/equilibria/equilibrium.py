@@ -216,6 +216,11 @@ def as_equilibrium(dynamics: Dynamics, t: float, known: Balance, moves: int) -> 
 def unbalanced(dynamics: Dynamics, known: Balance) -> str:
     """Return a message on the missing equilibrium, with the body that has the largest imbalance."""
     system = dynamics.system
+    if known.at_a_pole:
+        return (
+            "no equilibrium was found: the derivatives of forces grow without bound where the search ended, and the forces do not "
+            "balance; start nearer to the equilibrium, or check divisions in the forces and distances that become zero"
+        )
     forces, rates = np.split(known.left, [system.n_u])
     if system.states and np.all(np.abs(forces) <= known.allowed[: system.n_u]):
         worst = int(np.argmax(np.abs(rates) / np.maximum(known.allowed[system.n_u :], np.finfo(float).tiny)))

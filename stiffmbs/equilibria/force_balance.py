@@ -31,6 +31,7 @@ class Balance:
     - `motion`: steady motion of the balance.
     - `negligible` of shape (n_u,): forces that count as zero if all forces vanish in equilibrium.
     - `speeds`: speeds of the motion that the forces determine.
+    - `at_a_pole`: True if derivatives of forces are so large that rounding exceeds all forces, which stay bounded nearby.
     """
 
     left: np.ndarray
@@ -44,6 +45,7 @@ class Balance:
     motion: SteadyMotion
     negligible: np.ndarray | float
     speeds: FoundSpeeds | None = None
+    at_a_pole: bool = False
 
     @property
     def imbalance(self) -> float:
@@ -72,15 +74,16 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     lam = state.lam[: system.n_c].copy()
     steady = motion.acceleration(dynamics)
     state.evaluate("motion", t)
-    entries = state.values["motion"][system.term("motion", "f").source]
-    largest = max(
-        np.max(np.abs(part), initial=0.0) for part in (state.vector("motion", "f"), entries, system.mass * steady)
-    )
+    largest = max(_largest_force(dynamics), float(np.max(np.abs(system.mass * steady), initial=0.0)))
     stiffness, jacobian = _derivatives(dynamics, t, motion, lam)
-    farthest = np.max(np.abs(state.q[system.straight[0]]), initial=system.size)
-    rounding = EQUILIBRIA.rounding * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
+    farthest = float(np.max(np.abs(state.q[system.straight[0]]), initial=system.size))
+    of_coordinates = EQUILIBRIA.rounding * np.finfo(float).eps * system.per_velocity(farthest, 1.0)
+    rounding = abs(stiffness) @ of_coordinates
     roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which does not increase rounding
     unloaded = largest <= np.max(rounding, initial=0.0)  # as stiff bushings in zero gravity: all forces are rounding
+    at_a_pole = unloaded and not _grow(dynamics, t, of_coordinates)
+    if at_a_pole:  # where rounding excuses no imbalance
+        rounding, unloaded = 0.0 * rounding, False
     most_passed_on = np.inf if unloaded else EQUILIBRIA.passed_on * largest
     passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), most_passed_on)
     negligible = system.mass * system.per_velocity(system.size, 1.0) * EQUILIBRIA.slowest**2
@@ -88,7 +91,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     found = Balance(
         left,
         lam,
-        float(largest),
+        largest,
         np.maximum.reduce([np.full(len(left), EQUILIBRIA.balanced * largest), rounding, passed_on, negligible]),
         stiffness,
         jacobian,
@@ -96,12 +99,31 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
         zeros(system, 0, len(left)),
         motion,
         negligible,
+        at_a_pole=at_a_pole,
     )
     if system.states:
         found = with_states(dynamics, found, rates, motion, t)
     if not motion.n_found:
         return found
     return replace(found, speeds=found_speeds(dynamics, motion, forces_by_velocity(dynamics)))
+
+
+def _largest_force(dynamics: Dynamics) -> float:
+    """Return the largest generalised force, or part of one (set ``motion``)."""
+    state = dynamics.state
+    parts = state.vector("motion", "f"), state.values["motion"][dynamics.system.term("motion", "f").source]
+    return max(float(np.max(np.abs(part), initial=0.0)) for part in parts)
+
+
+def _grow(dynamics: Dynamics, t: float, rounding: np.ndarray) -> bool:
+    """Return True if forces grow as stiff ones do over a move of many roundings; those at a pole of a law do not."""
+    state = dynamics.state
+    before = _largest_force(dynamics)
+    with state.unchanged():
+        move = EQUILIBRIA.pole * rounding * np.cos(np.arange(len(rounding)) ** 2)
+        state.q[:] = dynamics.system.of_body.moved(state.q, move)
+        state.evaluate("motion", t)
+        return _largest_force(dynamics) > np.sqrt(EQUILIBRIA.pole) * before
 
 
 def _off_the_constraints(dynamics: Dynamics, acceleration: np.ndarray, jacobian: Matrix) -> np.ndarray:

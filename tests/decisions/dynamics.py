@@ -43,7 +43,7 @@ def stuck(gap):
         return poses[-1]
 
     system = Record(
-        active=np.ones(1, dtype=bool), holonomic=np.ones(1, dtype=bool), size=1.0, n_u=1, of_body=Record(moved=moved),
+        active=np.ones(1, dtype=bool), holonomic=np.ones(1, dtype=bool), size=1.0, n_u=1, of_body=Record(moved=moved, n_u=1),
         per_velocity=lambda *_: np.ones(1),
     )  # fmt: skip
     done = damped_assembly.damped_assembly(Record(system=system, state=state, assemble=nothing), 0.0, np.zeros(1))
@@ -338,7 +338,7 @@ DECISIONS = {
     "storage.block": lambda: next(storage.blocks(10**9)).stop,
 }  # fmt: skip
 EXPECTED = {
-    "consistency.most_damped_moves": 201, "consistency.nudge": 0.001, "consistency.close": 40,
+    "consistency.most_damped_moves": 202, "consistency.nudge": 0.001, "consistency.close": 40,
     "consistency.most_assembly_moves": 50, "consistency.most_moves": 20, "consistency.position_tolerance": 40,
     "consistency.most_frozen_moves": 3, "consistency.contraction": 27, "consistency.amplified": 67,
     "consistency.moved": 40, "consistency.step_parts": 10, "consistency.most_iterations": 40,

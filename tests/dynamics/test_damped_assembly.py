@@ -52,3 +52,13 @@ def test_its_equilibrium_is_the_catenary_of_rods():
 def test_a_chain_that_is_too_short_is_refused(scene):
     with pytest.raises(AssemblyError, match=r"cannot be assembled: the largest gap is in joint '(first|pin\d|last)'"):
         stiffmbs.run(stiffmbs.read_scene(scene, [("span", "1.01*N")]))
+
+
+@pytest.mark.parametrize("presolve", [True, False])
+def test_bodies_without_a_gap_stay_where_they_are_drawn(presolve):
+    others = "  ball: {mass: 1, inertia: 1, position: [1, 2], angle: 0.5}\n  bob: {mass: 1, inertia: 1, position: [3, 1], angle: 0.5}\n"
+    hinge = "joints:\n  hinge: {type: revolute, i: bob, j: {body: ground, point: [3, 1]}}\n"
+    scene = stiffmbs.read_scene(PLANE.replace("joints:\n", others + hinge))
+    solution = stiffmbs.run(scene, presolve=presolve)
+    drawn = {"ball.x": 1.0, "ball.y": 2.0, "ball.angle": 0.5, "bob.x": 3.0, "bob.y": 1.0, "bob.angle": 0.5}
+    assert {name: solution[name][0] for name in drawn} == drawn

@@ -173,5 +173,33 @@ forces:
   spring: {type: bushing, i: block, j: ground, stiffness: [100, 0, 0]}
   pull: {type: force, i: block, force: ["26/(1 - block.x)", 0]}
 """
-    with pytest.raises(SolverError, match="no equilibrium was found: the forces grow without bound"):
+    with pytest.raises(SolverError, match="the derivatives of forces grow without bound"):
         stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+
+
+def test_a_line_force_of_zero_length_balances_nothing():
+    """It pulls the points together, and has no direction there that could balance the load across it."""
+    scene = """
+    gravity: [0, 0]
+    bodies: {b: {mass: 1, inertia: 1, position: [0.4, 0.3]}}
+    forces:
+      cable: {type: line_force, i: b, j: ground, force: -8}
+      load: {type: force, i: b, force: [2.5, 0]}
+    """
+    with pytest.raises(SolverError, match="distances that become zero"):
+        stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+
+
+@pytest.mark.parametrize(
+    "joint", ['{type: velocity_equation, zero: "b.vx - 0.3*b.y*b.vy"}', "{type: drive, coordinate: b.x, velocity: 0}"]
+)
+def test_constraints_of_velocities_hold_many_poses(joint):
+    scene = f"""
+    gravity: [0, 0]
+    bodies: {{b: {{mass: 1, inertia: 1, position: [0.4, 0.3]}}}}
+    joints: {{edge: {joint}}}
+    forces: {{f: {{type: force, i: b, force: ["-b.x", "-b.y"]}}, g: {{type: torque, i: b, torque: "-b.angle"}}}}
+    """
+    found = stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+    assert found.channels["edge.fx"] == pytest.approx(found.channels["b.x"])
+    assert [note[:52] for note in found.notes] == ["edge constrains velocities alone and can hold many p"]

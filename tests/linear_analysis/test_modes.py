@@ -229,3 +229,21 @@ def test_masses_of_very_different_size_have_their_own_frequencies():
     assert sorted(frequencies(found)) == pytest.approx(
         sorted(np.sqrt(stiffness / m) / (2 * np.pi) for m in masses.values())
     )
+
+
+@pytest.mark.parametrize("distant", [0.1, 100.0])
+def test_modes_of_a_moving_state_say_which_coordinates_they_hold_in(distant):
+    """For rotation t, displacement l t and size s: the square is g l sin(t) m/J - r w^2, where r = l^2/(l^2 + s^2)."""
+    scene = f"""
+    gravity: [0, -9.81]
+    bodies: {{b: {{mass: 1, inertia: 0.1, position: [0.5, 0]}}}}
+    joints: {{h: {{type: revolute, i: {{body: b, point: [-0.5, 0]}}, j: ground}}}}
+    forces: {{f: {{type: spring_damper, i: b, j: {{body: ground, point: [{distant}, 0]}}, stiffness: 0, free_length: 1}}}}
+    run: {{duration: 0.2, points: 2, rtol: 1e-10}}
+    """
+    model = stiffmbs.read_scene(scene)
+    end, found = stiffmbs.run(model), stiffmbs.modes(model, at=0.2)
+    angle, omega, size = float(end["b.angle"][-1]), float(end["b.omega"][-1]), max(0.5, distant)
+    square = 9.81 * 0.5 / 0.35 * np.sin(angle) - 0.25 / (0.25 + size**2) * omega**2
+    assert found.modes[0].eigenvalues[0] ** 2 == pytest.approx(square, rel=1e-6)
+    assert any(f"in sizes of the mechanism ({size:.3g} m)" in note for note in found.notes)

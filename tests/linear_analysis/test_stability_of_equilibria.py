@@ -55,6 +55,17 @@ def test_stability_on_a_breakpoint_is_that_of_both_sides(law, unstable):
     assert any("unstable on one side of a breakpoint of a force on b.vx" in note for note in notes) == unstable, notes
 
 
+def test_an_equilibrium_is_not_unstable_because_the_states_beside_it_are():
+    """At x = 0 the force x y in y has no stiffness; beside the breakpoint of the damper it has one of either sign."""
+    model = stiffmbs.Model(gravity=(0, 0))
+    model.add("b", stiffmbs.Body(mass=1, inertia=1))
+    model.add("f", stiffmbs.AppliedForce(i="b", force=["-100*b.x - 2*max(b.vx, 0) - 3*min(b.vx, 0)", "b.x*b.y"]))
+    found = stiffmbs.equilibrium(model)
+    assert found.free == ("b.vy", "b.omega")
+    assert not any("unstable" in note for note in found.notes), found.notes
+
+
 def test_dry_friction_at_rest_has_no_linearisation():
     (note,) = stiffmbs.equilibrium(slider("-100*b.x - 5*sign(b.vx)")).notes
     assert "not checked: a force or rate of b.vx is discontinuous" in note
+    assert "sign(v) at rest can hold many poses" in note

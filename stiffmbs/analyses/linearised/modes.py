@@ -169,7 +169,8 @@ def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
         most = int(np.argmax(sizes))
         yield (
             f"the state at t = {found.t:g} s is not an equilibrium: {system.name_of(most, system.of_body.accelerations)} = "
-            f"{found.acceleration[most]:.3g}; the frequencies hold at this time only"
+            f"{found.acceleration[most]:.3g}; the frequencies hold at this time only, and in coordinates that measure displacements in "
+            f"sizes of the mechanism ({system.size:.3g} m) and rotations in rad: other coordinates have others"
         )
     rolling = state.n_poses - state.degrees_of_freedom
     if rolling:

@@ -21,6 +21,10 @@ class Instant:
     acceleration: np.ndarray
 
 
+class ForceJumpError(SolverError):
+    """Force or rate that is discontinuous at a state."""
+
+
 @dataclass(frozen=True)
 class Moves:
     """Perturbations by which the equations on both sides of a state are compared.
@@ -61,19 +65,21 @@ class Kink:
     sides: tuple[Linearised, Linearised]
 
 
-def linearised_at(found: Instant, scale: np.ndarray) -> tuple[Linearised, StateMatrix, Kink | None]:
+def linearised_at(
+    found: Instant, scale: np.ndarray, moves: Moves = MOVES
+) -> tuple[Linearised, StateMatrix, Kink | None]:
     """Return the linearised equations, those of one side on a breakpoint of a force, with that breakpoint or None.
 
-    Raise a SolverError if a force is discontinuous at the state, so that no linearisation exists.
+    Raise a ForceJumpError if a force is discontinuous at the state, so that no linearisation exists.
     """
     linear = linearised(found.dynamics, found.t, found.acceleration)
     state = state_matrix(linear, scale)
-    kink, side = _breakpoint(found, state, linear, scale) if len(state.matrix) else (None, None)
+    kink, side = _breakpoint(found, state, linear, scale, moves) if len(state.matrix) else (None, None)
     return (linear, state, kink) if side is None else (side, state_matrix(side, scale), kink)
 
 
 def _breakpoint(
-    found: Instant, state: StateMatrix, linear: Linearised, scale: np.ndarray, moves: Moves = MOVES
+    found: Instant, state: StateMatrix, linear: Linearised, scale: np.ndarray, moves: Moves
 ) -> tuple[Kink | None, Linearised | None]:
     """Return the breakpoint of a force or rate at a state or None, and the equations of a side if they replace those there."""
     system = found.dynamics.system
@@ -88,7 +94,7 @@ def _breakpoint(
     smooth = moves.steep * 2 * moves.narrow * np.maximum(narrow[0].parts, narrow[1].parts) @ np.abs(move)
     jumps = jump > smooth + moves.rounding * np.max(np.abs(narrow[0].forces), initial=0.0)
     if jumps.any():
-        raise SolverError(
+        raise ForceJumpError(
             f"a force or rate of {rows[int(np.argmax(np.where(jumps, jump, 0.0)))]} is discontinuous at the state at t = {found.t:g} s, where "
             "no linearisation exists; expected a state away from the discontinuity, or a continuous law, such as step()"
         )
