@@ -168,10 +168,9 @@ def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
             if np.max(farther.real, initial=0.0) > BY_DISTANCE * np.max(growing.real):
                 return
     except SolverError as error:
-        one = "a law has its value at exactly this state, while sign(v) at rest can hold many poses; " * isinstance(
-            error, ForceJumpError
-        )
-        yield f"{one}the dynamic stability of the equilibrium was not checked: {error}"
+        jumps = isinstance(error, ForceJumpError)
+        law = "a law has its value at exactly this state, while sign(v) at rest can hold many poses; " if jumps else ""
+        yield f"{law}the dynamic stability of the equilibrium was not checked: {error}"
         return
     if len(growing):
         fastest = growing[np.argmax(growing.real)]
