@@ -221,6 +221,7 @@ def _draw(axes: Any, found: KinematicsAndCompliance, panel: Panel) -> None:
     axes.set_ylabel(upwards, fontsize=7)
     axes.set_title(panel.title, fontsize=8)
     axes.tick_params(labelsize=6)
+    axes.locator_params(axis="x", nbins=6)
     axes.grid(alpha=0.3)
 
 

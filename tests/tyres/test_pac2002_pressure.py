@@ -202,7 +202,7 @@ def test_the_torques_of_a_pac2002_file_without_a_nominal_pressure(read):
     with pytest.raises(InputError, match="found QSX4 without FITTYP"):
         read(other)
     assert any("QSX4" in note for note in read(other.replace("LONGVL", "FITTYP = 6\nLONGVL")).notes())
-    with pytest.raises(InputError, match="found QSX4 of a tyre of MF-Tyre 5.2, expected one of PAC2002"):
+    with pytest.raises(InputError, match=r"found QSX4 of a tyre of MF-Tyre 5\.2, expected one of PAC2002"):
         TyreProperties(coefficients={**tyre.coefficients})
 
 
