@@ -99,10 +99,10 @@ def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float,
     dynamics.state.q[:] = start.q
     missing = ""
     if len(motion.spinning):
-        balance_at(dynamics, t, motion)
+        known = balance_at(dynamics, t, motion)
         by_velocity = forces_by_velocity(dynamics)
         motion = with_found_spins(dynamics, motion, by_velocity)
-        missing = _left_out(dynamics, by_velocity, motion.spinning)
+        missing = _left_out(dynamics, known.stiffness, by_velocity, motion.spinning)
     turning = replace(motion, upright=_rotation(model, 1.0))
     searches = [partial(find_equilibrium, motion=motion), partial(nearest_equilibrium, motion=motion)]
     if described.rotation == "found":
@@ -126,17 +126,20 @@ def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float,
     return found
 
 
-def _left_out(dynamics: Dynamics, by_velocity: Matrix, spinning: np.ndarray) -> str:
+def _left_out(dynamics: Dynamics, stiffness: Matrix, by_velocity: Matrix, spinning: np.ndarray) -> str:
     """Return a sentence if a free spin that is not in `rolling` acts on one that is, as that of a shaft on a wheel.
 
-    `by_velocity` of shape (n_u + states, n_u): derivatives of the forces and of the rates of states.
+    `stiffness`, `by_velocity` with n_u + states rows: derivatives of the forces and of the rates of states by
+    displacements and by velocities.
     """
     system, state = dynamics.system, dynamics.state
-    effects, held = dense(abs(by_velocity)), np.abs(state.matrix("motion", "J")).max(axis=0, initial=0.0)
+    effects, stiff = dense(abs(by_velocity)), dense(abs(stiffness))
     acts = effects > EQUILIBRIA.no_effect * effects.max(axis=0, initial=0.0)
+    held = np.abs(state.matrix("motion", "J")).max(axis=0, initial=0.0) > EQUILIBRIA.no_effect
+    rests = stiff > EQUILIBRIA.no_effect * np.max(stiff, initial=0.0)
     for body in system.bodies:
         k = _axis(system, body)
-        if k is None or k in spinning or held[k] > EQUILIBRIA.no_effect:
+        if k is None or k in spinning or held[k] or np.delete(rests[: system.n_u, k], [k, *spinning]).any():
             continue
         rates = acts[system.n_u :]
         together = acts[k, spinning] | acts[spinning, k] | rates[rates[:, k]][:, spinning].any(axis=0)

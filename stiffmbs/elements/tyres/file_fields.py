@@ -289,7 +289,7 @@ def _check_fiala(file: PropertyFile, formula: Version, found: Mapping[str, float
     if found["UMIN"] > found["UMAX"]:
         raise _fault(file, formula, "UMIN", f", expected at most UMAX = {found['UMAX']:g}")
     sliding, (least, most) = math.atan(3 * found["UMAX"] * load / found["CALPHA"]), SLIDING
-    if found["CALPHA"] > 0 and found["UMAX"] > 0 and not least <= sliding <= most:
+    if not least <= sliding <= most:
         sentence = f", by which the tyre slides from {math.degrees(sliding):.2g} deg, expected {math.degrees(least):g} to {math.degrees(most):g} deg"
         raise _fault(file, formula, "CALPHA", f"{sentence}: it is a force per angle of [UNITS]")
     radius = found["UNLOADED_RADIUS"]
