@@ -28,11 +28,11 @@ def far_away(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> It
 
 
 def beyond_its_size(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[str]:
-    """Yield a note if a body moves by more than the mechanism's size, as on a spring in N/mm that is read as N/m."""
+    """Yield a note if a body moves by more than twice the size of the mechanism, as on a spring in N/mm that is read as N/m."""
     body, moved = _farthest(dynamics, start, found)
     if moved > BEYOND * dynamics.system.size:
         yield (
-            f"{body} is {moved:.3g} m away from the described pose, more than the size of the model of {dynamics.system.size:.3g} m: "
+            f"{body} is {moved:.3g} m away from the described pose, more than {BEYOND:g} times the size of the model of {dynamics.system.size:.3g} m: "
             "check the stiffnesses, the loads and their units"
         )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -82,7 +82,7 @@ PANELS = (
 )
 """Diagrams of the page, of which an axle shows those that apply."""
 COLUMNS = 4
-STYLES = ("-", "--")
+STYLES: tuple[Literal["-"], Literal["--"]] = ("-", "--")
 """Line styles of the left and the right side."""
 ROUNDING = 1e-9
 """Largest value, in the unit of a measure, that the table shows as zero."""
