@@ -20,7 +20,7 @@ from ..linear_analysis.stability import lowest
 from ..linear_analysis.state_space import state_matrix
 from ..reading.files.quoted import listed
 from ..results.scales import ROUNDING
-from .far_away import far_away
+from .far_away import beyond_its_size, far_away
 from .linearised.sides import MOVES, ForceJumpError, Instant, Kink, Moves, linearised_at
 
 MOST_FOR_EIGENVALUES = 1500
@@ -77,19 +77,21 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     found = find_equilibrium(dynamics, t)
     notes = list(_family(system))
     if system.states:
-        return _settled(found, start, [*notes, *_growth(dynamics, t)])
+        return _settled(dynamics, found, start, [*notes, *_growth(dynamics, t)])
     for _ in range(MOST_BRANCHES):
         unstable, free = _directions(dynamics, t)
         if unstable is None:
             held = f"no force determines {', '.join(free)}: the equilibrium nearest to the described pose is given"
-            return _settled(found, start, [*notes, *([held] if free else []), *_growth(dynamics, t)], free)
+            return _settled(dynamics, found, start, [*notes, *([held] if free else []), *_growth(dynamics, t)], free)
         poses = [_branch(dynamics, found, sign * unstable, t) for sign in (1.0, -1.0)]
         notes.append(_branch_sentence(dynamics, unstable, poses))
         if not any(poses):
-            return _settled(found, start, notes)
+            return _settled(dynamics, found, start, notes)
         found = next(pose for pose in poses if pose is not None)
         state.q[:] = found.q
-    return _settled(found, start, [*notes, "this equilibrium is also unstable; no stable one was found near it"])
+    return _settled(
+        dynamics, found, start, [*notes, "this equilibrium is also unstable; no stable one was found near it"]
+    )
 
 
 def driven_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
@@ -133,11 +135,14 @@ def _moving(dynamics: Dynamics, start: InitialValues, velocities: str, t: float)
     return replace(start, u=state.u.copy(), acceleration=acceleration, lam=lam)
 
 
-def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:
+def _settled(
+    dynamics: Dynamics, found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()
+) -> Settled:
+    notes = (*notes, *beyond_its_size(dynamics, start, found))
     resting = replace(
-        start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=tuple(notes)
+        start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes
     )
-    return Settled(resting, found.moves, found.imbalance, tuple(free), tuple(notes))
+    return Settled(resting, found.moves, found.imbalance, tuple(free), notes)
 
 
 def _family(system: System) -> Iterator[str]:

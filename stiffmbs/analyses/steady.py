@@ -16,13 +16,14 @@ from ..dynamics.initial import InitialValues
 from ..equilibria.equilibrium import Equilibrium, find_equilibrium, nearest_equilibrium
 from ..equilibria.force_balance import balance_at, forces_by_velocity
 from ..equilibria.found_speeds import with_found_spins
+from ..equilibria.matrices import Matrix, dense
 from ..equilibria.parameters import EQUILIBRIA
 from ..equilibria.steady_motion import SteadyMotion
 from ..errors import InputError, SolverError
 from ..model.model_data import ModelData
 from ..model.settings import SteadyMotion as Described
 from ..reading.did_you_mean import did_you_mean
-from .far_away import far_away
+from .far_away import beyond_its_size, far_away
 
 if TYPE_CHECKING:
     from .settled import Settled
@@ -46,7 +47,7 @@ def settled_in_motion(
 
     found = _found(model, dynamics, start, t, described)
     values = _eigenvalues(dynamics, t, found)
-    notes = (_stability(values, dynamics.system.n_u),)
+    notes = (_stability(values, dynamics.system.n_u), *beyond_its_size(dynamics, start, found))
     eigenvalues = () if values is None else tuple(values.tolist())
     return Settled(_moving(start, found, notes), found.moves, found.imbalance, (), notes, eigenvalues)
 
@@ -96,9 +97,12 @@ def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float,
         )
     motion = _motion(model, dynamics, start, described)
     dynamics.state.q[:] = start.q
+    missing = ""
     if len(motion.spinning):
-        balance_at(dynamics, t, motion)
-        motion = with_found_spins(dynamics, motion, forces_by_velocity(dynamics))
+        known = balance_at(dynamics, t, motion)
+        by_velocity = forces_by_velocity(dynamics)
+        motion = with_found_spins(dynamics, motion, by_velocity)
+        missing = _left_out(dynamics, known.stiffness, by_velocity, motion.spinning)
     turning = replace(motion, upright=_rotation(model, 1.0))
     searches = [partial(find_equilibrium, motion=motion), partial(nearest_equilibrium, motion=motion)]
     if described.rotation == "found":
@@ -110,10 +114,39 @@ def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float,
             partial(find_equilibrium, motion=turning),
             *searches,
         ]
-    found = _first_found(dynamics, t, start, searches)
+    if missing:
+        try:
+            found = _first_found(dynamics, t, start, searches[:1])
+        except SolverError as error:
+            raise SolverError(f"{error}; {missing}") from None
+    else:
+        found = _first_found(dynamics, t, start, searches)
     _refuse_joints(dynamics, t)
     _refuse_unsteady(dynamics, t, found.motion)
     return found
+
+
+def _left_out(dynamics: Dynamics, stiffness: Matrix, by_velocity: Matrix, spinning: np.ndarray) -> str:
+    """Return a sentence if a free spin that is not in `rolling` acts on one that is, as that of a shaft on a wheel.
+
+    `stiffness`, `by_velocity` with n_u + states rows: derivatives of the forces and of the rates of states by
+    displacements and by velocities.
+    """
+    system, state = dynamics.system, dynamics.state
+    effects, stiff = dense(abs(by_velocity)), dense(abs(stiffness))
+    acts = effects > EQUILIBRIA.no_effect * effects.max(axis=0, initial=0.0)
+    held = np.abs(state.matrix("motion", "J")).max(axis=0, initial=0.0) > EQUILIBRIA.no_effect
+    rests = stiff > EQUILIBRIA.no_effect * np.max(stiff, initial=0.0)
+    for body in system.bodies:
+        k = _axis(system, body)
+        if k is None or k in spinning or held[k] or np.delete(rests[: system.n_u, k], [k, *spinning]).any():
+            continue
+        rates = acts[system.n_u :]
+        together = acts[k, spinning] | acts[spinning, k] | rates[rates[:, k]][:, spinning].any(axis=0)
+        if together.any():
+            wheels = system.names_of(spinning[together], system.of_body.velocities)
+            return f"'{body}' spins freely and acts on the spin of {wheels[0].rpartition('.')[0]}, expected it in rolling too"
+    return ""
 
 
 def _first_found(
@@ -202,6 +235,16 @@ def _spin(system: System, body: str) -> int:
     if body not in system.bodies:
         near = did_you_mean(body, system.bodies)
         raise InputError(f"rolling: found no body '{body}'{near}, expected one of {', '.join(system.bodies)}")
+    axis = _axis(system, body)
+    if axis is None:
+        raise InputError(
+            f"rolling: found three different moments of inertia of body '{body}', expected an axisymmetric body"
+        )
+    return axis
+
+
+def _axis(system: System, body: str) -> int | None:
+    """Return the index of a body's angular velocity about its axis of symmetry, or None."""
     n_u, linear = system.of_body.n_u, system.of_body.linear
     first = n_u * system.bodies.index(body) + linear
     if linear == 2:
@@ -211,9 +254,7 @@ def _spin(system: System, body: str) -> int:
         one, other = np.delete(moments, k)
         if np.isclose(one, other, rtol=1e-9, atol=0):
             return first + k
-    raise InputError(
-        f"rolling: found three different moments of inertia of body '{body}', expected an axisymmetric body"
-    )
+    return None
 
 
 def _refuse_joints(dynamics: Dynamics, t: float) -> None:

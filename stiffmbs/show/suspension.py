@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -82,6 +82,8 @@ PANELS = (
 )
 """Diagrams of the page, of which an axle shows those that apply."""
 COLUMNS = 4
+STYLES: tuple[Literal["-"], Literal["--"]] = ("-", "--")
+"""Line styles of the left and the right side."""
 ROUNDING = 1e-9
 """Largest value, in the unit of a measure, that the table shows as zero."""
 
@@ -151,6 +153,7 @@ def kc_csv(found: KinematicsAndCompliance) -> str:
 def kc_figure(found: KinematicsAndCompliance) -> Sheet:
     """Draw the page: the panels that apply to the axle, with wheel travel upwards as chassis engineers draw it."""
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
     panels = [panel for panel in PANELS if panel.case in found.sweeps and _curves(found, panel)]
     columns = min(COLUMNS, max(len(panels), 1))
@@ -161,10 +164,11 @@ def kc_figure(found: KinematicsAndCompliance) -> Sheet:
         _draw(each, found, panel)
     for each in axes[len(panels) :]:
         each.set_axis_off()
-    sides = ", ".join(
-        f"{wheel.side} {style}" for wheel, style in zip(found.axle.wheels, ("solid", "dashed"), strict=False)
-    )
-    figure.suptitle(f"{found.name}: {found.axle.title} ({sides})")
+    figure.suptitle(f"{found.name}: {found.axle.title}")
+    sides = [wheel.side for wheel in found.axle.wheels]
+    if len(sides) == 2:
+        handles = [Line2D([], [], color="black", linestyle=style) for style in STYLES]
+        figure.legend(handles, sides, loc="outside lower center", ncols=2, frameon=False, fontsize=8)
     return figure
 
 
@@ -180,13 +184,13 @@ def kc_section(found: KinematicsAndCompliance) -> Section:
     return Section(f"Kinematics and compliance: {found.axle.title}", sentences, tables, (kc_figure(found),))
 
 
-def _curves(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    """Return the curves of a panel with their line styles: abscissa and values where both are finite."""
+def _curves(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, str, np.ndarray, np.ndarray]]:
+    """Return the curves of a panel that have values, as measure, line style, abscissa and values."""
     sweep = found.sweeps[panel.case]
     curves = []
     for name in panel.shown:
         sides = ["axle"] if name.startswith("axle.") else [wheel.side for wheel in found.axle.wheels]
-        for side, style in zip(sides, ("-", "--"), strict=False):
+        for side, style in zip(sides, STYLES, strict=False):
             channel = name if side == "axle" else f"{side}.{name}"
             over = (
                 panel.over if panel.over.startswith("axle.") else f"{sides[0] if side == 'axle' else side}.{panel.over}"
@@ -195,20 +199,20 @@ def _curves(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, np.
                 over = f"{found.axle.wheels[0].side}.travel"
             x = sweep.channels.get(over) if panel.over else sweep.abscissa
             if channel in sweep.channels and x is not None and np.any(np.isfinite(sweep.channels[channel] + x)):
-                curves.append((style, x, sweep.channels[channel]))
+                curves.append((name, style, x, sweep.channels[channel]))
     return curves
 
 
 def _draw(axes: Any, found: KinematicsAndCompliance, panel: Panel) -> None:
     """Draw one panel."""
     sweep = found.sweeps[panel.case]
-    colours = {name: f"C{k}" for k, name in enumerate(panel.shown)}
-    per_name = len(_curves(found, panel)) // len(panel.shown)
-    for k, (style, x, y) in enumerate(_curves(found, panel)):
-        colour = colours[panel.shown[min(k // max(per_name, 1), len(panel.shown) - 1)]]
-        axes.plot(*((y, x) if panel.upright else (x, y)), style, color=colour, linewidth=1.2)
-    own = " / ".join(panel.shown)
-    own = f"{_worded(own)} ({found.unit(_of(panel.shown[0])) or '1'})"
+    for name, style, x, y in _curves(found, panel):
+        label = _worded(name) if style == STYLES[0] else None
+        colour = f"C{panel.shown.index(name)}"
+        axes.plot(*((y, x) if panel.upright else (x, y)), style, color=colour, linewidth=1.2, label=label)
+    if len(panel.shown) > 1:
+        axes.legend(fontsize=6, frameon=False)
+    own = f"{_worded(' / '.join(panel.shown))} ({found.unit(_of(panel.shown[0])) or '1'})"
     other = f"{sweep.case.swept} ({sweep.case.unit})"
     if panel.over:
         other = f"{_worded(panel.over)} ({found.unit(_of(panel.over))})"
@@ -217,6 +221,7 @@ def _draw(axes: Any, found: KinematicsAndCompliance, panel: Panel) -> None:
     axes.set_ylabel(upwards, fontsize=7)
     axes.set_title(panel.title, fontsize=8)
     axes.tick_params(labelsize=6)
+    axes.locator_params(axis="x", nbins=6)
     axes.grid(alpha=0.3)
 
 

@@ -42,6 +42,22 @@ run: {duration: 1 s}
     assert any("is 0.4 m away from the described pose (load)" in note for note in far.notes)
 
 
+@pytest.mark.parametrize(("travel", "noted"), [(1.5, False), (2.5, True)])
+@pytest.mark.parametrize("motion", ["", "start: {velocity: [2, 0]}"])
+def test_an_equilibrium_farther_away_than_the_model_is_large_is_noted(travel, noted, motion):
+    """The model has a size of 1 m, and the load sags by m g/k."""
+    scene = SCENE.replace("start: settled", motion).replace("stiffness: 200", f"stiffness: {20 / travel}")
+    if motion:
+        scene = scene.replace("i: load, j: {body: ground,", "i: load, j: {body: sledge,").replace(
+            "{load:", "{sledge: {mass: 1, inertia: 1}, load:"
+        )
+        scene = scene.replace("joints: {", "joints: {road: {type: prismatic, i: sledge, j: ground}, ")
+    found = stiffmbs.equilibrium(stiffmbs.read_scene(scene))
+    assert found.moved["load"][0] == pytest.approx(travel, rel=1e-6)
+    note = f"load is {travel:g} m away from the described pose, more than 2 times the size of the model of 1 m: check the stiffnesses"
+    assert any(note in each for each in found.notes) == noted
+
+
 @pytest.mark.parametrize("law", ["position: 0.3*t", "velocity: 0.3 m/s"])
 def test_drives_move_from_an_equilibrium_at_once(law):
     """A load hangs at rest on a hook that begins to rise with 0.3 m/s."""

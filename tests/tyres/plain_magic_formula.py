@@ -16,11 +16,12 @@ def _bend(B, x, E):
 
 
 OF_PRESSURE = ["PPX1", "PPX2", "PPX3", "PPX4", "PPY1", "PPY2", "PPY3", "PPY4", "QPZ1", "QPZ2", "QPX1", "QSY8"]
+OF_TORQUES = ["QSX4", "QSX5", "QSX6", "QSX7", "QSX8", "QSX9", "QSX10", "QSX11", "QSY5", "QSY6", "QSY7"]
 
 
 def plain_wrench(coefficients, load, kappa, alpha, gamma, speed_ratio=1.0, dpi=0.0):
     """Fx, Fy, Mx, My, Mz of combined slip, rolling forward; dpi is the pressure increment of PAC2002."""
-    c = SimpleNamespace(**{**dict.fromkeys(OF_PRESSURE, 0.0), "LIP": 1.0, **coefficients})
+    c = SimpleNamespace(**{**dict.fromkeys(OF_PRESSURE + OF_TORQUES, 0.0), "LIP": 1.0, **coefficients})
     Fz, Fz0, R0 = load, c.FNOMIN, c.UNLOADED_RADIUS
     Fz0s = Fz0 * c.LFZO
     dfz = (Fz - Fz0s) / Fz0s
@@ -66,7 +67,14 @@ def plain_wrench(coefficients, load, kappa, alpha, gamma, speed_ratio=1.0, dpi=0
     s = (c.SSZ1 + c.SSZ2 * Fy / Fz0 + (c.SSZ3 + c.SSZ4 * dfz) * gamma) * R0 * c.LS
     Mz = -t * (Fy - SVyk) + Dr * cos(atan(Br * areq)) * cos(alpha) + s * Fx
     Mx = R0 * Fz * (c.QSX1 * c.LVMX + (-c.QSX2 * (1 + c.QPX1 * dpi) * gamma + c.QSX3 * Fy / Fz0) * c.LMX)
-    My = -R0 * Fz * (c.QSY1 + c.QSY2 * Fx / Fz0 + c.QSY3 * speed_ratio + c.QSY4 * speed_ratio**4) * c.LMY
+    # Pacejka (2012), 4.E69 and 4.E70; Project Chrono, ChPac02Tire
+    hill = (
+        c.QSX4 * cos(c.QSX5 * atan((c.QSX6 * Fz / Fz0) ** 2)) * sin(c.QSX7 * gamma + c.QSX8 * atan(c.QSX9 * Fy / Fz0))
+    )
+    Mx += R0 * Fz * (hill + c.QSX10 * atan(c.QSX11 * Fz / Fz0) * gamma) * c.LMX
+    of_camber = c.QSY5 * gamma**2 + c.QSY6 * gamma**2 * Fz / Fz0
+    My = c.QSY1 + c.QSY2 * Fx / Fz0 + c.QSY3 * speed_ratio + c.QSY4 * speed_ratio**4 + of_camber
+    My *= -R0 * Fz * (Fz / Fz0) ** c.QSY7 * c.LMY
     My *= (c.LIP * (1 + dpi)) ** c.QSY8
     return Fx, Fy, Mx, My, Mz
 

@@ -190,6 +190,8 @@ def test_notes(read):
 WRONG = {
     "CSLIP = 70000.0>": r"found no CSLIP, expected one in \[PARAMETER\]",
     "CALPHA = 52000.0>CALPHA = -52000": "found CALPHA = -52000, expected a number above zero",
+    "CALPHA = 52000.0>CALPHA = 907.6": r"line \d+: found CALPHA = 907.6, by which the tyre slides from 8\d deg, expected 1 to 60 deg",
+    "ANGLE = 'radians'>ANGLE = 'degrees'": r"found CALPHA = 52000.0, by which the tyre slides from 0.\d+ deg, .* a force per angle of \[UNITS\]",
     "CSLIP = 70000.0>CSLIP = 0": "found CSLIP = 0, expected a number other than zero",
     "UMIN = 0.8>UMIN = 1.2": r"line 20: found UMIN = 1.2, expected at most UMAX = 1.05",
     "UMAX = 1.05>UMAX = 105": r"found UMAX = 105, 105 by \[UNITS\], expected 0 to 10",
@@ -204,6 +206,18 @@ WRONG = {
     "VERTICAL_DAMPING = 400.0>VERTICAL_DAMPING = -4": "found VERTICAL_DAMPING = -4, -4 N s/m by",
     "'FIALA'>'FIALA2'": r"line 8: found the format 'FIALA2', expected PAC2002, MF-Tyre or Fiala",
 }
+
+
+@pytest.mark.parametrize(("angle", "valid"), [(0.8, False), (1.2, True), (50, True), (75, False)])
+def test_the_slip_angles_from_which_a_tyre_slides(read, angle, valid):
+    """3 UMAX Fz/CALPHA = tan(alpha) of a load that deflects the tyre by 0.05 radii."""
+    load = SLIGHTLY * R * STIFFNESS
+    text = file_of(CALPHA=3 * MOST * load / math.tan(math.radians(angle)))
+    if valid:
+        read(text)
+        return
+    with pytest.raises(InputError, match="found CALPHA"):
+        read(text)
 
 
 @pytest.mark.parametrize(("width", "valid"), [(0.8 * WIDEST, True), (1.2 * WIDEST, False)])

@@ -5,7 +5,7 @@ import pytest
 
 from stiffmbs import InputError
 from stiffmbs.elements.tyres.coefficients import WRENCH
-from stiffmbs.elements.tyres.names import COEFFICIENTS_6, OF_PRESSURE, SCALES_6
+from stiffmbs.elements.tyres.names import COEFFICIENTS_6, OF_PAC2002, OF_PRESSURE, SCALES_6
 from stiffmbs.spatial import MagicFormulaTyre
 from stiffmbs.tyres import TyreProperties
 
@@ -23,7 +23,8 @@ TOLERANCE = 1e-11
 def pressed_tyre(seed):
     """All coefficients, none at a value where it has no effect."""
     rng = np.random.default_rng(seed + 1000)
-    own = {name: rng.choice([-1, 1]) * rng.uniform(0.1, 0.5) for name in OF_PRESSURE}
+    own = {name: rng.choice([-1, 1]) * rng.uniform(0.1, 0.5) for name in (*OF_PRESSURE, *OF_PAC2002)}
+    own |= {"QSX5": 0.8, "QSX6": 1.1, "QSX9": 3.0, "QSX11": 1.2, "QSY7": 0.85}
     return {**random_tyre(seed), **own, "IP": PRESSURE, "IP_NOM": NOMINAL, "LIP": SCALE}
 
 
@@ -57,6 +58,13 @@ def test_the_sign_of_each_coefficient_is_seen(name):
     pressures = np.full(len(states), 2.8e5)
     turned = {**tyre, name: -tyre[name]}
     assert difference(by_plain(turned, states, pressures), by_plain(tyre, states, pressures)) > 1e4 * TOLERANCE
+
+
+@pytest.mark.parametrize("name", OF_PAC2002)
+def test_each_coefficient_of_the_torques_is_seen(name):
+    tyre, states = pressed_tyre(0), random_states(100)
+    pressures, less = np.full(len(states), 2.8e5), {**tyre, name: 0.7 * tyre[name]}
+    assert difference(by_plain(less, states, pressures), by_plain(tyre, states, pressures)) > 1e4 * TOLERANCE
 
 
 def test_pure_slip_without_camber_is_that_of_6_1():
@@ -170,8 +178,32 @@ def test_an_exponent_of_zero_is_neutral_in_pac2002(read):
     text = PRESSED + "[ROLLING_COEFFICIENTS]\nQSY1 = 0.01\nQSY7 = 0\nQSY8 = -0.5\n"
     tyre = read(text + CONDITIONS)
     assert tyre.steady_state(4000.0)["My"] == pytest.approx(-0.32 * 4000 * 0.01 * (PRESSURE / NOMINAL) ** -0.5)
-    with pytest.raises(InputError, match="found QSY7 without FITTYP"):
-        read(text.replace("QSY7 = 0", "QSY7 = 0.9") + CONDITIONS)
+    less = read(text.replace("QSY7 = 0", "QSY7 = 0.9") + CONDITIONS)
+    assert less.steady_state(2000.0)["My"] == pytest.approx(tyre.steady_state(2000.0)["My"] * 0.5**0.9)
+
+
+TORQUES = "[OVERTURNING_COEFFICIENTS]\nQSX4 = 0.02\nQSX5 = 0.8\nQSX6 = 1\nQSX7 = 3\nQSX8 = 0.5\nQSX9 = 2\nQSX10 = 0.1\nQSX11 = 1.5\n"
+
+
+def test_the_torques_of_a_pac2002_file_without_a_nominal_pressure(read):
+    """QSX4 to QSX11 and QSY5 to QSY7 act in PAC2002, with and without FITTYP, and have no effect in MF-Tyre 5.2."""
+    text = FILE + TORQUES + "[ROLLING_COEFFICIENTS]\nQSY1 = 0.01\nQSY5 = 0.3\nQSY6 = 0.2\nQSY7 = 0.8\n"
+    state = {"Fz": 3000.0, "alpha": 0.05, "gamma": 0.1}
+    for written in (text, text.replace("LONGVL", "FITTYP = 6\nLONGVL")):
+        tyre = read(written)
+        assert not any("QS" in note for note in tyre.notes())
+        found, n = tyre.steady_state(**state), 3000 / tyre.coefficients["FNOMIN"]
+        side = found["Fy"] / tyre.coefficients["FNOMIN"]
+        hill = 0.02 * np.cos(0.8 * np.arctan(n**2)) * np.sin(0.3 + 0.5 * np.arctan(2 * side))
+        R = tyre.coefficients["UNLOADED_RADIUS"]
+        assert found["Mx"] == pytest.approx(R * 3000 * (hill + 0.01 * np.arctan(1.5 * n)), rel=1e-12)
+        assert found["My"] == pytest.approx(-R * 3000 * (0.01 + (0.3 + 0.2 * n) * 0.01) * n**0.8, rel=1e-10)
+    other = text.replace("PAC2002", "MF_05")
+    with pytest.raises(InputError, match="found QSX4 without FITTYP"):
+        read(other)
+    assert any("QSX4" in note for note in read(other.replace("LONGVL", "FITTYP = 6\nLONGVL")).notes())
+    with pytest.raises(InputError, match=r"found QSX4 of a tyre of MF-Tyre 5\.2, expected one of PAC2002"):
+        TyreProperties(coefficients={**tyre.coefficients})
 
 
 def test_the_nominal_pressure_is_that_of_a_file_without_another(read):

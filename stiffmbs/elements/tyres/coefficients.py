@@ -37,7 +37,7 @@ from .file_fields import (
     version_of,
     wrong_mode,
 )
-from .names import COMBINED, OF_PRESSURE, OF_THE_FILE, ONE_SIDED, REASONS, TURN_SLIP
+from .names import COMBINED, OF_PAC2002, OF_PRESSURE, OF_THE_FILE, ONE_SIDED, REASONS, TURN_SLIP
 from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, read_property_file
 
 if TYPE_CHECKING:
@@ -69,7 +69,9 @@ class TyreProperties(Component):
         None, description="load (N) over deflection (m), in place of VERTICAL_STIFFNESS; 5.2 and Fiala"
     )
     bottoming: Bottoming | None = Field(None, description="contact of the rim with the road")
-    is_pac2002: bool = Field(False, description="whether combined slip without coefficients is that of PAC2002")
+    is_pac2002: bool = Field(
+        False, description="whether the formula is that of PAC2002: its friction ellipse, and QSX4-11 and QSY5-7"
+    )
     belt: float = Field(0.0, description="QTZ1 LGYR MBELT of the belt's gyroscopic couple, kg; 5.2 alone")
     remarks: tuple[str, ...] = ()
 
@@ -97,6 +99,11 @@ class TyreProperties(Component):
             for name in (*OF_PRESSURE, "IP"):
                 if self.coefficients.get(name):
                     raise ValueError(f"found {name} without IP_NOM, expected the nominal pressure")
+            for name in () if self.of_adams else OF_PAC2002:
+                if self.coefficients.get(name):
+                    raise ValueError(
+                        f"found {name} of a tyre of MF-Tyre 5.2, expected one of PAC2002 (is_pac2002: true)"
+                    )
         return self
 
     def _check_stiffness(self) -> None:

@@ -12,8 +12,8 @@ from ...errors import InputError
 from ...reading.files.quoted import quoted
 from ...reading.table import Table
 from ..element import Component
-from .names import AS_BEFORE, LATER, OF_PRESSURE, PRESSURES, RANGES, home
-from .property_file import OF_FITTYP, OF_FORMAT, PropertyFile, Version, digits, plain
+from .names import AS_BEFORE, LATER, OF_PAC2002, OF_PRESSURE, PRESSURES, RANGES, home
+from .property_file import OF_FITTYP, OF_FORMAT, VERSIONS, PropertyFile, Version, digits, plain
 
 SIDES = ("left", "right", "symmetric")
 DEEP = 0.1
@@ -52,11 +52,10 @@ def version_of(file: PropertyFile) -> tuple[str, list[str]]:
         return OF_FITTYP[name], older
     if of_format not in ("", "5.2"):
         return of_format, []
-    pressed, pac2002 = depends_on_pressure(file), is_pac2002(file)
-    for name in LATER:
-        if (pressed and name in OF_PRESSURE) or not file.entry(name, home(name)):
-            continue
-        if file.number(name, home=home(name)) not in (AS_BEFORE[name], *((0.0,) if pressed else ())):
+    pac2002 = is_pac2002(file)
+    own = {*read_names(file, VERSIONS["5.2"])}
+    for name in (name for name in LATER if name not in own):
+        if file.entry(name, home(name)) and file.number(name, home=home(name)) != AS_BEFORE[name]:
             more = ", or IP_NOM of PAC2002" if pac2002 and name in OF_PRESSURE else ""
             why = " that is not modelled in PAC2002" if pac2002 and not more else ""
             raise InputError(
@@ -78,10 +77,11 @@ def depends_on_pressure(file: PropertyFile) -> bool:
 
 def read_names(file: PropertyFile, formula: Version) -> Iterator[str]:
     """Yield the names of the numbers that are read from a file."""
-    unread = () if depends_on_pressure(file) else (*OF_PRESSURE, *PRESSURES)
-    for name in formula.numbers:
-        if formula.is_6 or name not in unread:
-            yield name
+    unread = {
+        *(() if depends_on_pressure(file) else (*OF_PRESSURE, *PRESSURES)),
+        *(() if is_pac2002(file) else OF_PAC2002),
+    }
+    yield from (name for name in formula.numbers if formula.is_6 or name not in unread)
 
 
 def _whole(kind: str) -> str:
@@ -216,6 +216,8 @@ RELAXED = (0.01, 10.0)
 """Range of relaxation lengths of a Fiala tyre, unloaded radii; Adams' own files in mm have such of 0.05."""
 WIDEST = 5.0
 """Largest width of a Fiala tyre, unloaded radii; that of a drag racing tyre is about 1.2."""
+SLIDING = (math.radians(1), math.radians(60))
+"""Range of the slip angle from which a Fiala tyre slides at its nominal load, rad; racing tyres slide from 5 deg."""
 SLIGHTLY = 0.05
 """Deflection by the nominal load of a tyre without FNOMIN, unloaded radii; of a car's tyre at rest."""
 NARROW = math.radians(2)
@@ -286,6 +288,10 @@ def _check_fiala(file: PropertyFile, formula: Version, found: Mapping[str, float
         raise _fault(file, formula, "VERTICAL_STIFFNESS", sentence)
     if found["UMIN"] > found["UMAX"]:
         raise _fault(file, formula, "UMIN", f", expected at most UMAX = {found['UMAX']:g}")
+    sliding, (least, most) = math.atan(3 * found["UMAX"] * load / found["CALPHA"]), SLIDING
+    if not least <= sliding <= most:
+        sentence = f", by which the tyre slides from {math.degrees(sliding):.2g} deg, expected {math.degrees(least):g} to {math.degrees(most):g} deg"
+        raise _fault(file, formula, "CALPHA", f"{sentence}: it is a force per angle of [UNITS]")
     radius = found["UNLOADED_RADIUS"]
     for name, most in (("WIDTH", WIDEST * radius), ("ROLLING_RESISTANCE", radius)):
         if name in found:

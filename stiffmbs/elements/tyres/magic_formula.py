@@ -5,7 +5,8 @@ The equations accept symbols and numbers: `p` has the coefficients by name, `f` 
 Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2, with slip angle and camber as angles, and the nominal load FNOMIN
 in place of the adapted one, as in MF-Tyre 5.2 and MSC Adams/Tire (PAC2002). The influence of the inflation pressure is
 that of PAC2002: the equations of Besselink, Schmeitz, Pacejka, Vehicle System Dynamics 48 suppl. 1 (2010) 337-352, with
-QPZ1, QPZ2, QPX1 and QPFZ1 for PPZ1, PPZ2, PPMX1 and PFZ1.
+QPZ1, QPZ2, QPX1 and QPFZ1 for PPZ1, PPZ2, PPMX1 and PFZ1. QSX4 to QSX11 and QSY5 to QSY7 of PAC2002 are those of
+Pacejka (2012), 4.E69 and 4.E70.
 """
 
 from __future__ import annotations
@@ -254,11 +255,25 @@ def increment(p: Symbolic, load: Expr, f: Name) -> Expr:
 def torques(p: Symbolic, s: Slip, fx: Expr, fy: Expr, f: Name) -> tuple[Expr, Expr]:
     """Return the overturning and the rolling resistance torque."""
     R = p.UNLOADED_RADIUS
+    part, side = f(s.load / p.FNOMIN), f(fy / p.FNOMIN)
     by_camber = p.QSX2 * (1 + p.QPX1 * s.dpi) * s.gamma
-    mx = R * s.load * (p.QSX1 * p.LVMX + (-by_camber + p.QSX3 * fy / p.FNOMIN) * p.LMX)
-    resistance = p.QSY1 + p.QSY2 * fx / p.FNOMIN + p.QSY3 * s.speed + p.QSY4 * s.speed**4
+    shaped = shaped_overturning(p, part, side, s.gamma)
+    mx = R * s.load * (p.QSX1 * p.LVMX + (-by_camber + p.QSX3 * side + shaped) * p.LMX)
+    resistance = resistance_of(p, s, fx, part) * (part + LEAST_LOAD) ** p.QSY7
     pressed = 1 if s.dpi == 0 else (p.LIP * (1 + s.dpi)) ** p.QSY8  # of the nominal pressure without its scale factor
     return mx, -R * s.load * resistance * pressed * p.LMY * s.direction
+
+
+def shaped_overturning(p: Symbolic, part: Expr, side: Expr, gamma: Expr) -> Expr:
+    """Return the terms of QSX4 to QSX11 of the overturning torque over load and radius, by Fz/FNOMIN and Fy/FNOMIN."""
+    hill = p.QSX4 * cos(p.QSX5 * atan((p.QSX6 * part) ** 2)) * sin(p.QSX7 * gamma + p.QSX8 * atan(p.QSX9 * side))
+    return hill + p.QSX10 * atan(p.QSX11 * part) * gamma
+
+
+def resistance_of(p: Symbolic, s: Slip, fx: Expr, part: Expr) -> Expr:
+    """Return the rolling resistance by longitudinal force, speed, camber and load, QSY1 to QSY6."""
+    cambered = (p.QSY5 + p.QSY6 * part) * s.gamma**2
+    return p.QSY1 + p.QSY2 * fx / p.FNOMIN + p.QSY3 * s.speed + p.QSY4 * s.speed**4 + cambered
 
 
 def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Expr, Expr, Expr]:

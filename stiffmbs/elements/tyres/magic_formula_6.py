@@ -30,6 +30,8 @@ from .magic_formula import (
     equivalent,
     increment,
     magic,
+    resistance_of,
+    shaped_overturning,
     sign,
     weight,
 )
@@ -237,10 +239,9 @@ def overturning(p: Symbolic, s: PressedSlip, fy: Expr, f: Name) -> Expr:
     """Return the overturning torque (P draft eq. 49, MF-Tyre 6.2)."""
     R, gamma, part, side = p.UNLOADED_RADIUS, s.gamma, f(s.load / p.FNOMIN), f(fy / p.FNOMIN)
     size = magnitude(gamma)
-    shaped = p.QSX4 * cos(p.QSX5 * atan((p.QSX6 * part) ** 2)) * sin(p.QSX7 * gamma + p.QSX8 * atan(p.QSX9 * side))
     by_load = (
-        p.QSX1 * p.LVMX - p.QSX2 * gamma * (1 + p.PPMX1 * s.dpi) + p.QSX3 * side + shaped
-        + p.QSX10 * atan(p.QSX11 * part) * gamma - p.QSX12 * gamma * size
+        p.QSX1 * p.LVMX - p.QSX2 * gamma * (1 + p.PPMX1 * s.dpi) + p.QSX3 * side
+        + shaped_overturning(p, part, side, gamma) - p.QSX12 * gamma * size
     )  # fmt: skip
     return R * p.LMX * (s.load * by_load + fy * (p.QSX13 + p.QSX14 * size))
 
@@ -248,10 +249,16 @@ def overturning(p: Symbolic, s: PressedSlip, fy: Expr, f: Name) -> Expr:
 def rolling_resistance(p: Symbolic, s: PressedSlip, fx: Expr, f: Name) -> Expr:
     """Return the rolling resistance torque (A48)."""
     part = f(s.load / p.FNOMIN)
-    cambered = (p.QSY5 + p.QSY6 * part) * s.gamma**2
-    resistance = p.QSY1 + p.QSY2 * fx / p.FNOMIN + p.QSY3 * s.speed + p.QSY4 * s.speed**4 + cambered
     of_load = part * (part + LEAST_LOAD) ** (p.QSY7 - 1)  # with a finite slope at zero load
-    return -p.UNLOADED_RADIUS * p.FNOMIN * resistance * of_load * (1 + s.dpi) ** p.QSY8 * p.LMY * s.direction
+    return (
+        -p.UNLOADED_RADIUS
+        * p.FNOMIN
+        * resistance_of(p, s, fx, part)
+        * of_load
+        * (1 + s.dpi) ** p.QSY8
+        * p.LMY
+        * s.direction
+    )
 
 
 def slip_forces(p: Symbolic, s: PressedSlip, f: Name, mode: str, ellipse: str) -> tuple[Expr, Expr]:

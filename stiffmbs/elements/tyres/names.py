@@ -42,6 +42,8 @@ LATER = _words(
 """Force coefficients of MF-Tyre 6.0 and later that MF-Tyre 5.2 does not have."""
 OF_PRESSURE = _words("PPX1 PPX2 PPX3 PPX4 PPY1 PPY2 PPY3 PPY4 QPZ1 QPZ2 QPX1 QPFZ1 QSY8")
 """Pressure coefficients of PAC2002, zero by default; they need IP_NOM."""
+OF_PAC2002 = _words("QSX4 QSX5 QSX6 QSX7 QSX8 QSX9 QSX10 QSX11 QSY5 QSY6 QSY7")
+"""Coefficients of the overturning and rolling resistance torque of PAC2002 that MF-Tyre 5.2 does not have, zero by default."""
 PRESSURES = {"IP": "pressure", "IP_NOM": "pressure", "LIP": ""}
 """Numbers of the inflation pressure of PAC2002, with their dimensions."""
 FIALA = {

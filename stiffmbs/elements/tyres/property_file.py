@@ -23,6 +23,7 @@ from .names import (
     DIMENSIONS_6,
     FIALA,
     FIALA_REQUIRED,
+    OF_PAC2002,
     OF_PRESSURE,
     PRESSURES,
     REQUIRED,
@@ -308,7 +309,7 @@ class Version:
 
 
 _OF_5 = {
-    **dict.fromkeys((*COEFFICIENTS, *OF_PRESSURE), 0.0), **dict.fromkeys((*SCALES, "LIP"), 1.0), "VERTICAL_DAMPING": 0.0,
+    **dict.fromkeys((*COEFFICIENTS, *OF_PRESSURE, *OF_PAC2002), 0.0), **dict.fromkeys((*SCALES, "LIP"), 1.0), "VERTICAL_DAMPING": 0.0,
     "BREFF": 0.0, "DREFF": 0.0, "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
 }  # fmt: skip
 """Default values; FREFF gives the unloaded radius less a third of the deflection as rolling radius."""

@@ -1,4 +1,4 @@
-"""Checks of parts for wrong units of hard points and angles, for the wrong side of the car, and for points in one place."""
+"""Checks of parts for wrong units of hard points, angles and springs, for the wrong side of the car, and for points in one place."""
 
 from __future__ import annotations
 
@@ -31,10 +31,12 @@ def check_hard_points(
     """Return the centre of the wheel in the frame of a part; None for a part without one.
 
     Hard points that are far from the wheel, or that lie on the other side of the car, are refused, and two in one place:
-    points of one arm, rod or strut, and both ball joints of an upright. So are toe and camber of more than 20 deg. The
+    points of one arm, rod or strut, and both ball joints of an upright. So are toe and camber of more than 20 deg, and
+    springs that their load compresses by more than 5 m. The
     sides of points that the use does not set are those of the part: a twist beam has points on both. `default`:
     parameters of the part.
     """
+    _check_spring(where, own)
     points = dict(_points(vectors, own))
     wheel = points.get(WHEEL)
     if wheel is None:
@@ -68,6 +70,16 @@ def check_hard_points(
                 "expected two points apart"
             )
     return wheel
+
+
+def _check_spring(where: str, own: Mapping[str, Quantity]) -> None:
+    """Refuse a spring that its load compresses by more than the size of a car, as one in N/mm read as N/m."""
+    load, rate = (own[name].value if name in own else 0.0 for name in ("strut_load", "spring"))
+    if rate > 0 and abs(load) > FARTHEST * rate:
+        raise InputError(
+            f"{where}.parameters.spring: found {rate:g} N/m, by which strut_load = {load:g} N compresses the spring by "
+            f"{abs(load) / rate:.3g} m, expected {FARTHEST:g} m or less: plain numbers are in N/m"
+        )
 
 
 def _on_one_member(name: str, other: str) -> bool:

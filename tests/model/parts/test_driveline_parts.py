@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.reading.files.yaml_text import read_yaml
 
 LEFT, RIGHT = 30.0, 10.0  # resisting torque per speed of each output, N m s
 TORQUE, RATIO = 100.0, 3.5
@@ -276,3 +277,24 @@ def test_a_steering_column_has_its_ratio_compliance_and_assist(hand):
         assert found["column.assist_torque"] == pytest.approx(helped, abs=1e-6)
         assert found["rack"] == pytest.approx((hand + helped) / p / 1e5, rel=1e-6)
         assert found["column.wheel_angle"] == pytest.approx(found["rack"] / p + hand / k, rel=1e-6)
+
+
+@pytest.mark.long
+def test_a_shaft_that_is_missing_from_the_spinning_bodies_is_named(examples):
+    """Its twist would grow without end; the search stops soon, and no rod that spins freely on its bushings is named."""
+    entries = read_yaml((examples / "car.yaml").read_text(), "car.yaml")
+    wheels = {
+        name.replace(".", "_"): f"{name}.wheel" for name in ("front.left", "front.right", "rear.left", "rear.right")
+    }
+    entries["parts"]["driveline"] = {
+        "use": "driveline", "on": "chassis", "drive": "rear", "position": [0, 0, "-height"], "mounts": wheels,
+        "parameters": {"speed": "V", "rolling_radius": "r"},
+    }  # fmt: skip
+    for tyre in entries["forces"].values():
+        tyre["properties"] = str(examples / "car.tir")
+    with pytest.raises(stiffmbs.SolverError) as error:
+        stiffmbs.equilibrium(stiffmbs.read_scene(json.dumps(entries)))
+    assert (
+        "'driveline.main.input' spins freely and acts on the spin of rear.left.wheel, expected it in rolling too"
+        in str(error.value)
+    )

@@ -43,6 +43,11 @@ def corner(parameters, part="double_wishbone", **words):
         ),
         ({"lower_bal": [0, 0, 0]}, "(did you mean 'lower_ball'?)"),
         ({"camber": -0.5}, "left.parameters.camber: found -0.5 rad, which is -28.6 deg, expected 20 deg or less"),
+        (
+            {"spring": 75},
+            "left.parameters.spring: found 75 N/m, by which strut_load = 6050 N compresses the spring by 80.7 m, expected 5 m",
+        ),
+        ({"spring": 6050 / 5.1}, "compresses the spring by 5.1 m"),
         ({"toe": "21 deg"}, "left.parameters.toe: found 0.366519 rad, which is 21 deg"),
     ],
 )
@@ -55,6 +60,8 @@ def test_hard_points_that_are_no_car_are_refused(parameters, message):
 def test_points_near_the_middle_and_far_below_the_limit_are_read():
     corner({"lower_front_y": -0.3, "lower_rear_z": 5.1})
     corner({"toe": "-19 deg", "camber": "19 deg"})
+    corner({"spring": 6050 / 4.9})
+    corner({"spring": 75, "strut_load": 0})
     corner({"strut_seat": [0, 0.70, 0.17]})  # at the lower ball joint
     corner({"lower_front_outer": [-0.02, 0.68, 0.17]}, "multi_link")  # two links that meet
     corner({"wheel_centre": [0, "0.8 m", "0.3 m"]}, "twist_beam")

@@ -159,6 +159,29 @@ def test_the_command_writes_table_curves_figure_and_json(tmp_path):
     assert CliRunner().invoke(main, [*given, "--case", "bump=high"]).exit_code == 2
 
 
+@pytest.mark.long
+def test_the_page_names_sides_and_curves():
+    """The figure has a legend of left and right, and one in each diagram with several measures; each curve has its color."""
+    from stiffmbs.show.suspension import kc_figure
+
+    found = stiffmbs.kinematics_and_compliance(
+        stiffmbs.read_scene(axle("double_wishbone", "rigid")), points=5, **{**NONE, "roll": 30}
+    )
+    page = kc_figure(found)
+    (sides,) = page.legends
+    assert [text.get_text() for text in sides.get_texts()] == ["left", "right"]
+    angles = next(axes for axes in page.axes if axes.get_title().startswith("Support angles"))
+    assert [text.get_text() for text in angles.get_legend().get_texts()] == ["brake angle", "drive angle"]
+    assert [(line.get_color(), line.get_linestyle()) for line in angles.lines] == [
+        ("C0", "-"),
+        ("C0", "--"),
+        ("C1", "-"),
+        ("C1", "--"),
+    ]
+    camber = next(axes for axes in page.axes if axes.get_title() == "Bump camber")
+    assert camber.get_legend() is None
+
+
 PENDULUM = (
     "gravity: [0, -10]\nbodies: {bar: {mass: 1, inertia: 1, position: [0, -0.5]}}\n"
     "joints: {pin: {type: revolute, i: {body: bar, point: [0, 0.5]}, j: ground}}\n"
