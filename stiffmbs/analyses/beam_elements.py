@@ -110,16 +110,10 @@ def _of_position(name: str, beam: Divided, differences: Mapping[str, float]) -> 
 
 @dataclass(frozen=True)
 class Discretisation:
-    """Estimated errors by the division of beams into elements.
+    """Estimated errors by the division of beams into elements."""
 
-    Attributes
-    ----------
-    errors : mapping of str to float
-        Of each channel, in its unit: the largest of all channels of its kind of the beam or element, as a single
-        difference may be small by accident.
-    sentence : str
-    """
-
+    # of each channel, in its unit: the largest of all channels of its kind of the beam or element, as a single
+    # difference may be small by accident
     errors: Mapping[str, float]
     sentence: str
 

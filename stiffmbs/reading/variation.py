@@ -75,24 +75,13 @@ class Range:
 
 @dataclass(frozen=True)
 class Variation:
-    """Varied value of a scene.
+    """Varied value of a scene."""
 
-    Attributes
-    ----------
-    name : str
-        A parameter, or a path such as ``forces.bushing.stiffness`` or ``run.rtol``.
-    values : tuple
-        Values of a grid: numbers, text, or nested lists for vectors and matrices; empty for a range without a count.
-    range : Range or None
-        Range from which a sample draws; None if it picks one of the values.
-    dimension : Dimension or None
-        Dimension of the values if they are written with units.
-    """
-
-    name: str
+    name: str  # a parameter, or a path such as ``forces.bushing.stiffness`` or ``run.rtol``
+    # values of a grid: numbers, text, or nested lists for vectors and matrices; empty for a range without a count
     values: tuple[Any, ...]
-    range: Range | None = None
-    dimension: Dimension | None = None
+    range: Range | None = None  # range from which a sample draws; None if it picks one of the values
+    dimension: Dimension | None = None  # dimension of the values if they are written with units
 
     def drawn(self, part: np.ndarray) -> tuple[Any, ...]:
         """Return the values of a sample for numbers from 0 to 1, shape (n,)."""

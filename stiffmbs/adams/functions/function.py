@@ -14,22 +14,12 @@ from .expression import OMITTED, ExpressionError, parse
 
 @dataclass(frozen=True)
 class Function:
-    """Expression of a statement in the dataset's units.
+    """Expression of a statement in the dataset's units."""
 
-    Attributes
-    ----------
-    text : str
-        As written, on one line.
-    tree : ast.expr
-        Result of `expression.parse`.
-    label : str
-        The statement, such as ``SFORCE/3``.
-    """
-
-    text: str
-    tree: ast.expr = field(compare=False)
+    text: str  # as written, on one line
+    tree: ast.expr = field(compare=False)  # result of `expression.parse`
     line: int
-    label: str
+    label: str  # the statement, such as ``SFORCE/3``
 
     def identifier(self, arguments: Sequence[ast.expr], at: int) -> int:
         """Return an argument of a call that is the identifier of a statement; 0 if it is omitted."""

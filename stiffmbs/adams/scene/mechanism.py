@@ -30,24 +30,12 @@ ORIGIN = Frame(np.zeros(3), IDENTITY)
 
 @dataclass(frozen=True)
 class Place:
-    """Marker of the scene.
+    """Marker of the scene."""
 
-    Attributes
-    ----------
-    body : str
-        The body that carries it, or ground.
-    name : str
-        Its name on that body.
-    on_body : Frame
-        In the body's axes.
-    initial : Frame
-        In ground axes, at the start.
-    """
-
-    body: str
-    name: str
-    on_body: Frame
-    initial: Frame
+    body: str  # the body that carries it, or ground
+    name: str  # its name on that body
+    on_body: Frame  # in the body's axes
+    initial: Frame  # in ground axes, at the start
 
     @property
     def reference(self) -> str:

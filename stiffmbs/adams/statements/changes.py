@@ -21,18 +21,11 @@ Key = tuple[str, int]
 
 @dataclass(frozen=True)
 class Changes:
-    """Changes of a dataset by commands.
+    """Changes of a dataset by commands."""
 
-    Attributes
-    ----------
-    altered : mapping of (str, int) to tuple of Statement
-        Commands that change arguments of a statement, by its name and number.
-    inactive : mapping of (str, int) to int
-        Deactivated statements, and the line of the command.
-    """
-
+    # commands that change arguments of a statement, by its name and number
     altered: Mapping[Key, tuple[Statement, ...]] = field(default_factory=dict)
-    inactive: Mapping[Key, int] = field(default_factory=dict)
+    inactive: Mapping[Key, int] = field(default_factory=dict)  # deactivated statements, and the line of the command
 
     def with_arguments(self, command: Statement) -> Changes:
         """Return the changes with new arguments of a statement."""

@@ -18,18 +18,10 @@ PRECISION = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """Point and axes relative to an outer frame.
+    """Point and axes relative to an outer frame."""
 
-    Attributes
-    ----------
-    point : ndarray, shape (3,)
-        m.
-    axes : ndarray, shape (3, 3)
-        x, y and z axis as columns.
-    """
-
-    point: np.ndarray
-    axes: np.ndarray
+    point: np.ndarray  # m, shape (3,)
+    axes: np.ndarray  # shape (3, 3): x, y and z axis as columns
 
     def within(self, outer: Frame) -> Frame:
         """Return this frame, given relative to `outer`, in the axes to which `outer` refers."""

@@ -30,24 +30,12 @@ WIDER = 0.2
 
 @dataclass(frozen=True)
 class Tested:
-    """Result of one test.
+    """Result of one test."""
 
-    Attributes
-    ----------
-    metrics : dict of str to (float, str)
-        Value and unit by name; empty if the test failed.
-    runs : list of mapping
-        Channels of its runs.
-    message : str
-        Why it failed; empty if it was done.
-    parameters : dict of str to value
-        Parameters of the test, SI units.
-    """
-
-    metrics: Metrics = field(default_factory=dict)
-    runs: list[Run] = field(default_factory=list)
-    message: str = ""
-    parameters: dict[str, Any] = field(default_factory=dict)
+    metrics: Metrics = field(default_factory=dict)  # value and unit by name; empty if the test failed
+    runs: list[Run] = field(default_factory=list)  # channels of its runs
+    message: str = ""  # why it failed; empty if it was done
+    parameters: dict[str, Any] = field(default_factory=dict)  # parameters of the test, SI units
 
 
 @dataclass(frozen=True)

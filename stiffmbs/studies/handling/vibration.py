@@ -15,25 +15,18 @@ NONE = np.inf
 
 @dataclass(frozen=True)
 class Weighting:
-    """Parameters of a frequency weighting, ISO 2631-1:1997, table A.1; frequencies in Hz.
+    """Parameters of a frequency weighting, ISO 2631-1:1997, table A.1; frequencies in Hz."""
 
-    Attributes
-    ----------
-    f3, f4, q4 : float
-        Transition from acceleration to velocity; infinite f3 and f4 leave it out.
-    f5, q5, f6, q6 : float
-        Upward step; infinite f5 and f6 leave it out.
-    f1, f2 : float
-        Band limits.
-    """
-
+    # f3, f4, q4: transition from acceleration to velocity; infinite f3 and f4 leave it out
     f3: float
     f4: float
     q4: float
+    # f5, q5, f6, q6: upward step; infinite f5 and f6 leave it out
     f5: float = NONE
     q5: float = 1.0
     f6: float = NONE
     q6: float = 1.0
+    # f1, f2: band limits
     f1: float = 0.4
     f2: float = 100.0
 

@@ -63,33 +63,15 @@ ON_MIDDLE_PLANE = 1e-6
 
 @dataclass(frozen=True)
 class Wheel:
-    """Wheel of an axle on the body that carries its bearing.
+    """Wheel of an axle on the body that carries its bearing."""
 
-    Attributes
-    ----------
-    side : str
-        ``left``, ``right``, or ``wheel`` for the only wheel of a motorcycle's axle.
-    suspension : str
-        Prefix of the names of the suspension's elements; empty if they have none.
-    carrier : str
-        Body on which the wheel rotates.
-    centre : ndarray, shape (3,)
-        Centre of the wheel as described, ground axes, m.
-    axis : ndarray, shape (3,)
-        Unit vector along its axis, to the left.
-    contact : ndarray, shape (3,)
-        Centre of its contact with the road, m.
-    body : str or None
-        Wheel body, if it is known.
-    """
-
-    side: str
-    suspension: str
-    carrier: str
-    centre: np.ndarray
-    axis: np.ndarray
-    contact: np.ndarray
-    body: str | None = None
+    side: str  # ``left``, ``right``, or ``wheel`` for the only wheel of a motorcycle's axle
+    suspension: str  # prefix of the names of the suspension's elements; empty if they have none
+    carrier: str  # body on which the wheel rotates
+    centre: np.ndarray  # shape (3,): centre of the wheel as described, ground axes, m
+    axis: np.ndarray  # shape (3,): unit vector along its axis, to the left
+    contact: np.ndarray  # shape (3,): centre of its contact with the road, m
+    body: str | None = None  # wheel body, if it is known
 
     @property
     def sign(self) -> float:
@@ -99,27 +81,13 @@ class Wheel:
 
 @dataclass(frozen=True)
 class Axle:
-    """Parts of a scene that form an axle.
+    """Parts of a scene that form an axle."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the axle.
-    wheels : tuple of Wheel
-        One or two, left first.
-    body : str
-        Body that carries them; ground if they stand on it.
-    steering : str or None
-        Prismatic or revolute joint whose travel steers.
-    bodies : frozenset of str
-        Bodies of the suspensions, with `body`.
-    """
-
-    name: str
-    wheels: tuple[Wheel, ...]
-    body: str
-    steering: str | None = None
-    bodies: frozenset[str] = frozenset()
+    name: str  # name of the axle
+    wheels: tuple[Wheel, ...]  # one or two, left first
+    body: str  # body that carries them; ground if they stand on it
+    steering: str | None = None  # prismatic or revolute joint whose travel steers
+    bodies: frozenset[str] = frozenset()  # bodies of the suspensions, with `body`
 
     @property
     def title(self) -> str:

@@ -40,28 +40,15 @@ PARALLEL = 1e-12
 
 @dataclass(frozen=True)
 class Setup:
-    """Data that the measures of all poses share.
+    """Data that the measures of all poses share."""
 
-    Attributes
-    ----------
-    model : ModelData
-        Model on the rig.
-    axle : Axle
-    vehicle : Vehicle
-    springs : dict of str to Spring
-        Springs between points and torsion springs on the rig.
-    of_wheel : dict of str to dict of str to Spring
-        Springs of each side, by their names on that side.
-    angular : bool
-        True if the steering joint rotates.
-    """
-
-    model: ModelData
+    model: ModelData  # model on the rig
     axle: Axle
     vehicle: Vehicle
-    springs: dict[str, Spring]
+    springs: dict[str, Spring]  # springs between points and torsion springs on the rig
+    # springs of each side, by their names on that side
     of_wheel: dict[str, dict[str, LineSpring]]  # type: ignore[type-arg]
-    angular: bool
+    angular: bool  # True if the steering joint rotates
 
     @property
     def plane(self) -> float:
