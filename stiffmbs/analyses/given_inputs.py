@@ -12,7 +12,7 @@ from ..elements.states.amount import Amount
 from ..errors import InputError
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_POINTS, RunSettings
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..reading.files.quoted import written
 from ..reading.table import Table
 from ..solve.settings import output_grid
@@ -37,10 +37,7 @@ def with_inputs(data: ModelData, inputs: Mapping[str, Given] | None, settings: R
         return data
     for name in inputs:
         if name not in data.inputs:
-            near = did_you_mean(name, data.inputs)
-            raise InputError(
-                f"inputs: found no input '{name}'{near}, expected one of {', '.join(data.inputs) or 'none'}"
-            )
+            raise InputError(f"inputs: found no input '{name}'{instead_of(name, data.inputs)}")
     return data.model_copy(
         update={"inputs": {**data.inputs, **{name: _value(name, given, settings) for name, given in inputs.items()}}}
     )

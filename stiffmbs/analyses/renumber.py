@@ -19,7 +19,7 @@ from ..errors import InputError
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..presolve.presolve import may_be_apart
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..reading.formula.formula import Formula
 from ..reading.formula.nodes import TIME
 from ..reading.formula.text import FormulaError
@@ -232,8 +232,7 @@ def with_numbers(job: Job, name: str, **numbers: Any) -> Job:
     """
     force = job.data.forces.get(name)
     if force is None:
-        near = did_you_mean(name, job.data.forces)
-        raise InputError(f"found no force '{name}'{near}, expected one of {', '.join(job.data.forces) or 'none'}")
+        raise InputError(f"found no force '{name}'{instead_of(name, job.data.forces)}")
     try:
         changed = type(force)(**{**{field: getattr(force, field) for field in force.model_fields_set}, **numbers})
     except InputError as error:

@@ -21,7 +21,7 @@ from ..equilibria.steady_motion import SteadyMotion
 from ..errors import InputError, SolverError
 from ..model.model_data import ModelData
 from ..model.settings import SteadyMotion as Described
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from .far_away import far_away
 
 if TYPE_CHECKING:
@@ -200,8 +200,7 @@ def _rotation(model: ModelData, found: float | tuple[float, ...]) -> np.ndarray:
 def _spin(system: System, body: str) -> int:
     """Return the index of a body's angular velocity about its axis of symmetry."""
     if body not in system.bodies:
-        near = did_you_mean(body, system.bodies)
-        raise InputError(f"rolling: found no body '{body}'{near}, expected one of {', '.join(system.bodies)}")
+        raise InputError(f"rolling: found no body '{body}'{instead_of(body, system.bodies)}")
     n_u, linear = system.of_body.n_u, system.of_body.linear
     first = n_u * system.bodies.index(body) + linear
     if linear == 2:

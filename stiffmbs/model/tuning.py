@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..reading.files.quoted import quoted, written
 from ..tuning import SUBSYSTEMS, defaults_of, numbers_of
 
@@ -40,8 +40,7 @@ def _entries(found: object, names: str) -> list[tuple[Any, Any]]:
 
 def _refuse_unknown(where: str, what: str, found: object, known: Mapping[str, Any]) -> None:
     if found not in known:
-        near = did_you_mean(found, known)
-        raise ValueError(f"{where}found the unknown {what} '{quoted(found)}'{near}, expected one of {', '.join(known)}")
+        raise ValueError(f"{where}found the unknown {what} '{quoted(found)}'{instead_of(found, known)}")
 
 
 def _checked(where: str, found: object, usual: Any, read: Read) -> Any:

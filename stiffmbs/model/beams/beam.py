@@ -10,7 +10,7 @@ from pydantic import Field, field_validator, model_validator
 
 from ...elements.body import LineBody, check_names
 from ...errors import InputError
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import instead_of
 from ...reading.fields import Measured
 from ...reading.handle import Handle
 from ...reading.units import si
@@ -43,9 +43,7 @@ class BeamHandle(Mapping[str, Handle]):
 
     def __getattr__(self, node: str) -> Handle:
         if node.startswith("_") or node not in self._nodes:
-            raise AttributeError(
-                f"{self.name}: found no node '{node}'{did_you_mean(node, self._nodes)}, expected one of {', '.join(self._nodes)}"
-            )
+            raise AttributeError(f"{self.name}: found no node '{node}'{instead_of(node, self._nodes)}")
         return self._nodes[node]
 
 

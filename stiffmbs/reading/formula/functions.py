@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ..did_you_mean import did_you_mean
+from ..did_you_mean import instead_of
 from .dimension import Known, Part, alike, of_angle, of_branch, of_first, of_numbers, of_root, of_step, plain_always
 from .size import within
 from .text import FormulaError, real_power
@@ -212,9 +212,7 @@ def check_functions(
             case ast.Call(ast.Name(name), arguments) if name not in measures:
                 if name not in known and name not in tables:
                     names = (*known, *tables, *listed)
-                    raise FormulaError(
-                        f"found the unknown function '{name}'{did_you_mean(name, names)}, expected one of {', '.join(names)}"
-                    )
+                    raise FormulaError(f"found the unknown function '{name}'{instead_of(name, names)}")
                 takes = OF_TABLE if name in tables else known[name].takes
                 if len(arguments) not in takes:
                     raise FormulaError(f"found {len(arguments)} arguments in '{ast.unparse(node)}', expected {takes}")

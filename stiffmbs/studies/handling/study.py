@@ -16,7 +16,7 @@ from ...analyses.load_scene import load_scene
 from ...analyses.run import run
 from ...errors import InputError, SolverError, StiffmbsError, refuse_text
 from ...model.scene import Scene
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import instead_of
 from ..executors import refuse_workers
 from .car import Car, Manoeuvre, car_of, with_manoeuvre
 from .known import Known, Metrics, Run
@@ -127,7 +127,7 @@ def handling(
     names = list(TESTS if tests is None else tests)
     for name in names:
         if name not in TESTS:
-            raise InputError(f"found the test '{name}'{did_you_mean(name, TESTS)}, expected one of {', '.join(TESTS)}")
+            raise InputError(f"found the test '{name}'{instead_of(name, TESTS)}")
     changed = with_changes(parameters or {}, {name: TESTS[name].parameters for name in names})
     car = car_of(scene, body, steering)
     with ExitStack() as stack:

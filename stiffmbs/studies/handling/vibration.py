@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import InputError
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import instead_of
 
 NONE = np.inf
 """Frequency of a filter that is left out, Hz."""
@@ -75,8 +75,7 @@ def weighted(acceleration: np.ndarray, step: float, weighting: str) -> np.ndarra
         If there is no such weighting.
     """
     if weighting not in WEIGHTINGS:
-        near = did_you_mean(weighting, WEIGHTINGS)
-        raise InputError(f"found the weighting '{weighting}'{near}, expected one of {', '.join(WEIGHTINGS)}")
+        raise InputError(f"found the weighting '{weighting}'{instead_of(weighting, WEIGHTINGS)}")
     count = len(acceleration)
     spectrum = np.fft.rfft(acceleration - np.mean(acceleration))
     return np.fft.irfft(spectrum * WEIGHTINGS[weighting].response(np.fft.rfftfreq(count, step)), count)

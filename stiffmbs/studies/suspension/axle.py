@@ -15,7 +15,7 @@ from ...elements.spatial.marker import Marker
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.model_data import ModelData
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.formula.formula import Formula
 from ...reading.marker import GROUND, MarkerReference
 
@@ -310,10 +310,7 @@ def _carrying(model: ModelData, start: str, wheels: Sequence[Wheel]) -> str:
 def _steering(model: ModelData, given: str | None, bodies: frozenset[str]) -> str | None:
     slides = [name for name, joint in model.joints.items() if joint.kind in ("prismatic", "revolute")]
     if given is not None and given not in slides:
-        near = did_you_mean(given, slides)
-        raise InputError(
-            f"found no prismatic or revolute joint '{given}'{near}, expected one of {', '.join(slides) or 'none'}"
-        )
+        raise InputError(f"found no prismatic or revolute joint '{given}'{instead_of(given, slides)}")
     if given is not None and not set(bodies_at(model.joints[given])) & (bodies - {GROUND}):
         raise InputError(f"steering: found the joint '{given}' on other bodies, expected one that steers the axle")
     guides = [
