@@ -55,17 +55,8 @@ def divided_by(data: Scene, solve: Callable[[Scene], Solution]) -> Scene:
     The number of elements is doubled until the estimated error is within the tolerance. It is a third of the change of the
     position of the beam's nodes: Richardson's extrapolation for the order 2.
 
-    Parameters
-    ----------
-    data : Scene
-        With at least one such beam.
-    solve : callable
-        Returns the results of a scene.
-
-    Raises
-    ------
-    SolverError
-        If a tolerance is not reached.
+    `data`: with at least one such beam. `solve`: returns the results of a scene. Raises SolverError if a tolerance is
+    not reached.
     """
     tolerances = {name: data.beams.divided[name].tolerance or 0.0 for name in data.beams.by_tolerance}
     doublings, errors = dict.fromkeys(tolerances, 0), dict.fromkeys(tolerances, float("nan"))
@@ -125,13 +116,7 @@ def discretisation(scene: Scene, found: Solution, solve: Callable[[Scene], Solut
     to a node that the coarser beam lacks. Let r be the ratio of both numbers, and p the order. The finer of both beams has
     the error difference/(r^p - 1), and the coarser one r^p times it (Richardson's extrapolation).
 
-    Parameters
-    ----------
-    scene : Scene
-    found : Solution
-        Its results.
-    solve : callable
-        Returns the results of a scene at the same times.
+    `found`: its results. `solve`: returns the results of a scene at the same times.
     """
     beams = scene.beams.divided
     fewest = min(count for beam in beams.values() for count in beam.counts)

@@ -57,10 +57,7 @@ NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 class Translation:
     """Translator of the expressions of one dataset.
 
-    Attributes
-    ----------
-    substituted : list of str
-        Labels of the forces whose laws are being substituted.
+    `substituted`: labels of the forces whose laws are being substituted.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:

@@ -300,10 +300,7 @@ def relaxation_of(
     The lengths are in the unit of the file. A file in mm may have them in m: such lengths are left out if USE_MODE
     does not ask for them.
 
-    Raises
-    ------
-    InputError
-        For lengths in a wrong unit, or below zero.
+    Raises InputError for lengths in a wrong unit, or below zero.
     """
     least, most = (part * found["UNLOADED_RADIUS"] for part in RELAXED)
     for name in ("RELAX_LENGTH_X", "RELAX_LENGTH_Y"):

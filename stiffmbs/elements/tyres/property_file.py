@@ -101,16 +101,8 @@ class PropertyFile:
     def entry(self, key: str, home: str = "") -> Entry | None:
         """Return the entry of a key, or None.
 
-        Parameters
-        ----------
-        key : str
-        home : str
-            Section to which the key belongs; it is used if several sections have the key.
-
-        Raises
-        ------
-        InputError
-            If sections to which the key does not belong give it different values.
+        `home`: section to which the key belongs; it is used if several sections have the key. Raises InputError if
+        sections to which the key does not belong give it different values.
         """
         having = [section for section in self.sections.values() if section.has(key)]
         own = [section for section in having if section.kind == f"[{home}]"]
@@ -133,10 +125,7 @@ class PropertyFile:
     def number(self, key: str, dimension: str = "", home: str = "") -> float:
         """Return a value in SI units.
 
-        Raises
-        ------
-        InputError
-            If the value is missing or not a number.
+        Raises InputError if the value is missing or not a number.
         """
         entry = self.entry(key, home)
         if entry is None:
@@ -146,10 +135,7 @@ class PropertyFile:
     def factor(self, dimension: str) -> float:
         """Return the file's unit of a dimension in SI units; 1 if the file has no [UNITS].
 
-        Raises
-        ------
-        InputError
-            For an unknown unit.
+        Raises InputError for an unknown unit.
         """
         product, divisor = map(self._units, composed_of(dimension, self.sections.get("UNITS", ())))
         return math.prod(product) * math.prod(unit**-1 for unit in divisor)

@@ -105,15 +105,8 @@ class Hub:
 class Pose:
     """Axle at an equilibrium on its rig.
 
-    Parameters
-    ----------
-    setup : Setup
-    dynamics : Dynamics
-        At the equilibrium.
-    t : float
-        s.
-    mode : tuple of float
-        Factors of the pads' displacements in the motion that is measured: (1, 1) in bump, (1, -1) in roll.
+    `dynamics`: at the equilibrium. `t`: s. `mode`: factors of the pads' displacements in the motion that is measured:
+    (1, 1) in bump, (1, -1) in roll.
     """
 
     def __init__(self, setup: Setup, dynamics: Dynamics, t: float, mode: tuple[float, ...]) -> None:
