@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..elements.states.amount import Amount
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..reading.did_you_mean import instead_of
@@ -98,10 +98,8 @@ def _jumps(
 
 
 def _table(name: str, times: Any, values: list[float]) -> Table:
-    try:
+    with prefixed(f"inputs: {name}: "):
         return Table(table=[(float(t), value) for t, value in zip(times, values, strict=True)], lines=True)
-    except InputError as error:
-        raise InputError(f"inputs: {name}: {error}") from None
 
 
 def _number(name: str, found: Any) -> float:

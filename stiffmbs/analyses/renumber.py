@@ -15,7 +15,7 @@ from ..compile.kind import sorted_out
 from ..compile.system import System
 from ..elements.element import Element
 from ..elements.states.state import StateValue
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..presolve.presolve import may_be_apart
@@ -179,10 +179,8 @@ class Change:
 
 def _change(system: System, name: str, force: Element, data: ModelData) -> Change | None:
     """Return the change of a force, or None if its equations, bodies or table lengths differ."""
-    try:
+    with prefixed(f"{name}: ", FormulaError):
         kind, found = sorted_out(name, force, data)
-    except FormulaError as error:
-        raise InputError(f"{name}: {error}") from None
     group = next((group for group in system.groups if name in group.names), None)
     if group is None or kind != group.kind:
         return None
@@ -233,9 +231,7 @@ def with_numbers(job: Job, name: str, **numbers: Any) -> Job:
     force = job.data.forces.get(name)
     if force is None:
         raise InputError(f"found no force '{name}'{instead_of(name, job.data.forces)}")
-    try:
+    with prefixed(f"{name}: "):
         changed = type(force)(**{**{field: getattr(force, field) for field in force.model_fields_set}, **numbers})
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
     data = job.data.model_copy(update={"forces": {**job.data.forces, name: changed}})
     return renumbered(job, data) or prepare(data, job.settings, job.start_from)

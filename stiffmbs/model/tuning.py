@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from ..errors import prefixed
 from ..reading.did_you_mean import instead_of
 from ..reading.files.quoted import quoted, written
 from ..tuning import SUBSYSTEMS, defaults_of, numbers_of
@@ -49,10 +50,8 @@ def _checked(where: str, found: object, usual: Any, read: Read) -> Any:
         if not isinstance(found, list | tuple) or len(found) != len(usual):
             raise ValueError(f"{where}: found {written(found)}, expected a list of {len(usual)} numbers")
         return tuple(_checked(where, *pair, read) for pair in zip(found, usual, strict=True))
-    try:
+    with prefixed(f"{where}: ", ValueError, ValueError):
         value = read(found)
-    except ValueError as error:
-        raise ValueError(f"{where}: {error}") from None
     if isinstance(usual, int) and value == round(value) and (usual == 0 or 1 <= value <= MOST * usual) and value >= 0:
         return int(value)
     least, most = bounds(usual)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from .files.yaml_text import read_yaml
 from .formula.text import FormulaError
 from .units.quantity import quantity
@@ -137,13 +137,11 @@ def _read(place: str, name: str, given: str) -> Variation:
     ends = ends if log else [*ends, last]
     if len(ends) not in (2, 3):
         raise InputError(f"{place}: found {len(ends)} numbers, expected {FORMS}")
-    try:
+    with prefixed(f"{place}: ", (FormulaError, InputError)):
         found = _quantities(ends[:2])
         low, high = sorted(one.value for one in found)
         log = log or (colons != given and 0 < 10 * low <= high)
         chosen = Range(low, high, log, _count(ends[2]) if len(ends) == 3 else None)
-    except (FormulaError, InputError) as error:
-        raise InputError(f"{place}: {error}") from None
     return Variation(name, variation(name, chosen).values, chosen, found[-1].dimension)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from ...elements.body import LineBody, check_names
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from ...reading.did_you_mean import instead_of
 from ...reading.fields import Measured
 from ...reading.handle import Handle
@@ -120,10 +120,8 @@ class Beam(LineBody):
             raise InputError(
                 f"{name}.elements: found a tolerance in a model built in Python, expected a number; only scenes take a tolerance"
             )
-        try:
+        with prefixed(f"{name}.", ValueError):
             made = expanded(name, self)
-        except ValueError as error:
-            raise InputError(f"{name}.{error}") from None
         for full, entry in made.bodies.items():
             model.add(full, model.body_type(**entry))
         for full, entry in made.forces.items():
@@ -148,10 +146,8 @@ class Beam(LineBody):
                 "through" if through else "end",
                 [self._in_space(p) for p in (start, through, end) if p is not None],
             )
-        try:
+        with prefixed(f"{where}: ", ValueError, ValueError):
             return [arc_through(*axis)] if through is not None else pieces_through(axis)
-        except ValueError as error:
-            raise ValueError(f"{where}: {error}") from None
 
     def _in_space(self, point: Any) -> np.ndarray:
         return np.array([*point, 0.0][:3], dtype=float)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...errors import prefixed
 from .axis import Arc, Piece, frame, upward
 from .division import AUTOMATIC, Divided, Elements
 from .interpolation import Group, group_sizes
@@ -269,10 +270,8 @@ class _Interval:
 
     def _pose(self, s: float) -> tuple[np.ndarray, np.ndarray]:
         point, along = self.piece.at(s - self.first)
-        try:
+        with prefixed("up: ", ValueError, ValueError):
             return point, frame(along, self.up)
-        except ValueError as error:
-            raise ValueError(f"up: {error}") from None
 
     def _stiffness(self, s: float) -> np.ndarray:
         K = self.constants(s).stiffness

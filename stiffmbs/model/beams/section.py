@@ -17,6 +17,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from ...elements.shape import one_of
+from ...errors import prefixed
 from ...reading.fields import Described, Measured
 from ...reading.units import si
 from .open_section import of_rectangles, of_walls
@@ -306,10 +307,8 @@ class Drawn(Section):
         """See `stiffmbs.model.beams.drawn_section`; the shear factors are those of a Poisson ratio of zero."""
         from .drawn_section import constants_of
 
-        try:
+        with prefixed("section: ", ValueError, ValueError):
             return constants_of(self.points, self.holes)
-        except ValueError as error:
-            raise ValueError(f"section: {error}") from None
 
 
 SECTIONS = (Circle, Tube, Rectangle, IProfile, Angle, Channel, Numbers, Drawn)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.files.yaml_text import read_yaml
 from ...reading.formula.text import FormulaError
@@ -172,10 +172,8 @@ def _value(path: str, given: object, parameters: Any, name: str) -> Any:
 
 def positive(name: str, given: object, dimension: str) -> float:
     """Return a number or text with a unit in SI units; raise an InputError if it is not above zero."""
-    try:
+    with prefixed(f"{name}: ", FormulaError):
         value = in_si(given, dimension)
-    except FormulaError as error:
-        raise InputError(f"{name}: {error}") from None
     if value <= 0:
         raise InputError(f"{name}: found {given}, expected a value above zero")
     return value
