@@ -52,7 +52,7 @@ def read_function(found: Arguments, name: str) -> Function | None:
         return None
     text = (found.text(name) or "").strip().strip('"')
     if is_subroutine(found, name):
-        raise found.fault(f"found {name} = {text}, a user subroutine, expected an expression", found.line(name))
+        raise found.fault(f"found {name} = {text}, a user subroutine, expected an expression", name)
     return read_any_function(found, name)
 
 
@@ -62,7 +62,7 @@ def read_any_function(found: Arguments, name: str) -> Function:
     try:
         return Function(text, parse(text), found.line(name), found.label)
     except ExpressionError as error:
-        raise found.fault(f"{name}: {error}", found.line(name)) from None
+        raise found.fault(f"{name}: {error}", name) from None
 
 
 def is_subroutine(found: Arguments, name: str) -> bool:

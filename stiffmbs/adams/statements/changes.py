@@ -48,7 +48,7 @@ class Changes:
             low, high = _ends(found)
             ranged = sorted(ident for kind, ident in known if kind == name and low <= ident <= high)
             if not ranged:
-                raise found.fault(f"found no {name} from {low} to {high}, expected at least one", found.line("RANGE"))
+                raise found.fault(f"found no {name} from {low} to {high}, expected at least one", "RANGE")
             idents = (*idents, *ranged)
         inactive = dict(self.inactive)
         for ident in idents:

@@ -21,7 +21,7 @@ def _from_zero(found: Arguments, name: str) -> float:
     if value is None and name.startswith("MU"):
         raise found.fault(f"found no {name}, expected a coefficient of friction")
     if value is not None and value < 0:
-        raise found.fault(f"found {name} = {found.text(name)}, expected a number of zero or more", found.line(name))
+        raise found.fault(f"found {name} = {found.text(name)}, expected a number of zero or more", name)
     return value or 0.0
 
 
@@ -40,7 +40,7 @@ def _one_word(found: Arguments, name: str, words: tuple[str, ...]) -> str:
     for word in words:
         if text and word.startswith(text):
             return word
-    raise found.fault(f"found {name} = {found.text(name)}, expected {' or '.join(words)}", found.line(name))
+    raise found.fault(f"found {name} = {found.text(name)}, expected {' or '.join(words)}", name)
 
 
 def _word_of(name: str, meanings: dict[str, Any]) -> Any:
@@ -74,7 +74,7 @@ def _inputs(found: Arguments, _: Units) -> frozenset[str]:
             if not named:
                 raise found.fault(
                     f"found INPUTS = {found.text('INPUTS')}, expected ALL, NONE or {', '.join(INPUTS)} between colons",
-                    found.line("INPUTS"),
+                    "INPUTS",
                 )
             asked.add(named[0])
     return frozenset(asked)

@@ -150,6 +150,4 @@ class Array(Numbered):
         found.without_effect("IC", "X", "Y", "U")
         size, count = found.number("SIZE"), len(found.texts("NUMBERS") or found.texts("VARIABLES"))
         if size is not None and count and size != count:
-            raise found.fault(
-                f"found SIZE = {found.text('SIZE')} and {count} entries, expected equal numbers", found.line("SIZE")
-            )
+            raise found.fault(f"found SIZE = {found.text('SIZE')} and {count} entries, expected equal numbers", "SIZE")

@@ -57,6 +57,4 @@ class Sensor(Numbered):
         if found.number("VALUE") is None:
             raise found.fault("found no VALUE, expected the number that the function is compared with")
         if (found.number("ERROR") or 0.0) < 0:
-            raise found.fault(
-                f"found ERROR = {found.text('ERROR')}, expected a number of zero or more", found.line("ERROR")
-            )
+            raise found.fault(f"found ERROR = {found.text('ERROR')}, expected a number of zero or more", "ERROR")
