@@ -48,47 +48,24 @@ Rule = Callable[[Sequence[Part], ast.expr], Known]
 
 @dataclass(frozen=True)
 class FormulaFunction:
-    """Function that formulas may call, with its properties.
-
-    Attributes
-    ----------
-    value : callable
-        Evaluates numbers.
-    array : callable
-        Evaluates NumPy arrays.
-    symbolic : str
-        Its counterpart in equations and kernels: ``sympy.sin``, which has the same name in the C library, or a class or
-        function of `stiffmbs.compile.symbolic.nonsmooth`. Empty for a discontinuous function, which only formulas for
-        output may call.
-    enclosure : str
-        Its interval form in `stiffmbs.compile.inputs.enclosed_functions`; empty if it follows from the derivative.
-    derivative : str
-        Derivative of a function of x with respect to x, as a formula.
-    domain : (float, float)
-        Domain of the argument.
-    poles : bool
-        True if it is unbounded within its domain.
-    zones : str
-        Its intervals in `stiffmbs.compile.law_intervals`, which resolve narrow features.
-    turns : bool
-        True if it is periodic in its argument.
-    in_numbers : bool
-        True if numbers may call it as well as formulas.
-    """
+    """Function that formulas may call, with its properties."""
 
     takes: Takes
     dimension: Rule
-    value: Callable[..., float]
-    array: Callable[..., Any]
+    value: Callable[..., float]  # evaluates numbers
+    array: Callable[..., Any]  # evaluates NumPy arrays
+    # counterpart in equations and kernels: ``sympy.sin``, which has the same name in the C library, or a class or function
+    # of `stiffmbs.compile.symbolic.nonsmooth`. Empty for a discontinuous function, which only formulas for output may call.
     symbolic: str = ""
+    # interval form in `stiffmbs.compile.inputs.enclosed_functions`; empty if it follows from the derivative
     enclosure: str = ""
-    derivative: str = ""
+    derivative: str = ""  # derivative of a function of x with respect to x, as a formula
     breakpoints: Breakpoints = ()
-    domain: tuple[float, float] = EVERYWHERE
-    poles: bool = False
-    intervals: str = ""
-    turns: bool = False
-    in_numbers: bool = False
+    domain: tuple[float, float] = EVERYWHERE  # of the argument
+    poles: bool = False  # True if it is unbounded within its domain
+    intervals: str = ""  # its intervals in `stiffmbs.compile.law_intervals`, which resolve narrow features
+    turns: bool = False  # True if it is periodic in its argument
+    in_numbers: bool = False  # True if numbers may call it as well as formulas
 
     @property
     def in_c(self) -> bool:
