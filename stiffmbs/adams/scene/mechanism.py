@@ -46,21 +46,6 @@ class Place:
 class Mechanism:
     """Parts and markers of a dataset by number.
 
-    Attributes
-    ----------
-    least : float
-        Smallest non-zero mass of the parts, kg.
-    further : mapping of str to Place
-        Auxiliary markers by reference; see `tip`.
-    tables : mapping of str to table
-        Splines used by functions so far, in the dataset's units.
-    variables : mapping of str to str
-        Variables used by functions so far, in the dataset's units.
-    inputs : mapping of str to float
-        Inputs set by another program or a sensor, in the dataset's units.
-    states : mapping of str to state
-        Displacements and velocities of motions, integrated from functions without a formula of the integral.
-
     Raises
     ------
     DatasetFault
@@ -69,11 +54,14 @@ class Mechanism:
 
     def __init__(self, dataset: Dataset) -> None:
         self.dataset = dataset
-        self.further: dict[str, Place] = {}
+        self.further: dict[str, Place] = {}  # auxiliary markers by reference; see `tip`
+        # Splines, variables and states (motions integrated from functions without a formula of the integral) used by
+        # functions so far, and inputs set by another program or a sensor, all in the dataset's units.
         self.tables: dict[str, dict[str, Any]] = {}
         self.variables: dict[str, str] = {}
         self.inputs: dict[str, float] = {}
         self.states: dict[str, dict[str, Any]] = {}
+        # Smallest non-zero mass of the parts, kg.
         self.least = min((part.mass for part in dataset.parts if part.mass > 0), default=0.0)
         self.parts = {(part.keyword, part.ident): self._weighed(part) for part in dataset.parts}
         grounds = [part for part in dataset.parts if part.ground]
