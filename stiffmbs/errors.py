@@ -34,6 +34,17 @@ class ChatteringError(SolverError):
 
 
 @contextmanager
+def prefixed(
+    place: str, caught: type[Exception] | tuple[type[Exception], ...] = InputError, raised: type[Exception] = InputError
+) -> Iterator[None]:
+    """Raise an error with a place, such as ``bodies.bar: ``, in front of the message of the one that was caught."""
+    try:
+        yield
+    except caught as error:
+        raise raised(f"{place}{error}") from None
+
+
+@contextmanager
 def needs(package: str, extra: str) -> Iterator[None]:
     """Raise an error that names the extra to install if an optional package is missing.
 

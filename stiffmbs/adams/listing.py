@@ -42,33 +42,15 @@ REPORTED = ("REQUEST", "VARIABLE", "SENSOR")
 
 @dataclass(frozen=True)
 class ListedStatement:
-    """Statement or command with its treatment.
+    """Statement or command with its treatment."""
 
-    Attributes
-    ----------
-    file : str
-        Name of the dataset or command file.
-    line : int
-        Line in it.
-    statement : str
-        Full name and number: ``JOINT/3``.
-    fate : str
-        Treatment: ``read``, ``left out`` or ``refused``.
-    reason : str
-        Reason why it is left out or refused, or its meaning.
-    argument : str
-        Argument, or function in an argument, that this entry is about; empty for the whole statement.
-    arguments : tuple of str
-        Full names of the arguments that are read, for a whole statement.
-    """
-
-    file: str
-    line: int
-    statement: str
-    fate: str
-    reason: str = ""
-    argument: str = ""
-    arguments: tuple[str, ...] = ()
+    file: str  # name of the dataset or command file
+    line: int  # line in it
+    statement: str  # full name and number: ``JOINT/3``
+    fate: str  # treatment: ``read``, ``left out`` or ``refused``
+    reason: str = ""  # reason why it is left out or refused, or its meaning
+    argument: str = ""  # argument, or function in an argument, that this entry is about; empty for the whole statement
+    arguments: tuple[str, ...] = ()  # full names of the arguments that are read, for a whole statement
 
     def __str__(self) -> str:
         what = f"{self.statement}, {self.argument}" if self.argument else self.statement

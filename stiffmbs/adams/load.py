@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..elements.spatial.massless import BEYOND
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..model.read_scene import made_scene
 from ..model.scene import Scene
 from ..reading.files.text_file import STANDARD_INPUT, checked, file_text, source_name
@@ -105,26 +105,20 @@ def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
     text, source = file_text(path, ENCODING, ZERO_BYTE), source_name(path)
     if commands_file is None:
         return _scene(text, source)
-    try:
+    with prefixed(f"{commands_file}, ", DatasetFault):
         known = {key_of(statement) for statement in all_statements(checked(text, source, ZERO_BYTE))[1]}
         asked = read_commands(file_text(commands_file, ENCODING), known, partial(other_commands, commands_file))
-    except DatasetFault as fault:
-        raise InputError(f"{commands_file}, {fault}") from None
     first = asked.segments[0].changes if asked.segments else asked.changes
-    try:
+    with prefixed(f"{commands_file}, ", CommandFault):
         dataset, found = _scene(text, source, first)
-    except CommandFault as fault:
-        raise InputError(f"{commands_file}, {fault}") from None
     reported = [*first.notes(commands_file.name), *asked.notes]
     if asked.segments:
 
         def read(segment: Segment) -> tuple[Dataset, dict[str, Any]]:
             return _scene(text, source, segment.changes)
 
-        try:
+        with prefixed(f"{commands_file}, ", DatasetFault):
             added = followed(asked.segments, (dataset, found), read, commands_file.name)
-        except DatasetFault as fault:
-            raise InputError(f"{commands_file}, {fault}") from None
         reported = [*added.pop("notes"), *reported]
         found |= added
     notes = [*found.get("notes", ()), *reported]

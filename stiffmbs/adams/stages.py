@@ -28,21 +28,9 @@ def followed(
 ) -> dict[str, Any]:
     """Return the scene sections defined by simulations: ``run``, ``start``, ``stages`` and ``notes``.
 
-    Parameters
-    ----------
-    segments : sequence of Segment
-        At least one.
-    described : (Dataset, mapping)
-        The dataset as changed by the commands before the first simulation, and its scene.
-    read : callable
-        Returns dataset and scene of a segment.
-    source : str
-        Name of the command file in notes.
-
-    Raises
-    ------
-    DatasetFault
-        If a simulation cannot be continued from the end of its predecessor.
+    `segments`: at least one. `described`: the dataset as changed by the commands before the first simulation, and its
+    scene. `read`: returns dataset and scene of a segment. `source`: name of the command file in notes. Raises
+    DatasetFault if a simulation cannot be continued from the end of its predecessor.
     """
     dataset, scene = described
     units = dataset.units

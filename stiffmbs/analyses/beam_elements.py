@@ -55,17 +55,8 @@ def divided_by(data: Scene, solve: Callable[[Scene], Solution]) -> Scene:
     The number of elements is doubled until the estimated error is within the tolerance. It is a third of the change of the
     position of the beam's nodes: Richardson's extrapolation for the order 2.
 
-    Parameters
-    ----------
-    data : Scene
-        With at least one such beam.
-    solve : callable
-        Returns the results of a scene.
-
-    Raises
-    ------
-    SolverError
-        If a tolerance is not reached.
+    `data`: with at least one such beam. `solve`: returns the results of a scene. Raises SolverError if a tolerance is
+    not reached.
     """
     tolerances = {name: data.beams.divided[name].tolerance or 0.0 for name in data.beams.by_tolerance}
     doublings, errors = dict.fromkeys(tolerances, 0), dict.fromkeys(tolerances, float("nan"))
@@ -110,16 +101,10 @@ def _of_position(name: str, beam: Divided, differences: Mapping[str, float]) -> 
 
 @dataclass(frozen=True)
 class Discretisation:
-    """Estimated errors by the division of beams into elements.
+    """Estimated errors by the division of beams into elements."""
 
-    Attributes
-    ----------
-    errors : mapping of str to float
-        Of each channel, in its unit: the largest of all channels of its kind of the beam or element, as a single
-        difference may be small by accident.
-    sentence : str
-    """
-
+    # of each channel, in its unit: the largest of all channels of its kind of the beam or element, as a single
+    # difference may be small by accident
     errors: Mapping[str, float]
     sentence: str
 
@@ -131,13 +116,7 @@ def discretisation(scene: Scene, found: Solution, solve: Callable[[Scene], Solut
     to a node that the coarser beam lacks. Let r be the ratio of both numbers, and p the order. The finer of both beams has
     the error difference/(r^p - 1), and the coarser one r^p times it (Richardson's extrapolation).
 
-    Parameters
-    ----------
-    scene : Scene
-    found : Solution
-        Its results.
-    solve : callable
-        Returns the results of a scene at the same times.
+    `found`: its results. `solve`: returns the results of a scene at the same times.
     """
     beams = scene.beams.divided
     fewest = min(count for beam in beams.values() for count in beam.counts)

@@ -13,7 +13,7 @@ from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..elements.requests.order import units
 from ..equilibria.equilibrium import Equilibrium, find_equilibrium
-from ..errors import AssemblyError, SolverError
+from ..errors import AssemblyError, SolverError, prefixed
 from ..model.model_data import ModelData
 from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
@@ -242,7 +242,5 @@ def _next(dynamics: Dynamics, t: float) -> Equilibrium:
     status = dynamics.assemble(t)
     if status < 0:
         raise AssemblyError(f"t = {t:g} s: the constraints do not meet: {failure(dynamics, status, t)}")
-    try:
+    with prefixed(f"t = {t:g} s: ", SolverError, SolverError):
         return find_equilibrium(dynamics, t)
-    except SolverError as error:
-        raise SolverError(f"t = {t:g} s: {error}") from None

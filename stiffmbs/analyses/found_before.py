@@ -37,10 +37,7 @@ class FoundBefore:
 
     Described starts need no search, and code of other packages may change; both are computed each time.
 
-    Attributes
-    ----------
-    name : str
-        Name of the entry, or empty if there is none.
+    `name`: name of the entry, or empty if there is none.
     """
 
     def __init__(self, data: ModelData, settings: RunSettings, state: SavedState | None) -> None:

@@ -9,10 +9,10 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ..elements.states.amount import Amount
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_POINTS, RunSettings
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..reading.files.quoted import written
 from ..reading.table import Table
 from ..solve.settings import output_grid
@@ -37,10 +37,7 @@ def with_inputs(data: ModelData, inputs: Mapping[str, Given] | None, settings: R
         return data
     for name in inputs:
         if name not in data.inputs:
-            near = did_you_mean(name, data.inputs)
-            raise InputError(
-                f"inputs: found no input '{name}'{near}, expected one of {', '.join(data.inputs) or 'none'}"
-            )
+            raise InputError(f"inputs: found no input '{name}'{instead_of(name, data.inputs)}")
     return data.model_copy(
         update={"inputs": {**data.inputs, **{name: _value(name, given, settings) for name, given in inputs.items()}}}
     )
@@ -101,10 +98,8 @@ def _jumps(
 
 
 def _table(name: str, times: Any, values: list[float]) -> Table:
-    try:
+    with prefixed(f"inputs: {name}: "):
         return Table(table=[(float(t), value) for t, value in zip(times, values, strict=True)], lines=True)
-    except InputError as error:
-        raise InputError(f"inputs: {name}: {error}") from None
 
 
 def _number(name: str, found: Any) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import overload
 
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..model.embedding.formulas import Written
 from ..model.embedding.scene import scene_in_space
 from ..model.model import Model as PlanarModel
@@ -71,10 +71,8 @@ def text_in_space(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> 
     planar = load_scene(path, changes)
     if not isinstance(planar, PlanarData):
         raise InputError(f"{source_name(path)}: found a scene in space, expected a planar one")
-    try:
+    with prefixed(f"{source_name(path)}: "):
         found = scene_in_space(planar)
-    except InputError as error:
-        raise InputError(f"{source_name(path)}: {error}") from None
     _checked(copy.deepcopy(found), source_name(path))
     return scene_text(found)
 

@@ -25,7 +25,7 @@ from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings, SteadyMotion
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..redundancy.redundancy import Redundancy, examine
 from ..results.saved_state import SavedState
 from ..run_checks.motion import refuse_far_away
@@ -301,10 +301,7 @@ def examined(
     grid = output_grid(chosen)
     for name in chosen.drop_first:
         if name not in data.joints:
-            near = did_you_mean(name, data.joints)
-            raise InputError(
-                f"drop_first: found no joint '{name}'{near}, expected one of {', '.join(data.joints) or 'none'}"
-            )
+            raise InputError(f"drop_first: found no joint '{name}'{instead_of(name, data.joints)}")
     order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
     system = compile_model(data)
     with in_use(chosen.tuning):

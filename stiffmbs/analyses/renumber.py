@@ -15,11 +15,11 @@ from ..compile.kind import sorted_out
 from ..compile.system import System
 from ..elements.element import Element
 from ..elements.states.state import StateValue
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..presolve.presolve import may_be_apart
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..reading.formula.formula import Formula
 from ..reading.formula.nodes import TIME
 from ..reading.formula.text import FormulaError
@@ -179,10 +179,8 @@ class Change:
 
 def _change(system: System, name: str, force: Element, data: ModelData) -> Change | None:
     """Return the change of a force, or None if its equations, bodies or table lengths differ."""
-    try:
+    with prefixed(f"{name}: ", FormulaError):
         kind, found = sorted_out(name, force, data)
-    except FormulaError as error:
-        raise InputError(f"{name}: {error}") from None
     group = next((group for group in system.groups if name in group.names), None)
     if group is None or kind != group.kind:
         return None
@@ -232,11 +230,8 @@ def with_numbers(job: Job, name: str, **numbers: Any) -> Job:
     """
     force = job.data.forces.get(name)
     if force is None:
-        near = did_you_mean(name, job.data.forces)
-        raise InputError(f"found no force '{name}'{near}, expected one of {', '.join(job.data.forces) or 'none'}")
-    try:
+        raise InputError(f"found no force '{name}'{instead_of(name, job.data.forces)}")
+    with prefixed(f"{name}: "):
         changed = type(force)(**{**{field: getattr(force, field) for field in force.model_fields_set}, **numbers})
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
     data = job.data.model_copy(update={"forces": {**job.data.forces, name: changed}})
     return renumbered(job, data) or prepare(data, job.settings, job.start_from)

@@ -46,27 +46,14 @@ with the root of the distance, has the square of it."""
 
 @dataclass(frozen=True)
 class Settled:
-    """System in an equilibrium.
+    """System in an equilibrium."""
 
-    Attributes
-    ----------
-    start : InitialValues
-        Initial values of a run from there.
-    moves : int
-        Number of moves of the search.
-    imbalance : float
-        Largest remaining generalised force, relative to the largest acting one.
-    free : tuple of str
-        Largest velocity of each motion that nothing resists.
-    eigenvalues : tuple of complex
-        Eigenvalues of perturbations of a steady motion, 1/s, in the frame that moves with it; empty at rest.
-    """
-
-    start: InitialValues
-    moves: int
-    imbalance: float
-    free: tuple[str, ...]
+    start: InitialValues  # initial values of a run from there
+    moves: int  # number of moves of the search
+    imbalance: float  # largest remaining generalised force, relative to the largest acting one
+    free: tuple[str, ...]  # largest velocity of each motion that nothing resists
     notes: tuple[str, ...]
+    # eigenvalues of perturbations of a steady motion, 1/s, in the frame that moves with it; empty at rest
     eigenvalues: tuple[complex, ...] = ()
 
 

@@ -22,7 +22,7 @@ from ..equilibria.steady_motion import SteadyMotion
 from ..errors import InputError, SolverError
 from ..model.model_data import ModelData
 from ..model.settings import SteadyMotion as Described
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from .far_away import beyond_its_size, far_away
 
 if TYPE_CHECKING:
@@ -233,8 +233,7 @@ def _rotation(model: ModelData, found: float | tuple[float, ...]) -> np.ndarray:
 def _spin(system: System, body: str) -> int:
     """Return the index of a body's angular velocity about its axis of symmetry."""
     if body not in system.bodies:
-        near = did_you_mean(body, system.bodies)
-        raise InputError(f"rolling: found no body '{body}'{near}, expected one of {', '.join(system.bodies)}")
+        raise InputError(f"rolling: found no body '{body}'{instead_of(body, system.bodies)}")
     axis = _axis(system, body)
     if axis is None:
         raise InputError(

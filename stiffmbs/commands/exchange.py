@@ -41,8 +41,7 @@ def convert(
     from ..results.files import write_text
 
     with refusing(scene):
-        if output is not None:
-            refuse_own_input("-o", scene, output)
+        refuse_own_input("-o", scene, output)
         if output is not None and output.suffix.lower() == DATASET:
             texts = _as_dataset(scene, output, coordinates, changes)
         else:

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from .process import Status
 from .scene import (
     CHANGES,
@@ -54,11 +54,8 @@ def flexible(
         described = read_flexible_body(body, changes)
         names, folder = list(described.interfaces), Path(body).parent
         sets = {text: [_number(name, names) for name in text.split(",")] for text in held}
-        try:
-            with ProgressBar(0.0, 0.0):
-                found = reduced_body(described, folder)
-        except InputError as error:
-            raise InputError(f"{body}: {error}") from None
+        with prefixed(f"{body}: "), ProgressBar(0.0, 0.0):
+            found = reduced_body(described, folder)
         frequencies = {f"{text} held": found.held_frequencies(numbers) for text, numbers in sets.items()}
     written = True
     if output is not None:
@@ -111,11 +108,9 @@ def stresses(
         loaded = load_scene(scene, changes_of(options))
         FlexibleMotion.check(loaded, body)
         solution = Solution.load(results) if results is not None else solve_scene(scene, loaded, as_json)
-        try:
+        with prefixed(f"{scene}: bodies.{body}: "):
             motion = FlexibleMotion(loaded, solution, body)
             motion.displacement(nodes, slice(0, 0))
-        except InputError as error:
-            raise InputError(f"{scene}: bodies.{body}: {error}") from None
         report = flexible_motion_as_dict(scene, motion, nodes)
     written = output is None or is_written(output, lambda: motion.write(output, slice(None, None, every), scale))
     click.echo(json.dumps(report) if as_json else flexible_motion_text(report))

@@ -12,7 +12,7 @@ import click
 from ..analyses.load_scene import load_scene
 from ..errors import InputError
 from .process import Status
-from .scene import changes_of, in_file, is_written, output_option, refusing, solving_options, start_of
+from .scene import changes_of, in_file, is_written, output_option, refuse_own_input, refusing, solving_options, start_of
 
 
 @click.command(short_help="Natural frequencies and damping.")
@@ -56,6 +56,7 @@ def modes(
                 check_page(output)
             else:
                 check_output(output)
+        refuse_own_input("-o", scene, output)
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         start = {"at": at} if state is None else start_of(loaded, state, at, changes)
@@ -116,6 +117,7 @@ def response(
     with refusing(scene, as_json):
         if not lowest < highest:
             raise InputError(f"--from {lowest:g} --to {highest:g}: found no range, expected --from below --to")
+        refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = {

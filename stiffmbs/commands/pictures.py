@@ -190,8 +190,8 @@ def plot(
             _tell(source, figure, None, as_json)
             _show_window()
             return
-        for path in (source, *(str(other) for other in others)) if output is not None else ():
-            refuse_own_input("-o", path, output)  # type: ignore[arg-type]
+        for path in (source, *(str(other) for other in others)):
+            refuse_own_input("-o", path, output)
         runs = runs_of(source, others, options)
         figure = figure_of(runs, channels, against, title)
         sheet = plotted_runs(runs, figure, in_window=output is None)

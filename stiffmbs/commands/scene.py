@@ -127,10 +127,10 @@ def in_file(path: str) -> Iterator[None]:
         raise type(error)(f"{source_name(path)}: {error}") from None
 
 
-def refuse_own_input(option: str, scene: str, output: Path) -> None:
+def refuse_own_input(option: str, scene: str, output: Path | None) -> None:
     """Reject an output that is the input file under any name."""
     try:
-        same = scene != STANDARD_INPUT and os.path.samefile(scene, output)
+        same = output is not None and scene != STANDARD_INPUT and os.path.samefile(scene, output)
     except (OSError, ValueError):  # one of them does not exist
         return
     if same:

@@ -13,7 +13,7 @@ import click
 
 from ..comparison.machine import installed
 from ..errors import InputError
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from .scene import refusing
 
 FIRST_SCENE = Path(__file__).with_name("first_scene.yaml")
@@ -82,8 +82,7 @@ def parts(name: str | None, as_json: bool) -> None:
         return
     found = shipped_part(name)
     if found is None:
-        near = did_you_mean(name, shipped_parts())
-        raise click.UsageError(f"found '{name}'{near}, expected one of {', '.join(shipped_parts())}")
+        raise click.UsageError(f"found '{name}'{instead_of(name, shipped_parts())}")
     click.echo(json.dumps({name: found}) if as_json else scene_text({"parts": {name: found}}), nl=as_json)
 
 
@@ -128,7 +127,7 @@ def scene_file(name: str) -> Path:
     found = scene_files()
     path = found.get(name.removesuffix(".yaml"))
     if path is None:
-        raise InputError(f"found no example '{name}'{did_you_mean(name, found)}, expected one of {', '.join(found)}")
+        raise InputError(f"found no example '{name}'{instead_of(name, found)}")
     return path
 
 

@@ -83,6 +83,8 @@ def kc(
     with refusing(scene, as_json):
         if figure is not None:
             check_figure("--figure", figure)
+        refuse_own_input("--figure", scene, figure)
+        refuse_own_input("-o", scene, output)
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = VehicleOptions(**vehicle)

@@ -58,26 +58,16 @@ def on_line(points: Sequence[tuple[float, float]], target: float) -> float:
 
 @dataclass(frozen=True)
 class Row:
-    """Measurement of a solver configuration at a setting.
+    """Measurement of a solver configuration at a setting."""
 
-    Attributes
-    ----------
-    solver, setting : str
-        Texts such as ``dop853`` and ``rtol 1e-06``.
-    errors : mapping of str to float
-        Largest errors over all output instants and channels, by measure; empty if the run failed.
-    seconds : float
-        Median of the times of a solution; nan if the run failed.
-    message : str
-        Reason of a failure; else empty.
-    """
-
+    # solver, setting: texts such as ``dop853`` and ``rtol 1e-06``
     solver: str
     setting: str
+    # largest errors over all output instants and channels, by measure; empty if the run failed
     errors: Mapping[str, float]
-    seconds: float
+    seconds: float  # median of the times of a solution; nan if the run failed
     steps: int
-    message: str = ""
+    message: str = ""  # reason of a failure; else empty
 
     def as_dict(self, measure: str) -> dict[str, Any]:
         """Return a row of ``stiffmbs compare --json``; a failed run has a message, and None as error and time."""

@@ -21,25 +21,14 @@ Best = tuple[str, float]
 
 @dataclass(frozen=True)
 class Crossing:
-    """Change of the faster kind of integrator between two values of a parameter.
+    """Change of the faster kind of integrator between two values of a parameter."""
 
-    Attributes
-    ----------
-    before, then : str
-        Faster solver below, and above.
-    at : float
-        Value at which both take the same time.
-    between : (float, float)
-        Values of the parameter on both sides.
-    measured : bool
-        True if both have a time on both sides; otherwise one of them fails there, and `at` is the middle.
-    """
-
+    # before, then: faster solver below, and above
     before: str
     then: str
-    at: float
-    between: tuple[float, float]
-    measured: bool
+    at: float  # value at which both take the same time
+    between: tuple[float, float]  # values of the parameter on both sides
+    measured: bool  # True if both have a time on both sides; otherwise one of them fails there, and `at` is the middle
 
     def as_dict(self) -> dict[str, Any]:
         """Return an entry of ``crossings`` in ``stiffmbs compare --json``."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compile.bodies import SPACE
 from ..errors import InputError
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..results.scales import kind_of
 from ..results.solution import Solution
 
@@ -36,8 +36,7 @@ MEASURES = {
 def measure_of(name: str) -> Measure:
     """Return a measure by its name. Raises InputError if there is no such measure."""
     if name not in MEASURES:
-        near = did_you_mean(name, MEASURES)
-        raise InputError(f"measure: found '{name}'{near}, expected one of {', '.join(MEASURES)}")
+        raise InputError(f"measure: found '{name}'{instead_of(name, MEASURES)}")
     return MEASURES[name]
 
 

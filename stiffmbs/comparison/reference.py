@@ -43,30 +43,14 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Reference:
-    """Motion on which two integrators agree.
+    """Motion on which two integrators agree."""
 
-    Attributes
-    ----------
-    solution : Solution
-        Solution of the explicit one.
-    names : (str, str)
-        Names of the runs: ``bdf at rtol 1e-12`` and ``dop853 at rtol 1e-12``.
-    channels : mapping of str to tuple of str
-        Channels that each measure compares.
-    agreement : mapping of str to float
-        Largest difference of the two in each measure.
-    part : float
-        Largest difference of positions, relative to the motion of each body.
-    left_out : tuple of str
-        Reactions that are not compared, as rigid bodies do not determine them.
-    """
-
-    solution: Solution
-    names: tuple[str, str]
-    channels: Mapping[str, tuple[str, ...]]
-    agreement: Mapping[str, float]
-    part: float
-    left_out: tuple[str, ...]
+    solution: Solution  # solution of the explicit one
+    names: tuple[str, str]  # names of the runs: ``bdf at rtol 1e-12`` and ``dop853 at rtol 1e-12``
+    channels: Mapping[str, tuple[str, ...]]  # channels that each measure compares
+    agreement: Mapping[str, float]  # largest difference of the two in each measure
+    part: float  # largest difference of positions, relative to the motion of each body
+    left_out: tuple[str, ...]  # reactions that are not compared, as rigid bodies do not determine them
     notes: tuple[str, ...]
 
     def errors(self, channels: Mapping[str, np.ndarray]) -> dict[str, float]:

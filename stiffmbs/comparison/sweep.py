@@ -98,21 +98,13 @@ class Point(Timed):
 
 @dataclass(frozen=True)
 class Sweep:
-    """Common data of the measurements, with their time limit.
-
-    Attributes
-    ----------
-    longest : float
-        Time limit of a run, s.
-    tell : callable
-        Called with a line of text on the progress.
-    """
+    """Common data of the measurements, with their time limit."""
 
     model: ModelData
     settings: RunSettings
     reference: Reference
-    longest: float
-    tell: Tell
+    longest: float  # time limit of a run, s
+    tell: Tell  # called with a line of text on the progress
 
     def points(self, entry: Entry, values: Sequence[float], target: tuple[str, float] | None = None) -> Iterator[Point]:
         """Yield points from loose to tight, up to a run beyond the time limit, or to two settings beyond the target.

@@ -81,20 +81,13 @@ def _names_of(base: type[Described]) -> frozenset[str]:
 
 @dataclass(frozen=True)
 class CompiledTerms:
-    """Terms of an element whose kernels are loops over arrays, written by hand instead of derived.
+    """Terms of an element whose kernels are loops over arrays, written by hand instead of derived."""
 
-    Attributes
-    ----------
-    patterns : mapping of str to list of (int, int)
-        Row and column of each entry of each term in the element's own block.
-    source : callable
-        Return the source of a kernel with some terms, given their places in it by name.
-    along : callable, optional
-        Return that of a kernel with their directional derivatives (`stiffmbs.compile.directional`).
-    """
-
+    # row and column of each entry of each term in the element's own block
     patterns: Mapping[str, list[tuple[int, int]]]
+    # return the source of a kernel with some terms, given their places in it by name
     source: Callable[[Mapping[str, int]], str]
+    # return that of a kernel with their directional derivatives (`stiffmbs.compile.directional`)
     along: Callable[[Mapping[str, int]], str] | None = None
 
 

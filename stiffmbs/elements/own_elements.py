@@ -27,10 +27,7 @@ class Registry:
     def add(self, element: type[Element]) -> None:
         """Add a class; a class of the same name and module, such as of a notebook cell run again, is replaced.
 
-        Raises
-        ------
-        InputError
-            If the kind is taken.
+        Raises InputError if the kind is taken.
         """
         for key in _keys(element):
             known = self._classes.get(key, element)

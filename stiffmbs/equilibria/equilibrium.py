@@ -36,25 +36,15 @@ GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """Pose at rest, or in a steady motion, in which forces balance.
-
-    Attributes
-    ----------
-    moves : int
-        Number of Newton moves.
-    imbalance : float
-        Largest residual of a generalised force, relative to the largest force.
-    motion : SteadyMotion
-        With the speeds that were found.
-    """
+    """Pose at rest, or in a steady motion, in which forces balance."""
 
     q: np.ndarray
     u: np.ndarray
     acceleration: np.ndarray
     lam: np.ndarray
-    moves: int
-    imbalance: float
-    motion: SteadyMotion
+    moves: int  # number of Newton moves
+    imbalance: float  # largest residual of a generalised force, relative to the largest force
+    motion: SteadyMotion  # with the speeds that were found
 
 
 def find_equilibrium(

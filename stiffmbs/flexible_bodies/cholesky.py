@@ -18,25 +18,14 @@ COLUMNS = 256
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """Factors of rows that are eliminated together, and of the later rows that they change.
+    """Factors of rows that are eliminated together, and of the later rows that they change."""
 
-    Attributes
-    ----------
-    begin, end : int
-        Eliminated rows.
-    later : ndarray of int, shape (m,)
-        Changed rows, in increasing order.
-    own : ndarray, shape (end - begin, end - begin)
-        Factor of the eliminated rows, a lower triangle.
-    below : ndarray, shape (m, end - begin)
-        Factor of the later rows.
-    """
-
+    # begin, end: eliminated rows
     begin: int
     end: int
-    later: np.ndarray
-    own: np.ndarray
-    below: np.ndarray
+    later: np.ndarray  # of int, shape (m,): changed rows, in increasing order
+    own: np.ndarray  # shape (end - begin, end - begin): factor of the eliminated rows, a lower triangle
+    below: np.ndarray  # shape (m, end - begin): factor of the later rows
 
 
 class Cholesky:

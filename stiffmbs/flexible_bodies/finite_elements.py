@@ -21,30 +21,17 @@ along x, y and z refers to the largest entry, and the force of a rigid displacem
 
 @dataclass(frozen=True, eq=False)
 class FiniteElements:
-    """Free elastic body in SI units with three displacements per node: x, y, z of node 0, then of node 1.
+    """Free elastic body in SI units with three displacements per node: x, y, z of node 0, then of node 1."""
 
-    Attributes
-    ----------
-    nodes : ndarray, shape (n, 3)
-        Positions, m.
-    stiffness, mass : sparse arrays, shape (3 n, 3 n)
-        N/m and kg.
-    groups : mapping of str to ndarray of int
-        Named sets of nodes, numbered from 0.
-    cells : mapping of str to ndarray of int
-        Nodes of the elements by type, in the names and order of meshio, for pictures; may be empty.
-    solid : Solid, optional
-        Shape functions and material, for stresses and geometric stiffening.
-    numbers : ndarray of int, shape (n,), optional
-        Increasing numbers by which the file names the nodes; from 0 without them.
-    """
-
-    nodes: np.ndarray
+    nodes: np.ndarray  # shape (n, 3): positions, m
+    # stiffness, mass: shape (3 n, 3 n): N/m and kg
     stiffness: csr_array
     mass: csr_array
-    groups: Mapping[str, np.ndarray] = field(default_factory=dict)
+    groups: Mapping[str, np.ndarray] = field(default_factory=dict)  # of int: named sets of nodes, numbered from 0
+    # of int: nodes of the elements by type, in the names and order of meshio, for pictures; may be empty
     cells: Mapping[str, np.ndarray] = field(default_factory=dict)
-    solid: Solid | None = None
+    solid: Solid | None = None  # shape functions and material, for stresses and geometric stiffening
+    # of int, shape (n,), optional: increasing numbers by which the file names the nodes; from 0 without them
     numbers: np.ndarray | None = None
 
     def rigid_modes(self, about: np.ndarray) -> np.ndarray:

@@ -14,23 +14,14 @@ AVERAGE, POINT = "average", "point"
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """Nodes that a marker holds.
-
-    Attributes
-    ----------
-    name : str
-    kind : str
-        ``rigid``: the nodes move as a rigid body with the marker (RBE2). ``average``: the marker takes the mean
-        displacement and rotation of the nodes (RBE3). ``point``: one node, without a rotation.
-    nodes : ndarray of int
-    point : ndarray, shape (3,)
-        Reference point, m.
-    """
+    """Nodes that a marker holds."""
 
     name: str
+    # ``rigid``: the nodes move as a rigid body with the marker (RBE2). ``average``: the marker takes the mean
+    # displacement and rotation of the nodes (RBE3). ``point``: one node, without a rotation.
     kind: str
-    nodes: np.ndarray
-    point: np.ndarray
+    nodes: np.ndarray  # of int
+    point: np.ndarray  # shape (3,): reference point, m
 
     @property
     def size(self) -> int:

@@ -35,62 +35,28 @@ MORE_MODES = 20
 
 @dataclass(frozen=True, eq=False)
 class ReducedBody:
-    """Flexible body with modal coordinates in its mean-axes frame at the centre of mass, SI units.
-
-    Attributes
-    ----------
-    mass : float
-    centre : ndarray, shape (3,)
-        Centre of mass in the coordinates of the mesh.
-    inertia : ndarray, shape (3, 3)
-        About the centre of mass, in the axes of the mesh.
-    frequencies : ndarray, shape (n,)
-        Natural frequencies of the free reduced body, Hz, without the six rigid modes.
-    modes : ndarray, shape (3 nodes, n)
-        Displacements of these modes with unit modal mass.
-    rigid_frequencies : ndarray, shape (6,)
-        Computed frequencies of the rigid modes, Hz: zero but for rounding.
-    fixed_frequencies : ndarray, shape (m,)
-        Natural frequencies with all interfaces held, Hz.
-    effective_mass : ndarray, shape (m, 3)
-        Effective mass of these along x, y and z, as fraction of the mass.
-    condition : float
-        Condition number of the mass matrix of interface and normal modes of unit mass.
-    markers : ndarray, shape (interfaces, 6, n)
-        Displacement and rotation of each interface's reference point by mode; zero rotations of points.
-    points : ndarray, shape (interfaces, 3)
-        Reference points in the coordinates of the mesh.
-    sizes : ndarray of int, shape (interfaces,)
-        Number of coordinates of each interface, 6 or 3.
-    first : ndarray, shape (n, 3)
-        First moments of mass of the modes, sum m psi_k; zero in the mean-axes frame but for rounding.
-    second : ndarray, shape (n, 3, 3)
-        sum m x psi_k^T, x from the centre of mass.
-    pairs : ndarray, shape (n, n, 3, 3)
-        sum m psi_l psi_k^T by l and k.
-    dependent : int
-        Number of combinations of modes left out as linearly dependent.
-    second_order : SecondOrder
-        Terms of second order, of a mesh: geometric stiffening.
-    """
+    """Flexible body with modal coordinates in its mean-axes frame at the centre of mass, SI units."""
 
     mass: float
-    centre: np.ndarray
-    inertia: np.ndarray
-    frequencies: np.ndarray
-    modes: np.ndarray
-    rigid_frequencies: np.ndarray
-    fixed_frequencies: np.ndarray
-    effective_mass: np.ndarray
-    condition: float
+    centre: np.ndarray  # shape (3,): centre of mass in the coordinates of the mesh
+    inertia: np.ndarray  # shape (3, 3): about the centre of mass, in the axes of the mesh
+    frequencies: np.ndarray  # shape (n,): natural frequencies of the free reduced body, Hz, without the six rigid modes
+    modes: np.ndarray  # shape (3 nodes, n): displacements of these modes with unit modal mass
+    rigid_frequencies: np.ndarray  # shape (6,): computed frequencies of the rigid modes, Hz: zero but for rounding
+    fixed_frequencies: np.ndarray  # shape (m,): natural frequencies with all interfaces held, Hz
+    effective_mass: np.ndarray  # shape (m, 3): effective mass of these along x, y and z, as fraction of the mass
+    condition: float  # condition number of the mass matrix of interface and normal modes of unit mass
+    # shape (interfaces, 6, n): displacement and rotation of each interface's reference point by mode; zero rotations of
+    # points
     markers: np.ndarray
-    points: np.ndarray
-    sizes: np.ndarray
+    points: np.ndarray  # shape (interfaces, 3): reference points in the coordinates of the mesh
+    sizes: np.ndarray  # of int, shape (interfaces,): number of coordinates of each interface, 6 or 3
+    # shape (n, 3): first moments of mass of the modes, sum m psi_k; zero in the mean-axes frame but for rounding
     first: np.ndarray
-    second: np.ndarray
-    pairs: np.ndarray
-    dependent: int
-    second_order: SecondOrder
+    second: np.ndarray  # shape (n, 3, 3): sum m x psi_k^T, x from the centre of mass
+    pairs: np.ndarray  # shape (n, n, 3, 3): sum m psi_l psi_k^T by l and k
+    dependent: int  # number of combinations of modes left out as linearly dependent
+    second_order: SecondOrder  # terms of second order, of a mesh: geometric stiffening
 
     def of_material(self, stiffer: float, heavier: float) -> ReducedBody:
         """Return the body with other factors of its stiffness and its mass matrix."""

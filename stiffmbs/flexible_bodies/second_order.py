@@ -32,24 +32,13 @@ RIGID_MOTIONS = 6
 
 @dataclass(frozen=True, eq=False)
 class SecondOrder:
-    """Terms of second order by pairs of n modes with unit modal mass; without entries for bodies without a mesh.
+    """Terms of second order by pairs of n modes with unit modal mass; without entries for bodies without a mesh."""
 
-    Attributes
-    ----------
-    first : ndarray, shape (n, n, 3)
-        sum m theta_kl.
-    moments : ndarray, shape (n, n, 3, 3)
-        sum m x theta_kl^T, x from the centre of mass.
-    static : ndarray, shape (n, r)
-        Modal coordinates b_i of the static shapes of interfaces with unit strain energy b_i^T K b_i.
-    stretch : ndarray, shape (r, n, n)
-        Gamma_i.
-    """
-
-    first: np.ndarray
-    moments: np.ndarray
+    first: np.ndarray  # shape (n, n, 3): sum m theta_kl
+    moments: np.ndarray  # shape (n, n, 3, 3): sum m x theta_kl^T, x from the centre of mass
+    # shape (n, r): modal coordinates b_i of the static shapes of interfaces with unit strain energy b_i^T K b_i
     static: np.ndarray
-    stretch: np.ndarray
+    stretch: np.ndarray  # shape (r, n, n): gamma_i
 
 
 def second_order(

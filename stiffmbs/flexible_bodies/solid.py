@@ -18,24 +18,14 @@ LARGEST_PART = 10_000_000
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """Isoparametric elements of an isotropic, linearly elastic material.
-
-    Attributes
-    ----------
-    mesh : skfem.Mesh
-    element : skfem.Element
-    order : int
-        Order of quadrature.
-    nodes : ndarray of int, shape (nodes of an element, elements)
-        Nodes of the body in the order of the shape functions.
-    modulus, poisson : float
-        Young's modulus, N/m^2, and Poisson's ratio.
-    """
+    """Isoparametric elements of an isotropic, linearly elastic material."""
 
     mesh: Any
     element: Any
-    order: int
+    order: int  # order of quadrature
+    # of int, shape (nodes of an element, elements): nodes of the body in the order of the shape functions
     nodes: np.ndarray
+    # modulus, poisson: Young's modulus, N/m^2, and Poisson's ratio
     modulus: float
     poisson: float
 

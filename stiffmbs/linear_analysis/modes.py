@@ -25,26 +25,17 @@ class Motion(Enum):
 
 @dataclass(frozen=True)
 class Mode:
-    """Mode: a pair of eigenvalues, or a single real one of user-defined states.
+    """Mode: a pair of eigenvalues, or a single real one of user-defined states."""
 
-    Attributes
-    ----------
-    motion : Motion
-        Oscillating with a conjugate pair, aperiodic with two real eigenvalues (overdamped or unstable), or a rigid body
-        motion without stiffness, whose eigenvalues are zero; damping may make one of the two nonzero.
-    eigenvalues : tuple of complex
-        1/s; the one with positive imaginary part first. A single one if states add unpaired real eigenvalues.
-    shape : ndarray, shape (n_u,), complex
-        Displacements and rotations of all bodies in ground axes. The largest displacement, or rotation times the
-        size of the mechanism, is 1.
-    participation : dict of str to float
-        Fraction of the kinetic energy of each body, largest first.
-    """
-
+    # oscillating with a conjugate pair, aperiodic with two real eigenvalues (overdamped or unstable), or a rigid body
+    # motion without stiffness, whose eigenvalues are zero; damping may make one of the two nonzero
     motion: Motion
+    # 1/s; the one with positive imaginary part first. A single one if states add unpaired real eigenvalues.
     eigenvalues: tuple[complex, ...]
+    # shape (n_u,), complex: displacements and rotations of all bodies in ground axes. The largest displacement, or
+    # rotation times the size of the mechanism, is 1.
     shape: np.ndarray
-    participation: dict[str, float]
+    participation: dict[str, float]  # fraction of the kinetic energy of each body, largest first
 
     @property
     def frequency(self) -> float:

@@ -35,16 +35,8 @@ Tell = Callable[[dict[str, Any]], None]
 class Request:
     """Request of a page.
 
-    Attributes
-    ----------
-    what : str
-        Name of an entry of `ANSWERS`.
-    text : str
-        Text of the scene.
-    numbers : mapping of str to str
-        Parameters with other values than in the text.
-    rest : mapping
-        Further fields.
+    `what`: name of an entry of `ANSWERS`. `text`: text of the scene. `numbers`: parameters with other values than in
+    the text. `rest`: further fields.
     """
 
     def __init__(self, content: Mapping[str, Any]) -> None:

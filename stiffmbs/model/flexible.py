@@ -21,7 +21,7 @@ from ..elements.spatial.joints.point_on_line import PointOnLine
 from ..elements.spatial.joints.point_on_plane import PointOnPlane
 from ..elements.spatial.marker import ORIGIN, Marker, Point
 from ..elements.spatial.orientation import IDENTITY, Orientation, matrix
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..flexible_bodies.description import FlexibleBody
 from ..flexible_bodies.reduced import reduced_body
 from ..flexible_bodies.reduction import ReducedBody
@@ -89,10 +89,8 @@ def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dic
             body = SceneFlexibleBody.model_validate(entry, context=dict(context))
         except ValidationError as error:
             raise InputError(f"bodies.{name}.{sentence(error)}") from None
-        try:
+        with prefixed(f"bodies.{name}: "):
             reduced = reduced_body(body, Path(context.get(FOLDER) or ""))
-        except InputError as error:
-            raise InputError(f"bodies.{name}: {error}") from None
         parts = _Parts(name, body, reduced, Path(context.get(FOLDER) or ""))
         own_bodies, own_joints = dict(parts.bodies()), dict(parts.joints())
         taken = [f"bodies.{part}" for part in own_bodies if part in bodies]

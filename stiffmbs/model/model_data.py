@@ -21,7 +21,7 @@ from ..elements.states.equation import FormulaOfRate, Reported, SampledUpdate, S
 from ..elements.states.section import AnyState, check_formula, check_states, names_in_formulas, refuse_algebraic_loops
 from ..elements.states.state import StateValue
 from ..methods import NotebookMethods
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..reading.fields import Described
 from ..reading.formula.formula import Formula
 from ..reading.formula.names import NAMES, FormulaNames
@@ -250,8 +250,7 @@ def check_element(
             raise ValueError(f"{where}.{field}: found '{joint}' of the type {joints[owner].kind}, expected {own}")
         if joint.joint not in joints:
             raise ValueError(
-                f"{where}.{field}: found the unknown joint '{joint.joint}'{did_you_mean(joint.joint, joints)}, expected one of "
-                f"{', '.join(joints) or 'none'}"
+                f"{where}.{field}: found the unknown joint '{joint.joint}'{instead_of(joint.joint, joints)}"
             )
         if next(joints[joint.joint].parts(JointName), None):
             raise ValueError(

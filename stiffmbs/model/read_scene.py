@@ -12,7 +12,7 @@ from pydantic import ValidationError as PydanticError
 
 from ..elements.body import FLEXIBLE
 from ..elements.roads.field import read_roads
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
 from ..reading.fields import sentence
 from ..reading.files.files_read import FOLDER, record, recorded
@@ -158,11 +158,9 @@ def chosen_options(
     words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
     for path, word in words.items():
         set_value(found, path, word)
-    try:
+    with prefixed(f"{source}, "):
         chosen = {"words": words_chosen(found.get(CHOOSE)), "choices": tuple(choices_of(found, OPTIONS))}
         merged = with_chosen(found, chosen["words"], OPTIONS)
-    except InputError as error:
-        raise InputError(f"{source}, {error}") from None
     merged.pop(CHOOSE, None)
     return merged, chosen, [change for change in changes if change[0] not in words]
 
@@ -171,10 +169,8 @@ def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
     """Return the scene of each stage; errors as for `made_scene`."""
     if scene.written is None:
         raise InputError(f"{source}: found stages, expected a scene of one run")
-    try:
+    with prefixed(f"{source}, "):
         stages = written_stages(scene.written, scene.stages)
-    except InputError as error:
-        raise InputError(f"{source}, {error}") from None
     return tuple(
         _stage_scene(stage, scene.stages[k].removed, f"{source}, stages.{k}") for k, stage in enumerate(stages)
     )

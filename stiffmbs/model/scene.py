@@ -11,6 +11,7 @@ from ..elements.element import Component
 from ..elements.requests.check import check_output
 from ..elements.requests.order import dimension, dimensions
 from ..elements.roads.field import AnyRoad
+from ..errors import prefixed
 from ..reading.fields import Described
 from ..reading.files.unchanged import Unchanged
 from ..reading.formula.text import FormulaError
@@ -73,10 +74,8 @@ class Scene(ModelData):
         requests = dimensions(outputs)
         for name, output in self.variables.items():
             check_output(f"variables.{name}", output, self, self.output_names, outputs)
-            try:
+            with prefixed(f"variables.{name}: ", FormulaError, ValueError):
                 dimension(output, requests)
-            except FormulaError as error:
-                raise ValueError(f"variables.{name}: {error}") from None
 
     def written_parameters(self) -> dict[str, float | str]:
         """Return the parameters with their units, as in a scene."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ..reading.did_you_mean import did_you_mean
+from ..errors import prefixed
+from ..reading.did_you_mean import instead_of
 from ..reading.files.quoted import quoted, written
 from ..tuning import SUBSYSTEMS, defaults_of, numbers_of
 
@@ -40,8 +41,7 @@ def _entries(found: object, names: str) -> list[tuple[Any, Any]]:
 
 def _refuse_unknown(where: str, what: str, found: object, known: Mapping[str, Any]) -> None:
     if found not in known:
-        near = did_you_mean(found, known)
-        raise ValueError(f"{where}found the unknown {what} '{quoted(found)}'{near}, expected one of {', '.join(known)}")
+        raise ValueError(f"{where}found the unknown {what} '{quoted(found)}'{instead_of(found, known)}")
 
 
 def _checked(where: str, found: object, usual: Any, read: Read) -> Any:
@@ -50,10 +50,8 @@ def _checked(where: str, found: object, usual: Any, read: Read) -> Any:
         if not isinstance(found, list | tuple) or len(found) != len(usual):
             raise ValueError(f"{where}: found {written(found)}, expected a list of {len(usual)} numbers")
         return tuple(_checked(where, *pair, read) for pair in zip(found, usual, strict=True))
-    try:
+    with prefixed(f"{where}: ", ValueError, ValueError):
         value = read(found)
-    except ValueError as error:
-        raise ValueError(f"{where}: {error}") from None
     if isinstance(usual, int) and value == round(value) and (usual == 0 or 1 <= value <= MOST * usual) and value >= 0:
         return int(value)
     least, most = bounds(usual)

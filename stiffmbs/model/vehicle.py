@@ -17,7 +17,7 @@ from ..elements.spatial.orientation import IDENTITY, Orientation
 from ..elements.spatial.spatial_kinds import FORCES
 from ..elements.spatial.tyre import Tyre
 from ..errors import InputError
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..reading.fields import Described, located
 from ..reading.files.quoted import written
 
@@ -98,8 +98,7 @@ def with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, A
         vehicle = Vehicle.model_validate(raw[VEHICLE], context=context)
     bodies, forces, requests = (_section(raw, name) for name in ("bodies", "forces", "requests"))
     if vehicle.body not in bodies:
-        near = did_you_mean(vehicle.body, bodies)
-        raise InputError(f"{VEHICLE}.body: found '{vehicle.body}'{near}, expected one of {', '.join(bodies)}")
+        raise InputError(f"{VEHICLE}.body: found '{vehicle.body}'{instead_of(vehicle.body, bodies)}")
     if VEHICLE in requests:
         raise InputError(f"requests.{VEHICLE}: found the name of the section {VEHICLE}, expected another")
     markers = {
@@ -135,8 +134,7 @@ def _tyres(vehicle: Vehicle, forces: Mapping[str, Any]) -> tuple[str, ...]:
     known = tuple(name for name, force in forces.items() if _is_tyre(force))
     for name in vehicle.tyres or ():
         if name not in known:
-            near = did_you_mean(name, known)
-            raise InputError(f"{VEHICLE}.tyres: found '{name}'{near}, expected one of {', '.join(known) or 'none'}")
+            raise InputError(f"{VEHICLE}.tyres: found '{name}'{instead_of(name, known)}")
     return known if vehicle.tyres is None else vehicle.tyres
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from .files.quoted import quoted
 
@@ -30,3 +30,8 @@ def did_you_mean(found: object, known: Iterable[object]) -> str:
     owned = {name.removeprefix(owner): full for name, full in names.items() if name.startswith(owner)}
     near = get_close_matches(text.removeprefix(owner) if owned else text, owned or names, 1, LEAST)
     return f" (did you mean '{(owned or names)[near[0]]}'?)" if near else ""
+
+
+def instead_of(found: object, known: Collection[str]) -> str:
+    """Return the end of a message, after the name that was found: the nearest valid name and a list of all."""
+    return f"{did_you_mean(found, known)}, expected one of {', '.join(known) or 'none'}"

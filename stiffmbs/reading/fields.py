@@ -27,7 +27,7 @@ from pydantic import ValidationError as PydanticError
 from pydantic_core import core_schema
 
 from ..errors import InputError
-from .did_you_mean import did_you_mean
+from .did_you_mean import did_you_mean, instead_of
 from .files.quoted import quoted, written
 from .files.yaml_text import quotes_hint
 from .formula.text import FormulaError
@@ -127,10 +127,7 @@ class Described(_Base):
                 if key in cls.former_names:
                     raise ValueError(f"found '{key}', expected its new name '{cls.former_names[key]}'")
                 if key not in known:
-                    raise ValueError(
-                        f"found the unknown key '{quoted(key)}'{did_you_mean(key, known)}, expected one of {', '.join(known)}"
-                        f"{quotes_hint(key)}"
-                    )
+                    raise ValueError(f"found the unknown key '{quoted(key)}'{instead_of(key, known)}{quotes_hint(key)}")
         return found
 
     @model_validator(mode="before")

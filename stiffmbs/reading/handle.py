@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..errors import InputError
-from .did_you_mean import did_you_mean
+from .did_you_mean import instead_of
 from .formula.names import FormulaNames
 
 if TYPE_CHECKING:
@@ -48,10 +48,7 @@ class Handle:
             return sympy.Symbol(f"{self.name}.{field}", real=True)
         if field not in self.fields:
             known = (*self._symbols(), *self._own())
-            raise AttributeError(
-                f"found no '{field}' of the body {vars(self).get('name')}{did_you_mean(field, known)}, expected one of "
-                f"{', '.join(known)}"
-            )
+            raise AttributeError(f"found no '{field}' of the body {vars(self).get('name')}{instead_of(field, known)}")
         return getattr(self.body, field)
 
     def __setattr__(self, field: str, value: object) -> None:
@@ -62,10 +59,7 @@ class Handle:
                 f"('{self.name}', Body(..., {field}=...)) to change it at the start"
             )
         if field not in self._own():
-            raise InputError(
-                f"{self.name}: found the unknown field '{field}'{did_you_mean(field, self._own())}, expected one of "
-                f"{', '.join(self._own())}"
-            )
+            raise InputError(f"{self.name}: found the unknown field '{field}'{instead_of(field, self._own())}")
         kept = {name: getattr(body, name) for name in body.model_fields_set}
         vars(self)["_model"].replace(self.name, type(body)(**{**kept, field: value}))
 

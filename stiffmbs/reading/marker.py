@@ -41,10 +41,7 @@ class Placement(Described):
 class MarkerReference(Described):
     """Body, or named marker of a body: ``cart``, ``bar.end``, ``ground``.
 
-    Attributes
-    ----------
-    dimensions : int or None
-        2 or 3; None for one of either family.
+    `dimensions`: 2 or 3; None for one of either family.
     """
 
     dimensions: ClassVar[int | None] = None

@@ -18,31 +18,17 @@ MOUNT = "mount"
 
 @dataclass(frozen=True)
 class Names:
-    """Names available in the text of a scene.
+    """Names available in the text of a scene."""
 
-    Attributes
-    ----------
-    bodies : frozenset of str
-        Full names of all bodies of the scene. No name is a prefix of another (``front`` and ``front.arm``), so every
-        text is unambiguous.
-    local : mapping of str to str
-        Within a part: full names by local name.
-    values : mapping of str to ast.expr
-        Within a part: its parameters, as numbers with units.
-    states : mapping of str to Known
-        Known dimensions of all states and inputs of the scene, by full name.
-    inputs : frozenset of str
-        Inputs among the states, which are available in formulas of time, too.
-    mounts : frozenset of str
-        Within a part: local names of the bodies that it is mounted on.
-    """
-
+    # full names of all bodies of the scene. No name is a prefix of another (``front`` and ``front.arm``), so every text
+    # is unambiguous.
     bodies: frozenset[str] = frozenset()
-    local: Mapping[str, str] = field(default_factory=dict)
-    values: Mapping[str, ast.expr] = field(default_factory=dict)
+    local: Mapping[str, str] = field(default_factory=dict)  # within a part: full names by local name
+    values: Mapping[str, ast.expr] = field(default_factory=dict)  # within a part: its parameters, as numbers with units
+    # known dimensions of all states and inputs of the scene, by full name
     states: Mapping[str, Known] = field(default_factory=dict)
-    inputs: frozenset[str] = frozenset()
-    mounts: frozenset[str] = frozenset()
+    inputs: frozenset[str] = frozenset()  # inputs among the states, which are available in formulas of time, too
+    mounts: frozenset[str] = frozenset()  # within a part: local names of the bodies that it is mounted on
 
     @cached_property
     def dotted(self) -> bool:

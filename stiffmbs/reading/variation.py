@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from .files.yaml_text import read_yaml
 from .formula.text import FormulaError
 from .units.quantity import quantity
@@ -75,24 +75,13 @@ class Range:
 
 @dataclass(frozen=True)
 class Variation:
-    """Varied value of a scene.
+    """Varied value of a scene."""
 
-    Attributes
-    ----------
-    name : str
-        A parameter, or a path such as ``forces.bushing.stiffness`` or ``run.rtol``.
-    values : tuple
-        Values of a grid: numbers, text, or nested lists for vectors and matrices; empty for a range without a count.
-    range : Range or None
-        Range from which a sample draws; None if it picks one of the values.
-    dimension : Dimension or None
-        Dimension of the values if they are written with units.
-    """
-
-    name: str
+    name: str  # a parameter, or a path such as ``forces.bushing.stiffness`` or ``run.rtol``
+    # values of a grid: numbers, text, or nested lists for vectors and matrices; empty for a range without a count
     values: tuple[Any, ...]
-    range: Range | None = None
-    dimension: Dimension | None = None
+    range: Range | None = None  # range from which a sample draws; None if it picks one of the values
+    dimension: Dimension | None = None  # dimension of the values if they are written with units
 
     def drawn(self, part: np.ndarray) -> tuple[Any, ...]:
         """Return the values of a sample for numbers from 0 to 1, shape (n,)."""
@@ -148,13 +137,11 @@ def _read(place: str, name: str, given: str) -> Variation:
     ends = ends if log else [*ends, last]
     if len(ends) not in (2, 3):
         raise InputError(f"{place}: found {len(ends)} numbers, expected {FORMS}")
-    try:
+    with prefixed(f"{place}: ", (FormulaError, InputError)):
         found = _quantities(ends[:2])
         low, high = sorted(one.value for one in found)
         log = log or (colons != given and 0 < 10 * low <= high)
         chosen = Range(low, high, log, _count(ends[2]) if len(ends) == 3 else None)
-    except (FormulaError, InputError) as error:
-        raise InputError(f"{place}: {error}") from None
     return Variation(name, variation(name, chosen).values, chosen, found[-1].dimension)
 
 

@@ -32,12 +32,7 @@ def write_archive(path: Path, arrays: Mapping[str, np.ndarray]) -> None:
 
     PKWARE, .ZIP File Format Specification (APPNOTE 6.3.10), sec. 4.3; ZIP64 throughout, as `numpy.savez` writes it.
 
-    Parameters
-    ----------
-    path : Path
-        File to write; it may be a pipe.
-    arrays : mapping of str to ndarray
-        Arrays of numbers or of text by name.
+    `path`: file to write; it may be a pipe. `arrays`: arrays of numbers or of text by name.
     """
     directory: list[bytes] = []
     place = 0

@@ -68,10 +68,7 @@ def state_channels(system: System, q: np.ndarray, values: np.ndarray) -> dict[st
 def named(channels: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Return a channel by its name.
 
-    Raises
-    ------
-    ChannelError
-        If there is no such channel; the message names similar ones.
+    Raises ChannelError if there is no such channel; the message names similar ones.
     """
     try:
         return channels[name]

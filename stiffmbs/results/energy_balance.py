@@ -34,36 +34,16 @@ BROKEN = 1e-2
 
 @dataclass(frozen=True)
 class Balance:
-    """Energies and work over a run, J.
+    """Energies and work over a run, J."""
 
-    Attributes
-    ----------
-    t : ndarray, shape (n,)
-        Instants at which all values are known, s.
-    change : ndarray, shape (n,)
-        Change of kinetic + potential energy since the start.
-    work : ndarray, shape (n,)
-        Work of non-conservative forces since the start.
-    within : ndarray, shape (n - 1,)
-        End corrections of the quadrature in each interval.
-    steps : ndarray of int, shape (n - 1,)
-        Number of the solver's own steps that end inside each interval.
-    resolved : float
-        Difference between the work and that of every other instant: resolution of the quadrature.
-    scale : float
-        Exchanged energy: the largest kinetic energy, change of the potential energy, or work.
-    keeps_energy : bool
-        True if no non-conservative force exists: the work is then zero, not computed.
-    """
-
-    t: np.ndarray
-    change: np.ndarray
-    work: np.ndarray
-    within: np.ndarray
-    steps: np.ndarray
-    resolved: float
-    scale: float
-    keeps_energy: bool
+    t: np.ndarray  # shape (n,): instants at which all values are known, s
+    change: np.ndarray  # shape (n,): change of kinetic + potential energy since the start
+    work: np.ndarray  # shape (n,): work of non-conservative forces since the start
+    within: np.ndarray  # shape (n - 1,): end corrections of the quadrature in each interval
+    steps: np.ndarray  # of int, shape (n - 1,): number of the solver's own steps that end inside each interval
+    resolved: float  # difference between the work and that of every other instant: resolution of the quadrature
+    scale: float  # exchanged energy: the largest kinetic energy, change of the potential energy, or work
+    keeps_energy: bool  # True if no non-conservative force exists: the work is then zero, not computed
 
     @property
     def open(self) -> np.ndarray:

@@ -91,11 +91,7 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> float:
 
     All peaks between two instants count, as any of them may be the highest.
 
-    Parameters
-    ----------
-    times, values : ndarrays, shape (n,)
-    at : ndarray of int
-        Indices of the reported instants.
+    `times`, `values` of shape (n,). `at`: indices of the reported instants.
     """
     highest = float(np.nanmax(values[at]))
     k = 1 + np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:]))

@@ -25,24 +25,12 @@ AT_ONCE = 50_000_000
 
 @dataclass(frozen=True)
 class Peak:
-    """Largest value of a stress over all nodes and output times.
+    """Largest value of a stress over all nodes and output times."""
 
-    Attributes
-    ----------
-    value : float
-        N/m^2.
-    node : int
-        From 0.
-    point : tuple of float
-        Position of the node in the mesh, m.
-    time : float
-        s.
-    """
-
-    value: float
-    node: int
-    point: tuple[float, float, float]
-    time: float
+    value: float  # N/m^2
+    node: int  # from 0
+    point: tuple[float, float, float]  # position of the node in the mesh, m
+    time: float  # s
 
 
 class FlexibleMotion:

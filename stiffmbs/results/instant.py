@@ -40,14 +40,8 @@ _GROUND = GroundFrame()
 class Instant(Mapping[str, np.ndarray]):
     """Channels at the current instant; as a mapping, arrays of one value.
 
-    Parameters
-    ----------
-    model : ModelData
-    system : System
-    report : callable
-        Returns the output row of the current instant.
-    angle : callable
-        Returns a continuous angle of a joint, rad, given the row and the channel.
+    `report`: returns the output row of the current instant. `angle`: returns a continuous angle of a joint, rad, given
+    the row and the channel.
     """
 
     def __init__(

@@ -73,12 +73,7 @@ def place(model: Any, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
 class Motions:
     """Motion of markers, and actions of joints and forces; the plane is the x-y plane of space.
 
-    Parameters
-    ----------
-    channels : mapping of str to ndarray
-        Channels of a run of the model.
-    count : int
-        Number of instants.
+    `channels`: channels of a run of the model. `count`: number of instants.
     """
 
     def __init__(self, model: Any, channels: Channels, count: int) -> None:

@@ -20,73 +20,40 @@ class RobotFault(Exception):
 
 @dataclass(frozen=True)
 class LinkJoint:
-    """Joint between a link and its parent.
-
-    Attributes
-    ----------
-    kind : str
-        ``hinge``, ``slide``, ``ball`` or ``free``.
-    point, axis : tuple of float
-        In the link's frame, m; the axis has length 1.
-    stiffness, damping : float
-        N m/rad and N m s/rad of a hinge or ball, N/m and N s/m of a slide.
-    rest : float
-        Coordinate at which its spring is relaxed, rad or m.
-    friction : float
-        Magnitude of the dry friction, N m or N.
-    armature : float
-        Inertia of the rotor reflected to the joint, kg m^2 or kg.
-    limits : (float, float) or None
-        Limits of the coordinate, rad or m.
-    effort : (float, float) or None
-        Bounds of the force of all actuators on the coordinate, N m or N.
-    zero : float
-        Coordinate at the pose given by its `Link`, rad or m.
-    """
+    """Joint between a link and its parent."""
 
     name: str
-    kind: JointKind
+    kind: JointKind  # ``hinge``, ``slide``, ``ball`` or ``free``
+    # point, axis: in the link's frame, m; the axis has length 1
     point: tuple[float, ...] = ORIGIN
     axis: tuple[float, ...] = (0.0, 0.0, 1.0)
+    # stiffness, damping: N m/rad and N m s/rad of a hinge or ball, N/m and N s/m of a slide
     stiffness: float = 0.0
     damping: float = 0.0
-    rest: float = 0.0
-    friction: float = 0.0
-    armature: float = 0.0
-    limits: tuple[float, float] | None = None
-    effort: tuple[float, float] | None = None
-    zero: float = 0.0
+    rest: float = 0.0  # coordinate at which its spring is relaxed, rad or m
+    friction: float = 0.0  # magnitude of the dry friction, N m or N
+    armature: float = 0.0  # inertia of the rotor reflected to the joint, kg m^2 or kg
+    limits: tuple[float, float] | None = None  # limits of the coordinate, rad or m
+    effort: tuple[float, float] | None = None  # bounds of the force of all actuators on the coordinate, N m or N
+    zero: float = 0.0  # coordinate at the pose given by its `Link`, rad or m
 
 
 @dataclass(frozen=True)
 class Link:
-    """Rigid link.
-
-    Attributes
-    ----------
-    parent : str or None
-        None for the world.
-    position, orientation : tuple of float
-        Frame of the link in the parent's with all joints at their zero: m, quaternion with the scalar first.
-    center_of_mass : tuple of float
-        In its frame, m.
-    inertia : ndarray, shape (3, 3)
-        About the centre of mass in the axes of its frame, kg m^2.
-    joints : tuple of LinkJoint
-        In order from the parent; empty if the link is fixed.
-    lifted : float
-        Fraction of its weight that is balanced (MJCF: gravcomp).
-    """
+    """Rigid link."""
 
     name: str
-    parent: str | None
+    parent: str | None  # None for the world
+    # position, orientation: frame of the link in the parent's with all joints at their zero: m, quaternion with the
+    # scalar first
     position: tuple[float, ...] = ORIGIN
     orientation: tuple[float, ...] = IDENTITY
     mass: float = 0.0
-    center_of_mass: tuple[float, ...] = ORIGIN
+    center_of_mass: tuple[float, ...] = ORIGIN  # in its frame, m
+    # shape (3, 3): about the centre of mass in the axes of its frame, kg m^2
     inertia: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))
-    joints: tuple[LinkJoint, ...] = ()
-    lifted: float = 0.0
+    joints: tuple[LinkJoint, ...] = ()  # in order from the parent; empty if the link is fixed
+    lifted: float = 0.0  # fraction of its weight that is balanced (MJCF: gravcomp)
 
     @property
     def is_heavy(self) -> bool:
@@ -114,35 +81,21 @@ class Transmission:
 
     An actuator's force is gain u + bias with gain = g_0 + g_1 L + g_2 L' and bias = b_0 + b_1 L + b_2 L'; a passive
     tendon has no input u, and its spring and damper are the bias.
-
-    Attributes
-    ----------
-    gears : mapping of str to float
-        Gear by joint.
-    segments : tuple of Segment
-        Path of a tendon through space.
-    gain, bias : tuple of float
-        Three coefficients each; without a gain there is no input.
-    control, force : (float, float) or None
-        Bounds of the input and of the force.
-    lag : float or None
-        Time constant of the first-order filter of the input, s; 0 for an integrator.
-    tendon : str
-        Name of the tendon whose actuators have a bounded total.
-    total : (float, float) or None
-        Bounds of the total force of all actuators on that tendon; beyond them all forces are scaled by one factor.
     """
 
     name: str
-    gears: Mapping[str, float]
+    gears: Mapping[str, float]  # gear by joint
+    # gain, bias: three coefficients each; without a gain there is no input
     gain: tuple[float, ...] | None
     bias: tuple[float, ...]
+    # control, force: bounds of the input and of the force
     control: tuple[float, float] | None = None
     force: tuple[float, float] | None = None
-    lag: float | None = None
-    tendon: str = ""
+    lag: float | None = None  # time constant of the first-order filter of the input, s; 0 for an integrator
+    tendon: str = ""  # name of the tendon whose actuators have a bounded total
+    # bounds of the total force of all actuators on that tendon; beyond them all forces are scaled by one factor
     total: tuple[float, float] | None = None
-    segments: tuple[Segment, ...] = ()
+    segments: tuple[Segment, ...] = ()  # path of a tendon through space
 
 
 @dataclass(frozen=True)

@@ -32,26 +32,13 @@ SHOWN = {
 
 @dataclass(frozen=True)
 class Panel:
-    """Diagram of the page: curves of one load case.
-
-    Attributes
-    ----------
-    title : str
-    case : str
-        Load case.
-    shown : tuple of str
-        Measures, of wheels (``toe``) or of the axle (``axle.track``).
-    over : str
-        Measure along the other axis; empty for the input of the case.
-    upright : bool
-        True if `over` is drawn upwards, as wheel travel is.
-    """
+    """Diagram of the page: curves of one load case."""
 
     title: str
-    case: str
-    shown: tuple[str, ...]
-    over: str = ""
-    upright: bool = False
+    case: str  # load case
+    shown: tuple[str, ...]  # measures, of wheels (``toe``) or of the axle (``axle.track``)
+    over: str = ""  # measure along the other axis; empty for the input of the case
+    upright: bool = False  # True if `over` is drawn upwards, as wheel travel is
 
 
 PANELS = (

@@ -24,25 +24,14 @@ MOST_DIGITS = 12
 
 @dataclass(frozen=True)
 class Verdict:
-    """Verdict on a run.
+    """Verdict on a run."""
 
-    Attributes
-    ----------
-    status : str
-        ``done``, ``doubt`` (completed, but the results may be wrong), ``stopped`` or ``interrupted``.
-    headline : str
-        One sentence on the end of the run.
-    digits : mapping of str to int
-        Reliable digits of positions, velocities and forces, relative to the largest value of each body or element;
-        empty if the run was not verified.
-    to_check : tuple of str
-        Notes of the run.
-    """
-
-    status: str
-    headline: str
+    status: str  # ``done``, ``doubt`` (completed, but the results may be wrong), ``stopped`` or ``interrupted``
+    headline: str  # one sentence on the end of the run
+    # reliable digits of positions, velocities and forces, relative to the largest value of each body or element; empty
+    # if the run was not verified
     digits: dict[str, int]
-    to_check: tuple[str, ...]
+    to_check: tuple[str, ...]  # notes of the run
 
     @property
     def digits_words(self) -> str:

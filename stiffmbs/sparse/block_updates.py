@@ -20,28 +20,16 @@ SHAPES = tuple(product((DOWN, RIGHT), ROWS, QUADS))
 
 
 class Target(NamedTuple):
-    """Lines of a supernode's panel that the elimination of an earlier supernode updates.
+    """Lines of a supernode's panel that the elimination of an earlier supernode updates."""
 
-    Attributes
-    ----------
-    k : int
-        Eliminated supernode.
-    start, stride : int
-        Start and stride of the panel's lines.
-    factors : int
-        Start of the multipliers of the lines, one for each.
-    size : int
-        Number of lines.
-    runs : list of tuple of int
-        Contiguous quads: offset in the source lines, offset in the target lines, and number.
-    """
-
-    k: int
+    k: int  # eliminated supernode
     kind: int
+    # start, stride: start and stride of the panel's lines
     start: int
     stride: int
-    factors: int
-    size: int
+    factors: int  # start of the multipliers of the lines, one for each
+    size: int  # number of lines
+    # contiguous quads: offset in the source lines, offset in the target lines, and number
     runs: list[tuple[int, int, int]]
 
 

@@ -51,24 +51,13 @@ class Task:
 
 @dataclass(frozen=True)
 class Row:
-    """Result of a case.
-
-    Attributes
-    ----------
-    status : str
-        ``done``, ``stopped`` early, or ``error``.
-    message : str
-        Error message, and notes of the run.
-    values : tuple of float or ndarray
-        Outputs, numbers or series; numbers are nan if the run was not completed.
-    files : mapping of str to str
-        Digests of the files that cases name, without those of the study's scene.
-    """
+    """Result of a case."""
 
     case: int
-    status: str
-    message: str
-    values: tuple[float | np.ndarray, ...]
+    status: str  # ``done``, ``stopped`` early, or ``error``
+    message: str  # error message, and notes of the run
+    values: tuple[float | np.ndarray, ...]  # outputs, numbers or series; numbers are nan if the run was not completed
+    # digests of the files that cases name, without those of the study's scene
     files: Mapping[str, str] = field(default_factory=dict)
 
 

@@ -19,16 +19,10 @@ MOST_CASES = MOST_VALUES
 
 @dataclass(frozen=True)
 class Cases:
-    """Cases of a study.
-
-    Attributes
-    ----------
-    drawn : tuple of tuple
-        Values of each variation of a sample, case by case; empty for a grid.
-    """
+    """Cases of a study."""
 
     variations: tuple[Variation, ...]
-    drawn: tuple[tuple[Any, ...], ...] = ()
+    drawn: tuple[tuple[Any, ...], ...] = ()  # values of each variation of a sample, case by case; empty for a grid
 
     @property
     def names(self) -> tuple[str, ...]:

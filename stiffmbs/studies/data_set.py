@@ -106,10 +106,7 @@ def check_output(path: Path) -> None:
 def write(path: Path, data: xarray.Dataset) -> None:
     """Write a data set to a file, completely or not at all.
 
-    Parameters
-    ----------
-    path : Path
-        Name in .nc, where ``_per_`` replaces ``/`` in names, or in .csv, with a line for each case without series.
+    `path`: name in .nc, where ``_per_`` replaces ``/`` in names, or in .csv, with a line for each case without series.
     """
     from ..results.files import written_whole
 

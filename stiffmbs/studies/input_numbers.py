@@ -12,7 +12,7 @@ from ..analyses.job import Job
 from ..analyses.renumber import Change, changes_of_numbers, write_numbers
 from ..errors import InputError
 from ..model.scene import Scene
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..results.joint_angles import TURN, joint_angles
 from .case_solver import CaseSolver
 
@@ -98,10 +98,7 @@ class InputNumbers:
             return False
         for name, value in changed.items():
             if name not in self.values:
-                raise InputError(
-                    f"input '{name}': found no such input{did_you_mean(name, self.values)}, expected one of "
-                    f"{', '.join(self.values) or 'none'}"
-                )
+                raise InputError(f"input '{name}': found no such input{instead_of(name, self.values)}")
             if not math.isfinite(value):
                 raise InputError(f"input '{name}': found {value}, expected a finite number")
         if self._quick is None:

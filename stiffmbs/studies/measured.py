@@ -17,18 +17,10 @@ from ..results.solution import Solution
 
 @dataclass(frozen=True)
 class Measured:
-    """Measured channels over time.
+    """Measured channels over time."""
 
-    Attributes
-    ----------
-    time : ndarray, shape (n,)
-        Increasing times, s.
-    channels : dict of str to ndarray
-        Values, shapes (n,); nan where a channel has no value.
-    """
-
-    time: np.ndarray
-    channels: dict[str, np.ndarray]
+    time: np.ndarray  # shape (n,): increasing times, s
+    channels: dict[str, np.ndarray]  # values, shapes (n,); nan where a channel has no value
 
 
 def measured(data: Any) -> Measured:

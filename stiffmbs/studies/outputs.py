@@ -56,16 +56,10 @@ OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {
 
 @dataclass(frozen=True)
 class Output:
-    """Output variable of a study.
-
-    Attributes
-    ----------
-    text : str
-        A formula of channels, ``time`` and `REDUCTIONS`: ``peak(rail.fy)``, ``rms(chassis.ay - front.ay)``,
-        ``rail.fy``.
-    """
+    """Output variable of a study."""
 
     name: str
+    # a formula of channels, ``time`` and `REDUCTIONS`: ``peak(rail.fy)``, ``rms(chassis.ay - front.ay)``, ``rail.fy``
     text: str
 
     def value(self, solution: Reported) -> float | np.ndarray:

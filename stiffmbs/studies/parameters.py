@@ -13,7 +13,7 @@ from ..analyses.renumber import renumbered
 from ..errors import InputError
 from ..model.files.stages import WrittenScene
 from ..model.settings import RunSettings
-from ..reading.did_you_mean import did_you_mean
+from ..reading.did_you_mean import instead_of
 from ..reading.variation import Range, Variation, variation
 from .case_solver import refuse_units
 from .sensitivities.parameters import Scenes
@@ -38,8 +38,7 @@ class ParameterRanges:
         """
         for name in values:
             if name not in self.names:
-                near = did_you_mean(name, self.names)
-                raise InputError(f"start: found '{name}'{near}, expected one of {', '.join(self.names)}")
+                raise InputError(f"start: found '{name}'{instead_of(name, self.names)}")
         return np.array([_part(name, one, values.get(name)) for name, one in zip(self.names, self.ranges, strict=True)])
 
     def slopes(self, point: np.ndarray) -> np.ndarray:

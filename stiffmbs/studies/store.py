@@ -37,17 +37,9 @@ class Store:
 
     Rows that cannot be written, for example on a full disk, are kept in memory and written later.
 
-    Parameters
-    ----------
-    path : Path or None
-        File, which is created if it does not exist; None for a store in memory.
-    study : mapping of str to str
-        Everything that the rows depend on, by its name in messages; a store in which a part differs is refused.
-
-    Raises
-    ------
-    InputError
-        If the file belongs to another study, or is not a store; the message names the changed parts.
+    `path`: file, which is created if it does not exist; None for a store in memory. `study`: everything that the rows
+    depend on, by its name in messages; a store in which a part differs is refused. Raises InputError if the file
+    belongs to another study, or is not a store; the message names the changed parts.
     """
 
     def __init__(self, path: Path | None, study: Mapping[str, str]) -> None:

@@ -45,30 +45,19 @@ class TyreSweep(Described):
 
 @dataclass(frozen=True)
 class TyreCurve:
-    """Curves at one load and pressure; arrays in SI units and ISO axes.
-
-    Attributes
-    ----------
-    load, pressure : float, float or None
-    kappa, fx : ndarray
-        Longitudinal slip, and Fx without slip angle.
-    alpha, fy, mz : ndarray
-        Slip angle, and Fy and Mz without longitudinal slip.
-    ellipse : (ndarray, ndarray)
-        Fx and Fy of largest magnitude in each direction of slip.
-    constants : dict of str to float
-        Stiffnesses, friction, radii and relaxation lengths at zero slip.
-    """
+    """Curves at one load and pressure; arrays in SI units and ISO axes."""
 
     load: float
     pressure: float | None
+    # kappa, fx: longitudinal slip, and Fx without slip angle
     kappa: np.ndarray
     fx: np.ndarray
+    # alpha, fy, mz: slip angle, and Fy and Mz without longitudinal slip
     alpha: np.ndarray
     fy: np.ndarray
     mz: np.ndarray
-    ellipse: tuple[np.ndarray, np.ndarray]
-    constants: dict[str, float]
+    ellipse: tuple[np.ndarray, np.ndarray]  # fx and Fy of largest magnitude in each direction of slip
+    constants: dict[str, float]  # stiffnesses, friction, radii and relaxation lengths at zero slip
 
     def as_dict(self) -> dict[str, Any]:
         """Return the numbers for JSON."""

@@ -84,6 +84,9 @@ def test_no_input_is_written_over(folder):
     assert invoke("run", "scene.yaml", "-o", "scene.npz").exit_code == 2
     assert invoke("run", "scene.yaml", "--figure", "scene.png").exit_code == 2
     assert invoke("report", "scene.yaml", "-o", "scene.html").exit_code == 2
+    assert invoke("modes", "scene.yaml", "-o", "scene.html").exit_code == 2
+    for command in (("kc", "scene.yaml"), ("response", "scene.yaml", "--input", "m", "--output", "m")):
+        assert "found the file that is read" in invoke(*command, "-o", "scene.yaml").output
     assert (folder / "set.adm").read_text() == text
     assert "plain" in (folder / "scene.yaml").read_text()
     assert invoke("convert", "set.adm", "-o", "new.yaml").exit_code == 0

@@ -22,24 +22,14 @@ KINDS = (*OVER_TIME, STATICS, "INITIAL_CONDITIONS")
 
 @dataclass(frozen=True)
 class Simulation:
-    """SIMULATE command; times are in the dataset's units.
+    """SIMULATE command; times are in the dataset's units."""
 
-    Attributes
-    ----------
-    kind : str
-        One of `KINDS`.
-    end, duration : float or None
-        End time, or length.
-    steps, interval : float or None
-        Number of output intervals, or length of each.
-    """
-
-    kind: str
+    kind: str  # one of `KINDS`
     line: int
     end: float | None = None
     duration: float | None = None
-    steps: float | None = None
-    interval: float | None = None
+    steps: float | None = None  # number of output intervals
+    interval: float | None = None  # length of each
 
     @property
     def takes_time(self) -> bool:

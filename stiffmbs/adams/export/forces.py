@@ -69,10 +69,7 @@ class Forces:
     def statements(self, force: Force) -> Iterator[str]:
         """Yield the statements of a force.
 
-        Raises
-        ------
-        Refusal
-            If Adams has no such force.
+        Raises Refusal if Adams has no such force.
         """
         raise Refusal(f"found a force of the type {force.kind}, expected one that Adams has")
 

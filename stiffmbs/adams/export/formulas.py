@@ -32,12 +32,8 @@ COORDINATES = {"x": "DX", "y": "DY", "z": "DZ", "vx": "VX", "vy": "VY", "vz": "V
 class Functions:
     """Exporter of the formulas of one scene.
 
-    Parameters
-    ----------
-    names : mapping of str to str
-        Adams functions of states and their outputs by name: ``DIF(3)``, ``VARVAL(1)``.
-    reactions : mapping of str to (str, int)
-        Reaction function and number of each joint by name.
+    `names`: Adams functions of states and their outputs by name: ``DIF(3)``, ``VARVAL(1)``. `reactions`: reaction
+    function and number of each joint by name.
     """
 
     def __init__(self, numbering: Numbering, names: dict[str, str], reactions: Mapping[str, tuple[str, int]]) -> None:

@@ -55,10 +55,7 @@ class Joints:
     def statements(self, joint: Joint, name: str) -> Iterator[str]:
         """Yield the statements of a joint.
 
-        Raises
-        ------
-        Refusal
-            If Adams has no such joint.
+        Raises Refusal if Adams has no such joint.
         """
         if joint.kind not in TYPES:
             raise Refusal(f"found a joint of the type {joint.kind}, expected one that Adams has")

@@ -1,19 +1,44 @@
-"""Elements that act between two markers, and the markers of general constraints (GCON)."""
+"""Elements in force functions and between two markers, and the markers of general constraints (GCON)."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from typing import Any
 
 from ..scene.mechanism import Mechanism
 from ..statements.constraints import GeneralConstraint, Motion
 from ..statements.curves import CurveOnCurve, PointOnCurve
 from ..statements.declared import Numbered
 from ..statements.forces import SingleForce, VectorForce
+from .function import Function
 
 
-def acting_between(i: int, j: int, mechanism: Mechanism) -> Iterator[tuple[Numbered, bool]]:
-    """Yield the elements between two markers, and whether the first marker is the element's marker j."""
+def element_of(name: str, keyword: str, ident: int, function: Function, mechanism: Mechanism) -> Any:
+    """Return the statement of JOINT(id, ...) or a similar function; None if it is inactive.
+
+    Raises DatasetFault if there is no such statement.
+    """
+    if (keyword, ident) in mechanism.dataset.inactive:
+        return None
+    found = mechanism.dataset.statements.get(keyword, {}).get(ident)
+    if found is None:
+        raise function.fault(f"found {name}({ident}, ...), expected the number of a {keyword}")
+    return found
+
+
+def acting_between(i: int, j: int, function: Function, mechanism: Mechanism) -> list[tuple[Numbered, bool]]:
+    """Return the elements between two markers, and whether the first marker is the element's marker j.
+
+    Raises DatasetFault if nothing acts there, unless an element is inactive or acts on the other marker only.
+    """
+    acting = list(_acting(i, j, mechanism))
+    if not (acting or mechanism.dataset.inactive or _has_action_only(i, j, mechanism)):
+        raise function.fault(f"found no joint and no force between the markers {i} and {j}, expected one at least")
+    return acting
+
+
+def _acting(i: int, j: int, mechanism: Mechanism) -> Iterator[tuple[Numbered, bool]]:
     for statements in mechanism.dataset.statements.values():
         for found in statements.values():
             first, others = _ends(found, mechanism)
@@ -23,7 +48,7 @@ def acting_between(i: int, j: int, mechanism: Mechanism) -> Iterator[tuple[Numbe
                 yield found, True
 
 
-def has_action_only(i: int, j: int, mechanism: Mechanism) -> bool:
+def _has_action_only(i: int, j: int, mechanism: Mechanism) -> bool:
     """Return True if an action-only force acts on the second of two markers, and nothing on the first."""
     forces = mechanism.dataset.statements.get("SFORCE", {}).values()
     return any(found.action_only and found.j == i and j in (0, found.i) for found in forces)

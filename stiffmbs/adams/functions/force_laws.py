@@ -17,10 +17,10 @@ from ..statements.constraints import TRANSLATIONAL, Primitive
 from ..statements.declared import Numbered
 from ..statements.elastic import Bushing, SpringDamper
 from ..statements.forces import SingleForce, VectorForce
-from .acting import acting_between, has_action_only
+from .acting import acting_between, element_of
 from .function import Function
 from .measures import BY_ITS_PLACE, component_of, reaction
-from .trees import call, difference, measured, number, over, power, product, quotient, times, total
+from .trees import call, difference, magnitude, measured, number, over, product, quotient, times, total
 
 if TYPE_CHECKING:
     from .translate import Translation
@@ -53,20 +53,18 @@ class _Part:
 
 
 def force_by_law(name: str, arguments: list[ast.expr], function: Function, translation: Translation) -> ast.expr:
-    """Return SFORCE(id, jflag, comp, rm) and alike: a component of a force on marker I or J, in the dataset's units.
+    """Return JOINT, SFORCE(id, jflag, comp, rm) and alike: a component of a force on marker I or J, in the dataset's units.
 
     Raises DatasetFault if there is no such statement, or it has no law of positions and velocities.
     """
     mechanism = translation.mechanism
     ident, on_j, component, axes = function.identifiers(arguments, 4)
-    if (LAWS[name], ident) in mechanism.dataset.inactive:
-        return number(0.0)
-    found = mechanism.dataset.statements.get(LAWS[name], {}).get(ident)
+    found = element_of(name, LAWS.get(name, name), ident, function, mechanism)
     if found is None:
-        raise function.fault(f"found {name}({ident}, ...), expected the number of a {LAWS[name]}")
+        return number(0.0)
     frame = mechanism.place(axes, function, "RM") if axes else None
     which = component_of(name, component, function)
-    return over(_component(found, bool(on_j), which, frame, function, translation), _unit(which, translation))
+    return over(_component(found, bool(on_j), which, frame, function, translation), translation.force_unit(which))
 
 
 def force_between(name: str, arguments: list[ast.expr], function: Function, translation: Translation) -> ast.expr:
@@ -76,23 +74,17 @@ def force_between(name: str, arguments: list[ast.expr], function: Function, tran
     """
     mechanism = translation.mechanism
     i, j, axes = (*function.identifiers(arguments), 0, 0)[:3]
-    acting = list(acting_between(i, j, mechanism))
-    if not acting and (mechanism.dataset.inactive or has_action_only(i, j, mechanism)):
-        return number(0.0)
+    acting = acting_between(i, j, function, mechanism)
     if not acting:
-        raise function.fault(f"found no joint and no force between the markers {i} and {j}, expected one at least")
+        return number(0.0)
     frame = mechanism.place(axes, function, "RM") if axes else None
 
     def along(component: str) -> ast.expr:
         return total([_component(found, on_j, component, frame, function, translation) for found, on_j in acting])
 
     several = name[1] == "M" and len(acting) > 1
-    value = call("sqrt", total([power(along(name[0] + axis), 2) for axis in "XYZ"])) if several else along(name)
-    return over(value, _unit(name, translation))
-
-
-def _unit(component: str, translation: Translation) -> float:
-    return translation.units.of(force=1, length=1 if component[0] == "T" else 0)
+    value = magnitude(along(name[0] + axis) for axis in "XYZ") if several else along(name)
+    return over(value, translation.force_unit(name))
 
 
 def _component(
@@ -100,7 +92,9 @@ def _component(
 ) -> ast.expr:
     """Return a component of the force of an element on marker I or J, N or N m."""
     mechanism = translation.mechanism
-    if isinstance(found, Primitive) and found.kind not in BY_ITS_PLACE:
+    if isinstance(found, Primitive):
+        if found.kind in BY_ITS_PLACE:
+            raise function.fault(f"found the reaction of {found.label}, {found.kind}, expected it in a REQUEST only")
         return reaction(found, component, on_j, frame, mechanism)
     if found.keyword not in LAWS.values():
         raise function.fault(
@@ -120,19 +114,19 @@ def _component(
         return number(0.0)
     if component[1] == "M":
         sizes = [part.size for part in parts]
-        return call("abs", *sizes) if len(sizes) == 1 else call("sqrt", total([power(size, 2) for size in sizes]))
+        return call("abs", *sizes) if len(sizes) == 1 else magnitude(sizes)
     value = total([part.along(component[1].lower(), frame, mechanism) for part in parts])
     return times(value, -1.0) if on_j else value
 
 
 def _parts(found: Numbered, kind: str, function: Function, translation: Translation) -> Iterator[_Part]:
     """Yield the parts of the force ('F') on marker I or of the torque ('T') about it, N or N m."""
-    mechanism, units = translation.mechanism, translation.units
+    mechanism, unit = translation.mechanism, translation.force_unit(kind)
     match found:
         case SingleForce() | SpringDamper() if (found.sort == TRANSLATIONAL) == (kind == "F"):
             i, j = mechanism.ends(found)
             if isinstance(found, SingleForce):
-                size = times(translation.translated(found.function), units.of(force=1, length=0 if kind == "F" else 1))
+                size = times(translation.translated(found.function), unit)
             else:
                 size = _of_spring(found, i.reference, j.reference)
             if kind == "F" and not (isinstance(found, SingleForce) and found.action_only):
@@ -144,8 +138,7 @@ def _parts(found: Numbered, kind: str, function: Function, translation: Translat
             frame = mechanism.place(found.axes, found, "RM") if found.axes else None
             for axis, law in zip("xyz", laws, strict=True):
                 if law is not None:
-                    size = times(translation.translated(law), units.of(force=1, length=0 if kind == "F" else 1))
-                    yield _on_axis(size, axis, frame, mechanism)
+                    yield _on_axis(times(translation.translated(law), unit), axis, frame, mechanism)
         case Bushing() if kind == "F":
             i, j = mechanism.ends(found)
             for k, axis in enumerate("xyz"):

@@ -14,22 +14,12 @@ from .expression import OMITTED, ExpressionError, parse
 
 @dataclass(frozen=True)
 class Function:
-    """Expression of a statement in the dataset's units.
+    """Expression of a statement in the dataset's units."""
 
-    Attributes
-    ----------
-    text : str
-        As written, on one line.
-    tree : ast.expr
-        Result of `expression.parse`.
-    label : str
-        The statement, such as ``SFORCE/3``.
-    """
-
-    text: str
-    tree: ast.expr = field(compare=False)
+    text: str  # as written, on one line
+    tree: ast.expr = field(compare=False)  # result of `expression.parse`
     line: int
-    label: str
+    label: str  # the statement, such as ``SFORCE/3``
 
     def identifier(self, arguments: Sequence[ast.expr], at: int) -> int:
         """Return an argument of a call that is the identifier of a statement; 0 if it is omitted."""
@@ -62,7 +52,7 @@ def read_function(found: Arguments, name: str) -> Function | None:
         return None
     text = (found.text(name) or "").strip().strip('"')
     if is_subroutine(found, name):
-        raise found.fault(f"found {name} = {text}, a user subroutine, expected an expression", found.line(name))
+        raise found.fault(f"found {name} = {text}, a user subroutine, expected an expression", name)
     return read_any_function(found, name)
 
 
@@ -72,7 +62,7 @@ def read_any_function(found: Arguments, name: str) -> Function:
     try:
         return Function(text, parse(text), found.line(name), found.label)
     except ExpressionError as error:
-        raise found.fault(f"{name}: {error}", found.line(name)) from None
+        raise found.fault(f"{name}: {error}", name) from None
 
 
 def is_subroutine(found: Arguments, name: str) -> bool:

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from ..scene.mechanism import ORIGIN, Mechanism, Place
 from ..statements.constraints import Primitive
 from .function import Function
-from .trees import call, difference, measured, number, power, product, quotient, total
+from .trees import call, components, cross, difference, magnitude, measured, number, product, quotient, total
 
 ANGLES_OF_AXES = ("YAW", "PITCH", "ROLL", "PSI", "THETA", "PHI")
 
@@ -39,9 +39,9 @@ def angle(name: str, mechanism: Mechanism, i: Place, j: Place) -> ast.expr:
 
 def included_angle(first: str, vertex: str, second: str) -> ast.expr:
     """Return the angle at a marker between the directions to two others, 0 to pi."""
-    components = [[measured(f"d{axis}", end, vertex, "") for axis in "xyz"] for end in (first, second)]
+    rays = [components("d", end, vertex, "") for end in (first, second)]
     lengths = product(measured("dm", first, vertex, ""), measured("dm", second, vertex, ""))
-    return call("acos", bounded(quotient(total([product(a, b) for a, b in zip(*components, strict=True)]), lengths)))
+    return call("acos", bounded(quotient(total([product(a, b) for a, b in zip(*rays, strict=True)]), lengths)))
 
 
 def bounded(cosine: ast.expr) -> ast.expr:
@@ -65,13 +65,13 @@ def reaction(joint: Primitive, component: str, on_j: bool, axes: Place | None, m
     """Return a component of the reaction on marker I or J of a joint, N or N m, in ground axes or those of a marker."""
     vector = _vector(joint, component[0].lower(), on_j, mechanism)
     if component[1] == "M":
-        return call("sqrt", total([power(part, 2) for part in vector]))
+        return magnitude(vector)
     along = component[1].lower()
     if axes is None or (axes.body == "ground" and not axes.name):
         return vector["xyz".index(along)]
     tip = mechanism.tip(axes, along)
-    components = (measured(f"d{axis}", tip, axes.reference, "") for axis in "xyz")
-    return total([product(part, part_of_axis) for part, part_of_axis in zip(vector, components, strict=True)])
+    direction = components("d", tip, axes.reference, "")
+    return total([product(part, part_of_axis) for part, part_of_axis in zip(vector, direction, strict=True)])
 
 
 def _vector(joint: Primitive, letter: str, on_j: bool, mechanism: Mechanism) -> list[ast.expr]:
@@ -83,11 +83,7 @@ def _vector(joint: Primitive, letter: str, on_j: bool, mechanism: Mechanism) -> 
         return [ast.UnaryOp(ast.USub(), part) for part in on_i]
     i, j = (mechanism.place(ident, joint).reference for ident in (joint.i, joint.j))
     force = [call(f"f{axis}", ast.Name(joint.name)) for axis in "xyz"]
-    arm = [measured(f"d{axis}", i, j, "") for axis in "xyz"]
-    moments = [
-        difference(product(arm[(k + 1) % 3], force[(k + 2) % 3]), product(arm[(k + 2) % 3], force[(k + 1) % 3]))
-        for k in range(3)
-    ]
+    moments = cross(components("d", i, j, ""), force)
     return [difference(number(0.0), total([part, moment])) for part, moment in zip(on_i, moments, strict=True)]
 
 

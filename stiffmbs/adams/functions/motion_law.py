@@ -103,10 +103,7 @@ def _falls(condition: ast.expr) -> bool:
 class Law:
     """Function of a motion.
 
-    Parameters
-    ----------
-    sort : str
-        Rotational or translational.
+    `sort`: rotational or translational.
     """
 
     def __init__(self, motion: Motion, translation: Translation, sort: str) -> None:

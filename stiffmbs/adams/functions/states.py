@@ -22,10 +22,7 @@ if TYPE_CHECKING:
 def states(translation: Translation) -> dict[str, Any]:
     """Return the states of the scene by name.
 
-    Raises
-    ------
-    DatasetFault
-        If a system refers to a missing statement, or its matrices have inconsistent sizes.
+    Raises DatasetFault if a system refers to a missing statement, or its matrices have inconsistent sizes.
     """
     found: dict[str, Any] = {}
     for statements in translation.mechanism.dataset.statements.values():

@@ -20,20 +20,10 @@ from .expression import IF, OMITTED, parse
 from .force_laws import LAWS, force_between, force_by_law
 from .function import Function
 from .inputs import PLANTS, evaluated_name, variable_of_plant
-from .measures import (
-    ANGLES_OF_AXES,
-    BY_ITS_PLACE,
-    COMPONENTS,
-    REACTIONS,
-    angle,
-    component_of,
-    included_angle,
-    on_ground,
-    reaction,
-)
+from .measures import ANGLES_OF_AXES, COMPONENTS, REACTIONS, angle, included_angle, on_ground
 from .splines import CURVES, spline_value
 from .states import depending_on_themselves, differential, value_of_system
-from .trees import measured, name_of, number, over, power, product, times, total
+from .trees import magnitude, measured, name_of, over, product, times
 
 POSITIONS, ANGLES = ("DX", "DY", "DZ", "DM"), ("AX", "AY", "AZ")
 VELOCITIES, ANGULAR_VELOCITIES = ("VX", "VY", "VZ", "VM", "VR"), ("WX", "WY", "WZ", "WM")
@@ -57,10 +47,7 @@ NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 class Translation:
     """Translator of the expressions of one dataset.
 
-    Attributes
-    ----------
-    substituted : list of str
-        Labels of the forces whose laws are being substituted.
+    `substituted`: labels of the forces whose laws are being substituted.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -72,6 +59,10 @@ class Translation:
     def implicit_variables(self) -> frozenset[int]:
         """VARIABLEs that depend on themselves: algebraic states of the scene."""
         return depending_on_themselves(self.mechanism.dataset.variables)
+
+    def force_unit(self, component: str) -> float:
+        """Return the unit of a component of a force, or of a torque ('T...'), N or N m."""
+        return self.units.of(force=1, length=1 if component[0] == "T" else 0)
 
     def formula(self, function: Function, unit: float = 1.0) -> str:
         """Return an expression as a formula, times a unit.
@@ -160,9 +151,7 @@ class Translation:
             return name_of(equation.rate) if equation.implicit else translate(equation.function.tree)
         if name in ANGLES_OF_AXES:
             return self._angle(name, arguments, function)
-        if name in REACTIONS:
-            return self._reaction(name, arguments, function)
-        if name in LAWS:
+        if name in (*REACTIONS, *LAWS):
             return force_by_law(name, arguments, function, self)
         if name in COMPONENTS:
             return force_between(name, arguments, function, self)
@@ -188,9 +177,7 @@ class Translation:
         else:
             unit = self.units.of(length=1, time=-1 if name in VELOCITIES else 0)
         if name == "VM" and seen_from:
-            return ast.Call(ast.Name("sqrt"), [
-                total([power(self.relative(axis, i, j, "", seen_from, unit), 2) for axis in "xyz"])
-            ], [])  # fmt: skip
+            return magnitude(self.relative(axis, i, j, "", seen_from, unit) for axis in "xyz")
         if name in ("VX", "VY", "VZ") and seen_from:
             return self.relative(name[1].lower(), i, j, axes, seen_from, unit)
         return over(measured(name.lower(), i, j, axes), unit)
@@ -236,21 +223,6 @@ class Translation:
             raise function.fault(f"found {len(idents)} markers of {name}, expected 1 or 2")
         places = [self.mechanism.place(ident, function) if ident else on_ground() for ident in (*idents, 0)[:2]]
         return angle(name, self.mechanism, *places)
-
-    def _reaction(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
-        """Translate JOINT(id, jflag, comp, rm) of a joint between two markers."""
-        ident, on_j, component, axes = function.identifiers(arguments, 4)
-        if (name, ident) in self.mechanism.dataset.inactive:
-            return number(0.0)
-        joint = self.mechanism.dataset.statements.get(name, {}).get(ident)
-        if joint is None:
-            raise function.fault(f"found {name}({ident}, ...), expected the number of a {name}")
-        if joint.kind in BY_ITS_PLACE:
-            raise function.fault(f"found the reaction of {joint.label}, {joint.kind}, expected it in a REQUEST only")
-        which = component_of(name, component, function)
-        frame = self.mechanism.place(axes, function, "RM") if axes else None
-        force = reaction(joint, which, bool(on_j), frame, self.mechanism)
-        return over(force, self.units.of(force=1, length=1 if which[0] == "T" else 0))
 
     def array_value(self, arguments: list[ast.expr], function: Function) -> ast.expr:
         """Return a number of an ARRAY."""

@@ -13,11 +13,11 @@ from ..statements.curves import CurveOnCurve, PointOnCurve
 from ..statements.declared import Numbered
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
-from .acting import acting_between, has_action_only, rod
+from .acting import acting_between, element_of, rod
 from .function import Function
 from .measures import COMPONENTS, component_of
 from .translate import Translation
-from .trees import call, difference, measured, name_of, number, over, power, product, times, total
+from .trees import call, components, cross, difference, magnitude, measured, name_of, number, over, times, total
 
 ACCELERATIONS, ANGULAR_ACCELERATIONS = ("ACCX", "ACCY", "ACCZ", "ACCM"), ("WDTX", "WDTY", "WDTZ", "WDTM")
 ANGLES = ("PSI", "THETA", "PHI")
@@ -57,7 +57,7 @@ class OutputTranslation(Translation):
             return self._of_element(name, arguments, function)
         if name in COMPONENTS:
             i, j, axes = (*function.identifiers(arguments), 0, 0)[:3]
-            return over(self.between(name, i, j, axes, function), self._force_unit(name))
+            return over(self.between(name, i, j, axes, function), self.force_unit(name))
         if name in ROUNDING_FUNCTIONS:
             return call(ROUNDING_FUNCTIONS[name], *map(translate, arguments))
         return super().call(name, arguments, function, translate)
@@ -75,7 +75,7 @@ class OutputTranslation(Translation):
         relative = _acceleration_in if linear else _angular_acceleration_in
         vector = relative(i, j, axes, frame)
         if name.endswith("M"):
-            return over(call("sqrt", total([power(part, 2) for part in vector])), unit)
+            return over(magnitude(vector), unit)
         return over(vector["XYZ".index(name[-1])], unit)
 
     def _orientation(self, arguments: list[ast.expr], function: Function) -> ast.expr:
@@ -92,11 +92,9 @@ class OutputTranslation(Translation):
     def _of_element(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
         """Translate JOINT(id, jflag, comp, rm) and similar functions."""
         ident, on_j, component, axes = function.identifiers(arguments, 4)
-        found = self.mechanism.dataset.statements.get(ELEMENTS[name], {}).get(ident)
-        if (ELEMENTS[name], ident) in self.mechanism.dataset.inactive:
-            return number(0.0)
+        found = element_of(name, ELEMENTS[name], ident, function, self.mechanism)
         if found is None:
-            raise function.fault(f"found {name}({ident}, ...), expected the number of a {ELEMENTS[name]}")
+            return number(0.0)
         which = component_of(name, component, function)
         if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
             raise function.fault(
@@ -108,23 +106,16 @@ class OutputTranslation(Translation):
             if which[0] == "T":
                 raise function.fault(f"found the torque of {found.label}, expected a component of its force")
             on_j = bool(on_j) != swapped(found, self.mechanism)
-        return over(self._component(which, [(found, bool(on_j))], axes, function), self._force_unit(which))
-
-    def _force_unit(self, component: str) -> float:
-        return self.units.of(force=1, length=1 if component[0] == "T" else 0)
+        return over(self._component(which, [(found, bool(on_j))], axes, function), self.force_unit(which))
 
     def between(self, component: str, i: int, j: int, axes: int, function: Function) -> ast.expr:
         """Return the total force on marker i of the elements between it and marker j, in SI units."""
-        acting = list(acting_between(i, j, self.mechanism))
+        acting = acting_between(i, j, function, self.mechanism)
         for found, on_j in acting:
             if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
                 raise function.fault(
                     f"found the force of {found.label} on a marker other than its I, expected the force on I"
                 )
-        if not acting and (self.mechanism.dataset.inactive or has_action_only(i, j, self.mechanism)):
-            return number(0.0)
-        if not acting:
-            raise function.fault(f"found no joint and no force between the markers {i} and {j}, expected one at least")
         return self._component(component, acting, axes, function)
 
     def _component(
@@ -133,8 +124,7 @@ class OutputTranslation(Translation):
         axes_name = self.reference(axes, function) if axes else ""
         parts = [(found, element, on_j) for found, on_j in acting for element in self._elements(found, component)]
         if component[1] == "M" and len(parts) > 1:
-            of_axes = [power(self._component(component[0] + axis, acting, axes, function), 2) for axis in "XYZ"]
-            return call("sqrt", total(of_axes))
+            return magnitude(self._component(component[0] + axis, acting, axes, function) for axis in "XYZ")
         terms = [self._term(component, found, element, on_j, axes_name) for found, element, on_j in parts]
         return total(terms) if terms else number(0.0)
 
@@ -161,25 +151,16 @@ class OutputTranslation(Translation):
         return [found.name]
 
 
-def _components(name: str, i: str, j: str, axes: str) -> list[ast.expr]:
-    """Return the three components of a measure."""
-    return [measured(name + axis, i, j, axes) for axis in "xyz"]
-
-
-def _cross(a: list[ast.expr], b: list[ast.expr]) -> list[ast.expr]:
-    return [difference(product(a[k - 2], b[k - 1]), product(a[k - 1], b[k - 2])) for k in range(3)]
-
-
 def _acceleration_in(i: str, j: str, axes: str, frame: str) -> list[ast.expr]:
     """Return the second derivative of the displacement of i from j in a marker's frame: a - w' x d - 2 w x v + w x (w x d)."""
-    w, d = _components("w", frame, "", axes), _components("d", i, j, axes)
-    turning = _cross(_components("wdt", frame, "", axes), d)
-    coriolis = _cross(w, _components("v", i, j, axes))
-    terms = zip(_components("acc", i, j, axes), turning, coriolis, _cross(w, _cross(w, d)), strict=True)
+    w, d = components("w", frame, "", axes), components("d", i, j, axes)
+    turning = cross(components("wdt", frame, "", axes), d)
+    coriolis = cross(w, components("v", i, j, axes))
+    terms = zip(components("acc", i, j, axes), turning, coriolis, cross(w, cross(w, d)), strict=True)
     return [total([difference(difference(a, b), times(c, 2.0)), e]) for a, b, c, e in terms]
 
 
 def _angular_acceleration_in(i: str, j: str, axes: str, frame: str) -> list[ast.expr]:
     """Return the derivative of the angular velocity of i relative to j in a marker's frame."""
-    turning = _cross(_components("w", frame, "", axes), _components("w", i, j, axes))
-    return [difference(a, b) for a, b in zip(_components("wdt", i, j, axes), turning, strict=True)]
+    turning = cross(components("w", frame, "", axes), components("w", i, j, axes))
+    return [difference(a, b) for a, b in zip(components("wdt", i, j, axes), turning, strict=True)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import reduce
 
 
@@ -39,6 +39,16 @@ def difference(left: ast.expr, right: ast.expr) -> ast.expr:
     return ast.BinOp(left, ast.Sub(), right)
 
 
+def cross(a: Sequence[ast.expr], b: Sequence[ast.expr]) -> list[ast.expr]:
+    """Return the vector a x b."""
+    return [difference(product(a[k - 2], b[k - 1]), product(a[k - 1], b[k - 2])) for k in range(3)]
+
+
+def magnitude(vector: Iterable[ast.expr]) -> ast.expr:
+    """Return the square root of the sum of the components' squares."""
+    return call("sqrt", total([power(part, 2) for part in vector]))
+
+
 def power(base: ast.expr, exponent: int) -> ast.expr:
     """Return base**exponent."""
     return ast.BinOp(base, ast.Pow(), ast.Constant(exponent))
@@ -57,6 +67,11 @@ def times(node: ast.expr, factor: float) -> ast.expr:
 def over(node: ast.expr, divisor: float) -> ast.expr:
     """Return a quotient; the node itself for a divisor of 1."""
     return node if divisor == 1 else quotient(node, number(divisor))
+
+
+def components(name: str, i: str, j: str, axes: str) -> list[ast.expr]:
+    """Return the three components of a measure, as `measured`."""
+    return [measured(name + axis, i, j, axes) for axis in "xyz"]
 
 
 def measured(name: str, i: str, j: str, axes: str) -> ast.expr:

@@ -20,26 +20,15 @@ from .mechanism import Mechanism, Place
 
 @dataclass(frozen=True, eq=False)
 class FittedCurve:
-    """Curve on a body.
+    """Curve on a body."""
 
-    Attributes
-    ----------
-    owner : Place
-        The marker RM in whose axes the points are given.
-    frame : Frame
-        Axes of the curve in those of RM, x and y in the curve's plane.
-    arguments, values : ndarray
-        x and y, or angle and radius, of the points.
-    off : ndarray or None
-        Signed distances of the points from the plane; None for a flat curve.
-    """
-
-    owner: Place
-    frame: Frame
+    owner: Place  # the marker RM in whose axes the points are given
+    frame: Frame  # axes of the curve in those of RM, x and y in the curve's plane
     closed: bool
+    # arguments, values: x and y, or angle and radius, of the points
     arguments: np.ndarray
     values: np.ndarray
-    off: np.ndarray | None = None
+    off: np.ndarray | None = None  # signed distances of the points from the plane; None for a flat curve
 
     @property
     def marker(self) -> dict[str, Any]:

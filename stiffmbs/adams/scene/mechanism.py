@@ -30,24 +30,12 @@ ORIGIN = Frame(np.zeros(3), IDENTITY)
 
 @dataclass(frozen=True)
 class Place:
-    """Marker of the scene.
+    """Marker of the scene."""
 
-    Attributes
-    ----------
-    body : str
-        The body that carries it, or ground.
-    name : str
-        Its name on that body.
-    on_body : Frame
-        In the body's axes.
-    initial : Frame
-        In ground axes, at the start.
-    """
-
-    body: str
-    name: str
-    on_body: Frame
-    initial: Frame
+    body: str  # the body that carries it, or ground
+    name: str  # its name on that body
+    on_body: Frame  # in the body's axes
+    initial: Frame  # in ground axes, at the start
 
     @property
     def reference(self) -> str:
@@ -58,21 +46,6 @@ class Place:
 class Mechanism:
     """Parts and markers of a dataset by number.
 
-    Attributes
-    ----------
-    least : float
-        Smallest non-zero mass of the parts, kg.
-    further : mapping of str to Place
-        Auxiliary markers by reference; see `tip`.
-    tables : mapping of str to table
-        Splines used by functions so far, in the dataset's units.
-    variables : mapping of str to str
-        Variables used by functions so far, in the dataset's units.
-    inputs : mapping of str to float
-        Inputs set by another program or a sensor, in the dataset's units.
-    states : mapping of str to state
-        Displacements and velocities of motions, integrated from functions without a formula of the integral.
-
     Raises
     ------
     DatasetFault
@@ -81,11 +54,14 @@ class Mechanism:
 
     def __init__(self, dataset: Dataset) -> None:
         self.dataset = dataset
-        self.further: dict[str, Place] = {}
+        self.further: dict[str, Place] = {}  # auxiliary markers by reference; see `tip`
+        # Splines, variables and states (motions integrated from functions without a formula of the integral) used by
+        # functions so far, and inputs set by another program or a sensor, all in the dataset's units.
         self.tables: dict[str, dict[str, Any]] = {}
         self.variables: dict[str, str] = {}
         self.inputs: dict[str, float] = {}
         self.states: dict[str, dict[str, Any]] = {}
+        # Smallest non-zero mass of the parts, kg.
         self.least = min((part.mass for part in dataset.parts if part.mass > 0), default=0.0)
         self.parts = {(part.keyword, part.ident): self._weighed(part) for part in dataset.parts}
         grounds = [part for part in dataset.parts if part.ground]

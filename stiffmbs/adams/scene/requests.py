@@ -65,10 +65,7 @@ CALLED = {"DX": "x", "DY": "y", "DZ": "z"}
 class Requests:
     """Builder of the scene's requests.
 
-    Attributes
-    ----------
-    notes : list of str
-        One sentence for each component that cannot be reported.
+    `notes`: one sentence for each component that cannot be reported.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:

@@ -42,10 +42,7 @@ RUN = {"duration": 5, "output": 0.01}
 def scene(dataset: Dataset) -> dict[str, Any]:
     """Return the scene of a dataset for `stiffmbs.model.read_scene.read_scene`.
 
-    Raises
-    ------
-    DatasetFault
-        If statements contradict each other, or have no equivalent in a scene.
+    Raises DatasetFault if statements contradict each other, or have no equivalent in a scene.
     """
     mechanism = Mechanism(set_in_motion(Mechanism(dataset)))
     mechanism.inputs |= input_values(dataset)

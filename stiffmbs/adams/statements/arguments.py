@@ -117,9 +117,9 @@ class Arguments:
         """Exclude arguments from the report of unused arguments."""
         self._found.request(*names)
 
-    def fault(self, reason: str, line: int | None = None) -> DatasetFault:
-        """Return the error for a fault in this statement."""
-        return DatasetFault(line or self.statement.line, self.label, reason)
+    def fault(self, reason: str, place: int | str = "") -> DatasetFault:
+        """Return the error for a fault in this statement, at a line or an argument; by default at its first line."""
+        return DatasetFault(self.line(place) if isinstance(place, str) else place, self.label, reason)
 
     def __contains__(self, name: str) -> bool:
         return name in self._found
@@ -137,7 +137,7 @@ class Arguments:
         """Raise the error for arguments that are not supported, if any is given."""
         for name in names:
             if name in self:
-                raise self.fault(f"found {name}, expected {expected}", self.line(name))
+                raise self.fault(f"found {name}, expected {expected}", name)
 
     def one_of(self, *words: str) -> str | None:
         """Return the one of the given words that occurs in the statement; None if none does."""
@@ -175,25 +175,25 @@ class Arguments:
         """Return an argument's number, which must be positive; None if it is missing."""
         value = self.number(name)
         if value is not None and not value > 0:
-            raise self.fault(f"found {name} = {self.text(name)}, expected a number above zero", self.line(name))
+            raise self.fault(f"found {name} = {self.text(name)}, expected a number above zero", name)
         return value
 
     def needed(self, name: str) -> float:
         """Return the number of a required argument, which must be positive."""
         value = self.number(name)
         if value is None or not value > 0:
-            raise self.fault(f"found no {name}, expected a number above zero", self.line(name))
+            raise self.fault(f"found no {name}, expected a number above zero", name)
         return value
 
     def idents(self, name: str, *counts: int) -> tuple[int, ...]:
         """Return the statement identifiers in an argument; empty if it is missing."""
         if name not in self:
             return ()
-        found = tuple(_integer(self, text, name, self.line(name)) for text in self._found[name].values)
+        found = tuple(_integer(self, text, name, name) for text in self._found[name].values)
         if counts and len(found) not in counts:
             raise self.fault(
                 f"found {name} = {quoted(self.text(name))}, expected {' or '.join(map(str, counts))} numbers of statements",
-                self.line(name),
+                name,
             )
         return found
 
@@ -221,7 +221,7 @@ def number(text: str) -> float | None:
     return math.radians(value) if found[2] else value
 
 
-def _integer(arguments: Arguments, text: str, where: str, line: int) -> int:
+def _integer(arguments: Arguments, text: str, where: str, place: int | str) -> int:
     if not re.fullmatch(r"\d{1,18}", text.strip()):
-        raise arguments.fault(f"found '{quoted(text)}' {where}, expected the number of a statement", line)
+        raise arguments.fault(f"found '{quoted(text)}' {where}, expected the number of a statement", place)
     return int(text)

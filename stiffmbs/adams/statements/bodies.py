@@ -41,28 +41,19 @@ def _rates(letter: str, **powers: float) -> Any:
 
 @dataclass(frozen=True)
 class Part(Numbered):
-    """Rigid body or ground, in SI units; its mass is checked once all markers are known.
-
-    Attributes
-    ----------
-    frame : Frame
-        The part's axes at the start, in ground axes.
-    moments : tuple of float
-        Ixx, Iyy, Izz and the products Ixy, Ixz, Iyz (positive integrals) in the axes of the inertia marker, about its
-        origin.
-    velocity, omega : tuple of float or None
-        Velocity of the centre of mass, in the axes of `velocity_marker` or ground; angular velocity in those of
-        `omega_marker`, or of the centre-of-mass marker.
-    """
+    """Rigid body or ground, in SI units; its mass is checked once all markers are known."""
 
     ground: bool = given("GROUND")
     mass: float = number("MASS", mass=1)
     center: int | None = ident_or_none("CM")
     inertia_marker: int | None = ident_or_none("IM")
+    # Ixx, Iyy, Izz and the products Ixy, Ixz, Iyz (positive integrals) in the axes of the inertia marker, about its origin
     moments: tuple[float, ...] = read_by(_moments, "IP")
-    frame: Frame = _frame("QG", "XG", "ZG")
+    frame: Frame = _frame("QG", "XG", "ZG")  # axes at the start, in ground axes
+    # of the centre of mass, in the axes of `velocity_marker` or ground
     velocity: Vector | None = _rates("V", length=1, time=-1)
     velocity_marker: int | None = ident_or_none("VM")
+    # angular velocity in the axes of `omega_marker`, or of the centre-of-mass marker
     omega: Vector | None = _rates("W", time=-1)
     omega_marker: int | None = ident_or_none("WM")
     exact: bool = given("EXACT")

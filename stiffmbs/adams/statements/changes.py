@@ -21,18 +21,11 @@ Key = tuple[str, int]
 
 @dataclass(frozen=True)
 class Changes:
-    """Changes of a dataset by commands.
+    """Changes of a dataset by commands."""
 
-    Attributes
-    ----------
-    altered : mapping of (str, int) to tuple of Statement
-        Commands that change arguments of a statement, by its name and number.
-    inactive : mapping of (str, int) to int
-        Deactivated statements, and the line of the command.
-    """
-
+    # commands that change arguments of a statement, by its name and number
     altered: Mapping[Key, tuple[Statement, ...]] = field(default_factory=dict)
-    inactive: Mapping[Key, int] = field(default_factory=dict)
+    inactive: Mapping[Key, int] = field(default_factory=dict)  # deactivated statements, and the line of the command
 
     def with_arguments(self, command: Statement) -> Changes:
         """Return the changes with new arguments of a statement."""
@@ -55,7 +48,7 @@ class Changes:
             low, high = _ends(found)
             ranged = sorted(ident for kind, ident in known if kind == name and low <= ident <= high)
             if not ranged:
-                raise found.fault(f"found no {name} from {low} to {high}, expected at least one", found.line("RANGE"))
+                raise found.fault(f"found no {name} from {low} to {high}, expected at least one", "RANGE")
             idents = (*idents, *ranged)
         inactive = dict(self.inactive)
         for ident in idents:

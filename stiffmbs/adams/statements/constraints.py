@@ -41,7 +41,7 @@ def _length_of(kind: str, name: str) -> Any:
     def read(found: Arguments, units: Units) -> float:
         value = found.number(name) if kind in found else 0.0
         if kind in found and not value:
-            raise found.fault(f"found no {name}, expected a number other than zero", found.line(name))
+            raise found.fault(f"found no {name}, expected a number other than zero", name)
         return (value or 0.0) * units.length
 
     return read_by(read, name)
@@ -54,9 +54,7 @@ def _starts(found: Arguments, units: Units) -> tuple[Start, ...]:
         if name not in found:
             continue
         if name not in allowed:
-            raise found.fault(
-                f"found {name} of a {kind} joint, expected {' or '.join(allowed) or 'none'}", found.line(name)
-            )
+            raise found.fault(f"found {name} of a {kind} joint, expected {' or '.join(allowed) or 'none'}", name)
         length = units.length if allowed[name] == TRANSLATIONAL else 1.0
         displacement, velocity = _displacement_and_velocity(found, name)
         starts.append((
@@ -109,7 +107,7 @@ class Joint(Primitive):
                 raise found.fault(
                     f"found {name} = {found.text(name)}, friction of old versions with an unpublished law, expected a "
                     "FRICTION statement",
-                    found.line(name),
+                    name,
                 )
 
 
@@ -163,7 +161,7 @@ def _sorts(found: Arguments, _: Units) -> tuple[str | None, ...]:
     letters = [letter.strip().upper() for letter in text.split(":") if letter.strip()]
     sorts = [sort for letter in letters for sort in (ROTATIONAL, TRANSLATIONAL) if sort.startswith(letter)]
     if len(sorts) != len(letters) or (sorts and len(sorts) != count):
-        raise found.fault(f"found TYPE = {found.text('TYPE')}, expected T or R for every joint", found.line("TYPE"))
+        raise found.fault(f"found TYPE = {found.text('TYPE')}, expected T or R for every joint", "TYPE")
     return tuple(sorts) or (None,) * count
 
 
@@ -180,7 +178,7 @@ class Coupler(Numbered):
     def check(cls, found: Arguments) -> None:
         """Refuse a subroutine."""
         if "FUNCTION" in found:
-            raise found.fault("found FUNCTION, a user subroutine, expected SCALES", found.line("FUNCTION"))
+            raise found.fault("found FUNCTION, a user subroutine, expected SCALES", "FUNCTION")
 
 
 def _geared(found: Arguments, _: Units) -> tuple[int, ...]:

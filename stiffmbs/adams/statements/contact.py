@@ -37,7 +37,7 @@ def _friction(found: Arguments, _: Units) -> Friction | None:
     if asked == "OFF":
         return None
     if asked != "ON":
-        raise found.fault(f"found COULOMB_FRICTION = {asked}, expected ON or OFF", found.line("COULOMB_FRICTION"))
+        raise found.fault(f"found COULOMB_FRICTION = {asked}, expected ON or OFF", "COULOMB_FRICTION")
     static, dynamic, slow, fast = (found.number(name) for name in _FRICTION)
     if static is None or dynamic is None or slow is None or fast is None or not 0 < slow < fast:
         raise found.fault(
@@ -82,7 +82,7 @@ class Contact(Numbered):
     def check(cls, found: Arguments) -> None:
         """Refuse other types of contact."""
         if (kind := (found.text("TYPE") or SOLIDS).strip().upper()) and not SOLIDS.startswith(kind):
-            raise found.fault(f"found TYPE = {kind}, expected {SOLIDS}", found.line("TYPE"))
+            raise found.fault(f"found TYPE = {kind}, expected {SOLIDS}", "TYPE")
         found.without_effect("IMPACT", "NO_FRICTION")
 
     @property
@@ -130,7 +130,7 @@ def read_shape(statement: Statement) -> Shape:
     sizes = tuple(found.number(name) or 0.0 for name in names)
     for name, size in zip(names, sizes, strict=True):
         if size == 0 or (size < 0 and sort != BOX and name != "LENGTH"):
-            raise found.fault(f"found no {name}, expected a number above zero", found.line(name))
+            raise found.fault(f"found no {name}, expected a number above zero", name)
     if sort == ELLIPSOID:
         sizes = tuple(size / 2 for size in sizes)
         if max(sizes) - min(sizes) <= ROUNDING * max(sizes):

@@ -53,31 +53,15 @@ class _Section(Generic[Found]):
 
 @dataclass(frozen=True)
 class Dataset:
-    """Content of a dataset.
+    """Content of a dataset."""
 
-    Attributes
-    ----------
-    title : str
-        Its first line.
-    gravity : tuple of float
-        m/s^2.
-    statements : mapping of str to (mapping of int to data)
-        Data of all statements by full name and number.
-    notes : tuple of str
-        One sentence for each omission.
-    inactive : frozenset of (str, int)
-        Names and numbers of deactivated statements, which `statements` omits.
-    graphics : mapping of int to Statement
-        GRAPHICS, which contacts may use.
-    """
-
-    title: str
+    title: str  # its first line
     units: Units
-    gravity: tuple[float, float, float]
-    statements: Mapping[str, Mapping[int, Any]]
-    notes: tuple[str, ...]
-    inactive: frozenset[Key]
-    graphics: Mapping[int, Statement]
+    gravity: tuple[float, float, float]  # m/s^2
+    statements: Mapping[str, Mapping[int, Any]]  # data of all statements by full name and number
+    notes: tuple[str, ...]  # one sentence for each omission
+    inactive: frozenset[Key]  # names and numbers of deactivated statements, which `statements` omits
+    graphics: Mapping[int, Statement]  # GRAPHICS, which contacts may use
 
     def _all(self, kind: type[Any]) -> tuple[Any, ...]:
         return tuple(x for numbered in self.statements.values() for x in numbered.values() if isinstance(x, kind))

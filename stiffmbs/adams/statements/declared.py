@@ -14,28 +14,16 @@ from .units import Units
 
 @dataclass(frozen=True)
 class Numbered:
-    """Statement with a number. A class of statements declares each argument by the field that it sets.
-
-    Attributes
-    ----------
-    ignored : mapping of str to str
-        Arguments without effect, with the reason.
-    refused : mapping of str to str
-        Arguments that are not supported, with the supported ones.
-    others : tuple of str
-        Arguments that only `check` reads.
-    repeated : tuple of str
-        Arguments that may occur several times.
-    """
+    """Statement with a number. A class of statements declares each argument by the field that it sets."""
 
     ident: int
     line: int
     alias: str
     keyword: str
-    ignored: ClassVar[Mapping[str, str]] = {}
-    refused: ClassVar[Mapping[str, str]] = {}
-    others: ClassVar[tuple[str, ...]] = ()
-    repeated: ClassVar[tuple[str, ...]] = ()
+    ignored: ClassVar[Mapping[str, str]] = {}  # arguments without effect, with the reason
+    refused: ClassVar[Mapping[str, str]] = {}  # arguments that are not supported, with the supported ones
+    others: ClassVar[tuple[str, ...]] = ()  # arguments that only `check` reads
+    repeated: ClassVar[tuple[str, ...]] = ()  # arguments that may occur several times
 
     @property
     def label(self) -> str:

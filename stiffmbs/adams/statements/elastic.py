@@ -174,5 +174,5 @@ class Beam(Numbered):
             raise found.fault(
                 f"found FORMULATION = {found.text('FORMULATION')}, expected LINEAR: the laws of the others are not "
                 "published; for large deflections use several linear beams in series",
-                found.line("FORMULATION"),
+                "FORMULATION",
             )

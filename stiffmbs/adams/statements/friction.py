@@ -21,7 +21,7 @@ def _from_zero(found: Arguments, name: str) -> float:
     if value is None and name.startswith("MU"):
         raise found.fault(f"found no {name}, expected a coefficient of friction")
     if value is not None and value < 0:
-        raise found.fault(f"found {name} = {found.text(name)}, expected a number of zero or more", found.line(name))
+        raise found.fault(f"found {name} = {found.text(name)}, expected a number of zero or more", name)
     return value or 0.0
 
 
@@ -40,7 +40,7 @@ def _one_word(found: Arguments, name: str, words: tuple[str, ...]) -> str:
     for word in words:
         if text and word.startswith(text):
             return word
-    raise found.fault(f"found {name} = {found.text(name)}, expected {' or '.join(words)}", found.line(name))
+    raise found.fault(f"found {name} = {found.text(name)}, expected {' or '.join(words)}", name)
 
 
 def _word_of(name: str, meanings: dict[str, Any]) -> Any:
@@ -74,7 +74,7 @@ def _inputs(found: Arguments, _: Units) -> frozenset[str]:
             if not named:
                 raise found.fault(
                     f"found INPUTS = {found.text('INPUTS')}, expected ALL, NONE or {', '.join(INPUTS)} between colons",
-                    found.line("INPUTS"),
+                    "INPUTS",
                 )
             asked.add(named[0])
     return frozenset(asked)
@@ -82,26 +82,13 @@ def _inputs(found: Arguments, _: Units) -> frozenset[str]:
 
 @dataclass(frozen=True)
 class JointFriction(Numbered):
-    """Friction of one joint by Adams' ORIGINAL formulation, with stiction, in the dataset's units.
-
-    Attributes
-    ----------
-    stiction_velocity, friction_velocity : float
-        Sliding speeds at which the static coefficient is reached, and the dynamic one.
-    inputs : frozenset of str
-        Those of `INPUTS` that contribute to the normal force.
-    growth : int
-        Derivative of the overlap with respect to the displacement: 0, 1 or -1.
-    force, torque : float
-        Friction without load.
-    yokes : str
-        Parts with friction in the arms of a universal joint's cross: ``I``, ``J`` or ``IJ``.
-    """
+    """Friction of one joint by Adams' ORIGINAL formulation, with stiction, in the dataset's units."""
 
     static: float = read_by(_static, "MU_STATIC", "EFFECT")
     dynamic: float = _zero_or_more("MU_DYNAMIC")
-    force: float = _zero_or_more("FRICTION_FORCE_PRELOAD")
+    force: float = _zero_or_more("FRICTION_FORCE_PRELOAD")  # without load, like `torque`
     torque: float = _zero_or_more("FRICTION_TORQUE_PRELOAD")
+    # Sliding speeds at which the static coefficient is reached, and the dynamic one.
     stiction_velocity: float = _size(*_SLOW)
     friction_velocity: float = read_by(_friction_velocity, _FACTOR[0])
     pin: float = _size("PIN_RADIUS", 1.0)
@@ -111,9 +98,9 @@ class JointFriction(Numbered):
     torsion_arm: float = _size("REACTION_ARM", 1.0)
     overlap: float = _size("INITIAL_OVERLAP", 1000.0)
     joint: int = ident("JOINT")
-    growth: int = _word_of("OVERLAP_DELTA", OVERLAP)
-    inputs: frozenset[str] = read_by(_inputs, "INPUTS")
-    yokes: str = _word_of("YOKE", YOKES)
+    growth: int = _word_of("OVERLAP_DELTA", OVERLAP)  # derivative of the overlap with respect to the displacement
+    inputs: frozenset[str] = read_by(_inputs, "INPUTS")  # those of `INPUTS` that contribute to the normal force
+    yokes: str = _word_of("YOKE", YOKES)  # parts with friction in the arms of a universal joint's cross
     others = ("FORMULATION",)
     ignored = {
         "MAX_STICTION_DEFORMATION": "the joint slides slowly below STICTION_TRANSITION_VELOCITY",

@@ -18,18 +18,10 @@ PRECISION = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """Point and axes relative to an outer frame.
+    """Point and axes relative to an outer frame."""
 
-    Attributes
-    ----------
-    point : ndarray, shape (3,)
-        m.
-    axes : ndarray, shape (3, 3)
-        x, y and z axis as columns.
-    """
-
-    point: np.ndarray
-    axes: np.ndarray
+    point: np.ndarray  # m, shape (3,)
+    axes: np.ndarray  # shape (3, 3): x, y and z axis as columns
 
     def within(self, outer: Frame) -> Frame:
         """Return this frame, given relative to `outer`, in the axes to which `outer` refers."""
@@ -51,13 +43,13 @@ def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length
     angles = found.numbers("REULER", 3)
     given = [name for name in (x_point, z_point) if name in found]
     if angles is not None and given:
-        raise found.fault(f"found REULER and {given[0]}, expected one or the other", found.line(given[0]))
+        raise found.fault(f"found REULER and {given[0]}, expected one or the other", given[0])
     if angles is not None:
         return Frame(point, euler_313(*angles))
     offsets = {name: np.array(found.numbers(name, 3)) * length - point for name in given}
     for name, offset in offsets.items():
         if not np.linalg.norm(offset) > 0:
-            raise found.fault(f"found {name} at {origin}, expected a point apart from it", found.line(name))
+            raise found.fault(f"found {name} at {origin}, expected a point apart from it", name)
     if not offsets:
         return Frame(point, IDENTITY)
     x, z = offsets.get(x_point), offsets.get(z_point)

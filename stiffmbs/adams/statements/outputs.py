@@ -41,27 +41,19 @@ def _functions(found: Arguments, _: Units) -> tuple[tuple[str, Function], ...]:
 
 @dataclass(frozen=True)
 class Request(Numbered):
-    """Quantities to report.
+    """Quantities to report."""
 
-    Attributes
-    ----------
-    sort : str or None
-        One of `SORTS`, between markers `i` and `j` (None is ground), in the axes of marker `axes` (None is ground).
-    functions : tuple of (str, Function)
-        Functions by column (or FUNCTION), instead of a sort.
-    computed : tuple of str
-        Columns computed by a user subroutine, which are ignored.
-    names : tuple of str
-        Column names, if given.
-    """
-
+    # one of `SORTS`, between markers `i` and `j` (None is ground), in the axes of marker `axes` (None is ground)
     sort: str | None = one_of(*SORTS)
     i: int | None = _marker("I")
     j: int | None = _marker("J")
     axes: int | None = _marker("RM")
     comment: str = read_by(lambda found, _: found.text("COMMENT") or "", "COMMENT")
+    # functions by column (or FUNCTION), instead of a sort
     functions: tuple[tuple[str, Function], ...] = read_by(_functions, *FUNCTIONS, expressions=True)
+    # columns computed by a user subroutine, which are ignored
     computed: tuple[str, ...] = read_by(lambda found, _: _computed(found))
+    # column names, if given
     names: tuple[str, ...] = read_by(
         lambda found, _: tuple(text.strip().strip("\"'") for text in found.texts("CNAMES")), "TITLE", "CNAMES"
     )
@@ -158,6 +150,4 @@ class Array(Numbered):
         found.without_effect("IC", "X", "Y", "U")
         size, count = found.number("SIZE"), len(found.texts("NUMBERS") or found.texts("VARIABLES"))
         if size is not None and count and size != count:
-            raise found.fault(
-                f"found SIZE = {found.text('SIZE')} and {count} entries, expected equal numbers", found.line("SIZE")
-            )
+            raise found.fault(f"found SIZE = {found.text('SIZE')} and {count} entries, expected equal numbers", "SIZE")

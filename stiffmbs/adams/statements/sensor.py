@@ -30,34 +30,23 @@ def _then(found: Arguments, _: Units) -> str:
 
 @dataclass(frozen=True)
 class Sensor(Numbered):
-    """Monitored function, in the dataset's units.
-
-    Attributes
-    ----------
-    relation : str
-        ``equals``, ``at_least`` or ``at_most``.
-    value, error : float
-        Value to compare with, and tolerance.
-    then : str
-        ``next``: the next command follows; ``stop``: the simulation ends; ``on``: it continues with an
-        output row there; empty: no effect.
-    interval : float or None
-        Output interval from then on.
-    evaluated : Function or None
-        Value of SENVAL from then on.
-    left_out : tuple of str
-        Arguments without effect.
-    """
+    """Monitored function, in the dataset's units."""
 
     function: Function = expression("FUNCTION")
+    # value, error: value to compare with, and tolerance
     value: float = read_by(lambda found, _: found.number("VALUE"), "VALUE")
     error: float = read_by(_error, "ERROR", "ANGULAR")
+    # ``equals``, ``at_least`` or ``at_most``
     relation: str = read_by(lambda found, _: RELATIONS[found.one_of(*RELATIONS) or "EQ"], *RELATIONS)
+    # ``next``: the next command follows; ``stop``: the simulation ends; ``on``: it continues with an output row there;
+    # empty: no effect
     then: str = read_by(_then, *ENDS, "PRINT")
-    interval: float | None = read_by(lambda found, _: found.positive("DT"), "DT")
+    interval: float | None = read_by(lambda found, _: found.positive("DT"), "DT")  # output interval from then on
+    # value of SENVAL from then on
     evaluated: Function | None = read_by(
         lambda found, _: read_function(found, "EVALUATE"), "EVALUATE", expressions=True
     )
+    # arguments without effect
     left_out: tuple[str, ...] = read_by(lambda found, _: tuple(name for name in WITHOUT_EFFECT if name in found))
     others = ("ROUTINE", "EVAL_ROUTINE")
     ignored = dict.fromkeys(WITHOUT_EFFECT, "no effect on results")
@@ -68,6 +57,4 @@ class Sensor(Numbered):
         if found.number("VALUE") is None:
             raise found.fault("found no VALUE, expected the number that the function is compared with")
         if (found.number("ERROR") or 0.0) < 0:
-            raise found.fault(
-                f"found ERROR = {found.text('ERROR')}, expected a number of zero or more", found.line("ERROR")
-            )
+            raise found.fault(f"found ERROR = {found.text('ERROR')}, expected a number of zero or more", "ERROR")

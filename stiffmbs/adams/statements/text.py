@@ -81,28 +81,15 @@ class Subsystem:
 
 @dataclass(frozen=True)
 class Statement:
-    """Statement of a dataset or command file.
+    """Statement of a dataset or command file."""
 
-    Attributes
-    ----------
-    word : str
-        Text before the slash, in capitals.
-    ident : str
-        Text after the slash.
-    alias : str
-        Name in Adams/View, from a comment before the statement.
-    changes : tuple of (int, tuple of Subsystem)
-        Arguments changed by commands, with the line of each.
-    requests : list of Fields
-        Arguments, with a record of those that are requested; filled when the statement is read.
-    """
-
-    word: str
-    ident: str
+    word: str  # text before the slash, in capitals
+    ident: str  # text after the slash
     pieces: tuple[Subsystem, ...]
     line: int
-    alias: str = ""
-    changes: tuple[tuple[int, tuple[Subsystem, ...]], ...] = ()
+    alias: str = ""  # name in Adams/View, from a comment before the statement
+    changes: tuple[tuple[int, tuple[Subsystem, ...]], ...] = ()  # arguments changed by commands, with the line of each
+    # arguments, with a record of those that are requested; filled when the statement is read
     requests: list[Fields[Any]] = field(default_factory=list, compare=False)
 
 

@@ -80,4 +80,4 @@ def _named(found: Arguments, kind: str, known: Mapping[str, Any]) -> Any:
     for name, unit in known.items():
         if word and name.startswith(word):
             return unit
-    raise found.fault(f"found {kind} = {found.text(kind)}, expected one of {', '.join(known)}", found.line(kind))
+    raise found.fault(f"found {kind} = {found.text(kind)}, expected one of {', '.join(known)}", kind)

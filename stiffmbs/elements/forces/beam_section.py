@@ -81,24 +81,14 @@ class BeamSectionLaw(Force):
 
 @dataclass(frozen=True)
 class _Form:
-    """Form of sections with common kernels.
+    """Form of sections with common kernels."""
 
-    Attributes
-    ----------
-    slots : tuple of int
-        Body of each node.
-    n_bodies : int
-    space, damped : int
-        1 or 0.
-    patterns : mapping
-        Of the terms.
-    """
-
-    slots: tuple[int, ...]
+    slots: tuple[int, ...]  # body of each node
     n_bodies: int
+    # space, damped: 1 or 0
     space: int
     damped: int
-    patterns: Mapping[str, Any]
+    patterns: Mapping[str, Any]  # of the terms
 
     def calls(self, places: Mapping[str, int], state: str, to: Mapping[str, str]) -> list[tuple[str, str, str]]:
         """Return the calls for the terms with given places: term, module and call."""

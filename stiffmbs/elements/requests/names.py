@@ -16,24 +16,14 @@ OF_RUN = {"energy": ("kinetic", "potential", "total"), "constraint": ("position"
 
 @dataclass(frozen=True)
 class OutputNames:
-    """Names of one family of models.
+    """Names of one family of models."""
 
-    Attributes
-    ----------
-    measures : tuple of str
-        Measures between two markers, as in Adams.
-    along_axes : tuple of str
-        Measures that accept a third marker, along whose axes they are resolved.
-    actions : tuple of str
-        Force and torque of a joint or force on its first body, or on its second (``hinge.j``), along ground axes or
-        those of a marker: ``fx(hinge)``, ``tz(hinge.j, bar.end)``; fm and tm are magnitudes.
-    of_bodies, of_elements : tuples of str
-        Channels of a body, and of a joint or force: ``bar.ax``, ``hinge.fx``.
-    """
-
-    measures: tuple[str, ...]
-    along_axes: tuple[str, ...]
+    measures: tuple[str, ...]  # measures between two markers, as in Adams
+    along_axes: tuple[str, ...]  # measures that accept a third marker, along whose axes they are resolved
+    # force and torque of a joint or force on its first body, or on its second (``hinge.j``), along ground axes or those
+    # of a marker: ``fx(hinge)``, ``tz(hinge.j, bar.end)``; fm and tm are magnitudes
     actions: tuple[str, ...]
+    # of_bodies, of_elements: channels of a body, and of a joint or force: ``bar.ax``, ``hinge.fx``
     of_bodies: tuple[str, ...]
     of_elements: tuple[str, ...]
 

@@ -6,6 +6,7 @@ import ast
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 
+from ...errors import prefixed
 from ...reading.formula import measured
 from ...reading.formula.dimension import Known, alike, measured_in, of_branch, of_first, of_step, plain_always
 from ...reading.formula.field import FormulaOf
@@ -62,10 +63,8 @@ def dimensions(outputs: Mapping[str, Output]) -> dict[str, Known]:
     """
     found: dict[str, Known] = {}
     for name in in_order(outputs):
-        try:
+        with prefixed(f"requests.{name}: ", FormulaError, ValueError):
             found[name] = dimension(outputs[name], found)
-        except FormulaError as error:
-            raise ValueError(f"requests.{name}: {error}") from None
     return found
 
 

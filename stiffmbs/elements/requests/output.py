@@ -23,23 +23,12 @@ CONTINUOUS_ANGLES = ("ax", "ay", "az")
 
 @dataclass(frozen=True)
 class Term:
-    """Measure or action in a formula.
+    """Measure or action in a formula."""
 
-    Attributes
-    ----------
-    function : str
-        Measure or action of `stiffmbs.elements.requests.names.OutputNames`.
-    element : str
-        Joint or force of an action.
-    on_second : bool
-        True for the action on the second body.
-    markers : tuple of MarkerReference
-        For a measure i and j, and optionally the marker of the axes; for an action at most the latter.
-    """
-
-    function: str
-    element: str
-    on_second: bool
+    function: str  # measure or action of `stiffmbs.elements.requests.names.OutputNames`
+    element: str  # joint or force of an action
+    on_second: bool  # True for the action on the second body
+    # for a measure i and j, and optionally the marker of the axes; for an action at most the latter
     markers: tuple[MarkerReference, ...]
 
     def __str__(self) -> str:
@@ -55,32 +44,15 @@ def placeholder(k: int) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """Checked formula of a request.
+    """Checked formula of a request."""
 
-    Attributes
-    ----------
-    text : str
-        Formula in the scene.
-    tree : ast.expr
-        Its tree, with the names of `placeholder` in place of `terms`.
-    terms : tuple of Term
-    quantities : mapping of str to Quantity
-        Parameters, units and constants that it uses.
-    tables : mapping of str to Table
-        Tables of the scene that it calls.
-    parameters : mapping of str to Quantity
-        Parameters of the scene among `quantities`.
-    expanded : str
-        Text with the scene's variables substituted; empty if the scene has none.
-    """
-
-    text: str
-    tree: ast.expr
+    text: str  # formula in the scene
+    tree: ast.expr  # its tree, with the names of `placeholder` in place of `terms`
     terms: tuple[Term, ...]
-    quantities: Mapping[str, Quantity] = field(default_factory=dict)
-    tables: Mapping[str, Table] = field(default_factory=dict)
-    parameters: Mapping[str, Quantity] = field(default_factory=dict)
-    expanded: str = ""
+    quantities: Mapping[str, Quantity] = field(default_factory=dict)  # parameters, units and constants that it uses
+    tables: Mapping[str, Table] = field(default_factory=dict)  # tables of the scene that it calls
+    parameters: Mapping[str, Quantity] = field(default_factory=dict)  # parameters of the scene among `quantities`
+    expanded: str = ""  # text with the scene's variables substituted; empty if the scene has none
 
     def written_tree(self) -> ast.expr:
         """Return its tree with the placeholders replaced by the terms."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Annotated, Any
 
+from ...errors import prefixed
 from ...reading.formula.field import FormulaOf, formula_text
 from ...reading.formula.formula import called_tables
 from ...reading.formula.full_names import text_in_full, with_full_names
@@ -125,10 +126,8 @@ def read_request(family: OutputNames, found: object, context: Context) -> Any:
     check_names(found, "component")
     formulas = {}
     for name, formula in found.items():
-        try:
+        with prefixed(f"{name}: ", FormulaError, FormulaError):
             formulas[name] = read_output(family, formula, context)
-        except FormulaError as error:
-            raise FormulaError(f"{name}: {error}") from None
     return formulas
 
 

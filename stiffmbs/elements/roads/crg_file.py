@@ -40,31 +40,15 @@ class Entry:
 
 @dataclass(frozen=True)
 class CrgHeader:
-    """Header of a file.
-
-    Attributes
-    ----------
-    numbers : Fields of float
-        Numbers of ``$ROAD_CRG`` by name, in capitals.
-    layout : str
-        Format of the data: LRFI, LDFI, KRBI or KDBI.
-    channels : list of Entry
-        Channel definitions, ``D:``.
-    u : tuple of float
-        Start and increment, m.
-    line : int
-        Last line of the header.
-    end : int
-        Offset of the data, bytes.
-    """
+    """Header of a file."""
 
     blocks: Fields[list[Entry]]
-    numbers: Fields[float]
-    layout: str
-    channels: list[Entry]
-    u: tuple[float, float]
-    line: int
-    end: int
+    numbers: Fields[float]  # numbers of ``$ROAD_CRG`` by name, in capitals
+    layout: str  # format of the data: LRFI, LDFI, KRBI or KDBI
+    channels: list[Entry]  # channel definitions, ``D:``
+    u: tuple[float, float]  # start and increment, m
+    line: int  # last line of the header
+    end: int  # offset of the data, bytes
 
 
 def read_header(content: bytes, path: Path) -> CrgHeader:

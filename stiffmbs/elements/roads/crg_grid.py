@@ -31,35 +31,18 @@ SAME_AT_END = {"S": 1e-3, "B": 1e-3, "Z": 1e-2}
 
 @dataclass(frozen=True, eq=False)
 class CrgGrid:
-    """Curved regular grid.
-
-    Attributes
-    ----------
-    u : ndarray, shape (n,)
-        Coordinates along the reference line, m.
-    v : ndarray, shape (k,)
-        Coordinates to the left of it, m; increasing.
-    heights : ndarray, shape (n, k)
-        Heights with slope and banking, m.
-    x, y : ndarrays, shape (n,)
-        Coordinates of the reference line, m.
-    heading : float
-        Heading at the start, rad.
-    level : float
-        Height of the reference line at its start, m.
-    remarks : tuple of str
-        Notes on unused parts of the file.
-    """
+    """Curved regular grid."""
 
     path: str
-    u: np.ndarray
-    v: np.ndarray
-    heights: np.ndarray
+    u: np.ndarray  # shape (n,): coordinates along the reference line, m
+    v: np.ndarray  # shape (k,): coordinates to the left of it, m; increasing
+    heights: np.ndarray  # shape (n, k): heights with slope and banking, m
+    # x, y: shape (n,): coordinates of the reference line, m
     x: np.ndarray
     y: np.ndarray
-    heading: float
-    level: float
-    remarks: tuple[str, ...] = ()
+    heading: float  # heading at the start, rad
+    level: float  # height of the reference line at its start, m
+    remarks: tuple[str, ...] = ()  # notes on unused parts of the file
 
 
 def read_crg(path: Path) -> CrgGrid:

@@ -7,7 +7,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.fields import located, named_entries
 from ...reading.files.quoted import quoted, written
 from ..read_by import Context, JsonSchema, ReadBy
@@ -43,9 +43,7 @@ def read_road(found: object, context: Context) -> Road:
     if isinstance(found, str):
         known = (context or {}).get("roads") or {}
         if found not in known:
-            raise ValueError(
-                f"found the unknown road '{quoted(found)}'{did_you_mean(found, known)}, expected one of {', '.join(known) or 'none'}"
-            )
+            raise ValueError(f"found the unknown road '{quoted(found)}'{instead_of(found, known)}")
         return known[found]  # type: ignore[no-any-return]
     if not isinstance(found, dict):
         raise ValueError(f"found {written(found)}, expected the name of a road, or a mapping with its type")

@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import instead_of
 from ...reading.table import Table
 from ...reading.units import si
 from ..element import Component, Expr, Symbolic
@@ -35,9 +35,7 @@ class TableRoad(Road):
             return found
         tables = (info.context or {}).get("tables") or {}
         if found not in tables:
-            raise ValueError(
-                f"found the unknown table '{found}'{did_you_mean(found, tables)}, expected one of {', '.join(tables) or 'none'}"
-            )
+            raise ValueError(f"found the unknown table '{found}'{instead_of(found, tables)}")
         return tables[found]
 
     @model_validator(mode="after")

@@ -17,38 +17,22 @@ from .wrench import along_axes, seen_from, velocity
 
 @dataclass(frozen=True)
 class ContactPoint:
-    """Contact of a wheel with a road, in ground axes.
+    """Contact of a wheel with a road, in ground axes."""
 
-    Attributes
-    ----------
-    point : Matrix
-        Contact point, m.
-    forward, left, normal : Matrix
-        Unit vectors of the ISO axes at the contact: the wheel's heading in the road plane, across it, normal to the
-        road.
-    radius : Expr
-        Loaded radius, from the wheel's centre to the contact point, m.
-    camber : Expr
-        Angle of the wheel's plane to the road normal, rad; positive if the top leans to the right.
-    vx, vy, vz : Expr
-        Velocity of the contact point, which does not rotate with the wheel, along these axes, m/s.
-    spin : Expr
-        Angular velocity of the wheel about its axis, rad/s; positive rolling forward.
-    friction : Expr
-        Friction factor of the road.
-    """
-
-    point: Matrix
+    point: Matrix  # contact point, m
+    # forward, left, normal: unit vectors of the ISO axes at the contact: the wheel's heading in the road plane, across
+    # it, normal to the road
     forward: Matrix
     left: Matrix
     normal: Matrix
-    radius: Expr
-    camber: Expr
+    radius: Expr  # loaded radius, from the wheel's centre to the contact point, m
+    camber: Expr  # angle of the wheel's plane to the road normal, rad; positive if the top leans to the right
+    # vx, vy, vz: velocity of the contact point, which does not rotate with the wheel, along these axes, m/s
     vx: Expr
     vy: Expr
     vz: Expr
-    spin: Expr
-    friction: Expr
+    spin: Expr  # angular velocity of the wheel about its axis, rad/s; positive rolling forward
+    friction: Expr  # friction factor of the road
 
 
 def contact_point(e: Symbolic) -> ContactPoint:

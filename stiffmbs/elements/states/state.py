@@ -21,27 +21,16 @@ Scale = Annotated[AnyAmount, AfterValidator(positive)]
 
 @dataclass(frozen=True)
 class StateValue:
-    """Scalar unknown in addition to the motion.
+    """Scalar unknown in addition to the motion."""
 
-    Attributes
-    ----------
-    rate : Formula or None
-        Its rate of change, the residual of an algebraic state, or the next value of a sampled one; None if an element
-        defines it.
-    start : float
-        Initial value, SI units; for an algebraic state the initial guess.
-    scale : float
-        Characteristic size: its absolute tolerance is that of an angle times this.
-    algebraic : bool
-        Whether its equation is 0 = formula, without a rate.
-    period, offset : float
-        Times between the samples of a sampled state, and of its first one, s; a period of 0 for all other states.
-    """
-
+    # its rate of change, the residual of an algebraic state, or the next value of a sampled one; None if an element
+    # defines it
     rate: Formula | None
-    start: float
-    scale: float
-    algebraic: bool = False
+    start: float  # initial value, SI units; for an algebraic state the initial guess
+    scale: float  # characteristic size: its absolute tolerance is that of an angle times this
+    algebraic: bool = False  # whether its equation is 0 = formula, without a rate
+    # period, offset: times between the samples of a sampled state, and of its first one, s; a period of 0 for all other
+    # states
     period: float = 0.0
     offset: float = 0.0
 

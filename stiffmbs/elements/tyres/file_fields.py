@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from pydantic import Field
 
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from ...reading.files.quoted import quoted
 from ...reading.table import Table
 from ..element import Component
@@ -118,10 +118,8 @@ def curve_of(file: PropertyFile, section: str) -> Table | None:
     if any(len(row) != 2 for row in rows.numbers):
         raise InputError(f"{where}: found a row without exactly two numbers, expected a deflection and a load")
     length, force = file.factor("length"), file.factor("force")
-    try:
+    with prefixed(f"{where}: "):
         return Table(table=tuple((length * deflection, force * load) for deflection, load in rows.numbers))
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None
 
 
 def bottoming_of(file: PropertyFile, formula: Version) -> Bottoming | None:
@@ -306,10 +304,7 @@ def relaxation_of(
     The lengths are in the unit of the file. A file in mm may have them in m: such lengths are left out if USE_MODE
     does not ask for them.
 
-    Raises
-    ------
-    InputError
-        For lengths in a wrong unit, or below zero.
+    Raises InputError for lengths in a wrong unit, or below zero.
     """
     least, most = (part * found["UNLOADED_RADIUS"] for part in RELAXED)
     for name in ("RELAX_LENGTH_X", "RELAX_LENGTH_Y"):

@@ -93,35 +93,17 @@ class Rows:
 
 @dataclass(frozen=True)
 class PropertyFile:
-    """Content of a property file.
+    """Content of a property file."""
 
-    Attributes
-    ----------
-    source : str
-        Name of the file in messages.
-    sections : mapping of str to Fields
-        Keys of each section, in capital letters.
-    tables : Fields of Rows
-        Tables by section.
-    """
-
-    source: str
-    sections: Mapping[str, Fields[Entry]]
-    tables: Fields[Rows]
+    source: str  # name of the file in messages
+    sections: Mapping[str, Fields[Entry]]  # keys of each section, in capital letters
+    tables: Fields[Rows]  # tables by section
 
     def entry(self, key: str, home: str = "") -> Entry | None:
         """Return the entry of a key, or None.
 
-        Parameters
-        ----------
-        key : str
-        home : str
-            Section to which the key belongs; it is used if several sections have the key.
-
-        Raises
-        ------
-        InputError
-            If sections to which the key does not belong give it different values.
+        `home`: section to which the key belongs; it is used if several sections have the key. Raises InputError if
+        sections to which the key does not belong give it different values.
         """
         having = [section for section in self.sections.values() if section.has(key)]
         own = [section for section in having if section.kind == f"[{home}]"]
@@ -144,10 +126,7 @@ class PropertyFile:
     def number(self, key: str, dimension: str = "", home: str = "") -> float:
         """Return a value in SI units.
 
-        Raises
-        ------
-        InputError
-            If the value is missing or not a number.
+        Raises InputError if the value is missing or not a number.
         """
         entry = self.entry(key, home)
         if entry is None:
@@ -157,10 +136,7 @@ class PropertyFile:
     def factor(self, dimension: str) -> float:
         """Return the file's unit of a dimension in SI units; 1 if the file has no [UNITS].
 
-        Raises
-        ------
-        InputError
-            For an unknown unit.
+        Raises InputError for an unknown unit.
         """
         product, divisor = map(self._units, composed_of(dimension, self.sections.get("UNITS", ())))
         return math.prod(product) * math.prod(unit**-1 for unit in divisor)
@@ -247,32 +223,15 @@ NOMINAL_PRESSURE = 2e5
 
 @dataclass(frozen=True)
 class Version:
-    """Version of the Magic Formula, or Fiala's formula.
-
-    Attributes
-    ----------
-    name : str
-    dimensions : mapping of str to str
-        Numbers that are neither coefficients nor scale factors, with their dimensions.
-    defaults : mapping of str to float
-        Default values; numbers without one are required.
-    largest : tuple of int
-        Largest digits of USE_MODE: contact method, dynamics, slip.
-    required : tuple of str
-        Numbers that a tyre must have.
-    may_vanish : tuple of str
-        Required numbers that may be zero.
-    vertical : str
-        Section of the vertical stiffness and damping.
-    """
+    """Version of the Magic Formula, or Fiala's formula."""
 
     name: str
-    dimensions: Mapping[str, str]
-    defaults: Mapping[str, float]
-    largest: tuple[int, int, int]
-    required: tuple[str, ...] = REQUIRED
-    may_vanish: tuple[str, ...] = ()
-    vertical: str = "VERTICAL"
+    dimensions: Mapping[str, str]  # numbers that are neither coefficients nor scale factors, with their dimensions
+    defaults: Mapping[str, float]  # default values; numbers without one are required
+    largest: tuple[int, int, int]  # largest digits of USE_MODE: contact method, dynamics, slip
+    required: tuple[str, ...] = REQUIRED  # numbers that a tyre must have
+    may_vanish: tuple[str, ...] = ()  # required numbers that may be zero
+    vertical: str = "VERTICAL"  # section of the vertical stiffness and damping
 
     @property
     def numbers(self) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from ...errors import InputError
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import instead_of
 from ...reading.files.quoted import quoted
 from .names import RANGES
 from .property_file import UNITS, composed_of
@@ -45,9 +45,7 @@ def property_text(properties: TyreProperties, units: Mapping[str, str] | None = 
 def _checked(units: Mapping[str, str]) -> dict[str, str]:
     for kind, unit in units.items():
         if kind not in UNITS:
-            raise InputError(
-                f"found the dimension '{quoted(kind)}'{did_you_mean(kind, UNITS)}, expected one of {', '.join(UNITS)}"
-            )
+            raise InputError(f"found the dimension '{quoted(kind)}'{instead_of(kind, UNITS)}")
         if unit.lower() not in UNITS[kind]:
             raise InputError(f"{kind}: found the unit '{quoted(unit)}', expected one of {', '.join(UNITS[kind])}")
     return dict(units)

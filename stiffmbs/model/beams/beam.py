@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from ...elements.body import LineBody, check_names
-from ...errors import InputError
-from ...reading.did_you_mean import did_you_mean
+from ...errors import InputError, prefixed
+from ...reading.did_you_mean import instead_of
 from ...reading.fields import Measured
 from ...reading.handle import Handle
 from ...reading.units import si
@@ -43,9 +43,7 @@ class BeamHandle(Mapping[str, Handle]):
 
     def __getattr__(self, node: str) -> Handle:
         if node.startswith("_") or node not in self._nodes:
-            raise AttributeError(
-                f"{self.name}: found no node '{node}'{did_you_mean(node, self._nodes)}, expected one of {', '.join(self._nodes)}"
-            )
+            raise AttributeError(f"{self.name}: found no node '{node}'{instead_of(node, self._nodes)}")
         return self._nodes[node]
 
 
@@ -122,10 +120,8 @@ class Beam(LineBody):
             raise InputError(
                 f"{name}.elements: found a tolerance in a model built in Python, expected a number; only scenes take a tolerance"
             )
-        try:
+        with prefixed(f"{name}.", ValueError):
             made = expanded(name, self)
-        except ValueError as error:
-            raise InputError(f"{name}.{error}") from None
         for full, entry in made.bodies.items():
             model.add(full, model.body_type(**entry))
         for full, entry in made.forces.items():
@@ -150,10 +146,8 @@ class Beam(LineBody):
                 "through" if through else "end",
                 [self._in_space(p) for p in (start, through, end) if p is not None],
             )
-        try:
+        with prefixed(f"{where}: ", ValueError, ValueError):
             return [arc_through(*axis)] if through is not None else pieces_through(axis)
-        except ValueError as error:
-            raise ValueError(f"{where}: {error}") from None
 
     def _in_space(self, point: Any) -> np.ndarray:
         return np.array([*point, 0.0][:3], dtype=float)

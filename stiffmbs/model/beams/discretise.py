@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...errors import prefixed
 from .axis import Arc, Piece, frame, upward
 from .division import AUTOMATIC, Divided, Elements
 from .interpolation import Group, group_sizes
@@ -29,36 +30,16 @@ Z = np.array([0.0, 0.0, 1.0])
 
 @dataclass
 class Node:
-    """Rigid node of a beam.
+    """Rigid node of a beam."""
 
-    Attributes
-    ----------
-    name : str
-        After the beam's name and a dot.
-    s : float
-        Distance from the start, m.
-    share : float
-        Length of the beam that is lumped at the node, m.
-    point : ndarray
-        m.
-    axes : ndarray
-        Rotation matrix of the section's axes; at a corner those of the piece before it.
-    mass : float
-        kg.
-    inertia : ndarray
-        In the node's axes, kg m^2.
-    radius : float
-        Distance of the surface from the axis, m; 0 if it depends on the direction.
-    """
-
-    name: str
-    s: float
-    point: np.ndarray
-    axes: np.ndarray
-    share: float = 0.0
-    mass: float = 0.0
-    inertia: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))
-    radius: float = 0.0
+    name: str  # after the beam's name and a dot
+    s: float  # distance from the start, m
+    point: np.ndarray  # m
+    axes: np.ndarray  # rotation matrix of the section's axes; at a corner those of the piece before it
+    share: float = 0.0  # length of the beam that is lumped at the node, m
+    mass: float = 0.0  # kg
+    inertia: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))  # in the node's axes, kg m^2
+    radius: float = 0.0  # distance of the surface from the axis, m; 0 if it depends on the direction
 
     def lump(self, share: float, mass: float, inertia: np.ndarray, axes: np.ndarray) -> None:
         """Add the mass of a length of the beam whose inertia per length, shape (3, 3), is given along its axes."""
@@ -70,41 +51,21 @@ class Node:
 
 @dataclass(frozen=True)
 class Element:
-    """Elastic element: one between two nodes, or a section at an inner point of a group of nodes.
-
-    Attributes
-    ----------
-    nodes : list of Node
-    turned : ndarray
-        Rotation matrix of the element's axes at its first node against the node's axes, other than the identity after a
-        corner.
-    length : float
-        Length of the beam represented by the element, m.
-    unloaded : ndarray
-        Strain without load, shape (6,).
-    stiffness : ndarray
-        Shape (6, 6).
-    bowing : ndarray
-        Factors of the stretch by both shears; of elements between two nodes.
-    shear_centre : (float, float)
-        From the axis along axes 2 and 3, m; of elements between two nodes.
-    wagner : (float, float)
-        Curvatures by torsion, per kappa_1^2/2, m; of elements between two nodes.
-    reference : int
-        Place of the reference node.
-    shapes, slopes : ndarrays
-        Values and derivatives of the nodes' polynomials at the section; empty between two nodes.
-    """
+    """Elastic element: one between two nodes, or a section at an inner point of a group of nodes."""
 
     nodes: list[Node]
+    # rotation matrix of the element's axes at its first node against the node's axes, other than the identity after a
+    # corner
     turned: np.ndarray
-    length: float
-    unloaded: np.ndarray
-    stiffness: np.ndarray
+    length: float  # length of the beam represented by the element, m
+    unloaded: np.ndarray  # strain without load, shape (6,)
+    stiffness: np.ndarray  # shape (6, 6)
+    # factors of the stretch by both shears; of elements between two nodes
     bowing: np.ndarray = field(default_factory=lambda: np.zeros(2))
-    shear_centre: tuple[float, float] = (0.0, 0.0)
-    wagner: tuple[float, float] = (0.0, 0.0)
-    reference: int = 0
+    shear_centre: tuple[float, float] = (0.0, 0.0)  # from the axis along axes 2 and 3, m; of elements between two nodes
+    wagner: tuple[float, float] = (0.0, 0.0)  # curvatures by torsion, per kappa_1^2/2, m; of elements between two nodes
+    reference: int = 0  # place of the reference node
+    # shapes, slopes: values and derivatives of the nodes' polynomials at the section; empty between two nodes
     shapes: np.ndarray = field(default_factory=lambda: np.zeros(0))
     slopes: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
@@ -119,26 +80,13 @@ class Line:
 
 
 class Constants(NamedTuple):
-    """Constants of the cross section at a place of a beam.
+    """Constants of the cross section at a place of a beam."""
 
-    Attributes
-    ----------
-    stiffness : ndarray, shape (6, 6)
-    mass : float
-        Per length, kg/m.
-    inertia : ndarray, shape (3, 3)
-        Per length, kg m.
-    shear_centre : (float, float)
-        From the axis along axes 2 and 3, m.
-    wagner : (float, float)
-        Curvatures by torsion, per kappa_1^2/2, m.
-    """
-
-    stiffness: np.ndarray
-    mass: float
-    inertia: np.ndarray
-    shear_centre: tuple[float, float] = (0.0, 0.0)
-    wagner: tuple[float, float] = (0.0, 0.0)
+    stiffness: np.ndarray  # shape (6, 6)
+    mass: float  # per length, kg/m
+    inertia: np.ndarray  # shape (3, 3): per length, kg m
+    shear_centre: tuple[float, float] = (0.0, 0.0)  # from the axis along axes 2 and 3, m
+    wagner: tuple[float, float] = (0.0, 0.0)  # curvatures by torsion, per kappa_1^2/2, m
 
 
 def _constants(beam: Any, share: float) -> Constants:
@@ -322,10 +270,8 @@ class _Interval:
 
     def _pose(self, s: float) -> tuple[np.ndarray, np.ndarray]:
         point, along = self.piece.at(s - self.first)
-        try:
+        with prefixed("up: ", ValueError, ValueError):
             return point, frame(along, self.up)
-        except ValueError as error:
-            raise ValueError(f"up: {error}") from None
 
     def _stiffness(self, s: float) -> np.ndarray:
         K = self.constants(s).stiffness

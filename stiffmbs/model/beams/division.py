@@ -26,23 +26,13 @@ _LENGTH = Measured("length", above=0)
 
 @dataclass(frozen=True)
 class Elements:
-    """Wanted number of elements of a beam.
+    """Wanted number of elements of a beam."""
 
-    Attributes
-    ----------
-    number : int
-        In all, at least one in each interval between ends, corners and stations.
-    counts : tuple of int, optional
-        In place of `number`: for each of these intervals.
-    tolerance : float, optional
-        Tolerance of the positions of its nodes, m, by which analyses change the number; 0 for `AUTOMATIC`.
-    names : mapping of str to float
-        Names of nodes by their fraction of the length, which replace ``node1``, ``node2`` ...
-    """
-
-    number: int = FIRST
-    counts: tuple[int, ...] | None = None
+    number: int = FIRST  # in all, at least one in each interval between ends, corners and stations
+    counts: tuple[int, ...] | None = None  # in place of `number`: for each of these intervals
+    # tolerance of the positions of its nodes, m, by which analyses change the number; 0 for `AUTOMATIC`
     tolerance: float | None = None
+    # names of nodes by their fraction of the length, which replace ``node1``, ``node2``
     names: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -82,24 +72,12 @@ def _whole(found: object, info: ValidationInfo) -> int:
 
 @dataclass(frozen=True)
 class Divided:
-    """Division of a beam of a scene.
+    """Division of a beam of a scene."""
 
-    Attributes
-    ----------
-    length : float
-        m.
-    counts : tuple of int
-        Elements in each interval between ends, corners and stations.
-    tolerance : float or None
-        Of the positions of its nodes, m, if the number is not fixed.
-    names : mapping of str to float
-        Names of its nodes, without that of the beam, and their fractions of the length.
-    """
-
-    length: float
-    counts: tuple[int, ...]
-    tolerance: float | None
-    names: Mapping[str, float]
+    length: float  # m
+    counts: tuple[int, ...]  # elements in each interval between ends, corners and stations
+    tolerance: float | None  # of the positions of its nodes, m, if the number is not fixed
+    names: Mapping[str, float]  # names of its nodes, without that of the beam, and their fractions of the length
 
     def times(self, factor: float) -> Elements:
         """Return the elements of the same beam with more or fewer of them; nodes at the same places keep their names."""

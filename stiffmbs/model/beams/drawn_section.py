@@ -26,16 +26,8 @@ def constants_of(points: Loop, holes: tuple[Loop, ...]) -> Properties:
 
     The warping function is solved by finite elements (Pilkey, Analysis and Design of Elastic Beams, 2002).
 
-    Parameters
-    ----------
-    points : sequence of (float, float)
-        Outline, along axes 2 and 3, m; the axis of the beam is the centroid.
-    holes : sequence of such outlines
-
-    Raises
-    ------
-    ValueError
-        If the package is missing or the outlines cross.
+    `points`: outline, along axes 2 and 3, m; the axis of the beam is the centroid. Raises ValueError if the package is
+    missing or the outlines cross.
     """
     try:
         from sectionproperties.analysis import Section

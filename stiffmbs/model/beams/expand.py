@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError as PydanticError
 
 from ...elements.body import FLEXIBLE, check_names
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from ...reading.did_you_mean import did_you_mean
 from ...reading.fields import sentence
 from ...reading.files.quoted import quoted
@@ -44,10 +44,8 @@ def expand_beams(
             continue
         _check_name(name, f"{where}.{name}")
         beam = read_beam(entry, parameters, dimensions, f"{where}.{name}")
-        try:
+        with prefixed(f"{where}.{name}.", ValueError):
             made = expanded(str(name), beam)
-        except ValueError as error:
-            raise InputError(f"{where}.{name}.{error}") from None
         taken = next((full for full in made.bodies if full in bodies), None)
         if taken is not None:
             raise InputError(f"{where}.{taken}: found the name of a node of the beam '{name}', expected another")
@@ -69,10 +67,8 @@ def expand_beams(
 
 
 def _check_name(name: Any, where: str) -> None:
-    try:
+    with prefixed(f"{where.rpartition('.')[0]}: ", ValueError):
         check_names([name], "entry")
-    except ValueError as error:
-        raise InputError(f"{where.rpartition('.')[0]}: {error}") from None
     if name in RESERVED:
         raise InputError(f"{where}: found the name '{name}', which is reserved, expected another")
 

@@ -27,18 +27,12 @@ LARGEST_TURN = 2.5
 
 @dataclass(frozen=True)
 class Group:
-    """Nodes and sections of a group of elements, at fractions of its length.
+    """Nodes and sections of a group of elements, at fractions of its length."""
 
-    Attributes
-    ----------
-    nodes, weights : ndarrays, shape (p + 1,)
-        Gauss-Lobatto points and weights.
-    sections : tuple of (float, float, ndarray, ndarray)
-        Gauss points and weights, with the values of the nodes' polynomials and their derivatives; none for p < 3.
-    """
-
+    # nodes, weights: shape (p + 1,): Gauss-Lobatto points and weights
     nodes: np.ndarray
     weights: np.ndarray
+    # Gauss points and weights, with the values of the nodes' polynomials and their derivatives; none for p < 3
     sections: tuple[tuple[float, float, np.ndarray, np.ndarray], ...]
 
     def compliances(self, at: Callable[[float], np.ndarray]) -> np.ndarray:

@@ -17,6 +17,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from ...elements.shape import one_of
+from ...errors import prefixed
 from ...reading.fields import Described, Measured
 from ...reading.units import si
 from .open_section import of_rectangles, of_walls
@@ -32,37 +33,21 @@ Factor = Annotated[float, Measured("number", above=0)]
 
 @dataclass(frozen=True)
 class Properties:
-    """Constants of a cross section.
+    """Constants of a cross section."""
 
-    Attributes
-    ----------
-    A : float
-        Area, m^2.
-    I2, I3 : float
-        Second moments of area about axes 2 and 3, m^4.
-    J : float
-        Torsion constant, m^4.
-    shear2, shear3 : float
-        Shear factors: GA2 = shear2 G A.
-    I23 : float
-        Product of inertia, the integral of the product of the coordinates along axes 2 and 3, m^4.
-    shear_centre : (float, float)
-        From the centroid along axes 2 and 3, m.
-    shear23 : float
-        Inverse of a shear factor: the shear strain along axis 2 by a force along axis 3 is shear23 V/(G A).
-    wagner : (float, float)
-        Curvatures about axes 2 and 3 by torsion, per kappa_1^2/2, m (`wagner_coefficients`).
-    """
-
-    A: float
+    A: float  # area, m^2
+    # I2, I3: second moments of area about axes 2 and 3, m^4
     I2: float
     I3: float
-    J: float
+    J: float  # torsion constant, m^4
+    # shear2, shear3: shear factors: GA2 = shear2 G A
     shear2: float
     shear3: float
-    I23: float = 0.0
-    shear_centre: tuple[float, float] = (0.0, 0.0)
+    I23: float = 0.0  # product of inertia, the integral of the product of the coordinates along axes 2 and 3, m^4
+    shear_centre: tuple[float, float] = (0.0, 0.0)  # from the centroid along axes 2 and 3, m
+    # inverse of a shear factor: the shear strain along axis 2 by a force along axis 3 is shear23 V/(G A)
     shear23: float = 0.0
+    # curvatures about axes 2 and 3 by torsion, per kappa_1^2/2, m (`wagner_coefficients`)
     wagner: tuple[float, float] = (0.0, 0.0)
 
     def stiffness(self, E: float, G: float) -> np.ndarray:
@@ -322,10 +307,8 @@ class Drawn(Section):
         """See `stiffmbs.model.beams.drawn_section`; the shear factors are those of a Poisson ratio of zero."""
         from .drawn_section import constants_of
 
-        try:
+        with prefixed("section: ", ValueError, ValueError):
             return constants_of(self.points, self.holes)
-        except ValueError as error:
-            raise ValueError(f"section: {error}") from None
 
 
 SECTIONS = (Circle, Tube, Rectangle, IProfile, Angle, Channel, Numbers, Drawn)

@@ -61,16 +61,10 @@ TURN = 2 * math.pi
 
 @dataclass(frozen=True)
 class Angles:
-    """Angles of a planar model, and the markers added to measure them.
-
-    Attributes
-    ----------
-    added : mapping of str to mapping of str to Written
-        Added markers by name, by body.
-    """
+    """Angles of a planar model, and the markers added to measure them."""
 
     data: PlanarData
-    added: dict[str, dict[str, Written]] = field(default_factory=dict)
+    added: dict[str, dict[str, Written]] = field(default_factory=dict)  # added markers by name, by body
 
     def initial(self, i: MarkerReference, j: MarkerReference) -> float:
         """Return the angle of one marker relative to another in the described poses, rad."""

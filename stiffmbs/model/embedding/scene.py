@@ -9,7 +9,7 @@ from ...elements import shape as planar
 from ...elements.body import Body
 from ...elements.element import Element
 from ...elements.shape import Shape
-from ...errors import InputError
+from ...errors import prefixed
 from ...reading.marker import GROUND, MarkerReference
 from ..model import PlanarData
 from ..model_data import ModelData
@@ -91,10 +91,8 @@ def _markers(owner: str, own: Mapping[str, Any], angles: Angles) -> Written:
 def _elements(section: str, elements: Mapping[str, Element], angles: Angles) -> Written:
     found: Written = {}
     for name, element in elements.items():
-        try:
+        with prefixed(f"{section}.{name}: "):
             found[name] = element_in_space(element, angles)
-        except InputError as error:
-            raise InputError(f"{section}.{name}: {error}") from None
     return found
 
 

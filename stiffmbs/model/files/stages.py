@@ -19,26 +19,13 @@ from ...reading.units import si
 
 @dataclass(frozen=True)
 class WrittenScene:
-    """Content of a scene file, and its changes; comparisons of scenes ignore it.
+    """Content of a scene file, and its changes; comparisons of scenes ignore it."""
 
-    Attributes
-    ----------
-    content : mapping
-        Content of the file, with included files; read-only.
-    changes : tuple of (path, value)
-        Values that replace those of the file.
-    source : str
-        Name of the scene in messages.
-    folder : Path or None
-        Folder of meshes.
-    files : dict of str to str
-        Digests of all other files that were read for it, and of the code of user-defined elements.
-    """
-
-    content: Mapping[str, Any] = field(compare=False)
-    changes: tuple[tuple[str, Any], ...] = field(compare=False)
-    source: str = field(compare=False)
-    folder: Path | None = field(compare=False)
+    content: Mapping[str, Any] = field(compare=False)  # content of the file, with included files; read-only
+    changes: tuple[tuple[str, Any], ...] = field(compare=False)  # values that replace those of the file
+    source: str = field(compare=False)  # name of the scene in messages
+    folder: Path | None = field(compare=False)  # folder of meshes
+    # digests of all other files that were read for it, and of the code of user-defined elements
     files: dict[str, str] = field(default_factory=dict, compare=False)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.fields import located
 from ...reading.files.include import read_including
 from ...reading.files.quoted import written
@@ -96,18 +96,12 @@ class Definitions:
         words = {name: entry[name] for name in choices if name in entry}
         for name, word in words.items():
             if word not in choices[name]:
-                near = did_you_mean(word, choices[name])
-                raise InputError(
-                    f"{where}.{name}: found {written(word)}{near}, expected one of {', '.join(choices[name])}"
-                )
+                raise InputError(f"{where}.{name}: found {written(word)}{instead_of(word, choices[name])}")
         entry = {key: value for key, value in entry.items() if key not in words}
         keys = (*self.kind.model_fields, *choices)
         for key in entry:
             if key not in keys:
-                near = did_you_mean(key, keys)
-                raise InputError(
-                    f"{where}: found the unknown key {written(key)}{near}, expected one of {', '.join(keys)}"
-                )
+                raise InputError(f"{where}: found the unknown key {written(key)}{instead_of(key, keys)}")
         with located(where):
             use = self.kind.model_validate(entry, context={"parameters": parameters})
         if self.written(use.part) is None:
@@ -127,9 +121,7 @@ class Definitions:
         branches = (each for words in self.choices(part).values() for each in words.values())
         for key in (key for sections in (found, *branches) for key in sections or ()):
             if key not in KEYS:
-                raise InputError(
-                    f"parts.{part}: found the unknown key {written(key)}{did_you_mean(key, KEYS)}, expected one of {', '.join(KEYS)}"
-                )
+                raise InputError(f"parts.{part}: found the unknown key {written(key)}{instead_of(key, KEYS)}")
         return copy.deepcopy(found)
 
 

@@ -38,17 +38,10 @@ class Frame:
 
     Each frame X within a mirrored part, of a body or a marker, becomes S X S and remains right-handed. Along all of
     these axes the k-th component of a force changes its sign by S_kk, and that of a torque or rotation by det S S_kk.
-
-    Attributes
-    ----------
-    point : tuple of float
-        p, m.
-    signs : tuple of float
-        Diagonal of S.
     """
 
-    point: tuple[float, ...]
-    signs: tuple[float, ...]
+    point: tuple[float, ...]  # p, m
+    signs: tuple[float, ...]  # diagonal of S
 
     @property
     def handedness(self) -> float:

@@ -31,40 +31,19 @@ MOST_VALUES = 1_000_000
 
 @dataclass(frozen=True)
 class Instance:
-    """Instance of a part.
+    """Instance of a part."""
 
-    Attributes
-    ----------
-    name : str
-        Full name, such as ``front.left``.
-    part : str
-        Name of its definition.
-    sections : mapping
-        Markers, bodies, joints, forces and requests as written, with repeated entries expanded.
-    parameters : mapping of str to Quantity
-        Parameters of the scene and of the part.
-    outer : Instance or None
-        Enclosing instance.
-    inner : tuple of str
-        Local names of nested instances.
-    mounts : mapping of str to str
-        Further bodies that it connects to, by local name.
-    words : mapping of str to str
-        Chosen words for it and for nested parts, by choice.
-    wheel : tuple of float or None
-        Centre of the wheel of a suspension in the part's frame, m.
-    """
-
-    name: str
-    part: str
+    name: str  # full name, such as ``front.left``
+    part: str  # name of its definition
     use: Use
+    # markers, bodies, joints, forces and requests as written, with repeated entries expanded
     sections: Mapping[str, Any]
-    parameters: Mapping[str, Quantity]
-    outer: Instance | None = None
-    inner: tuple[str, ...] = ()
-    mounts: Mapping[str, str] = field(default_factory=dict)
-    words: Mapping[str, str] = field(default_factory=dict)
-    wheel: tuple[float, ...] | None = None
+    parameters: Mapping[str, Quantity]  # parameters of the scene and of the part
+    outer: Instance | None = None  # enclosing instance
+    inner: tuple[str, ...] = ()  # local names of nested instances
+    mounts: Mapping[str, str] = field(default_factory=dict)  # further bodies that it connects to, by local name
+    words: Mapping[str, str] = field(default_factory=dict)  # chosen words for it and for nested parts, by choice
+    wheel: tuple[float, ...] | None = None  # centre of the wheel of a suspension in the part's frame, m
 
     @property
     def where(self) -> str:

@@ -28,24 +28,12 @@ ALONG_AXES = ("angle", "x", "y", "z", "about x", "about y", "about z")
 
 @dataclass(frozen=True)
 class Mirror:
-    """Mirror image of the elements of one instance of a part.
+    """Mirror image of the elements of one instance of a part."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the instance.
-    frame
-        Frame of the part in ground axes.
-    part
-        Its validated sections, with local names, without mirroring.
-    mounts : collection of str
-        Local names of the bodies that it is mounted on.
-    """
-
-    name: str
-    frame: Any
-    part: Any
-    mounts: Collection[str]
+    name: str  # name of the instance
+    frame: Any  # frame of the part in ground axes
+    part: Any  # its validated sections, with local names, without mirroring
+    mounts: Collection[str]  # local names of the bodies that it is mounted on
 
     def inside(self, marker: MarkerReference) -> bool:
         """Return True if a marker is on a body of the part, or is a marker of the part on its mount."""

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from ...errors import InputError
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.files.quoted import written
 
 OPTIONS, CHOOSE = "options", "choose"
@@ -46,8 +46,7 @@ def with_chosen(found: dict[str, Any], words: Any, where: str) -> dict[str, Any]
     for choice, branches in choices.items():
         word = words.get(choice, next(iter(branches)))
         if word not in branches:
-            near = did_you_mean(word, branches)
-            raise InputError(f"{where}.{choice}: found {written(word)}{near}, expected one of {', '.join(branches)}")
+            raise InputError(f"{where}.{choice}: found {written(word)}{instead_of(word, branches)}")
         for section, entries in (branches[word] or {}).items():
             merged[section] = _together(merged.get(section), entries, f"{where}.{choice}.{word}.{section}")
     return merged

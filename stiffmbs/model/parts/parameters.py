@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from ...errors import InputError
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.files.quoted import written
 from ...reading.formula.text import FormulaError
 from ...reading.names import GROUND, MOUNT
@@ -119,8 +119,5 @@ def mounts_of(found: object, use: Use, where: str) -> dict[str, str]:
             raise InputError(f"parts.{use.part}.mounts: found the name {written(name)}, expected another")
     for name in use.mounts:
         if name not in mounts:
-            raise InputError(
-                f"{where}.mounts.{name}: found no such mount of '{use.part}'{did_you_mean(name, mounts)}, expected one of "
-                f"{', '.join(mounts) or 'none'}"
-            )
+            raise InputError(f"{where}.mounts.{name}: found no such mount of '{use.part}'{instead_of(name, mounts)}")
     return {**mounts, **use.mounts}

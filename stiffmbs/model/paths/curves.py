@@ -16,27 +16,17 @@ SAMPLES = 8
 
 @dataclass(frozen=True)
 class Curve:
-    """Curve over its arc length.
+    """Curve over its arc length; arrays of shape (n,)."""
 
-    Attributes
-    ----------
-    s : ndarray, shape (n,)
-        Stations, m.
-    x, y, curvature : ndarray, shape (n,)
-        Position, m, and curvature, positive to the left, 1/m.
-    cos, sin : ndarray, shape (n,)
-        Direction.
-    closed : bool
-        True if the last station is the first one.
-    """
-
-    s: np.ndarray
+    s: np.ndarray  # stations, m
+    # x, y: position, m
     x: np.ndarray
     y: np.ndarray
+    # cos, sin: direction
     cos: np.ndarray
     sin: np.ndarray
-    curvature: np.ndarray
-    closed: bool = False
+    curvature: np.ndarray  # positive to the left, 1/m
+    closed: bool = False  # True if the last station is the first one
 
     def nearest(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the arc length of the nearest points, and the offsets from them, positive to the left, m."""

@@ -22,14 +22,9 @@ LARGEST = 20_000_000
 
 @dataclass
 class Sources:
-    """Texts of a scene.
+    """Texts of a scene."""
 
-    Attributes
-    ----------
-    texts : list of (str, str, tuple of str)
-        Name in messages, text, and path of keys in the scene at which its content is inserted.
-    """
-
+    # name in messages, text, and path of keys in the scene at which its content is inserted
     texts: list[tuple[str, str, tuple[str, ...]]] = field(default_factory=list)
 
     def line(self, path: tuple[Any, ...]) -> str | None:

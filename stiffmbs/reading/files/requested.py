@@ -13,16 +13,9 @@ Value = TypeVar("Value")
 class Fields(Mapping[str, Value]):
     """Fields of one element of a file, with a record of the requested ones.
 
-    Parameters
-    ----------
-    kind : str
-        Kind of the element, such as ``joint`` or ``[VERTICAL]``.
-    owner : str
-        Name or number of the element; empty if the kind occurs once in a file.
-    values : mapping of str to Any
-        Fields of the element in the file.
-    defaults : mapping of str to Any
-        Values that have the same effect as a missing field.
+    `kind`: kind of the element, such as ``joint`` or ``[VERTICAL]``. `owner`: name or number of the element; empty if
+    the kind occurs once in a file. `values`: fields of the element in the file. `defaults`: values that have the same
+    effect as a missing field.
     """
 
     def __init__(

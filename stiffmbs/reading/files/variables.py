@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from ..fields import NAME_PATTERN
 from ..formula.nodes import TIME
 from ..formula.text import UNIT, FormulaError
@@ -41,8 +41,6 @@ def read_variables(
         if isinstance(formula, bool) or not isinstance(formula, str | int | float):
             raise InputError(f"variables.{name}: found {written(formula)}, expected a formula")
         formulas[name] = formula
-    try:
+    with prefixed("variables.", FormulaError):
         known = [name for section in (states, inputs) if isinstance(section, dict) for name in section]
         return resolved(formulas, {*parameters, *CONSTANTS, TIME, *known})
-    except FormulaError as error:
-        raise InputError(f"variables.{error}") from None

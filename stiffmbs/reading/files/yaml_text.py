@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from io import StringIO
 from typing import Any
 
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from .quoted import quoted
 
 _DECIMAL = re.compile(r"-?(0|[1-9][0-9]{0,14})(\.[0-9]{1,15})?")
@@ -169,12 +169,10 @@ def check_content(found: object, source: str) -> None:
     Raises InputError for recursive or too many aliases, deep nesting, integers beyond 1e308, and control characters.
     """
     walk = _Walk()
-    try:
+    with prefixed(f"{source}: ", _Refused):
         values = walk.extent(found, 0).values
         if values - walk.written > MOST_BY_ALIASES:
             raise _Refused(f"found aliases that stand for {values:.0e} values, expected at most {MOST_BY_ALIASES:.0e}")
-    except _Refused as fault:
-        raise InputError(f"{source}: {fault}") from None
 
 
 def _check_scalar(found: object) -> None:

@@ -45,44 +45,20 @@ def used_by(tree: ast.expr) -> Used:
 
 @dataclass(frozen=True, eq=False)
 class Formula:
-    """Checked formula.
+    """Checked formula."""
 
-    Attributes
-    ----------
-    text : str
-        Formula in the scene.
-    tree : ast.expr
-        Its syntax tree (`stiffmbs.reading.formula.text.parse`).
-    variables : tuple of str
-        Names defined by the field (``s`` and ``v`` of a spring's law).
-    values : dict of str to float
-        Values of its parameters, units and constants, in SI units.
-    velocities : bool
-        Whether velocities are permitted.
-    tables : mapping of str to Table
-        Tables of the scene that it calls as functions.
-    dimension : Known
-        Dimension of its value.
-    parameters : mapping of str to Quantity
-        Parameters of the scene among `values`, with their dimensions.
-    among_variables : bool
-        Whether the scene has variables, which are substituted in the tree.
-    states : tuple of str
-        Full names of the states that it uses.
-    kept : dict
-        Cached results derived from the tree; shared with formulas that differ only in values.
-    """
-
-    text: str
-    tree: ast.expr
-    variables: tuple[str, ...]
-    values: dict[str, float]
-    velocities: bool = False
-    tables: Mapping[str, Table] = field(default_factory=dict)
-    dimension: Known = UNKNOWN
+    text: str  # formula in the scene
+    tree: ast.expr  # its syntax tree (`stiffmbs.reading.formula.text.parse`)
+    variables: tuple[str, ...]  # names defined by the field (``s`` and ``v`` of a spring's law)
+    values: dict[str, float]  # values of its parameters, units and constants, in SI units
+    velocities: bool = False  # whether velocities are permitted
+    tables: Mapping[str, Table] = field(default_factory=dict)  # tables of the scene that it calls as functions
+    dimension: Known = UNKNOWN  # dimension of its value
+    # parameters of the scene among `values`, with their dimensions
     parameters: Mapping[str, Quantity] = field(default_factory=dict)
-    among_variables: bool = False
-    states: tuple[str, ...] = ()
+    among_variables: bool = False  # whether the scene has variables, which are substituted in the tree
+    states: tuple[str, ...] = ()  # full names of the states that it uses
+    # cached results derived from the tree; shared with formulas that differ only in values
     kept: dict[Any, Any] = field(default_factory=dict)
 
     def coordinates(self) -> Iterator[tuple[str, str]]:

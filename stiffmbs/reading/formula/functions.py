@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ..did_you_mean import did_you_mean
+from ..did_you_mean import instead_of
 from .dimension import Known, Part, alike, of_angle, of_branch, of_first, of_numbers, of_root, of_step, plain_always
 from .size import within
 from .text import FormulaError, real_power
@@ -48,47 +48,24 @@ Rule = Callable[[Sequence[Part], ast.expr], Known]
 
 @dataclass(frozen=True)
 class FormulaFunction:
-    """Function that formulas may call, with its properties.
-
-    Attributes
-    ----------
-    value : callable
-        Evaluates numbers.
-    array : callable
-        Evaluates NumPy arrays.
-    symbolic : str
-        Its counterpart in equations and kernels: ``sympy.sin``, which has the same name in the C library, or a class or
-        function of `stiffmbs.compile.symbolic.nonsmooth`. Empty for a discontinuous function, which only formulas for
-        output may call.
-    enclosure : str
-        Its interval form in `stiffmbs.compile.inputs.enclosed_functions`; empty if it follows from the derivative.
-    derivative : str
-        Derivative of a function of x with respect to x, as a formula.
-    domain : (float, float)
-        Domain of the argument.
-    poles : bool
-        True if it is unbounded within its domain.
-    zones : str
-        Its intervals in `stiffmbs.compile.law_intervals`, which resolve narrow features.
-    turns : bool
-        True if it is periodic in its argument.
-    in_numbers : bool
-        True if numbers may call it as well as formulas.
-    """
+    """Function that formulas may call, with its properties."""
 
     takes: Takes
     dimension: Rule
-    value: Callable[..., float]
-    array: Callable[..., Any]
+    value: Callable[..., float]  # evaluates numbers
+    array: Callable[..., Any]  # evaluates NumPy arrays
+    # counterpart in equations and kernels: ``sympy.sin``, which has the same name in the C library, or a class or function
+    # of `stiffmbs.compile.symbolic.nonsmooth`. Empty for a discontinuous function, which only formulas for output may call.
     symbolic: str = ""
+    # interval form in `stiffmbs.compile.inputs.enclosed_functions`; empty if it follows from the derivative
     enclosure: str = ""
-    derivative: str = ""
+    derivative: str = ""  # derivative of a function of x with respect to x, as a formula
     breakpoints: Breakpoints = ()
-    domain: tuple[float, float] = EVERYWHERE
-    poles: bool = False
-    intervals: str = ""
-    turns: bool = False
-    in_numbers: bool = False
+    domain: tuple[float, float] = EVERYWHERE  # of the argument
+    poles: bool = False  # True if it is unbounded within its domain
+    intervals: str = ""  # its intervals in `stiffmbs.compile.law_intervals`, which resolve narrow features
+    turns: bool = False  # True if it is periodic in its argument
+    in_numbers: bool = False  # True if numbers may call it as well as formulas
 
     @property
     def in_c(self) -> bool:
@@ -212,9 +189,7 @@ def check_functions(
             case ast.Call(ast.Name(name), arguments) if name not in measures:
                 if name not in known and name not in tables:
                     names = (*known, *tables, *listed)
-                    raise FormulaError(
-                        f"found the unknown function '{name}'{did_you_mean(name, names)}, expected one of {', '.join(names)}"
-                    )
+                    raise FormulaError(f"found the unknown function '{name}'{instead_of(name, names)}")
                 takes = OF_TABLE if name in tables else known[name].takes
                 if len(arguments) not in takes:
                     raise FormulaError(f"found {len(arguments)} arguments in '{ast.unparse(node)}', expected {takes}")

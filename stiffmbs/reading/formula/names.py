@@ -16,26 +16,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FormulaNames:
-    """Names of one family of models.
+    """Names of one family of models."""
 
-    Attributes
-    ----------
-    family : str
-        ``the plane`` or ``space``, for messages.
-    positions, velocities : tuples of str
-        Coordinates and velocities of a body: ``cart.x``, ``cart.vx``.
-    position_measures, velocity_measures : tuples of str
-        Measures between two markers: ``dx(bar.end, ground)``.
-    along_axes : tuple of str
-        Measures that accept a third marker, along whose axes they are resolved.
-    """
-
-    family: str
+    family: str  # ``the plane`` or ``space``, for messages
+    # positions, velocities: coordinates and velocities of a body: ``cart.x``, ``cart.vx``
     positions: tuple[str, ...]
     velocities: tuple[str, ...]
+    # position_measures, velocity_measures: measures between two markers: ``dx(bar.end, ground)``
     position_measures: tuple[str, ...]
     velocity_measures: tuple[str, ...]
-    along_axes: tuple[str, ...]
+    along_axes: tuple[str, ...]  # measures that accept a third marker, along whose axes they are resolved
 
     def validation_errors(self, formula: Formula, joints: Mapping[str, Joint]) -> Iterator[str]:
         """Yield faults of a formula: names of the other family, and velocities in formulas of positions."""

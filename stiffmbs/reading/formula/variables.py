@@ -9,6 +9,7 @@ import ast
 import copy
 from collections.abc import Collection, Mapping
 
+from ...errors import prefixed
 from ..did_you_mean import did_you_mean
 from ..units.units import UNITS, Quantity
 from . import measured
@@ -53,17 +54,13 @@ def resolved(formulas: Mapping[str, str | float], known: Collection[str]) -> dic
             loop = " -> ".join((*within[within.index(name) :], name))
             raise FormulaError(f"{name}: found a variable that depends on itself ({loop}), expected one that does not")
         if name not in trees:
-            try:
+            with prefixed(f"{name}: ", FormulaError, FormulaError):
                 tree = _in_place(parse(str(formulas[name])), units)
                 _check_names(tree, formulas, known)
-            except FormulaError as error:
-                raise FormulaError(f"{name}: {error}") from None
             used = [inner for inner in dict.fromkeys(_names(tree)) if inner in formulas]
             inner = {each: resolve(each, (*within, name)) for each in used}
-            try:
+            with prefixed(f"{name}: ", FormulaError, FormulaError):
                 trees[name] = with_variables(tree, inner)
-            except FormulaError as error:
-                raise FormulaError(f"{name}: {error}") from None
         return trees[name]
 
     for name in formulas:

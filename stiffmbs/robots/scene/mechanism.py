@@ -92,34 +92,18 @@ class Mechanism:
 
     A link that moves, or has mass or inertia, is a body. A fixed link without either is a marker on its parent body. A
     link with several joints has a massless body between each two of them. Joints that move no mass are omitted.
-
-    Attributes
-    ----------
-    bodies : dict of str to (Link, Placed)
-        Bodies by name, each with its link or, for a body between joints, with the link that these joints carry.
-    between : set of str
-        Names of the bodies between joints.
-    seats : dict of str to Seat
-        Seats by link.
-    markers : dict of str to dict
-        Placements of markers by name, for each body.
-    holds : dict of str to Hold
-        Holds by joint.
-    fixed : dict of str to (str, str)
-        Fixed joints by name, with their markers i and j.
-    unmoved : tuple of str
-        Omitted joints, which move no mass.
     """
 
     def __init__(self, robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> None:
         self.names = Names()
+        # Each body with its link, or with the link that the joints carry if it is between joints.
         self.bodies: dict[str, tuple[Link, Placed]] = {}
-        self.between: set[str] = set()
-        self.seats: dict[str | None, Seat] = {None: Seat(GROUND)}
-        self.markers: dict[str, dict[str, Any]] = {}
-        self.holds: dict[str, Hold] = {}
-        self.fixed: dict[str, tuple[str, str]] = {}
-        self.unmoved: tuple[str, ...] = ()
+        self.between: set[str] = set()  # names of the bodies between joints
+        self.seats: dict[str | None, Seat] = {None: Seat(GROUND)}  # by link
+        self.markers: dict[str, dict[str, Any]] = {}  # placements by name, for each body
+        self.holds: dict[str, Hold] = {}  # by joint
+        self.fixed: dict[str, tuple[str, str]] = {}  # markers i and j of each fixed joint
+        self.unmoved: tuple[str, ...] = ()  # omitted joints, which move no mass
         self._coordinates = coordinates
         placed = frames(robot, coordinates, rates)
         moves_mass = _with_mass(robot)

@@ -22,15 +22,8 @@ RUN = {"duration": 1, "output": 0.01}
 def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, Any]:
     """Return the scene of a robot for `stiffmbs.model.read_scene.read_scene`.
 
-    Parameters
-    ----------
-    coordinates, rates : mappings of str to float
-        Initial coordinates of hinges and slides, rad or m, and their rates; others are as drawn, and at rest.
-
-    Raises
-    ------
-    RobotFault
-        If the robot has features without an equivalent in a scene.
+    `coordinates`, `rates`: initial coordinates of hinges and slides, rad or m, and their rates; others are as drawn,
+    and at rest. Raises RobotFault if the robot has features without an equivalent in a scene.
     """
     _check_joints(robot, {**coordinates, **rates})
     mechanism = Mechanism(robot, coordinates, rates)

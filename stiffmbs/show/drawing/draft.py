@@ -15,25 +15,13 @@ from .scene_graph import Anchor, Line, Link, Part, Role, Solid
 
 @dataclass(frozen=True, eq=False)
 class Site:
-    """Marker on its body.
-
-    Attributes
-    ----------
-    point : ndarray, shape (3,)
-        Position relative to the body's centre of mass, m.
-    axes : ndarray, shape (3, 3)
-        Columns are the marker's axes in the body's.
-    in_ground : ndarray, shape (3,)
-        Position in the initial drawing, in ground axes.
-    turned : ndarray, shape (3, 3)
-        The marker's axes in the initial drawing.
-    """
+    """Marker on its body."""
 
     body: str
-    point: np.ndarray
-    axes: np.ndarray
-    in_ground: np.ndarray
-    turned: np.ndarray
+    point: np.ndarray  # shape (3,): position relative to the body's centre of mass, m
+    axes: np.ndarray  # shape (3, 3): columns are the marker's axes in the body's
+    in_ground: np.ndarray  # shape (3,): position in the initial drawing, in ground axes
+    turned: np.ndarray  # shape (3, 3): the marker's axes in the initial drawing
 
     @property
     def anchor(self) -> Anchor:
@@ -62,36 +50,19 @@ class Site:
 
 @dataclass
 class Draft:
-    """Sheet for the symbols of one element.
-
-    Attributes
-    ----------
-    u : float
-        Unit of symbols, m.
-    size : float
-        Size of the mechanism, m.
-    i, j : Site or None
-        The element's markers, or those of the joint that it refers to.
-    joints : mapping
-        All joints by name, with their sites.
-    front : float
-        Distance of planar symbols in front of bodies, m; zero in space.
-    down : ndarray, shape (3,)
-        Direction of the ground below its supports.
-    colors : mapping of str to str
-        Colors of bodies.
-    """
+    """Sheet for the symbols of one element."""
 
     owner: str
     element: Any
-    u: float
-    size: float
+    u: float  # unit of symbols, m
+    size: float  # size of the mechanism, m
+    # i, j: the element's markers, or those of the joint that it refers to
     i: Site | None
     j: Site | None
-    joints: dict[str, tuple[Any, Site | None, Site | None]]
-    front: float
-    down: np.ndarray
-    colors: dict[str, str]
+    joints: dict[str, tuple[Any, Site | None, Site | None]]  # all joints by name, with their sites
+    front: float  # distance of planar symbols in front of bodies, m; zero in space
+    down: np.ndarray  # shape (3,): direction of the ground below its supports
+    colors: dict[str, str]  # colors of bodies
     parts: list[Part] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
 

@@ -43,24 +43,14 @@ HEAD = 1.25
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """Polygon or line of the picture.
+    """Polygon or line of the picture."""
 
-    Attributes
-    ----------
-    points : ndarray, shape (n, 2)
-    depth : float
-        Coordinate towards the viewer.
-    face, edge : str
-        Colors; empty for none.
-    width : float
-        Width of its line.
-    """
-
-    points: np.ndarray
-    depth: float
+    points: np.ndarray  # shape (n, 2)
+    depth: float  # coordinate towards the viewer
+    # face, edge: colors; empty for none
     face: str = ""
     edge: str = ""
-    width: float = 1.0
+    width: float = 1.0  # width of its line
     dashed: bool = False
     opacity: float = 1.0
 

@@ -23,23 +23,12 @@ FAR = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Poses of all bodies at some instants.
+    """Poses of all bodies at some instants."""
 
-    Attributes
-    ----------
-    time : ndarray, shape (n,)
-        Times, s.
-    points : mapping of str to ndarray, shape (n, 3)
-        Centres of mass in ground axes, m.
-    orientations : mapping of str to ndarray, shape (n, 4)
-        Quaternions of the bodies' own axes.
-    forces : mapping of str to ndarray, shape (n, 3)
-        Forces of joints and force elements on their first bodies, in ground axes, N.
-    """
-
-    time: np.ndarray
-    points: Mapping[str, np.ndarray]
-    orientations: Mapping[str, np.ndarray]
+    time: np.ndarray  # shape (n,): times, s
+    points: Mapping[str, np.ndarray]  # shape (n, 3): centres of mass in ground axes, m
+    orientations: Mapping[str, np.ndarray]  # shape (n, 4): quaternions of the bodies' own axes
+    # shape (n, 3): forces of joints and force elements on their first bodies, in ground axes, N
     forces: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def pose(self, body: str, k: int) -> tuple[np.ndarray, np.ndarray]:

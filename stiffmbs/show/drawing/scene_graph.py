@@ -20,28 +20,17 @@ Mark = Literal["redundant", "not unique"]
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """Surface of flat faces.
+    """Surface of flat faces."""
 
-    Attributes
-    ----------
-    vertices : ndarray, shape (n, 3)
-    faces : tuple of ndarray of int
-        Vertices of each face in order, counterclockwise as seen from outside.
-    closed : bool
-        True if the surface encloses a volume, so that faces that point away are hidden.
-    edges : ndarray of int, shape (m, 4)
-        Edges to draw: two vertices, and the two adjacent faces.
-    modes : mapping of str to ndarray, shape (3, n, 3)
-        Displacements of the vertices by unit coordinates x, y, z of bodies that hold modal coordinates.
-    stresses : mapping of str to ndarray, shape (3, n, 5)
-        Stress deviators at the vertices by the same coordinates: the norm of their sum is the von Mises stress, N/m^2.
-    """
-
-    vertices: np.ndarray
-    faces: tuple[np.ndarray, ...]
-    closed: bool = True
+    vertices: np.ndarray  # shape (n, 3)
+    faces: tuple[np.ndarray, ...]  # of int: vertices of each face in order, counterclockwise as seen from outside
+    closed: bool = True  # True if the surface encloses a volume, so that faces that point away are hidden
+    # of int, shape (m, 4): edges to draw: two vertices, and the two adjacent faces
     edges: np.ndarray = field(default_factory=lambda: np.zeros((0, 4), dtype=int))
+    # shape (3, n, 3): displacements of the vertices by unit coordinates x, y, z of bodies that hold modal coordinates
     modes: Mapping[str, np.ndarray] = field(default_factory=dict)
+    # shape (3, n, 5): stress deviators at the vertices by the same coordinates: the norm of their sum is the von Mises
+    # stress, N/m^2
     stresses: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
@@ -56,26 +45,15 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """Shape or symbol that moves with a body.
+    """Shape or symbol that moves with a body."""
 
-    Attributes
-    ----------
-    owner : str
-        Body, joint or force that it represents.
-    body : str
-        Body that it moves with; ``ground`` does not move.
-    solids, lines : tuples
-        Shapes in the body's axes, relative to its centre of mass.
-    color : str
-        Color of its faces, ``#rrggbb``; empty for that of its role.
-    """
-
-    owner: str
+    owner: str  # body, joint or force that it represents
     role: Role
-    body: str
+    body: str  # body that it moves with; ``ground`` does not move
+    # solids, lines: shapes in the body's axes, relative to its centre of mass
     solids: tuple[Solid, ...] = ()
     lines: tuple[Line, ...] = ()
-    color: str = ""
+    color: str = ""  # color of its faces, ``#rrggbb``; empty for that of its role
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,48 +92,24 @@ class Name:
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """Drawables of a mechanism.
-
-    Attributes
-    ----------
-    dimensions : int
-        2: drawn as seen along z.
-    size : float
-        Size of the mechanism, m; the scale of arrows.
-    unit : float
-        Unit of symbols, m.
-    bodies : mapping of str to str
-        Bodies with their colors.
-    parts, links, names : tuples
-    loads : mapping of str to Anchor
-        Point at which each joint and force acts on its first body.
-    heaviest : str
-        Body with the largest mass; empty without bodies.
-    gravity : ndarray, shape (3,)
-    weight : float
-        Weight of all bodies, N (at 1 m/s^2 without gravity).
-    marks : mapping of str to Mark
-        Joints to mark.
-    deformations : mapping of str to float
-        Factors of the drawn deformation of flexible bodies.
-    stress : float
-        Largest von Mises stress of bodies in stress colors, the end of the scale, N/m^2; zero without them.
-    """
+    """Drawables of a mechanism."""
 
     name: str
-    dimensions: int
-    size: float
-    unit: float
-    bodies: Mapping[str, str]
+    dimensions: int  # 2: drawn as seen along z
+    size: float  # size of the mechanism, m; the scale of arrows
+    unit: float  # unit of symbols, m
+    bodies: Mapping[str, str]  # bodies with their colors
     parts: tuple[Part, ...]
     links: tuple[Link, ...]
     names: tuple[Name, ...]
-    loads: Mapping[str, Anchor]
-    heaviest: str
-    gravity: np.ndarray
-    weight: float
-    marks: Mapping[str, Mark] = field(default_factory=dict)
+    loads: Mapping[str, Anchor]  # point at which each joint and force acts on its first body
+    heaviest: str  # body with the largest mass; empty without bodies
+    gravity: np.ndarray  # shape (3,)
+    weight: float  # weight of all bodies, N (at 1 m/s^2 without gravity)
+    marks: Mapping[str, Mark] = field(default_factory=dict)  # joints to mark
+    # factors of the drawn deformation of flexible bodies
     deformations: Mapping[str, float] = field(default_factory=dict)
+    # largest von Mises stress of bodies in stress colors, the end of the scale, N/m^2; zero without them
     stress: float = 0.0
 
 

@@ -31,46 +31,25 @@ MISPLACED = 0.01
 
 @dataclass(frozen=True)
 class Car:
-    """Car of a scene.
+    """Car of a scene."""
 
-    Attributes
-    ----------
-    body : str
-        Sprung body.
-    tyres, wheels, uprights : mapping of str to str
-        By corner: ``front_left`` ... ``rear_right``.
-    rolling : tuple of str
-        Bodies that spin with the speed of the car: wheels, shafts on which a `wheel_torque` acts, and those of the
-        scene's own start.
-    steering : str
-        Joint that steers.
-    steered : tuple of str
-        That joint, and the steering wheel or rack that turns with it.
-    angular : bool
-        True if its coordinate is an angle.
-    wheelbase, track : float
-        m; the track is the mean of both axles.
-    radius : float
-        Mean height of the wheels' centres, m.
-    rear : float
-        Distance from the body's origin back to the rear axle, m.
-    height : float
-        Height of the centre of mass of all bodies in the described pose, m.
-    """
-
-    body: str
+    body: str  # sprung body
+    # tyres, wheels, uprights: by corner: ``front_left`` ... ``rear_right``
     tyres: Mapping[str, str]
     wheels: Mapping[str, str]
     uprights: Mapping[str, str]
+    # bodies that spin with the speed of the car: wheels, shafts on which a `wheel_torque` acts, and those of the
+    # scene's own start
     rolling: tuple[str, ...]
-    steering: str
-    steered: tuple[str, ...]
-    angular: bool
+    steering: str  # joint that steers
+    steered: tuple[str, ...]  # that joint, and the steering wheel or rack that turns with it
+    angular: bool  # True if its coordinate is an angle
+    # wheelbase, track: m; the track is the mean of both axles
     wheelbase: float
     track: float
-    radius: float
-    rear: float
-    height: float
+    radius: float  # mean height of the wheels' centres, m
+    rear: float  # distance from the body's origin back to the rear axle, m
+    height: float  # height of the centre of mass of all bodies in the described pose, m
 
 
 def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -> Car:
@@ -172,32 +151,15 @@ def _steering(scene: Scene, given: str | None) -> str:
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """Manoeuvre that a test attaches to a car.
+    """Manoeuvre that a test attaches to a car."""
 
-    Attributes
-    ----------
-    speed : float
-        At the start, m/s.
-    duration : float
-        s.
-    steer : str
-        Formula of time for the steering joint; empty if the driver keeps a path.
-    driver : mapping
-        Parameters of the driver.
-    path : mapping or None
-        Section ``path``, which the driver keeps.
-    road : mapping
-    output : float
-        s.
-    """
-
-    speed: float
-    duration: float
-    steer: str = ""
-    driver: Mapping[str, Any] | None = None
-    path: Mapping[str, Any] | None = None
+    speed: float  # at the start, m/s
+    duration: float  # s
+    steer: str = ""  # formula of time for the steering joint; empty if the driver keeps a path
+    driver: Mapping[str, Any] | None = None  # parameters of the driver
+    path: Mapping[str, Any] | None = None  # section ``path``, which the driver keeps
     road: Mapping[str, Any] | None = None
-    output: float = 0.01
+    output: float = 0.01  # s
 
 
 def with_manoeuvre(scene: Scene, car: Car, manoeuvre: Manoeuvre) -> Scene:

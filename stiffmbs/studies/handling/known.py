@@ -20,24 +20,14 @@ Metrics = dict[str, tuple[float, str]]
 
 @dataclass(frozen=True)
 class Known:
-    """Results of the preliminary runs, which scale the other tests.
-
-    Attributes
-    ----------
-    car : Car
-    per_curvature, understeer : float
-        Steering per curvature at low speed, and its growth with the squared speed.
-    width : float
-        Width of the vehicle, m.
-    ramp : Run
-        Slow ramp at the speed of the test.
-    """
+    """Results of the preliminary runs, which scale the other tests."""
 
     car: Car
+    # per_curvature, understeer: steering per curvature at low speed, and its growth with the squared speed
     per_curvature: float
     understeer: float
-    width: float
-    ramp: Run
+    width: float  # width of the vehicle, m
+    ramp: Run  # slow ramp at the speed of the test
 
     @property
     def ratio(self) -> float:

@@ -47,23 +47,15 @@ def understeer_gradient(
 
 @dataclass(frozen=True)
 class StepResponse:
-    """Response to a step input, ISO 7401.
+    """Response to a step input, ISO 7401."""
 
-    Attributes
-    ----------
-    steady, gain : float
-        Mean over the end, and its ratio to the input.
-    response_time, peak_time : float
-        From half of the input to 90 % of the steady value, and to the peak, s.
-    overshoot : float
-        (peak - steady)/steady.
-    """
-
+    # steady, gain: mean over the end, and its ratio to the input
     steady: float
     gain: float
+    # response_time, peak_time: from half of the input to 90 % of the steady value, and to the peak, s
     response_time: float
     peak_time: float
-    overshoot: float
+    overshoot: float  # (peak - steady)/steady
 
 
 def step_response(time: np.ndarray, steer: np.ndarray, response: np.ndarray, settled: float = 0.5) -> StepResponse:
@@ -116,14 +108,9 @@ def _at(time: np.ndarray, values: np.ndarray, t: float) -> float:
 
 @dataclass(frozen=True)
 class FrequencyResponse:
-    """Frequency response by cross spectra.
+    """Frequency response by cross spectra."""
 
-    Attributes
-    ----------
-    frequency, gain, phase, coherence : ndarray, shape (n,)
-        Hz; ratio of amplitudes; rad, negative for a lag; between 0 and 1.
-    """
-
+    # frequency, gain, phase, coherence: shape (n,): Hz; ratio of amplitudes; rad, negative for a lag; between 0 and 1
     frequency: np.ndarray
     gain: np.ndarray
     phase: np.ndarray
@@ -171,18 +158,13 @@ def frequency_response(
 
 @dataclass(frozen=True)
 class SineWithDwell:
-    """Stability and responsiveness of ISO 19365.
+    """Stability and responsiveness of ISO 19365."""
 
-    Attributes
-    ----------
-    ratio_1, ratio_1_75 : float
-        Yaw rate 1 s and 1.75 s after the end of steering, relative to its peak in the second half of the sine.
-    displacement : float
-        Lateral displacement 1.07 s after the begin of steering, m, positive in the direction of the first steering.
-    """
-
+    # ratio_1, ratio_1_75: yaw rate 1 s and 1.75 s after the end of steering, relative to its peak in the second half of
+    # the sine
     ratio_1: float
     ratio_1_75: float
+    # lateral displacement 1.07 s after the begin of steering, m, positive in the direction of the first steering
     displacement: float
 
     @property

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
-from ...errors import InputError
-from ...reading.did_you_mean import did_you_mean
+from ...errors import InputError, prefixed
+from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.files.yaml_text import read_yaml
 from ...reading.formula.text import FormulaError
 from ...reading.units.quantity import in_si
@@ -138,9 +138,7 @@ def with_changes(given: Mapping[str, object], defaults: Mapping[str, Any]) -> di
         reached = [each for each in ([test] if dot else found) if name in names_of(found[each])]
         if not reached:
             known = list(dict.fromkeys(each for one in ([test] if dot else found) for each in names_of(found[one])))
-            raise InputError(
-                f"test parameter {path}: found no parameter '{name}'{did_you_mean(name, known)}, expected one of {', '.join(known)}"
-            )
+            raise InputError(f"test parameter {path}: found no parameter '{name}'{instead_of(name, known)}")
         for each in reached:
             found[each] = replace(found[each], **{name: _value(f"{each}.{name}", value, found[each], name)})
     for test, one in found.items():
@@ -174,10 +172,8 @@ def _value(path: str, given: object, parameters: Any, name: str) -> Any:
 
 def positive(name: str, given: object, dimension: str) -> float:
     """Return a number or text with a unit in SI units; raise an InputError if it is not above zero."""
-    try:
+    with prefixed(f"{name}: ", FormulaError):
         value = in_si(given, dimension)
-    except FormulaError as error:
-        raise InputError(f"{name}: {error}") from None
     if value <= 0:
         raise InputError(f"{name}: found {given}, expected a value above zero")
     return value

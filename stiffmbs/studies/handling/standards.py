@@ -29,31 +29,16 @@ from .steering_inputs import dwell, frequency, of_dwell, of_frequency, of_step_s
 
 @dataclass(frozen=True)
 class HandlingTest:
-    """Test of a standard.
-
-    Attributes
-    ----------
-    title : str
-    parameters : dataclass
-        Parameters with their defaults.
-    manoeuvres : callable
-        Returns the manoeuvres from `Known` and the parameters.
-    metrics : callable
-        Returns the metrics from `Known`, the parameters and the runs of the manoeuvres.
-    shown : tuple of (str, str)
-        Channels on both axes of the test's figure.
-    ramped : bool
-        True if it needs the slow ramp at its own speed.
-    search : callable, optional
-        Returns further metrics from `Known`, the parameters and a function that solves one manoeuvre after another.
-    """
+    """Test of a standard."""
 
     title: str
-    parameters: Any
-    manoeuvres: Callable[[Known, Any], list[Manoeuvre]]
+    parameters: Any  # parameters with their defaults
+    manoeuvres: Callable[[Known, Any], list[Manoeuvre]]  # returns the manoeuvres from `Known` and the parameters
+    # returns the metrics from `Known`, the parameters and the runs of the manoeuvres
     metrics: Callable[[Known, Any, list[Run]], Metrics]
-    shown: tuple[str, str]
-    ramped: bool = False
+    shown: tuple[str, str]  # channels on both axes of the test's figure
+    ramped: bool = False  # True if it needs the slow ramp at its own speed
+    # returns further metrics from `Known`, the parameters and a function that solves one manoeuvre after another
     search: Callable[[Known, Any, Callable[[Manoeuvre], Run]], Metrics] | None = None
 
 

@@ -16,7 +16,7 @@ from ...analyses.load_scene import load_scene
 from ...analyses.run import run
 from ...errors import InputError, SolverError, StiffmbsError, refuse_text
 from ...model.scene import Scene
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import instead_of
 from ..executors import refuse_workers
 from .car import Car, Manoeuvre, car_of, with_manoeuvre
 from .known import Known, Metrics, Run
@@ -30,24 +30,12 @@ WIDER = 0.2
 
 @dataclass(frozen=True)
 class Tested:
-    """Result of one test.
+    """Result of one test."""
 
-    Attributes
-    ----------
-    metrics : dict of str to (float, str)
-        Value and unit by name; empty if the test failed.
-    runs : list of mapping
-        Channels of its runs.
-    message : str
-        Why it failed; empty if it was done.
-    parameters : dict of str to value
-        Parameters of the test, SI units.
-    """
-
-    metrics: Metrics = field(default_factory=dict)
-    runs: list[Run] = field(default_factory=list)
-    message: str = ""
-    parameters: dict[str, Any] = field(default_factory=dict)
+    metrics: Metrics = field(default_factory=dict)  # value and unit by name; empty if the test failed
+    runs: list[Run] = field(default_factory=list)  # channels of its runs
+    message: str = ""  # why it failed; empty if it was done
+    parameters: dict[str, Any] = field(default_factory=dict)  # parameters of the test, SI units
 
 
 @dataclass(frozen=True)
@@ -139,7 +127,7 @@ def handling(
     names = list(TESTS if tests is None else tests)
     for name in names:
         if name not in TESTS:
-            raise InputError(f"found the test '{name}'{did_you_mean(name, TESTS)}, expected one of {', '.join(TESTS)}")
+            raise InputError(f"found the test '{name}'{instead_of(name, TESTS)}")
     changed = with_changes(parameters or {}, {name: TESTS[name].parameters for name in names})
     car = car_of(scene, body, steering)
     with ExitStack() as stack:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import InputError
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import instead_of
 
 NONE = np.inf
 """Frequency of a filter that is left out, Hz."""
@@ -15,25 +15,18 @@ NONE = np.inf
 
 @dataclass(frozen=True)
 class Weighting:
-    """Parameters of a frequency weighting, ISO 2631-1:1997, table A.1; frequencies in Hz.
+    """Parameters of a frequency weighting, ISO 2631-1:1997, table A.1; frequencies in Hz."""
 
-    Attributes
-    ----------
-    f3, f4, q4 : float
-        Transition from acceleration to velocity; infinite f3 and f4 leave it out.
-    f5, q5, f6, q6 : float
-        Upward step; infinite f5 and f6 leave it out.
-    f1, f2 : float
-        Band limits.
-    """
-
+    # f3, f4, q4: transition from acceleration to velocity; infinite f3 and f4 leave it out
     f3: float
     f4: float
     q4: float
+    # f5, q5, f6, q6: upward step; infinite f5 and f6 leave it out
     f5: float = NONE
     q5: float = 1.0
     f6: float = NONE
     q6: float = 1.0
+    # f1, f2: band limits
     f1: float = 0.4
     f2: float = 100.0
 
@@ -82,8 +75,7 @@ def weighted(acceleration: np.ndarray, step: float, weighting: str) -> np.ndarra
         If there is no such weighting.
     """
     if weighting not in WEIGHTINGS:
-        near = did_you_mean(weighting, WEIGHTINGS)
-        raise InputError(f"found the weighting '{weighting}'{near}, expected one of {', '.join(WEIGHTINGS)}")
+        raise InputError(f"found the weighting '{weighting}'{instead_of(weighting, WEIGHTINGS)}")
     count = len(acceleration)
     spectrum = np.fft.rfft(acceleration - np.mean(acceleration))
     return np.fft.irfft(spectrum * WEIGHTINGS[weighting].response(np.fft.rfftfreq(count, step)), count)

@@ -69,11 +69,7 @@ class Dual:
 class Formula:
     """Output of a run with its value and derivatives.
 
-    Parameters
-    ----------
-    text : str
-        Formula, as in `stiffmbs.sweep`.
-    time : ndarray, shape (n,)
+    `text`: formula, as in `stiffmbs.sweep`. `time` of shape (n,).
     """
 
     def __init__(self, text: str, time: np.ndarray, channels: Mapping[str, np.ndarray]) -> None:

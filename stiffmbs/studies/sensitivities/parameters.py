@@ -27,15 +27,7 @@ ALMOST_ZERO = 1e-300
 class Scenes:
     """Scenes that differ by one value; common data is validated once.
 
-    Parameters
-    ----------
-    unchanged : Unchanged, optional
-        Data that has been validated before.
-
-    Attributes
-    ----------
-    known : Scene
-        Scene as written.
+    `unchanged`: data that has been validated before. `known`: scene as written.
     """
 
     def __init__(self, written: WrittenScene, unchanged: Unchanged | None = None) -> None:
@@ -71,15 +63,7 @@ class Scenes:
 class Parameter:
     """Number in a scene: a parameter, or a path such as ``forces.spring.stiffness`` or ``bodies.bar.position.0``.
 
-    Attributes
-    ----------
-    value : float
-        Value in the scene, SI units.
-
-    Raises
-    ------
-    InputError
-        If the scene has no such value, or it is not a number.
+    `value`: value in the scene, SI units. Raises InputError if the scene has no such value, or it is not a number.
     """
 
     def __init__(self, scenes: Scenes, name: str) -> None:

@@ -211,15 +211,6 @@ class DifferentiatedRun:
         The unchanged scene, with settings that are `differentiable`.
     times : ndarray, optional
         Output times that replace those of the settings.
-
-    Attributes
-    ----------
-    success : bool
-        True if the whole time was solved.
-    chatters : bool
-        True if it stopped because a force chatters.
-    at_the_limit : bool
-        True if the longest allowed step, not the error control, limits some steps.
     """
 
     def __init__(self, scenes: Scenes, names: Sequence[str], job: Job, times: np.ndarray | None = None) -> None:
@@ -240,6 +231,8 @@ class DifferentiatedRun:
             self._trajectory = integrated(self._recorder, job.start, grid, lambda _: None)
         if self._trajectory.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
+        # `success`: the whole time was solved. `chatters`: it stopped because a force chatters. `at_the_limit`: the
+        # longest allowed step, not the error control, limits some steps.
         self.success = self._trajectory.outcome is Outcome.DONE
         self.chatters = self._recorder.chatters
         self.at_the_limit = self._recorder.longest_step >= AT_THE_LIMIT * (job.settings.max_step or np.inf)

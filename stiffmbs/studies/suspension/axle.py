@@ -15,7 +15,7 @@ from ...elements.spatial.marker import Marker
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.model_data import ModelData
-from ...reading.did_you_mean import did_you_mean
+from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.formula.formula import Formula
 from ...reading.marker import GROUND, MarkerReference
 
@@ -63,33 +63,15 @@ ON_MIDDLE_PLANE = 1e-6
 
 @dataclass(frozen=True)
 class Wheel:
-    """Wheel of an axle on the body that carries its bearing.
+    """Wheel of an axle on the body that carries its bearing."""
 
-    Attributes
-    ----------
-    side : str
-        ``left``, ``right``, or ``wheel`` for the only wheel of a motorcycle's axle.
-    suspension : str
-        Prefix of the names of the suspension's elements; empty if they have none.
-    carrier : str
-        Body on which the wheel rotates.
-    centre : ndarray, shape (3,)
-        Centre of the wheel as described, ground axes, m.
-    axis : ndarray, shape (3,)
-        Unit vector along its axis, to the left.
-    contact : ndarray, shape (3,)
-        Centre of its contact with the road, m.
-    body : str or None
-        Wheel body, if it is known.
-    """
-
-    side: str
-    suspension: str
-    carrier: str
-    centre: np.ndarray
-    axis: np.ndarray
-    contact: np.ndarray
-    body: str | None = None
+    side: str  # ``left``, ``right``, or ``wheel`` for the only wheel of a motorcycle's axle
+    suspension: str  # prefix of the names of the suspension's elements; empty if they have none
+    carrier: str  # body on which the wheel rotates
+    centre: np.ndarray  # shape (3,): centre of the wheel as described, ground axes, m
+    axis: np.ndarray  # shape (3,): unit vector along its axis, to the left
+    contact: np.ndarray  # shape (3,): centre of its contact with the road, m
+    body: str | None = None  # wheel body, if it is known
 
     @property
     def sign(self) -> float:
@@ -99,27 +81,13 @@ class Wheel:
 
 @dataclass(frozen=True)
 class Axle:
-    """Parts of a scene that form an axle.
+    """Parts of a scene that form an axle."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the axle.
-    wheels : tuple of Wheel
-        One or two, left first.
-    body : str
-        Body that carries them; ground if they stand on it.
-    steering : str or None
-        Prismatic or revolute joint whose travel steers.
-    bodies : frozenset of str
-        Bodies of the suspensions, with `body`.
-    """
-
-    name: str
-    wheels: tuple[Wheel, ...]
-    body: str
-    steering: str | None = None
-    bodies: frozenset[str] = frozenset()
+    name: str  # name of the axle
+    wheels: tuple[Wheel, ...]  # one or two, left first
+    body: str  # body that carries them; ground if they stand on it
+    steering: str | None = None  # prismatic or revolute joint whose travel steers
+    bodies: frozenset[str] = frozenset()  # bodies of the suspensions, with `body`
 
     @property
     def title(self) -> str:
@@ -342,10 +310,7 @@ def _carrying(model: ModelData, start: str, wheels: Sequence[Wheel]) -> str:
 def _steering(model: ModelData, given: str | None, bodies: frozenset[str]) -> str | None:
     slides = [name for name, joint in model.joints.items() if joint.kind in ("prismatic", "revolute")]
     if given is not None and given not in slides:
-        near = did_you_mean(given, slides)
-        raise InputError(
-            f"found no prismatic or revolute joint '{given}'{near}, expected one of {', '.join(slides) or 'none'}"
-        )
+        raise InputError(f"found no prismatic or revolute joint '{given}'{instead_of(given, slides)}")
     if given is not None and not set(bodies_at(model.joints[given])) & (bodies - {GROUND}):
         raise InputError(f"steering: found the joint '{given}' on other bodies, expected one that steers the axle")
     guides = [

@@ -40,28 +40,15 @@ PARALLEL = 1e-12
 
 @dataclass(frozen=True)
 class Setup:
-    """Data that the measures of all poses share.
+    """Data that the measures of all poses share."""
 
-    Attributes
-    ----------
-    model : ModelData
-        Model on the rig.
-    axle : Axle
-    vehicle : Vehicle
-    springs : dict of str to Spring
-        Springs between points and torsion springs on the rig.
-    of_wheel : dict of str to dict of str to Spring
-        Springs of each side, by their names on that side.
-    angular : bool
-        True if the steering joint rotates.
-    """
-
-    model: ModelData
+    model: ModelData  # model on the rig
     axle: Axle
     vehicle: Vehicle
-    springs: dict[str, Spring]
+    springs: dict[str, Spring]  # springs between points and torsion springs on the rig
+    # springs of each side, by their names on that side
     of_wheel: dict[str, dict[str, LineSpring]]  # type: ignore[type-arg]
-    angular: bool
+    angular: bool  # True if the steering joint rotates
 
     @property
     def plane(self) -> float:
@@ -118,15 +105,8 @@ class Hub:
 class Pose:
     """Axle at an equilibrium on its rig.
 
-    Parameters
-    ----------
-    setup : Setup
-    dynamics : Dynamics
-        At the equilibrium.
-    t : float
-        s.
-    mode : tuple of float
-        Factors of the pads' displacements in the motion that is measured: (1, 1) in bump, (1, -1) in roll.
+    `dynamics`: at the equilibrium. `t`: s. `mode`: factors of the pads' displacements in the motion that is measured:
+    (1, 1) in bump, (1, -1) in roll.
     """
 
     def __init__(self, setup: Setup, dynamics: Dynamics, t: float, mode: tuple[float, ...]) -> None:

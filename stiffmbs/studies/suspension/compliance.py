@@ -16,18 +16,11 @@ LOADS = ("fx", "fy", "fz", "mx", "my", "mz")
 
 @dataclass(frozen=True)
 class Compliance:
-    """Compliance of the carriers with the springs free and the steering joint held.
+    """Compliance of the carriers with the springs free and the steering joint held."""
 
-    Attributes
-    ----------
-    sides : tuple of str
-        Sides of the wheels.
-    centre, contact : ndarray, shape (6 n, 6 n)
-        Displacements (m) and rotations (rad) along the ground axes, x forward, y to the left, z up, by forces (N) and
-        torques (N m), for the n wheels in turn: at their centres and at their contacts.
-    """
-
-    sides: tuple[str, ...]
+    sides: tuple[str, ...]  # sides of the wheels
+    # centre, contact: shape (6 n, 6 n): displacements (m) and rotations (rad) along the ground axes, x forward, y to
+    # the left, z up, by forces (N) and torques (N m), for the n wheels in turn: at their centres and at their contacts
     centre: np.ndarray
     contact: np.ndarray
 

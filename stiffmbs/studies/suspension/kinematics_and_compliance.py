@@ -23,30 +23,16 @@ from .vehicle import Vehicle, VehicleOptions, vehicle_of
 
 @dataclass(frozen=True)
 class LoadCase:
-    """Sweep of the rig's inputs from minus to plus their amplitudes.
+    """Sweep of the rig's inputs from minus to plus their amplitudes."""
 
-    Attributes
-    ----------
-    name, swept : str
-        Names of the case and of its abscissa.
-    unit : str
-    scale : float
-        SI value of one unit of the abscissa.
-    inputs : mapping of str to float
-        Value of each input for an abscissa of 1 in SI units.
-    amplitude : float
-        Default amplitude, in the unit of the abscissa.
-    opposite : bool
-        True if the right wheel follows the left one with opposite sign.
-    """
-
+    # name, swept: names of the case and of its abscissa
     name: str
     swept: str
     unit: str
-    scale: float
-    inputs: dict[str, float]
-    amplitude: float
-    opposite: bool = False
+    scale: float  # SI value of one unit of the abscissa
+    inputs: dict[str, float]  # value of each input for an abscissa of 1 in SI units
+    amplitude: float  # default amplitude, in the unit of the abscissa
+    opposite: bool = False  # True if the right wheel follows the left one with opposite sign
 
 
 CASES = (
@@ -73,19 +59,11 @@ NEARLY_STRAIGHT = 1e5
 
 @dataclass(frozen=True)
 class Sweep:
-    """Curves of one load case.
-
-    Attributes
-    ----------
-    case : LoadCase
-    abscissa : ndarray, shape (n,)
-        Values in the unit of the case.
-    channels : dict of str to ndarray
-        Characteristics of both wheels, as `stiffmbs.studies.suspension.characteristics` names them.
-    """
+    """Curves of one load case."""
 
     case: LoadCase
-    abscissa: np.ndarray
+    abscissa: np.ndarray  # shape (n,): values in the unit of the case
+    # characteristics of both wheels, as `stiffmbs.studies.suspension.characteristics` names them
     channels: dict[str, np.ndarray]
 
     def slope(self, channel: str) -> float:

@@ -21,24 +21,12 @@ COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")
 
 @dataclass(frozen=True)
 class Peak:
-    """Largest magnitude of a component.
+    """Largest magnitude of a component."""
 
-    Attributes
-    ----------
-    component : str
-        fx to tz, along the axes of the bushing's marker j.
-    value : float
-        Signed value, N or N m.
-    time : float
-        Time, s.
-    case : str
-        Load case.
-    """
-
-    component: str
-    value: float
-    time: float
-    case: str
+    component: str  # fx to tz, along the axes of the bushing's marker j
+    value: float  # signed value, N or N m
+    time: float  # time, s
+    case: str  # load case
 
 
 @dataclass(frozen=True)

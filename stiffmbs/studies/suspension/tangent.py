@@ -129,13 +129,7 @@ class Tangent:
 class Changes:
     """Solutions of the linearised equilibrium with some of the constraints.
 
-    Parameters
-    ----------
-    tangent : Tangent
-    rows : ndarray of int
-        Constraints that hold.
-    locked : ndarray, shape (n, size)
-        Further rows, whose displacements are zero.
+    `rows`: constraints that hold. `locked` of shape (n, size): further rows, whose displacements are zero.
     """
 
     def __init__(self, tangent: Tangent, rows: np.ndarray, locked: np.ndarray) -> None:

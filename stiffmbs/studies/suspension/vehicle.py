@@ -19,34 +19,19 @@ BRAKE_SHARES = {True: 0.6, False: 0.4}
 
 @dataclass(frozen=True)
 class Vehicle:
-    """Numbers of the vehicle for anti-dive, anti-lift, anti-squat and Ackermann.
+    """Numbers of the vehicle for anti-dive, anti-lift, anti-squat and Ackermann."""
 
-    Attributes
-    ----------
-    wheelbase : float or None
-        Distance to the other axle, m; None leaves out the measures that need it.
-    height : float or None
-        Height of the centre of mass of the vehicle above the road, m.
-    front : bool or None
-        True for the front axle.
-    brake_share, drive_share : float
-        Share of this axle in the braking and in the driving force.
-    inboard_brakes : bool
-        True if the brakes are on the body, so that their torque does not act on the carriers.
-    outboard_drive : bool
-        True if the driving torque acts on the carriers, as with a solid axle or motors in the hubs.
-    assumed : tuple of str
-        Names of the numbers that are assumptions.
-    """
-
-    wheelbase: float | None = None
-    height: float | None = None
-    front: bool | None = None
+    wheelbase: float | None = None  # distance to the other axle, m; None leaves out the measures that need it
+    height: float | None = None  # height of the centre of mass of the vehicle above the road, m
+    front: bool | None = None  # True for the front axle
+    # brake_share, drive_share: share of this axle in the braking and in the driving force
     brake_share: float = 1.0
     drive_share: float = 1.0
+    # True if the brakes are on the body, so that their torque does not act on the carriers
     inboard_brakes: bool = False
+    # True if the driving torque acts on the carriers, as with a solid axle or motors in the hubs
     outboard_drive: bool = False
-    assumed: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()  # names of the numbers that are assumptions
 
 
 @dataclass(frozen=True)

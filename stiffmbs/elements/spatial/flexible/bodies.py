@@ -20,21 +20,13 @@ class ModalCoordinates(Body):
 
 
 class FloatingFrame(Body):
-    """Floating frame of a flexible body: mean axes at the centre of mass, with the inertia of the undeformed body.
-
-    Attributes
-    ----------
-    numbers : object with an ndarray `array`
-        Numbers of the body's inertia and elasticity (`stiffmbs.compile.machine.native.flexible.sums`), with zero
-        gravity.
-    modes : tuple of str
-        Bodies with its modal coordinates.
-    source : tuple of FlexibleBody and Path
-        Description of the body and the folder of its files.
-    """
+    """Floating frame of a flexible body: mean axes at the centre of mass, with the inertia of the undeformed body."""
 
     rigid: ClassVar[bool] = False
 
+    # Numbers of inertia and elasticity (`stiffmbs.compile.machine.native.flexible.sums`) with zero gravity, with an ndarray
+    # `array`.
     numbers: Any = Field(None, exclude=True, repr=False)
-    modes: tuple[str, ...] = ()
+    modes: tuple[str, ...] = ()  # bodies with its modal coordinates
+    # FlexibleBody, and the folder of its files.
     source: Any = Field(None, exclude=True, repr=False)
