@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+import ast
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 
 from stiffmbs import tuning
+from stiffmbs.errors import StiffmbsError
 from stiffmbs.solve.events.native import bounds
 
 
@@ -14,8 +18,49 @@ class Record(SimpleNamespace):
     """Fields of a table or of an object."""
 
 
+BELOW = 0.9 * 2.0 ** (-0.25 * np.arange(400))
+"""Decreasing numbers that are no powers of 2."""
+
+
 class Reached(Exception):
     """The decision has been made; the rest of the function is not needed."""
+
+
+def refused(call):
+    """Return True if a call raises an error of the package, or one that a validator reports."""
+    try:
+        call()
+    except (StiffmbsError, ValueError):
+        return True
+    return False
+
+
+def reached(call):
+    """Return the value with which a call raises `Reached`."""
+    try:
+        call()
+    except Reached as found:
+        return found.args[0]
+    raise AssertionError("the decision was not made")
+
+
+def reach(value):
+    """Raise `Reached` with a value."""
+    raise Reached(value)
+
+
+def executed(name):
+    """Return the names of a module that is executed again with the current values of its numbers, which some statements read."""
+    module = import_module(f"stiffmbs.{name}")
+    tree = ast.parse(Path(module.__file__).read_text(encoding="utf-8"))
+    for statement in tree.body:
+        target = statement.targets[0] if isinstance(statement, ast.Assign) else getattr(statement, "target", None)
+        if isinstance(target, ast.Name) and isinstance(number := getattr(module, target.id), int | float):
+            statement.value = ast.copy_location(ast.Constant(number), statement.value)
+    again = ModuleType(module.__name__)
+    again.__package__, again.__file__ = module.__package__, module.__file__
+    exec(compile(tree, module.__file__, "exec"), vars(again))
+    return again
 
 
 def nothing(*_):

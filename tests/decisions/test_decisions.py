@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from contextlib import ExitStack, contextmanager
 from importlib import import_module
+from inspect import isfunction, signature
 from unittest.mock import patch
 
 import pytest
@@ -19,8 +20,8 @@ from tests.parameters import changed, factors_of_tests
 MODULES = [
     import_module(f"tests.decisions.{name}")
     for name in (
-        "auto", "dynamics", "equilibria", "error_control", "event_search", "events", "explicit_steps", "linear_analysis",
-        "linear_solvers", "presolve", "radau", "redundancy", "results", "run_checks", "sensitivities", "verification",
+        "analyses", "auto", "comparison", "dynamics", "equilibria", "error_control", "event_search", "events", "explicit_steps", "flexible_bodies", "linear_analysis",
+        "linear_solvers", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "verification",
     )
 ]  # fmt: skip
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
@@ -29,14 +30,50 @@ EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED
 
 @contextmanager
 def imported_with(place, factor):
-    """Multiply a number of a module within a context, there and in all modules that have imported it."""
+    """Multiply a number of a module within a context, there, in all modules that import it, and in defaults of arguments."""
     defined_in, name = place.split(":")
-    value = getattr(import_module(f"stiffmbs.{defined_in}"), name)
+    defining = import_module(f"stiffmbs.{defined_in}")
+    modules = [module for module in [*sys.modules.values()] if module.__name__.startswith("stiffmbs.")]
+    if "." in name:
+        owner, field = name.split(".")
+        with of_class_with(getattr(defining, owner), field, factor, modules):
+            yield
+        return
+    value = getattr(defining, name)
     with ExitStack() as stack:
-        for module in [*sys.modules.values()]:
-            if module.__name__.startswith("stiffmbs.") and vars(module).get(name) is value:
-                stack.enter_context(patch.object(module, name, type(value)(factor * value)))
+        for module in modules:
+            if vars(module).get(name) is value:
+                stack.enter_context(patch.object(module, name, multiplied(value, factor)))
+                for function in filter(isfunction, vars(module).values()):
+                    if any(one is value for one in function.__defaults__ or ()):
+                        defaults = [multiplied(value, factor) if one is value else one for one in function.__defaults__]
+                        stack.enter_context(patch.object(function, "__defaults__", tuple(defaults)))
         yield
+
+
+def multiplied(value, factor):
+    """Return a number multiplied by a factor, rounded if it is an integer."""
+    return type(value)(factor * value)
+
+
+@contextmanager
+def of_class_with(owner, field, factor, modules):
+    """Multiply the default of a field of a dataclass within a context, and the field of its instances in modules."""
+    usual = owner.__dataclass_fields__[field].default
+    instances = {id(one): one for module in modules for one in vars(module).values() if type(one) is owner}
+    names = [name for name, one in signature(owner).parameters.items() if one.default is not one.empty]
+    defaults = [
+        multiplied(value, factor) if name == field else value
+        for name, value in zip(names, owner.__init__.__defaults__, strict=True)
+    ]
+    try:
+        for one in instances.values():
+            object.__setattr__(one, field, multiplied(usual, factor))
+        with patch.object(owner.__init__, "__defaults__", tuple(defaults)):
+            yield
+    finally:
+        for one in instances.values():
+            object.__setattr__(one, field, usual)
 
 
 def with_others(parameter):
@@ -57,10 +94,14 @@ def with_others(parameter):
 @pytest.mark.parametrize(
     "package",
     [
+        "analyses",
+        "comparison",
         "dynamics",
         "equilibria",
+        "flexible_bodies",
         "linear_analysis",
         "presolve",
+        "reading",
         "redundancy",
         "results",
         "run_checks",
