@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import hashlib
 import logging
 import sqlite3
@@ -19,7 +21,7 @@ from .case_solver import ChangedFileError, Row
 
 OF_DISK = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
 """Primary error codes of a full or failing disk."""
-FORMAT = 2
+FORMAT: Final = 2
 """Version of the tables, stored as SQLite's user version."""
 _TABLES = """
 create table if not exists parts (name text primary key, digest text not null);

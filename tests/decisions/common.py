@@ -49,17 +49,22 @@ def reach(value):
     raise Reached(value)
 
 
+def module(name):
+    """Return a module of the package, where a package exports a function of the same name."""
+    return import_module(f"stiffmbs.{name}")
+
+
 def executed(name):
     """Return the names of a module that is executed again with the current values of its numbers, which some statements read."""
-    module = import_module(f"stiffmbs.{name}")
-    tree = ast.parse(Path(module.__file__).read_text(encoding="utf-8"))
+    original = module(name)
+    tree = ast.parse(Path(original.__file__).read_text(encoding="utf-8"))
     for statement in tree.body:
         target = statement.targets[0] if isinstance(statement, ast.Assign) else getattr(statement, "target", None)
-        if isinstance(target, ast.Name) and isinstance(number := getattr(module, target.id), int | float):
+        if isinstance(target, ast.Name) and isinstance(number := getattr(original, target.id), int | float):
             statement.value = ast.copy_location(ast.Constant(number), statement.value)
-    again = ModuleType(module.__name__)
-    again.__package__, again.__file__ = module.__package__, module.__file__
-    exec(compile(tree, module.__file__, "exec"), vars(again))
+    again = ModuleType(original.__name__)
+    again.__package__, again.__file__ = original.__package__, original.__file__
+    exec(compile(tree, original.__file__, "exec"), vars(again))
     return again
 
 

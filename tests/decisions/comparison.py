@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from inspect import signature
 from unittest.mock import patch
 
@@ -11,11 +10,10 @@ import numpy as np
 from stiffmbs.comparison import at_error, over, plan, reference, sweep, table, words
 from stiffmbs.errors import SolverError
 from stiffmbs.solve.trajectory import Outcome
-from tests.decisions.common import Reached, Record, executed, reach, reached
+from tests.decisions.common import Reached, Record, executed, module, reach, reached
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
-compare = import_module("stiffmbs.comparison.compare")
-"""Module, of which the package exports a function of the same name."""
+compare = module("comparison.compare")
 
 
 def points_on_a_line(errors):

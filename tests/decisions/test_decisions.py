@@ -21,7 +21,7 @@ MODULES = [
     import_module(f"tests.decisions.{name}")
     for name in (
         "analyses", "auto", "comparison", "dynamics", "equilibria", "error_control", "event_search", "events", "explicit_steps", "flexible_bodies", "linear_analysis",
-        "linear_solvers", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "verification",
+        "linear_solvers", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "studies", "verification",
     )
 ]  # fmt: skip
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
@@ -29,8 +29,11 @@ EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED
 
 
 @contextmanager
-def imported_with(place, factor):
-    """Multiply a number of a module within a context, there, in all modules that import it, and in defaults of arguments."""
+def imported_with(place, factor, k=None):
+    """Multiply a number of a module within a context, there, in all modules that import it, and in defaults of arguments.
+
+    `k`: place in a tuple.
+    """
     defined_in, name = place.split(":")
     defining = import_module(f"stiffmbs.{defined_in}")
     modules = [module for module in [*sys.modules.values()] if module.__name__.startswith("stiffmbs.")]
@@ -40,10 +43,11 @@ def imported_with(place, factor):
             yield
         return
     value = getattr(defining, name)
+    other = multiplied(value, factor) if k is None else (*value[:k], multiplied(value[k], factor), *value[k + 1 :])
     with ExitStack() as stack:
         for module in modules:
             if vars(module).get(name) is value:
-                stack.enter_context(patch.object(module, name, multiplied(value, factor)))
+                stack.enter_context(patch.object(module, name, other))
                 for function in filter(isfunction, vars(module).values()):
                     if any(one is value for one in function.__defaults__ or ()):
                         defaults = [multiplied(value, factor) if one is value else one for one in function.__defaults__]
@@ -79,7 +83,10 @@ def of_class_with(owner, field, factor, modules):
 def with_others(parameter):
     """Yield contexts in which a parameter is halved or doubled; of a tuple, each number."""
     if ":" in parameter:
-        yield from (imported_with(parameter, factor) for factor in (0.5, 2.0))
+        defined_in, name = parameter.split(":")
+        value = getattr(import_module(f"stiffmbs.{defined_in}"), name.split(".")[0])
+        places = range(len(value)) if isinstance(value, tuple) else (None,)
+        yield from (imported_with(parameter, factor, k) for factor in (0.5, 2.0) for k in places)
     else:
         name, field = parameter.split(".")
         value = getattr(tuning.defaults_of(name), field)
@@ -108,6 +115,7 @@ def with_others(parameter):
         "sensitivity_equations",
         "solve",
         "sparse",
+        "studies",
         "verification",
     ],
 )
