@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 

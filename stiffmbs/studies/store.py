@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import hashlib
 import logging
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 

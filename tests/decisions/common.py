@@ -60,8 +60,12 @@ def executed(name):
     tree = ast.parse(Path(original.__file__).read_text(encoding="utf-8"))
     for statement in tree.body:
         target = statement.targets[0] if isinstance(statement, ast.Assign) else getattr(statement, "target", None)
-        if isinstance(target, ast.Name) and isinstance(number := getattr(original, target.id), int | float):
-            statement.value = ast.copy_location(ast.Constant(number), statement.value)
+        names = [one.id for one in ast.walk(target or ast.Tuple([])) if isinstance(one, ast.Name)]
+        numbers = [getattr(original, name, None) for name in names]
+        if numbers and all(isinstance(number, int | float) for number in numbers):
+            constants = [ast.Constant(number) for number in numbers]
+            value = constants[0] if isinstance(target, ast.Name) else ast.Tuple(constants, ast.Load())
+            statement.value = ast.fix_missing_locations(ast.copy_location(value, statement.value))
     again = ModuleType(original.__name__)
     again.__package__, again.__file__ = original.__package__, original.__file__
     exec(compile(tree, original.__file__, "exec"), vars(again))

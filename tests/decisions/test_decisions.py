@@ -20,8 +20,8 @@ from tests.parameters import changed, factors_of_tests
 MODULES = [
     import_module(f"tests.decisions.{name}")
     for name in (
-        "analyses", "auto", "comparison", "dynamics", "equilibria", "error_control", "event_search", "events", "explicit_steps", "flexible_bodies", "linear_analysis",
-        "linear_solvers", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "studies", "verification",
+        "adams", "analyses", "auto", "comparison", "dynamics", "elements", "equilibria", "error_control", "event_search", "events", "explicit_steps", "flexible_bodies", "linear_analysis",
+        "linear_solvers", "model", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "studies", "verification",
     )
 ]  # fmt: skip
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
@@ -49,10 +49,20 @@ def imported_with(place, factor, k=None):
             if vars(module).get(name) is value:
                 stack.enter_context(patch.object(module, name, other))
                 for function in filter(isfunction, vars(module).values()):
-                    if any(one is value for one in function.__defaults__ or ()):
-                        defaults = [multiplied(value, factor) if one is value else one for one in function.__defaults__]
-                        stack.enter_context(patch.object(function, "__defaults__", tuple(defaults)))
+                    for kind, defaults in with_default(function, value, other).items():
+                        stack.enter_context(patch.object(function, kind, defaults))
         yield
+
+
+def with_default(function, value, other):
+    """Return the defaults of a function, of those kinds that have a value, with another one in its place."""
+    in_order, by_name = function.__defaults__ or (), function.__kwdefaults__ or {}
+    changed = {
+        "__defaults__": tuple(other if one is value else one for one in in_order),
+        "__kwdefaults__": {name: other if one is value else one for name, one in by_name.items()},
+    }
+    having = {"__defaults__": in_order, "__kwdefaults__": by_name.values()}
+    return {kind: found for kind, found in changed.items() if any(one is value for one in having[kind])}
 
 
 def multiplied(value, factor):
@@ -101,12 +111,15 @@ def with_others(parameter):
 @pytest.mark.parametrize(
     "package",
     [
+        "adams",
         "analyses",
         "comparison",
         "dynamics",
+        "elements",
         "equilibria",
         "flexible_bodies",
         "linear_analysis",
+        "model",
         "presolve",
         "reading",
         "redundancy",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Final, Literal
 
 from pydantic import Field
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     pass
 
 Point = tuple[si.Length, si.Length, si.Length]
-ORIGIN = (0.0, 0.0, 0.0)
+ORIGIN: Final = (0.0, 0.0, 0.0)
 
 
 class Placement(Described):

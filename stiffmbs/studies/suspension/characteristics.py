@@ -6,11 +6,10 @@ Definitions and signs: docs/guide/kinematics_and_compliance.md (ISO 8855).
 
 from __future__ import annotations
 
-from typing import Final
-
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
