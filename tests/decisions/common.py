@@ -62,7 +62,8 @@ def executed(name):
         target = statement.targets[0] if isinstance(statement, ast.Assign) else getattr(statement, "target", None)
         names = [one.id for one in ast.walk(target or ast.Tuple([])) if isinstance(one, ast.Name)]
         numbers = [getattr(original, name, None) for name in names]
-        if numbers and all(isinstance(number, int | float) for number in numbers):
+        derived = any(isinstance(one, ast.Name) for one in ast.walk(getattr(statement, "value", None) or ast.Tuple([])))
+        if numbers and not derived and all(isinstance(number, int | float) for number in numbers):
             constants = [ast.Constant(number) for number in numbers]
             value = constants[0] if isinstance(target, ast.Name) else ast.Tuple(constants, ast.Load())
             statement.value = ast.fix_missing_locations(ast.copy_location(value, statement.value))

@@ -20,7 +20,7 @@ from tests.parameters import changed, factors_of_tests
 MODULES = [
     import_module(f"tests.decisions.{name}")
     for name in (
-        "adams", "analyses", "auto", "comparison", "dynamics", "elements", "equilibria", "error_control", "event_search", "events", "explicit_steps", "flexible_bodies", "linear_analysis",
+        "adams", "analyses", "auto", "comparison", "compiling", "dynamics", "elements", "equilibria", "error_control", "event_search", "events", "explicit_steps", "flexible_bodies", "linear_analysis",
         "linear_solvers", "model", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "studies", "verification",
     )
 ]  # fmt: skip
@@ -114,6 +114,7 @@ def with_others(parameter):
         "adams",
         "analyses",
         "comparison",
+        "compile",
         "dynamics",
         "elements",
         "equilibria",
