@@ -56,7 +56,8 @@ def numbers_in(value: ast.expr | None) -> int:
 def parameters(file: Path) -> Iterator[Parameter]:
     """Yield the numeric names of a module and of its classes."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
-    bodies = [("", tree.body), *((node.name, node.body) for node in ast.walk(tree) if isinstance(node, ast.ClassDef))]
+    classes = (node for node in ast.walk(tree) if isinstance(node, ast.ClassDef) and not is_enumeration(node))
+    bodies = [("", tree.body), *((node.name, node.body) for node in classes)]
     for owner, body in bodies:
         for statement in body:
             match statement:
@@ -72,6 +73,11 @@ def _of_assignment(file: Path, owner: str, target: ast.expr, value: ast.expr | N
         name = ast.unparse(target)
         column = "of tables" if is_table(value) else "neutral" if owner and is_neutral(value) else COLUMNS[bool(owner)]
         yield Parameter(file, f"{owner}.{name}" if owner else name, column, numbers)
+
+
+def is_enumeration(node: ast.ClassDef) -> bool:
+    """Return True for a class of codes, which are no parameters."""
+    return any(isinstance(base, ast.Name) and base.id.endswith("Enum") for base in node.bases)
 
 
 def is_given(annotation: ast.expr) -> bool:

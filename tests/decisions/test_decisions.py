@@ -20,8 +20,8 @@ from tests.parameters import changed, factors_of_tests
 MODULES = [
     import_module(f"tests.decisions.{name}")
     for name in (
-        "adams", "analyses", "auto", "comparison", "compiling", "dynamics", "elements", "equilibria", "error_control", "event_search", "events", "explicit_steps", "flexible_bodies", "linear_analysis",
-        "linear_solvers", "model", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "studies", "verification",
+        "adams", "analyses", "auto", "commands", "comparison", "compiling", "dynamics", "elements", "equilibria", "error_control", "event_search", "events", "explicit_steps", "flexible_bodies", "linear_analysis",
+        "linear_solvers", "model", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "show", "studies", "verification",
     )
 ]  # fmt: skip
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
@@ -113,6 +113,7 @@ def with_others(parameter):
     [
         "adams",
         "analyses",
+        "commands",
         "comparison",
         "compile",
         "dynamics",
@@ -120,13 +121,16 @@ def with_others(parameter):
         "equilibria",
         "flexible_bodies",
         "linear_analysis",
+        "live",
         "model",
         "presolve",
         "reading",
         "redundancy",
         "results",
+        "robots",
         "run_checks",
         "sensitivity_equations",
+        "show",
         "solve",
         "sparse",
         "studies",
