@@ -15,7 +15,7 @@ from unittest.mock import patch
 import pytest
 
 from stiffmbs import tuning
-from tests.parameters import changed, factors_of_tests
+from tests.parameters import ROOT, changed, factors_of_tests
 
 MODULES = [
     import_module(f"tests.decisions.{name}")
@@ -24,6 +24,7 @@ MODULES = [
         "linear_solvers", "model", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "show", "studies", "verification",
     )
 ]  # fmt: skip
+PACKAGES = sorted(file.parent.name for file in (ROOT / "stiffmbs").glob("*/__init__.py"))
 TABLE = {name: decision for module in MODULES for name, decision in module.DECISIONS.items()}
 EXPECTED = {name: value for module in MODULES for name, value in module.EXPECTED.items()}
 
@@ -108,35 +109,7 @@ def with_others(parameter):
                 yield tuning.in_use({name: {field: changed(value, factor)}})
 
 
-@pytest.mark.parametrize(
-    "package",
-    [
-        "adams",
-        "analyses",
-        "commands",
-        "comparison",
-        "compile",
-        "dynamics",
-        "elements",
-        "equilibria",
-        "flexible_bodies",
-        "linear_analysis",
-        "live",
-        "model",
-        "presolve",
-        "reading",
-        "redundancy",
-        "results",
-        "robots",
-        "run_checks",
-        "sensitivity_equations",
-        "show",
-        "solve",
-        "sparse",
-        "studies",
-        "verification",
-    ],
-)
+@pytest.mark.parametrize("package", PACKAGES)
 def test_all_parameters_of_a_package_are_halved_and_doubled(package):
     """By this table, or those of `test_parameter_thresholds` and `test_parameter_counts`."""
     assert [name for name, (factors, _) in factors_of_tests(package).items() if len(factors) < 2] == []
