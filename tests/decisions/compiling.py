@@ -158,14 +158,14 @@ def flattest_piece():
     return count_while(bends, BELOW)
 
 
-def stretches(around, most=100):
+def stretches(around):
     """Return the sizes of the searches for zeros, of which some stretches have to be divided."""
     sizes = []
 
     def ranges(low, _high):
         sizes.append(len(low))
-        ones = np.ones(len(low))
-        return Record(value=np.array([-ones, ones]), slope=np.array([-ones, ones]))
+        both = np.broadcast_to([[-1.0], [1.0]], (2, len(low)))
+        return Record(value=both, slope=both)
 
     with patch.multiple(
         zeros, _size=lambda _: 1.0, _stays=lambda value, *_: np.zeros(value.shape[1], bool),
