@@ -20,8 +20,10 @@ from tests.parameters import ROOT, changed, factors_of_tests
 MODULES = [
     import_module(f"tests.decisions.{name}")
     for name in (
-        "adams", "analyses", "auto", "commands", "comparison", "compiling", "dynamics", "elements", "equilibria", "error_control", "event_search", "events", "explicit_steps", "flexible_bodies", "linear_analysis",
-        "linear_solvers", "model", "presolve", "radau", "reading", "redundancy", "results", "run_checks", "sensitivities", "show", "studies", "verification",
+        "adams", "analyses", "commands", "comparison", "compiling", "dynamics", "elements", "equilibria",
+        "flexible_bodies", "linear_analysis", "model", "presolve", "reading", "redundancy", "results", "run_checks",
+        "show", "studies", "verification", "solving.auto", "solving.error_control", "solving.event_search",
+        "solving.events", "solving.explicit_steps", "solving.linear_solvers", "solving.radau", "solving.sensitivities",
     )
 ]  # fmt: skip
 PACKAGES = sorted(file.parent.name for file in (ROOT / "stiffmbs").glob("*/__init__.py"))
