@@ -7,8 +7,8 @@ CHECKOUT is the folder of another version; this one by default.  ``--list`` prin
 A parameter is a number, or a tuple of numbers, that a person chose.  Three kinds of numbers are counted in columns of their
 own, and are not among the parameters: tables, which are mappings, and collections of collections (coefficients and units of a
 standard, vertices of elements, layouts of memory, values of examples); neutral defaults of fields, 0 or 1, of data that
-have no such part (a mass of zero, a factor of one); and given numbers, which are annotated as ``Final``.  They cannot be
-tuned: codes, constants of nature, of mathematics or of another program, sizes of a format, seeds.
+have no such part (a mass of zero, a factor of one); and given numbers, which are annotated as ``Final`` or with a ``Literal``
+type. They cannot be tuned: codes, constants of nature, of mathematics or of another program, sizes of a format, seeds.
 """
 
 from __future__ import annotations
@@ -56,11 +56,12 @@ def numbers_in(value: ast.expr | None) -> int:
 def parameters(file: Path) -> Iterator[Parameter]:
     """Yield the numeric names of a module and of its classes."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
-    bodies = [("", tree.body), *((node.name, node.body) for node in ast.walk(tree) if isinstance(node, ast.ClassDef))]
+    classes = (node for node in ast.walk(tree) if isinstance(node, ast.ClassDef) and not is_enumeration(node))
+    bodies = [("", tree.body), *((node.name, node.body) for node in classes)]
     for owner, body in bodies:
         for statement in body:
             match statement:
-                case ast.AnnAssign(target=target, annotation=ast.Name(id="Final"), value=value):
+                case ast.AnnAssign(target=target, annotation=annotation, value=value) if is_given(annotation):
                     yield from (found._replace(column="given") for found in _of_assignment(file, owner, target, value))
                 case ast.Assign(targets=[target], value=value) | ast.AnnAssign(target=target, value=value):
                     yield from _of_assignment(file, owner, target, value)
@@ -72,6 +73,16 @@ def _of_assignment(file: Path, owner: str, target: ast.expr, value: ast.expr | N
         name = ast.unparse(target)
         column = "of tables" if is_table(value) else "neutral" if owner and is_neutral(value) else COLUMNS[bool(owner)]
         yield Parameter(file, f"{owner}.{name}" if owner else name, column, numbers)
+
+
+def is_enumeration(node: ast.ClassDef) -> bool:
+    """Return True for a class of codes, which are no parameters."""
+    return any(isinstance(base, ast.Name) and base.id.endswith("Enum") for base in node.bases)
+
+
+def is_given(annotation: ast.expr) -> bool:
+    """Return True if a type states that the value is never changed."""
+    return any(isinstance(part, ast.Name) and part.id in ("Final", "Literal") for part in ast.walk(annotation))
 
 
 def is_table(value: ast.expr) -> bool:

@@ -145,7 +145,7 @@ def variations(name: str) -> Iterator[tuple[str, str, Any]]:
 
 
 def tested() -> dict[str, set[float]]:
-    """Return the factors, 0.5 and 2, by which tests change each parameter: ``subsystem.field``, or ``module:NAME``."""
+    """Return the factors, 0.5 and 2, by which tests change each parameter: ``subsystem.field``, ``module:NAME``, ``module:Class.field``."""
     from tests.decisions import test_decisions
     from tests.solve import test_parameter_counts, test_parameter_thresholds
 
@@ -177,7 +177,9 @@ def factors_of_tests(package: str) -> dict[str, tuple[set[float], int]]:
                 continue
             owner, _, field = parameter.name.rpartition(".")
             each = field.strip("()").split(", ")
-            names = [f"{name}.{field}" for name in subsystems.get(owner, ())] or [f"{module}:{one}" for one in each]
+            names = [f"{name}.{field}" for name in subsystems.get(owner, ())] or [
+                f"{module}:{owner}.{one}" if owner else f"{module}:{one}" for one in each
+            ]
             of_tests = [factors.get(name, set()) for name in names]
             both = set.intersection(*of_tests) if len(each) > 1 else set.union(*of_tests)
             found[f"{module}: {parameter.name}"] = both, parameter.numbers

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..model.scene import Scene
 from ..results.scales import kind_of
 from ..results.solution import Solution
 
-ORDER = 2
+ORDER: Final = 2
 """Lowest order of convergence of beams in smooth motion (docs: Beams, Accuracy)."""
 MOST = 512
 """Largest number of elements of a beam in the search for a tolerance."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
 from .system import System
 
-FIXED = -1
+FIXED: Final = -1
 
 
 @dataclass(frozen=True, eq=False)  # array comparison has no single truth value: compare by identity

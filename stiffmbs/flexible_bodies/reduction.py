@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 from scipy.linalg import block_diag, eigh, null_space
@@ -22,7 +23,7 @@ from .static_solver import StaticSolver
 
 SAME_FREQUENCY = 1e-9
 """Relative difference of the squares of two frequencies that are equal apart from rounding."""
-DIRECTIONS = (1.0, 2.0, 3.0)
+DIRECTIONS: Final = (1.0, 2.0, 3.0)
 """Different weights of kinetic energy along x, y and z."""
 DEPENDENT = 1e-10
 """Relative bound below which a combination of unit-mass modes, or an equation of a held interface, is dependent. It is the

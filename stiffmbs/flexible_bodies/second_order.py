@@ -18,6 +18,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from scipy.linalg import eigh
@@ -27,7 +28,7 @@ from .interfaces import Interface
 from .static_solver import StaticSolver
 
 LOGGER = logging.getLogger(__name__)
-RIGID_MOTIONS = 6
+RIGID_MOTIONS: Final = 6
 
 
 @dataclass(frozen=True, eq=False)

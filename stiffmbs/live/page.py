@@ -9,7 +9,7 @@ import threading
 import webbrowser
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from ..analyses.job import data_of
 from ..cache.entries import code_of
@@ -21,7 +21,8 @@ from ..reading.files.yaml_text import scene_text
 
 PACKAGES = ("starlette", "uvicorn")
 LOOPBACK = "127.0.0.1"
-FIRST_PORT, PORTS = 49152, 16384
+FIRST_PORT: Final = 49152
+PORTS: Final = 16384
 """Dynamic ports (RFC 6335), of which each file has a preferred one, so that a page finds a restarted server."""
 SCENES = (".yaml", ".yml")
 """File suffixes of scenes that can be edited."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 import numpy as np
 from pydantic import Field, ValidationError
@@ -36,7 +36,7 @@ SMALL = 1e-3
 """Radius of gyration of the body of an interface, relative to the largest of the flexible body."""
 SAME_SHAPES = 0.9
 """Smallest singular value of the change of a basis of modes by a small change of a parameter."""
-BY_BODY = 3
+BY_BODY: Final = 3
 """Modal coordinates of one body."""
 
 

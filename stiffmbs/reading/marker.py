@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, TypeVar
 
 from pydantic import Field, GetJsonSchemaHandler, ValidationInfo, model_validator
 
@@ -100,7 +100,7 @@ class Marker(MarkerReference):
     point: [-300 mm, 0], angle: 90 deg}``.
     """
 
-    dimensions: ClassVar[int | None] = 2
+    dimensions: ClassVar[Literal[2]] = 2
 
     point: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="position in the body's own axes, m")
     angle: si.Angle = Field(0.0, description="direction of the axis relative to the body's, rad")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
 
@@ -16,6 +16,10 @@ JointKind = Literal["hinge", "slide", "ball", "free"]
 
 class RobotFault(Exception):
     """Invalid or unsupported content of a robot file; the message names the link, joint or actuator."""
+
+
+GRAVITY: Final = (0.0, 0.0, -9.81)
+"""Gravity of simulators for a file that states none, m/s^2."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +134,7 @@ class Robot:
 
     name: str
     links: tuple[Link, ...]
-    gravity: tuple[float, ...] = (0.0, 0.0, -9.81)
+    gravity: tuple[float, ...] = GRAVITY
     transmissions: tuple[Transmission, ...] = ()
     relations: tuple[Relation, ...] = ()
     connections: tuple[Connection, ...] = ()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -56,7 +57,7 @@ class FollowedTurns:
         return self._known
 
 
-TRIED = (0.0, *(sign * 10.0**k for k in (0, -1, 3) for sign in (1, -1)))
+TRIED: Final = (0.0, *(sign * 10.0**k for k in (0, -1, 3) for sign in (1, -1)))
 """Values at which the linearity of force parameters in an input is tested."""
 SAME_NUMBER = 8 * float(np.finfo(float).eps)
 

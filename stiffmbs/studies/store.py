@@ -8,6 +8,7 @@ import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from .case_solver import ChangedFileError, Row
 
 OF_DISK = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
 """Primary error codes of a full or failing disk."""
-FORMAT = 2
+FORMAT: Final = 2
 """Version of the tables, stored as SQLite's user version."""
 _TABLES = """
 create table if not exists parts (name text primary key, digest text not null);

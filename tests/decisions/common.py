@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+import ast
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 
 from stiffmbs import tuning
+from stiffmbs.errors import StiffmbsError
 from stiffmbs.solve.events.native import bounds
 
 
@@ -14,8 +18,59 @@ class Record(SimpleNamespace):
     """Fields of a table or of an object."""
 
 
+BELOW = 0.9 * 2.0 ** (-0.25 * np.arange(400))
+"""Decreasing numbers that are no powers of 2."""
+
+
 class Reached(Exception):
     """The decision has been made; the rest of the function is not needed."""
+
+
+def refused(call):
+    """Return True if a call raises an error of the package, or one that a validator reports."""
+    try:
+        call()
+    except (StiffmbsError, ValueError):
+        return True
+    return False
+
+
+def reached(call):
+    """Return the value with which a call raises `Reached`."""
+    try:
+        call()
+    except Reached as found:
+        return found.args[0]
+    raise AssertionError("the decision was not made")
+
+
+def reach(value):
+    """Raise `Reached` with a value."""
+    raise Reached(value)
+
+
+def module(name):
+    """Return a module of the package, where a package exports a function of the same name."""
+    return import_module(f"stiffmbs.{name}")
+
+
+def executed(name):
+    """Return the names of a module that is executed again with the current values of its numbers, which some statements read."""
+    original = module(name)
+    tree = ast.parse(Path(original.__file__).read_text(encoding="utf-8"))
+    for statement in tree.body:
+        target = statement.targets[0] if isinstance(statement, ast.Assign) else getattr(statement, "target", None)
+        names = [one.id for one in ast.walk(target or ast.Tuple([])) if isinstance(one, ast.Name)]
+        numbers = [getattr(original, name, None) for name in names]
+        derived = any(isinstance(one, ast.Name) for one in ast.walk(getattr(statement, "value", None) or ast.Tuple([])))
+        if numbers and not derived and all(isinstance(number, int | float) for number in numbers):
+            constants = [ast.Constant(number) for number in numbers]
+            value = constants[0] if isinstance(target, ast.Name) else ast.Tuple(constants, ast.Load())
+            statement.value = ast.fix_missing_locations(ast.copy_location(value, statement.value))
+    again = ModuleType(original.__name__)
+    again.__package__, again.__file__ = original.__package__, original.__file__
+    exec(compile(tree, original.__file__, "exec"), vars(again))
+    return again
 
 
 def nothing(*_):

@@ -10,6 +10,7 @@ import ast
 import math
 import re
 from collections.abc import Iterator
+from typing import Final
 
 from ...reading.files.quoted import quoted
 from ...reading.formula.text import BINARY, UNARY
@@ -26,7 +27,7 @@ IF = "IF_"
 """Name of IF in a tree; ``if`` is a Python keyword."""
 
 
-LARGEST_WHOLE = 2**53
+LARGEST_WHOLE: Final = 2**53
 """Integers from this size on are written in floating point."""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable
+from typing import Final
 
 from ..scene.contacts import swapped
 from ..scene.forces import TORQUE
@@ -29,7 +30,7 @@ ELEMENTS = {
     "VTORQ": "VTORQUE", "SPDP": "SPRINGDAMPER", "BUSH": "BUSHING",
 }  # fmt: skip
 """Statements of the force functions."""
-EULER_PARAMETERS = 27
+EULER_PARAMETERS: Final = 27
 """First argument of ORIENT for a quaternion, scalar first."""
 ROUNDING_FUNCTIONS = {
     "MOD": "mod",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 from .arguments import Arguments
 from .keywords import READERS, keyword
@@ -15,7 +16,7 @@ SWITCHED = (
     "UCON",
 )  # fmt: skip
 """Statements that can be deactivated."""
-GRAVITY = ("ACCGRAV", 0)
+GRAVITY: Final = ("ACCGRAV", 0)
 Key = tuple[str, int]
 
 

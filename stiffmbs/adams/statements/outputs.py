@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from ..functions.expression import parse
 from ..functions.function import Function, is_subroutine, read_any_function, read_function, required_function
@@ -12,7 +12,7 @@ from .arguments import Arguments
 from .declared import Numbered, given, number, one_of, read_by
 from .units import Units
 
-FEWEST_POINTS = 4
+FEWEST_POINTS: Final = 4
 """Smallest number of points of a spline or a curve, which are cubic: degree plus one, the ORDER of a curve."""
 SORTS = ("DISPLACEMENT", "VELOCITY", "ACCELERATION", "FORCE")
 COLUMNS = tuple(f"F{k}" for k in range(1, 9))

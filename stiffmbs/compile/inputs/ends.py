@@ -28,8 +28,10 @@ FARTHER_SIDE, NEARER_SIDE = 1e-6, 1e-10
 """Distances, relative to the times, at which values on both sides are compared."""
 GROWS = 3.0
 """Factor by which values must grow between these distances: that of a pole of order 1/8."""
-LARGEST, DISTANCES = 1e8, np.geomspace(0.1, FARTHER_SIDE, 16)
-"""Growth towards a pole that solvers can follow, and distances at which it is checked, relative to the times."""
+LARGEST = 1e8
+"""Growth towards a pole that solvers can follow."""
+DISTANCES = np.geomspace(0.1, FARTHER_SIDE, 16)
+"""Distances from a pole at which growth is checked, relative to the times."""
 DOMAINS = {name: function.domain for name, function in IN_FORMULAS.items() if function.domain != EVERYWHERE}
 """Domains of functions."""
 RISKY = (*DOMAINS, *(name for name, function in IN_FORMULAS.items() if function.poles))

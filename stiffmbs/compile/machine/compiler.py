@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from threading import RLock
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
@@ -29,7 +29,8 @@ FLEXIBLE = ".native.flexible."
 """Name in generated sources with short loops over the modes of a flexible body, whose number is a literal."""
 CALLS_WITH_LOOPS = (SERIES, GEOMETRY)
 """Parts of generated sources whose functions have loops; all others are straight code."""
-FULL, SHORT = 3, 1
+FULL: Final = 3
+SHORT: Final = 1
 """LLVM's levels of code generation: with its usual passes of optimisation, or with those of `_SHORT` alone."""
 _SHORT = ("always_inliner", "dead_arg_elimination", "sroa", "simplify_cfg", "instruction_combine")
 """Passes for straight code, and for routines that spend their time in kernels; none transforms loops or vectorises."""

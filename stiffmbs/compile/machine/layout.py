@@ -11,7 +11,7 @@ import ctypes
 from collections.abc import Mapping
 from functools import cached_property
 from hashlib import blake2b
-from typing import Any
+from typing import Any, Final
 from weakref import WeakValueDictionary, finalize
 
 import numpy as np
@@ -43,9 +43,9 @@ class Layout(dict[str, str]):
         return np.array([*found.values()], dtype=np.intp), tuple(found), tuple(types)
 
 
-QUAD = 4
+QUAD: Final = 4
 """Doubles of a SIMD vector."""
-CACHE_LINE = 64
+CACHE_LINE: Final = 64
 """Size of a processor's cache line, bytes."""
 INTS, INDICES, FLOATS, INT = "ints", "indices", "floats", "int"
 FLOAT_CELL, INT_CELL = "float cell", "int cell"

@@ -14,7 +14,7 @@ from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from itertools import combinations
 from math import inf, isfinite
-from typing import Any
+from typing import Any, Final
 
 import sympy as sp
 from sympy.printing.printer import Printer
@@ -24,7 +24,7 @@ from .differentiate import Derivatives
 Number = int | Fraction | float
 Term = tuple[Number, int]
 """Factor, and number of a node; `ONE` for a plain number."""
-ONE = 0
+ONE: Final = 0
 SUM, PRODUCT, INVERSE, ROOT, CALL, ATOM = range(6)
 """Kinds of nodes: their parts are terms, nodes, one node, one term, nodes, and one symbol."""
 Node = tuple[Any, ...]

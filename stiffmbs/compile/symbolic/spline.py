@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Final
 
 import sympy as sp
 
@@ -75,7 +75,7 @@ def _all_three(ellipsoids: Sequence[Sequence[sp.Expr]]) -> list[sp.Expr]:
     return squares + [sp.Integer(0)] * (9 - len(squares))
 
 
-VALUE = -1
+VALUE: Final = -1
 """Index of the argument to differentiate by, for the value itself."""
 
 

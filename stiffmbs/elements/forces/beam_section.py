@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -31,7 +32,7 @@ class BeamSectionLaw(Force):
     symbol: ClassVar[str] = "beam"
     has_reaction: ClassVar[bool] = False
     beyond: ClassVar[str] = BEYOND
-    doubtful: ClassVar[float] = 2**-0.5
+    doubtful: ClassVar[float] = math.sqrt(0.5)
     doubt: ClassVar[str] = DOUBT
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ()
     reflected: ClassVar[dict[str, str] | None] = {"stiffness": "matrix", "unloaded": "components"}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field, WithJsonSchema, field_validator
 
@@ -17,7 +17,7 @@ Stiffness = Annotated[tuple[tuple[K, K, Kc], tuple[K, K, Kc], tuple[Kc, Kc, Kt]]
 Damping = Annotated[tuple[tuple[C, C, Cc], tuple[C, C, Cc], tuple[Cc, Cc, Ct]], _AS_WRITTEN]
 """Symmetric 3 x 3 matrix; None for uncoupled directions, for which nothing is computed."""
 
-NONE = (0.0, 0.0, 0.0)
+NONE: Final = (0.0, 0.0, 0.0)
 
 
 class Bushing(Force):

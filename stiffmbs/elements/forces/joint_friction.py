@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -70,7 +70,7 @@ class JointFriction(AnyJointFriction):
     """
 
     kind = "joint_friction"
-    dimensions = (2,)
+    dimensions: ClassVar[tuple[Literal[2]]] = (2,)
     reflected = {}
     forms = (
         {"joint": "pin", "radius": ...},

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ...errors import InputError
 from ...reading.files.quoted import quoted
@@ -20,7 +20,7 @@ from ...reading.files.text_file import finite_number
 if TYPE_CHECKING:
     import numpy as np
 
-WIDTH = 72
+WIDTH: Final = 72
 """Number of significant characters in a header line."""
 REFUSED = {"ROAD_CRG_FILE": "a reference to another file", "ROAD_CRG_MODS": "modifiers"}
 """Unsupported blocks that change the meaning of the file, with descriptions."""
@@ -127,7 +127,7 @@ def _u(definition: list[Entry], start: tuple[float, float], source: str) -> tupl
     return start
 
 
-COLUMNS = 80
+COLUMNS: Final = 80
 """Characters of a line of data, and block size of binary data, bytes."""
 CHARACTERS = {"LRFI": 10, "LDFI": 20}
 FROM_BEFORE = ("reference line phi", "reference line slope")

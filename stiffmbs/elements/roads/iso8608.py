@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from pydantic import Field, model_validator
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     import numpy as np
 
 CLASSES = "ABCDEFGH"
-SMOOTHEST = 16e-6
+SMOOTHEST: Final = 16e-6
 """Gd(n0) of class A, m^3; each further class has four times the value (geometric means of ISO 8608, table C.1)."""
-REFERENCE = 0.1
+REFERENCE: Final = 0.1
 """Reference wavenumber n0, 1/m."""
 POINTS = 4
 """Table points for the shortest wave; the amplitude of a cubic spline is then within 1 %."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar, Final, Literal
 
 from pydantic import Field
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     pass
 
 Point = tuple[si.Length, si.Length, si.Length]
-ORIGIN = (0.0, 0.0, 0.0)
+ORIGIN: Final = (0.0, 0.0, 0.0)
 
 
 class Placement(Described):
@@ -36,7 +36,7 @@ class Marker(MarkerReference):
     ``{body: bar, point: [-300 mm, 0, 0], orientation: {z: [1, 0, 0]}}``.
     """
 
-    dimensions = 3
+    dimensions: ClassVar[Literal[3]] = 3
 
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
     orientation: Orientation = Field(

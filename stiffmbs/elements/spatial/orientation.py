@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Final
 
 import numpy as np
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
@@ -21,7 +21,7 @@ from ...reading.units.quantity import in_si
 
 Quaternion = tuple[float, float, float, float]
 
-IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
+IDENTITY: Final[Quaternion] = (1.0, 0.0, 0.0, 0.0)
 AXES = "xyz"
 ROUGH = 1e-3
 """Tolerance of a given unit quaternion or rotation matrix, for values written with four digits."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from pydantic import Field, model_validator
 
@@ -43,7 +43,7 @@ from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, di
 if TYPE_CHECKING:
     import numpy as np
 
-WITH_TURN_SLIP = 5
+WITH_TURN_SLIP: Final = 5
 """Last digit of USE_MODE with turn slip."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,7 @@ SAME = 1e-12
 """Tolerance of the places of stations, relative to the length."""
 PLACES = 10
 """Decimals of fractions of the length at which nodes of two divisions coincide."""
-HEIGHT_IN_PLANE = [0, 2, 1, 3, 5, 4]
+HEIGHT_IN_PLANE: Final = [0, 2, 1, 3, 5, 4]
 """Components of strain with axes 2 and 3 of the section exchanged."""
 Z = np.array([0.0, 0.0, 1.0])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ...elements.spatial.orientation import IDENTITY, from_matrix
 from .discretise import Element, Line, Node, discretise
 from .entries import GROUND_AXES
 
-IN_PLANE = [0, 1, 5]
+IN_PLANE: Final = [0, 1, 5]
 """Components of strain in the plane."""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -19,7 +19,7 @@ class BeamBody(Beam):
     its own name and a dot. A node's axis is the tangent.
     """
 
-    dimensions: ClassVar[int] = 2
+    dimensions: ClassVar[Literal[2]] = 2
 
     start: Point | None = Field(None, description="its start, m")
     end: Point | None = Field(None, description="its end, m")

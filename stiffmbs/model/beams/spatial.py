@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -19,7 +19,7 @@ class BeamBody(Beam):
     its own name and a dot. A node's x axis is the tangent, y and z are axes 2 and 3 of the section.
     """
 
-    dimensions: ClassVar[int] = 3
+    dimensions: ClassVar[Literal[3]] = 3
 
     start: Point | None = Field(None, description="start point, m")
     end: Point | None = Field(None, description="end point, m")

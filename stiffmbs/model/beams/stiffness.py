@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import cast
+from typing import Final, cast
 
 import numpy as np
 
@@ -39,7 +39,7 @@ def inverse(compliance: np.ndarray) -> np.ndarray:
     return cast(np.ndarray, np.where(np.abs(found) < 1e-13 * _scale(found), 0.0, found))
 
 
-HERMITE = 6 / 5
+HERMITE: Final = 6 / 5
 """Geometric stiffness for the rotation of both ends of a slender element, per axial force and length: 1/5 + 1."""
 
 

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 Dimension = tuple[float, ...]
 """Exponents of kg, m and s; angles have none."""
@@ -57,8 +58,10 @@ def _units() -> dict[str, Quantity]:
     }
 
 
-POUND, G0 = 0.45359237, 9.80665
-"""Pound in kg, and standard gravity, m/s^2."""
+POUND: Final = 0.45359237
+"""Pound, kg."""
+G0: Final = 9.80665
+"""Standard gravity, m/s^2."""
 UNITS = _units()
 NONE = "no unit"
 CONSTANTS = {"pi": Quantity(math.pi)}

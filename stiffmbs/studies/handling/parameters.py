@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import Any, Final
 
 from ...errors import InputError, prefixed
 from ...reading.did_you_mean import did_you_mean, instead_of
@@ -12,8 +12,8 @@ from ...reading.files.yaml_text import read_yaml
 from ...reading.formula.text import FormulaError
 from ...reading.units.quantity import in_si
 
-G = 9.81
-SPEED = 80 / 3.6
+G: Final = 9.81
+SPEED: Final = 80 / 3.6
 """Test speed of ISO 7401, ISO 4138 (constant speed) and ISO 19365, m/s."""
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -31,7 +32,8 @@ UNITS = {
     "roll_rate": "N m/deg", "roll_angle": "deg", "steering_ratio": "", "ackermann": "%", "turning_radius": "m",
 }  # fmt: skip
 """Measures with their units; that of the steering ratio depends on the steering joint."""
-MM, DEG = 1e3, 180 / np.pi
+MM: Final = 1e3
+DEG: Final = 180 / np.pi
 STRAIGHT = 0.02
 """Sum of both steer angles, rad, below which the axle does not turn the vehicle."""
 PARALLEL = 1e-12

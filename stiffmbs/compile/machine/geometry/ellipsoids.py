@@ -6,10 +6,11 @@ semi-axes of the three ellipsoids of each solid along its axes. A missing ellips
 """
 
 from math import sqrt
+from typing import Final
 
 from ..native.access import compiled, room, shifted
 
-TURN = 3
+TURN: Final = 3
 SQUARES = TURN + 9
 POSE = SQUARES + 18
 """Offsets of R and of the squares in a pose, and its length."""

@@ -3,6 +3,8 @@
 Python reads them too, so this module imports nothing of the compiler; `stiffmbs.dynamics.storage` has the messages.
 """
 
+from typing import Final
+
 SINGULAR, NO_CONVERGENCE, NOT_FINITE, STEP_TOO_SMALL, STIFF, NO_BALANCE, NO_MEMORY, NO_STATE, NOT_FINITE_WITHIN = range(
     -1, -10, -1
 )
@@ -16,12 +18,14 @@ PAUSED, AT_END, AT_EVENT, UNSTABLE = range(4)
 
 FAILED, OK, RECOVERABLE = range(-1, 2)
 """Results of SUNDIALS callbacks: after a recoverable failure, IDA tries a smaller step."""
-NOT_COMPILED = 3
+NOT_COMPILED: Final = 3
 """Last flag of a linear solver whose request for routines has failed (`stiffmbs.solve.ida.session`)."""
-ONE_STEP, STOP_RETURN, ROOT_RETURN = 2, 1, 2
+ONE_STEP: Final = 2
+STOP_RETURN: Final = 1
+ROOT_RETURN: Final = 2
 """IDA_ONE_STEP, IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
 CONTENT, OPERATIONS = range(2)
 """Words of a SUNDIALS solver or vector: its content, its table of operations."""
-NORM_TABLE = 53
+NORM_TABLE: Final = 53
 """Word of N_VBufPack in a vector's operations, which IDA never calls; `stiffmbs.solve.ida.operations.take_norm` stores
 the address of the table of `stiffmbs.solve.ida.native.error_norm` there."""

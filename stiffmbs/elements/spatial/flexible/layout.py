@@ -19,7 +19,7 @@ none. The terms are explained in `stiffmbs.compile.machine.native.flexible.sums`
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -28,7 +28,7 @@ BODY = {
 }  # fmt: skip
 MODE = {"Y_symmetric": 6, "Y_axial": 3, "S": 3, "stiffness": 1, "damping": 1}
 PAIR = {"symmetric": 6, "axial": 3, "T": 3, "of_Z": 3}
-COUPLINGS = 2
+COUPLINGS: Final = 2
 """Names and lengths of consecutive numbers or rows."""
 MODES, OF_MODE, OF_PAIR = sum(BODY.values()), sum(MODE.values()), sum(PAIR.values())
 """Number of the first mode, and rows of each mode and pair."""
@@ -36,7 +36,7 @@ ROW_OF_MODE, ROW_OF_PAIR = (
     {name: sum(list(rows.values())[:k]) for k, name in enumerate(rows)} for rows in (MODE, PAIR)
 )
 """First row of each part."""
-QUAD = 4
+QUAD: Final = 4
 """Numbers of a SIMD vector."""
 
 

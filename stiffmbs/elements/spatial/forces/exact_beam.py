@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Self
 
 from pydantic import Field, field_validator, model_validator
 
@@ -29,7 +29,7 @@ _Moments = tuple[
 SectionStiffness = Annotated[tuple[_Forces, _Forces, _Forces, _Moments, _Moments, _Moments], AS_WRITTEN]
 _Six = tuple[si.Force, si.Force, si.Force, si.Torque, si.Torque, si.Torque]
 _SixMoments = tuple[si.Torque, si.Torque, si.Torque, _Bending, _Bending, _Bending]
-STRAIGHT = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+STRAIGHT: Final = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class ExactBeam(BeamStrain):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -31,7 +31,7 @@ class JointFriction(AnyJointFriction):
     """
 
     kind = "joint_friction"
-    dimensions = (3,)
+    dimensions: ClassVar[tuple[Literal[3]]] = (3,)
     reflected = {}
     forms = (
         {"joint": "pin", "radius": ...},

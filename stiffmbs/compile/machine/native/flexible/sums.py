@@ -17,6 +17,8 @@ modal coordinates are N_k and D_k. Those by modal velocities are the rates of th
 Those by accelerations are of D_k. Last are the moments of `moments_view`.
 """
 
+from typing import Final
+
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
 from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, spread, sum_of
 from stiffmbs.elements.spatial.flexible.layout import (
@@ -34,9 +36,10 @@ AXIAL, FIRST = ROW_OF_PAIR["axial"], ROW_OF_PAIR["T"]
 """First row of the axial vector of N and of D in the sums by modal coordinates, as in `MODE` and `PAIR`."""
 BY_COORDINATE, BY_VELOCITY, BY_ACCELERATION = ROW_OF_PAIR["of_Z"], OF_PAIR - AXIAL, PAIR["T"]
 """Rows of the sums: of `PAIR` up to T, from the axial vector on, and of T."""
-AXIAL_RATE, FIRST_RATE, AXIAL_RATE_OF_Z = 0, FIRST - AXIAL, ROW_OF_PAIR["of_Z"] - AXIAL
+AXIAL_RATE: Final = 0
+FIRST_RATE, AXIAL_RATE_OF_Z = FIRST - AXIAL, ROW_OF_PAIR["of_Z"] - AXIAL
 """First rows of the sums by modal velocities."""
-ACCELERATIONS = 9
+ACCELERATIONS: Final = 9
 """Row of the modal accelerations."""
 STIFFNESS, DAMPING = ROW_OF_MODE["stiffness"], ROW_OF_MODE["damping"]
 """Rows of a body's modes."""

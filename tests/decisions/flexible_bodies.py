@@ -1,0 +1,166 @@
+"""Decisions on flexible bodies: checks of matrices and meshes, elimination, modes, cached bodies."""
+
+from __future__ import annotations
+
+from unittest.mock import patch
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array, diags_array, eye_array, kron
+
+from stiffmbs.flexible_bodies import (
+    cholesky,
+    finite_elements,
+    matrix_files,
+    mesh,
+    reduced,
+    reduction,
+    solid,
+    static_solver,
+)
+from tests.decisions.common import BELOW, Record, nothing, reach, reached, refused
+from tests.solve.test_parameter_thresholds import DOUBLES, count_while
+
+
+def parts_of_a_chain():
+    """Return the number of parts into which the elimination divides 300 nodes in a row."""
+    ones = np.ones(300)
+    chain = diags_array([ones[1:], ones, ones[1:]], offsets=[-1, 0, 1])
+    points = np.column_stack([np.arange(300.0), np.zeros((300, 2))])
+    return len(cholesky.dissection(csc_array(kron(chain, np.ones((3, 3)))), points))
+
+
+def additions_of_columns():
+    """Return the number of times that columns of a matrix of 1000 are added."""
+    shapes = []
+    numbers = Record(zeros=lambda shape: shapes.append(shape) or np.zeros(shape))
+    with patch.object(cholesky, "np", numbers):
+        cholesky._add_lower(np.zeros((1000, 1000)), np.arange(1000), np.zeros((1000, 1000)))
+    return len(shapes)
+
+
+def body(asymmetry=0.0, across=0.0):
+    """Return a node of unit stiffness and mass, with an entry on one side of the diagonal or a greater mass along y."""
+    matrices = {
+        "stiffness": csr_array(np.eye(3) + asymmetry * np.eye(3, k=1)),
+        "mass": csr_array(np.diag([1.0, 1.0 + across, 1.0])),
+    }
+    return Record(
+        nodes=np.zeros((1, 3)), _check_parts=nothing, _check_diagonals=nothing, _check_mass=nothing, _check_rigid_modes=nothing,
+        **matrices,
+    )  # fmt: skip
+
+
+def largest_rotational_entry():
+    def accepts(entry):
+        matrix = csr_array(np.diag([1.0, 1.0, 1.0, 0.0, 0.0, entry]))
+        return not refused(lambda: matrix_files._placed(matrix, None, Record(numbers=np.array([1]))))
+
+    return count_while(lambda entry: accepts(1e-11 * entry), DOUBLES)
+
+
+def flattest_element():
+    def accepts(height):
+        nodes = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.6, 0.0, height]])
+        nodes[3, 0] = np.sqrt(1.0 - height**2)
+        return not refused(lambda: mesh._check_volumes(nodes, np.arange(4)[None], "tetra"))
+
+    return count_while(accepts, BELOW)
+
+
+def limits_of_the_cache():
+    """Return the limits on the number and on the size of cached bodies."""
+    found = Record(second_order=Record(), of_material=nothing)
+    described = Record(
+        material=None, modes=1, residual_modes=False, model=nothing, interfaces_on=nothing, mass=None
+    )  # fmt: skip
+    folder = Record(read=lambda _: None, write=nothing, keep_newest=lambda *limits: reach(limits))
+    with patch.multiple(
+        reduced, _key=nothing, folder_of_bodies=lambda: folder, rigid_body=lambda _: [1.0], reduce=lambda *_: found
+    ):
+        return reached(lambda: reduced.reduced_body(described, None))
+
+
+def largest_difference_of_frequencies():
+    """Return the difference of squares of frequencies, in quarter octaves of 1e-11, that counts as none."""
+
+    def are_equal(apart):
+        separated = []
+        with patch.object(reduction, "eigh", lambda _: separated.append(1) or (None, np.eye(2))):
+            reduction._separated(Record(mass=np.eye(3)), np.array([1.0, 1.0 + apart]), np.eye(3, 2))
+        return bool(separated)
+
+    return count_while(lambda apart: are_equal(1e-11 * apart), DOUBLES)
+
+
+def smallest_independent_mode():
+    def is_kept(square):
+        shapes = np.diag([np.sqrt(square), 1.0])
+        return reduction._independent(shapes, Record(mass=np.eye(2)))[0].shape[1] == 2
+
+    return count_while(is_kept, BELOW)
+
+
+def lowest_elastic_frequency():
+    """Return the lowest frequency, in quarter octaves of that of rigid modes, that is refused."""
+
+    def is_refused(frequency):
+        eye = np.eye(1)
+        solver = Record(static_modes=lambda: eye)
+        with patch.multiple(
+            reduction, check_interfaces=nothing, rigid_body=lambda _: (1.0, 0.0, 0.0), static_solver=lambda *_: (solver, True),
+            _normal_modes=lambda *_: (np.ones(1), eye), _independent=lambda *_: (eye, 1.0),
+            _free_modes=lambda *_: (np.array([frequency]), eye), _rigid_frequencies=lambda *_: np.ones(1),
+            _marker_modes=nothing, _moments=lambda *_: (), second_order=nothing, ReducedBody=nothing,
+        ):  # fmt: skip
+            return refused(lambda: reduction.reduce(Record(mass=eye, rigid_modes=lambda _: eye), [], 1))
+
+    return count_while(is_refused, DOUBLES[:40])
+
+
+def most_unknowns_of_dense_modes():
+    def is_dense(n):
+        solver = Record(
+            free=np.arange(n), _functionals=[], _solve=nothing, _model=Record(nodes=range(n // 3 + 1), mass=eye_array(n, format="csr"))
+        )  # fmt: skip
+        with patch.multiple(
+            static_solver, _dense_modes=lambda *_: reach(True), LinearOperator=lambda *_, **__: reach(False)
+        ):
+            return reached(lambda: static_solver.StaticSolver.normal_modes(solver, 1))
+
+    return count_while(is_dense, (20 * DOUBLES[:40]).astype(int))
+
+
+DECISIONS = {
+    "flexible_bodies.cholesky:LARGEST_PART": parts_of_a_chain,
+    "flexible_bodies.cholesky:COLUMNS": additions_of_columns,
+    "flexible_bodies.finite_elements:SYMMETRY": lambda: count_while(
+        lambda entry: not refused(lambda: finite_elements.FiniteElements.check(body(asymmetry=1e-10 * entry))), DOUBLES
+    ),
+    "flexible_bodies.finite_elements:PRECISION": lambda: count_while(
+        lambda more: not refused(lambda: finite_elements.FiniteElements._check_mass(body(across=1e-8 * more))), DOUBLES
+    ),
+    "flexible_bodies.matrix_files:NO_ROTATION": largest_rotational_entry,
+    "flexible_bodies.mesh:FLAT": flattest_element,
+    "flexible_bodies.reduced:MOST": lambda: limits_of_the_cache()[0],
+    "flexible_bodies.reduced:MOST_BYTES": lambda: limits_of_the_cache()[1],
+    "flexible_bodies.reduced:SAME_MASS": lambda: count_while(
+        lambda more: not refused(lambda: reduced._check_mass(Record(mass=1.0, mesh=None), 1.0 + 0.001 * more)), DOUBLES
+    ),
+    "flexible_bodies.reduction:SAME_FREQUENCY": largest_difference_of_frequencies,
+    "flexible_bodies.reduction:DEPENDENT": smallest_independent_mode,
+    "flexible_bodies.reduction:ZERO": lowest_elastic_frequency,
+    "flexible_bodies.reduction:MORE_MODES": lambda: reached(
+        lambda: reduction._normal_modes(Record(normal_modes=reach), None, 1.0)
+    ),
+    "flexible_bodies.solid:LARGEST_PART": lambda: len(
+        [*solid.NodePairs.parts(Record(_place=np.zeros((1, 100))), 10**6)]
+    ),
+    "flexible_bodies.static_solver:DENSE": most_unknowns_of_dense_modes,
+}  # fmt: skip
+EXPECTED = {
+    "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
+    "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh:FLAT": 119,
+    "flexible_bodies.reduced:MOST": 100, "flexible_bodies.reduced:MOST_BYTES": 2000000000, "flexible_bodies.reduced:SAME_MASS": 23,
+    "flexible_bodies.reduction:SAME_FREQUENCY": 27, "flexible_bodies.reduction:DEPENDENT": 133, "flexible_bodies.reduction:ZERO": 14,
+    "flexible_bodies.reduction:MORE_MODES": 20, "flexible_bodies.solid:LARGEST_PART": 91, "flexible_bodies.static_solver:DENSE": 18,
+}  # fmt: skip

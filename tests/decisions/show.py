@@ -1,0 +1,442 @@
+"""Decisions on what is shown: sizes of drawings and symbols, numbers of rows, digits, instants of pages."""
+
+from __future__ import annotations
+
+from unittest.mock import patch
+
+import numpy as np
+
+from stiffmbs.show import figure, flexible_body, force_table, html, modes, report, sections, suspension, tyre, verdict
+from stiffmbs.show.drawing import as_json, bodies, deformed, derive, film, painted, picture, poses, solids, surroundings
+from stiffmbs.show.drawing.symbols import profiles, shared, spatial
+from stiffmbs.show.page import data
+from stiffmbs.show.page import modes as page_of_modes
+from tests.decisions.common import BELOW, Reached, Record, module, nothing, reach, reached, refused
+from tests.solve.test_parameter_thresholds import DOUBLES, count_while
+
+summary = module("show.summary")
+
+
+def decimals(number):
+    return len(str(number).partition(".")[2])
+
+
+def largest_difference_of_wheels():
+    def is_left_out(more):
+        body = Record(geometry=[Record(type="cylinder", radius=1.0 + more)], center_of_mass=(0.0, 0.0, 0.0))
+        with patch.object(bodies, "_shape", lambda *_: reach(True)):
+            try:
+                return not bodies.given_shapes("a", body, 3, 1.0)
+            except Reached:
+                return False
+
+    return count_while(lambda more: is_left_out(0.01 * more), DOUBLES)
+
+
+def distance_of_equal_points():
+    with patch.object(bodies, "_distinct", lambda _, distance: reach(distance)):
+        return reached(lambda: bodies.derived_shape("a", None, 3, (), 1.0, 1.0))
+
+
+def parts_of_stresses():
+    parts = []
+    solid = Record(stresses=True, vertices=range(1000))
+    motion = Record(time=range(10_000), stresses=lambda _, rows: parts.append(1) or np.zeros(1))
+    deformed.largest_stress([Record(solids=[solid])], motion)
+    return len(parts) - 1
+
+
+def derived(elements=(), n_joints=1, own=None):
+    """Return the unit of symbols, or half the thickness of a bar, of a mechanism of size 1."""
+    model = Record(bodies=own or {}, joints=range(n_joints), forces=(), dimensions=3)
+    with patch.multiple(
+        derive, described_poses=nothing, _Sites=lambda *_: Record(on_bodies=lambda: {"a": []}), _wheels=lambda _: {},
+        interface_bodies=lambda _: {}, modal_bodies=lambda _: (), given_shapes=lambda *_: [], _size=lambda *_: 1.0,
+        body_colors=lambda _: {}, _elements=lambda _: elements, _drawn=lambda *args: reach(args[-1]),
+        derived_shape=lambda *args: reach(args[-1]),
+    ):  # fmt: skip
+        return reached(lambda: derive.drawing_of(model))
+
+
+def distance_of_symbols():
+    element = Record(parts=lambda _: [])
+    model = Record(joints={}, dimensions=2, gravity=(0.0, -1.0))
+    with patch.multiple(derive, _ends=lambda *_: (1, 2), Draft=lambda *args: reach(args[7])):
+        return reached(lambda: derive._drawn("e", element, model, None, 1.0, {}, 1.0))
+
+
+def opacity_of_other_runs():
+    with patch.multiple(film, painted=lambda *_: [], paint=lambda _axes, _patches, opacity: reach(opacity)):
+        return reached(lambda: film._frame(None, None, [None, None], 0, None, 1.0))
+
+
+def seen_line(role):
+    """Return the distance of a line before the plane of the picture, and before faces there."""
+    line = Record(points=np.zeros((1, 3)))
+    part = Record(body="a", role=role, owner="a", solids=[], lines=[line])
+    drawing = Record(dimensions=3, size=1.0, stress=0.0)
+    motion = Record(pose=lambda *_: (np.zeros(3), np.eye(3)))
+    with patch.multiple(
+        painted,
+        face_color=nothing,
+        edge_color=nothing,
+        _wider=nothing,
+        _line=lambda seen, *args: reach((seen[0, 2], args[-1])),
+    ):
+        return reached(lambda: [*painted._part(drawing, part, motion, 0, Record(seen=lambda x: x))])
+
+
+def opacity_of_shadows():
+    with patch.object(painted, "shadows", lambda *_: [np.zeros((1, 3))]):
+        return next(painted._shadows(Record(size=1.0), None, 0, Record(seen=lambda x: x))).opacity
+
+
+def longest_arrow():
+    anchor = Record(body="a", point=np.zeros(3))
+    drawing = Record(loads={"f": anchor}, size=1.0, unit=1.0, marks={})
+    motion = Record(forces={"f": [np.array([1.0, 0.0, 0.0])]}, pose=lambda *_: (np.zeros(3), np.eye(3)))
+    with patch.object(painted, "_arrow", lambda _start, vector, *_: reach(np.linalg.norm(vector))):
+        return reached(lambda: [*painted._loads(drawing, motion, 0, Record(seen=lambda x: x), 1.0)])
+
+
+def longest_head():
+    line, _ = painted._arrow(np.zeros(2), np.array([100.0, 0.0]), "", 1.0, 1.0)
+    return 100.0 - line.points[1, 0]
+
+
+def width_of_a_picture():
+    with patch.object(picture, "new_sheet", lambda size, _: reach(size[0])):
+        return reached(lambda: picture.empty_sheet(np.zeros(2), np.ones(2)))
+
+
+def written_names(count):
+    """Return the sizes of the letters of names of elements."""
+    sizes = []
+    axes = Record(get_xlim=lambda: (0.0, 1.0), text=lambda *_, fontsize, **__: sizes.append(fontsize))
+    name = Record(role="joint", text="a", anchor=Record(body="a", point=np.zeros(3)))
+    motion = Record(pose=lambda *_: (np.zeros(3), np.eye(3)))
+    with patch.object(picture, "_free_place", lambda point, *_: point):
+        picture.write_names(axes, Record(names=[name] * count, marks={}), motion, 0, Record(seen=lambda x: x))
+    return sizes
+
+
+def farthest_view():
+    def is_fixed(distance):
+        drawing = Record(heaviest="a", size=1.0)
+        with patch.object(poses, "path_of", lambda *_: np.array([[distance, 0.0, 0.0]])):
+            return not poses.followed_body(drawing, Record(points={"a": None}))
+
+    return count_while(lambda distance: is_fixed(0.1 * distance), DOUBLES)
+
+
+def steepest_direction():
+    def is_level(cosine):
+        return solids.across(np.array([np.sqrt(1 - cosine**2), 0.0, cosine]))[0][1] > 0.0
+
+    return count_while(is_level, np.arange(0.0, 1.0, 0.05))
+
+
+def most_faces_with_edges():
+    def has_edges(count):
+        mesh = Record(vertices=np.zeros((1, 3)), faces=range(count))
+        shape = Record(type="mesh", file="a", scale=(1.0, 1.0, 1.0))
+        with (
+            patch.multiple(bodies, read_mesh=lambda *_: mesh, Solid=lambda *_: "bare"),
+            patch.object(solids, "edged", lambda _: "edged"),
+        ):
+            return bodies._shape(shape, 3, "")[0] == ("edged",)
+
+    return count_while(lambda count: has_edges(round(100 * count)), DOUBLES)
+
+
+def lines_of_a_floor():
+    drawing = Record(size=4.0, gravity=np.array([0.0, 0.0, -1.0]))
+    with patch.object(surroundings, "_reached", lambda *_: (np.zeros(3), np.zeros(3))):
+        return len(surroundings._floor(drawing, None).lines)
+
+
+def margin_of_a_road():
+    motion = Record(points={"a": np.zeros((1, 3))})
+    with patch.object(surroundings, "_along", lambda _road, _low, high, _size: reach(high)):
+        return reached(lambda: surroundings._road(None, ["a"], Record(size=1.0), motion))
+
+
+def along(extent=None):
+    return len(surroundings._along(Record(level=False, extent=lambda: extent), 0.0, 100.0, 1.0))
+
+
+def longest_dense_road():
+    return count_while(lambda length: along((0.0, length)) > along(), DOUBLES[:40])
+
+
+def points_across():
+    road = Record(heights=lambda x, _: 0 * x)
+    drawing = Record(size=1.0)
+    with patch.multiple(surroundings, _along=lambda *_: np.arange(3.0), _surface=lambda points: reach(points.shape[1])):
+        return reached(lambda: surroundings._road(road, ["a"], drawing, Record(points={"a": np.zeros((1, 3))})))
+
+
+def instants_of_a_floor():
+    seen = []
+    motion = Record(time=range(1000), pose=lambda _, k: seen.append(k) or (None, None))
+    surroundings._reached(Record(parts=[Record(role="body", body="a", solids=(), lines=())]), motion)
+    return len(seen)
+
+
+def farthest_torque():
+    def is_at_its_marker(distance):
+        site = Record(point=np.array([distance, 0.0, 0.0]))
+        draft = Record(i=site, size=1.0, u=1.0, put=lambda site, *_: reach(site is not None))
+        with patch.object(shared, "replace", lambda *_, **__: None):
+            return reached(lambda: shared.torque(draft))
+
+    return count_while(lambda distance: is_at_its_marker(1e-3 * distance), DOUBLES)
+
+
+def width_of_a_wheel():
+    with patch.multiple(
+        spatial, radius_of=lambda _: 1.0, _coefficient=lambda *_: 0.0,
+        lathe=lambda profile, _: reach(np.max(profile[:, 1]) / np.max(spatial.PROFILE[:, 1])),
+    ):  # fmt: skip
+        return reached(lambda: spatial.wheel(Record(element=None, i=Record(with_axes=nothing), put=nothing)))
+
+
+def spokes_of_a_wheel():
+    shapes = []
+    draft = Record(
+        element=None, i=Record(with_axes=nothing), put=lambda _site, _role, *found, **__: shapes.append(found)
+    )
+    with patch.multiple(spatial, radius_of=lambda _: 1.0, _coefficient=lambda *_: 0.0):
+        spatial.wheel(draft)
+    return len(shapes[1]) - 1
+
+
+def length_of_a_spoke():
+    with patch.object(solids, "box", lambda size: reach(size[0])):
+        return reached(lambda: spatial._spoke(1.0, 1.0))
+
+
+def size_of_a_figure():
+    with patch.object(figure, "new_sheet", lambda size: reach(sum(size))):
+        return reached(lambda: figure.drawn(None, None))
+
+
+def most_plots():
+    def has_plots(count):
+        run = Record(unit=lambda channel: channel)
+        sheet = Record(subplots=lambda rows, **_: reach(rows))
+        shown = Record(z="", y=[str(k) for k in range(count)])
+        return reached(lambda: figure.draw_runs(sheet, {"": run}, shown)) == count
+
+    return count_while(has_plots, range(1, 40))
+
+
+def largest_condition():
+    return count_while(lambda x: not flexible_body._notes(Record(dependent=0, condition=1e10 * x)), DOUBLES)
+
+
+def most_loads():
+    with patch.multiple(summary, elements_of=lambda _: range(100), force_rows=lambda _, most: reach(most)):
+        return reached(lambda: summary._print_loads(None, None, str, False))
+
+
+def smallest_torque():
+    """Return the torque, in quarter octaves of the largest, up to which it is shown."""
+
+    def is_shown(torque):
+        peaks = {"a": 1.0, "b": torque}
+        with patch.multiple(
+            force_table, reactions_of=lambda _: ("tx",), elements_of=lambda _: ["a", "b"],
+            _peak=lambda _solution, element, _parts: (peaks[element], 0.0), _row=lambda *args: args[1] + args[3],
+        ):  # fmt: skip
+            return "bN m" in force_table.joint_forces(Record(not_unique=()))
+
+    return count_while(is_shown, BELOW)
+
+
+def most_drawn():
+    def is_drawn(count):
+        with (
+            patch.object(html, "find_spec", lambda _: True),
+            patch("stiffmbs.show.drawing.draw.state_drawn", lambda *_, **__: reach(True)),
+        ):
+            try:
+                return html._drawing(None, count) != ""
+            except Reached:
+                return True
+
+    return count_while(is_drawn, range(1, 1000, 7))
+
+
+def named_bodies(shares):
+    return [*modes._bodies(Record(participation={str(k): share for k, share in enumerate(shares)}))]
+
+
+def poses_of_a_page(n_points):
+    motion = Record(points=range(n_points), forces=())
+    with patch.multiple(
+        data, drawing_json=nothing, largest_force=nothing, _motion=lambda _poses, _packed, most: reach(most)
+    ):
+        return reached(lambda: data.page_data(Record(size=1.0), {"": motion}))
+
+
+def poses_of_a_second():
+    motion = Record(time=np.array([0.0, 1.0]), resampled=lambda times: reach(len(times)))
+    return reached(lambda: data._motion(motion, None, 10_000))
+
+
+def instants_of_channels(n_channels):
+    run = Record(channels={}, time=np.arange(10_000.0), not_unique=())
+    return len(data._channels(run, None, (), range(n_channels))["time"])
+
+
+def shown_mode():
+    """Return the amplitude and the number of points of a shown mode."""
+    found = Record(modes=[Record(motion=None)], shape=lambda _number, *args: reach(args))
+    return reached(lambda: page_of_modes.modes_data(found))
+
+
+def most_lines():
+    def is_drawn(points):
+        with patch.object(report, "data_url", lambda _sheet, kind, _: kind):
+            return report._embedded(None, points) == "svg"
+
+    return count_while(lambda points: is_drawn(100 * points), DOUBLES)
+
+
+def differences():
+    """Return the numbers of rows and of figures of channels that differ."""
+    one = Record(relative=1.0, channel="a")
+    with patch.multiple(
+        sections, differences=lambda *_: [one] * 100, _row=nothing, new_sheet=nothing, draw_runs=nothing, Figure=lambda **_: None,
+        Table=lambda _heads, rows: len(rows), Section=lambda _title, _head, tables, sheets: (tables[0], len(sheets)),
+    ):  # fmt: skip
+        return sections.differences_section(Record(channels=()), "b", Record(channels=()))
+
+
+def width_of_a_text():
+    with patch.multiple(summary, escaping_console=lambda file, width: reach(width)):
+        return reached(lambda: summary.summary(Record(name="")))
+
+
+def width_of_a_page():
+    panels = [Record(case="c")] * 20
+    with (
+        patch.multiple(suspension, PANELS=panels, _curves=lambda *_: True),
+        patch("matplotlib.figure.Figure", lambda figsize, **_: reach(figsize[0])),
+    ):
+        return reached(lambda: suspension.kc_figure(Record(sweeps={"c": None})))
+
+
+def smallest_shown_measure():
+    def is_shown(value):
+        with patch.object(suspension, "_columns", lambda _: ["c"]):
+            return suspension._row(None, "", {"c.n": value}, "n", "")[1] != "0"
+
+    return count_while(is_shown, BELOW)
+
+
+def size_of_a_tyre_figure():
+    with patch.object(tyre, "new_sheet", lambda size: reach(sum(size))):
+        return reached(lambda: tyre.tyre_figure("", ()))
+
+
+def most_reliable_digits():
+    run = Record(channels={}, requested={}, not_unique=(), errors={"a.x": Record(over_time=1e-300)})
+    with patch.object(verdict, "scales", lambda *_: {"a.x": 1.0}):
+        return dict(verdict._digits(run)).popitem()[1]
+
+
+DECISIONS = {
+    "show.drawing.as_json:DIGITS": lambda: decimals(as_json._numbers(np.array([1 / 3]), 1.0)[0]),
+    "show.drawing.bodies:SAME_WHEEL": largest_difference_of_wheels,
+    "show.drawing.bodies:SAME_POINT": distance_of_equal_points,
+    "show.drawing.deformed:AT_ONCE": parts_of_stresses,
+    "show.drawing.derive:UNIT": lambda: derived([("e", None)]),
+    "show.drawing.derive:CROWDED": lambda: derived([("e", None)], n_joints=20),
+    "show.drawing.derive:THICK": lambda: derived(own={"a": None}),
+    "show.drawing.derive:FRONT": distance_of_symbols,
+    "show.drawing.film:MOST_FRAMES": lambda: count_while(
+        lambda end: not refused(lambda: film.Playback().instants(0.0, end)), DOUBLES
+    ),
+    "show.drawing.film:FAINT": opacity_of_other_runs,
+    "show.drawing.film:Playback.rate": lambda: len(film.Playback().instants(0.0, 10.0)),
+    "show.drawing.painted:SYMBOLS_BEFORE": lambda: seen_line("joint")[0],
+    "show.drawing.painted:FOREMOST": lambda: seen_line("joint")[1],
+    "show.drawing.painted:FLOOR_DEPTH": lambda: seen_line("floor")[0],
+    "show.drawing.painted:SHADOW": opacity_of_shadows,
+    "show.drawing.painted:LONGEST_ARROW": longest_arrow,
+    "show.drawing.painted:HEAD": longest_head,
+    "show.drawing.picture:WIDTH": width_of_a_picture,
+    "show.drawing.picture:MOST_NAMES": lambda: count_while(lambda count: written_names(count), range(1, 200)),
+    "show.drawing.picture:MANY_NAMES": lambda: written_names(20)[0],
+    "show.drawing.picture:SMALLEST": lambda: written_names(60)[0],
+    "show.drawing.poses:FAR": farthest_view,
+    "show.drawing.solids:ALONG": steepest_direction,
+    "show.drawing.solids:MOST_FACES": most_faces_with_edges,
+    "show.drawing.solids:ROUND": lambda: len(solids.circle(1.0)) - 1,
+    "show.drawing.surroundings:SurroundingsParameters.margin": margin_of_a_road,
+    "show.drawing.surroundings:SurroundingsParameters.lines": lines_of_a_floor,
+    "show.drawing.surroundings:SurroundingsParameters.along": along,
+    "show.drawing.surroundings:SurroundingsParameters.dense": lambda: along((1.0, 2.0)) - along(),
+    "show.drawing.surroundings:SurroundingsParameters.short": longest_dense_road,
+    "show.drawing.surroundings:SurroundingsParameters.across": points_across,
+    "show.drawing.surroundings:SurroundingsParameters.instants": instants_of_a_floor,
+    "show.drawing.symbols.profiles:TURNS": lambda: len(profiles.zigzag(1.0)),
+    "show.drawing.symbols.shared:FAR_OFF": farthest_torque,
+    "show.drawing.symbols.spatial:WIDTH": width_of_a_wheel,
+    "show.drawing.symbols.spatial:RIM_RADIUS": length_of_a_spoke,
+    "show.drawing.symbols.spatial:SPOKES": spokes_of_a_wheel,
+    "show.figure:SIZE": size_of_a_figure,
+    "show.figure:MOST_PLOTS": most_plots,
+    "show.flexible_body:MOST_FREQUENCIES": lambda: flexible_body._listed(np.arange(100.0)).count(" ") - 1,
+    "show.flexible_body:LARGE_CONDITION": largest_condition,
+    "show.force_table:PLENTY": lambda: decimals(force_table.with_bar(1 / 3, 1e-30).partition(" ")[0]),
+    "show.force_table:LEAST_WITHOUT_EXPONENT": lambda: count_while(
+        lambda value: "e" not in force_table.with_bar(value, 1e-3 * value), BELOW
+    ),
+    "show.force_table:Loads.most": most_loads,
+    "show.force_table:Loads.zero": smallest_torque,
+    "show.html:MOST_ROWS": lambda: html._table(["a"], [["x"]] * 200).count("<td>x"),
+    "show.html:MOST_DRAWN": most_drawn,
+    "show.modes:MOST_BODIES": lambda: len(named_bodies([0.1] * 20)) - 1,
+    "show.modes:LEAST_SHARE": lambda: count_while(lambda share: named_bodies([share]), BELOW),
+    "show.page.data:MOST_POSES": lambda: poses_of_a_page(1),
+    "show.page.data:POSE_VALUES": lambda: poses_of_a_page(100),
+    "show.page.data:POSES_A_SECOND": poses_of_a_second,
+    "show.page.data:CHANNEL_VALUES": lambda: instants_of_channels(1000),
+    "show.page.data:MOST_INSTANTS": lambda: instants_of_channels(1),
+    "show.page.modes:POINTS": lambda: shown_mode()[1],
+    "show.page.modes:AMPLITUDE": lambda: shown_mode()[0],
+    "show.report:MOST_LINES": most_lines,
+    "show.sections:MOST_ROWS": lambda: differences()[0],
+    "show.sections:MOST_FIGURES": lambda: differences()[1],
+    "show.summary:UNBROKEN": width_of_a_text,
+    "show.suspension:COLUMNS": width_of_a_page,
+    "show.suspension:ROUNDING": smallest_shown_measure,
+    "show.tyre:SIZE": size_of_a_tyre_figure,
+    "show.verdict:MOST_DIGITS": most_reliable_digits,
+}  # fmt: skip
+EXPECTED = {
+    "show.drawing.as_json:DIGITS": 6, "show.drawing.bodies:SAME_WHEEL": 18, "show.drawing.bodies:SAME_POINT": 0.001,
+    "show.drawing.deformed:AT_ONCE": 10, "show.drawing.derive:UNIT": 0.024, "show.drawing.derive:CROWDED": 0.016970562748477143,
+    "show.drawing.derive:THICK": 0.02, "show.drawing.derive:FRONT": 2.0, "show.drawing.film:MOST_FRAMES": 28, "show.drawing.film:FAINT": 0.4,
+    "show.drawing.film:Playback.rate": 251, "show.drawing.painted:SYMBOLS_BEFORE": 0.03, "show.drawing.painted:FOREMOST": 0.004,
+    "show.drawing.painted:FLOOR_DEPTH": -1000.0, "show.drawing.painted:SHADOW": 0.07, "show.drawing.painted:LONGEST_ARROW": 0.22,
+    "show.drawing.painted:HEAD": 1.25, "show.drawing.picture:WIDTH": 8.0, "show.drawing.picture:MOST_NAMES": 60,
+    "show.drawing.picture:MANY_NAMES": 6.495190528383289, "show.drawing.picture:SMALLEST": 4.5, "show.drawing.poses:FAR": 18,
+    "show.drawing.solids:ALONG": 18, "show.drawing.solids:MOST_FACES": 23, "show.drawing.solids:ROUND": 24,
+    "show.drawing.surroundings:SurroundingsParameters.margin": 0.5, "show.drawing.surroundings:SurroundingsParameters.lines": 10,
+    "show.drawing.surroundings:SurroundingsParameters.along": 240, "show.drawing.surroundings:SurroundingsParameters.dense": 160,
+    "show.drawing.surroundings:SurroundingsParameters.short": 14, "show.drawing.surroundings:SurroundingsParameters.across": 9,
+    "show.drawing.surroundings:SurroundingsParameters.instants": 24, "show.drawing.symbols.profiles:TURNS": 16,
+    "show.drawing.symbols.shared:FAR_OFF": 27, "show.drawing.symbols.spatial:WIDTH": 0.62, "show.drawing.symbols.spatial:RIM_RADIUS": 0.56,
+    "show.drawing.symbols.spatial:SPOKES": 5, "show.figure:SIZE": 13, "show.figure:MOST_PLOTS": 6, "show.flexible_body:MOST_FREQUENCIES": 13,
+    "show.flexible_body:LARGE_CONDITION": 27, "show.force_table:PLENTY": 9, "show.force_table:LEAST_WITHOUT_EXPONENT": 40,
+    "show.force_table:Loads.most": 10, "show.force_table:Loads.zero": 146, "show.html:MOST_ROWS": 40, "show.html:MOST_DRAWN": 29,
+    "show.modes:MOST_BODIES": 4, "show.modes:LEAST_SHARE": 26, "show.page.data:MOST_POSES": 1200, "show.page.data:POSE_VALUES": 342,
+    "show.page.data:POSES_A_SECOND": 60, "show.page.data:CHANNEL_VALUES": 450, "show.page.data:MOST_INSTANTS": 2000,
+    "show.page.modes:POINTS": 31, "show.page.modes:AMPLITUDE": 0.05, "show.report:MOST_LINES": 23, "show.sections:MOST_ROWS": 15,
+    "show.sections:MOST_FIGURES": 3, "show.summary:UNBROKEN": 10000, "show.suspension:COLUMNS": 12.0, "show.suspension:ROUNDING": 119,
+    "show.tyre:SIZE": 16.5, "show.verdict:MOST_DIGITS": 12,
+}  # fmt: skip

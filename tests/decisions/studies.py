@@ -1,0 +1,497 @@
+"""Decisions on studies: cases, fits, sensitivities, co-simulation, handling, suspensions, tyre curves."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from unittest.mock import Mock, patch
+
+import numpy as np
+import pytest
+
+from stiffmbs.errors import SolverError
+from stiffmbs.solve.trajectory import Outcome
+from stiffmbs.studies import (
+    case_solver,
+    executors,
+    input_numbers,
+    measured,
+    optimise,
+    simulation,
+    stepping,
+    tyre_curves,
+)
+from stiffmbs.studies.fmu import build
+from stiffmbs.studies.handling import braking, car, lane_changes, metrics, steady_state_cornering, steering_inputs
+from stiffmbs.studies.handling.vibration import Weighting
+from stiffmbs.studies.sensitivities import formulas
+from stiffmbs.studies.suspension import axle, characteristics, kinematics_and_compliance, steering_axis, tangent
+from tests.decisions.common import BELOW, Record, executed, module, nothing, reach, reached, refused
+from tests.solve.test_parameter_thresholds import DOUBLES, count_while
+
+fit, follow, study, sweep = (
+    module(f"studies.{name}") for name in ("fit", "follow", "handling.study", "sweep")
+)  # fmt: skip
+sensitivities, of_parameters = (
+    module(f"studies.sensitivities.{name}") for name in ("sensitivities", "parameters")
+)  # fmt: skip
+
+
+def raise_error(*_):
+    raise SolverError(5000 * "a")
+
+
+def kept_structures():
+    solver = Record(_jobs=[Record(settings=None)] * 100, _settings=nothing)
+    prepared = Record(settings=None, dynamics=Record(take_input_features=nothing))
+    with patch.multiple(case_solver, prepare=lambda *_: prepared):
+        for known in solver._jobs:
+            known.dynamics = None
+        case_solver.CaseSolver.job(solver, Record(run=None), 1)
+    return len(solver._jobs)
+
+
+def length_of_a_message():
+    solver = Record(scene=nothing, job=raise_error, _task=Record(outputs=()), _files={})
+    return len(case_solver.CaseSolver.row(solver, 0, ()).message)
+
+
+def chunks_under_way():
+    executor = Record(submit=lambda *_: Mock())
+    with patch.object(executors, "wait", lambda under_way, **_: reach(len(under_way))):
+        return reached(lambda: executors.rows_of(b"", iter(range(100)), executor, 1, nothing))
+
+
+def attempts():
+    submitted = []
+
+    def submit(*_):
+        submitted.append(Mock(result=Mock(side_effect=OSError)))
+        return submitted[-1]
+
+    with patch.multiple(
+        executors, wait=lambda under_way, **_: (list(under_way), None), _ended=lambda _: SolverError("")
+    ):
+        assert refused(lambda: executors.rows_of(b"", iter(range(1)), Record(submit=submit), 1, nothing))
+    return len(submitted)
+
+
+def half_of_a_confidence_interval():
+    """Return half of the confidence interval of a parameter with a standard error of 1 and many values."""
+    one = np.ones((2, 1))
+    model = Record(
+        jacobian=lambda *_: one, residuals=lambda *_: np.ones(2), residual_rms=nothing, solution=nothing, runs=0
+    )
+    ranges = Record(names=("p",), values=lambda point: point, slopes=np.ones_like)
+    result = Record(success=True, message="", active_mask=None)
+    found = Record(covariance=np.eye(1), freedom=1e9)
+    with patch.multiple(
+        fit, of_common_noise=lambda *_: found, Fit=lambda *args: args[1]["p"][1], _at_bounds=lambda *_: ()
+    ):
+        return fit._concluded(model, ranges, np.zeros(1), {}, result, False)
+
+
+def fitted(searched):
+    """Fit two channels, with a function that searches the parameters."""
+    model = Record(check=nothing, searched=searched, residual_rms=lambda _: {})
+    with patch.multiple(
+        fit, measured=lambda _: Record(channels=["a", "b"]), written_scene=nothing, _Model=lambda *_: model, _weights=nothing,
+        parameter_ranges=lambda *_: Record(point=lambda _: np.zeros(1)), _concluded=lambda *_, **__: None,
+    ):  # fmt: skip
+        fit.fit(None, None, {})
+
+
+def fits_with_other_weights():
+    points = []
+    fitted(lambda point, _: points.append(point) or Record(x=point))
+    return len(points)
+
+
+def residual_without_a_solution():
+    model = Record(_data=Record(channels={"a": np.ones(1)}), solution=raise_error)
+    return fit._Model.residuals(model, np.zeros(1), {})[0]
+
+
+def largest_difference_of_times():
+    slave = pytest.importorskip("stiffmbs.studies.fmu.slave")
+
+    def accepts(apart):
+        running = Record(t=1.0, step=nothing)
+        return slave.SceneSlave.do_step(Record(_running=lambda: running, log=nothing, _inputs=None), 1.0 + apart, 0.1)
+
+    return count_while(lambda apart: accepts(1e-11 * apart), DOUBLES)
+
+
+def reports_of_a_run():
+    """Return the number of reports of a run of 100 s, in which a report takes 1 s."""
+    clock = [0.0]
+    start = Record(q=np.zeros(1), u=np.zeros(1))
+    job = Record(grid=Record(times=np.arange(101.0), start=0.0, end=100.0), start=start)
+    found = Record(advance=lambda _: after(1.0), q=np.zeros(1), u=np.zeros(1), length=0.0)
+
+    def after(seconds):
+        clock[0] += seconds
+
+    with patch.multiple(
+        follow, stepper_of=lambda *_: found, _so_far=lambda *_: after(1.0), time=Record(monotonic=lambda: clock[0])
+    ):
+        return len([*follow._followed(job, 0.5)])
+
+
+def largest_misplacement():
+    scene = Record(initial_marker=lambda _: Record(axes=np.eye(3)), forces={"a": Record(i=None), "b": Record(i=None)})
+
+    def accepts(y):
+        places = {"a": np.array([0.0, y, 0.0]), "b": np.array([1.0, y, 0.0])}
+        return not refused(lambda: car._check_place(scene, "car", places))
+
+    return count_while(lambda y: accepts(1e-4 * y), DOUBLES)
+
+
+def start_of_lanes():
+    with patch.object(lane_changes, "STANDARDS", {"s": lambda _: [Record(end=1.0)]}):
+        known = Record(width=1.0, driver=dict)
+        return lane_changes.in_lanes("s")(known, Record(speed=1.0))[0].path["start"]
+
+
+def largest_difference_of_steps():
+    def accepts(apart):
+        time = np.append(np.arange(100.0), 100.0 + apart)
+        response = np.sin(time)
+        return not refused(lambda: metrics.frequency_response(time, response, response))
+
+    return count_while(lambda apart: accepts(3e-7 * apart), DOUBLES[:40])
+
+
+def length_of_a_ramp(ay, sideslip):
+    run = {"vehicle.ay": ay, "vehicle.sideslip": sideslip, "vehicle.roll": np.zeros(len(ay))}
+    try:
+        return len(steady_state_cornering.up_to_the_limit(run)["vehicle.ay"])
+    except ValueError:  # the first value is beyond the limit
+        return 0
+
+
+def values_of_a_steady_ramp():
+    ramp = {"vehicle.ay": 0.01 * np.arange(1000.0)}
+    known = Record(ramp=ramp, car=Record(wheelbase=1.0))
+    with patch.object(steady_state_cornering, "_steady", lambda ay, *_, **__: reach(1000 - len(ay))):
+        return reached(lambda: steady_state_cornering.of_constant_speed(known, Record(speed=1.0), []))
+
+
+def time_on_a_circle():
+    test = Record(first=1.0, last=1.0, radius=1.0, acceleration=1.0)
+    return steady_state_cornering.constant_radius(Record(driver=dict), test)[0].driver["accelerates"]
+
+
+def width_beyond_the_track():
+    with patch.multiple(
+        study, load_scene=nothing, with_changes=nothing, car_of=lambda *_: Record(track=0.0),
+        _preliminary=lambda _scene, _car, width: reach(width),
+    ):  # fmt: skip
+        return reached(lambda: study.handling("car", [], workers=1))
+
+
+def weighting(frequency):
+    """Return the amplitude of a weighting with band limits alone at a frequency in Hz."""
+    return abs(Weighting(np.inf, np.inf, 1.0).response(np.array([frequency]))[0])
+
+
+def states_before_angles():
+    turns = Record(_states=[], angles=lambda: reach(len(turns._states)))
+
+    def note_all():
+        while True:
+            input_numbers.FollowedTurns.note(turns, 0.0, np.zeros(1), np.zeros(1))
+
+    return reached(note_all)
+
+
+def estimates_of_noise():
+    inverses = []
+
+    def inv(matrix):
+        inverses.append(matrix)
+        return 1 / matrix
+
+    with patch.object(measured.np.linalg, "inv", inv):
+        measured.of_separate_noise([np.ones((10, 1)), np.ones((20, 1))], [np.ones(10), np.ones(20)])
+    return len(inverses) - 1
+
+
+def step_of_differences():
+    with patch.multiple(optimise, of_whole_time=lambda _: True, central_differences=lambda *args: reach(args[-1])):
+        return reached(lambda: optimise._Model._slopes_at(Record(_texts=["x"], outputs=None), None))
+
+
+def largest_difference_of_slopes():
+    def accepts(more):
+        formula = Record(text="", _time=np.zeros(2))
+        slopes = np.array([[1.0], [1.0 + more]])
+        with patch.object(formulas, "SELECTED", {"max": lambda _: [0, 1]}):
+            return not refused(lambda: formulas.Formula._at_extreme(formula, "max", np.ones(2), slopes))
+
+    return count_while(lambda more: accepts(1e-8 * more), DOUBLES)
+
+
+def negligible_value():
+    with patch.object(of_parameters, "_replaced", lambda *args: args[-1]):
+        return of_parameters.Parameter.almost_zero(Record(_path="", _whole=None, _places=None))[1]
+
+
+def step_of_a_parameter(value):
+    found = of_parameters.Parameter.step
+    return (found.fget if isinstance(found, property) else found)(Record(value=value))
+
+
+def tolerance_of_sensitivities():
+    with patch.multiple(
+        sensitivities,
+        with_weights=lambda scenes, _: scenes,
+        changed=lambda _, change: reach(change["rtol"]),
+        prepare=nothing,
+    ):
+        return reached(lambda: sensitivities.differentiated(Record(known=None), (), Record(rtol=1e-3)))
+
+
+def longest_step_with_sensitivities():
+    settings = Record(duration=1.0, max_step=None)
+    with patch.multiple(sensitivities, changed=lambda _, change: change["max_step"], _solver=nothing):
+        return sensitivities.differentiable(settings)
+
+
+def longest_step_below_the_limit():
+    def is_below(step):
+        system = Record(sampled=np.zeros(0), states=())
+        job = Record(
+            dynamics=Record(system=system, forget_pivots=nothing), grid=None, start=None, settings=Record(max_step=1.0, tuning={})
+        )  # fmt: skip
+        recorder = Record(chatters=False, longest_step=step)
+        run = object.__new__(sensitivities.DifferentiatedRun)
+        with patch.multiple(
+            sensitivities, Recorder=lambda *_: recorder, integrated=lambda *_: Record(outcome=Outcome.DONE)
+        ):
+            run.__init__(None, (), job)
+        return not run.at_the_limit
+
+    return count_while(lambda step: is_below(0.01 * step), DOUBLES)
+
+
+def checks_of_drift():
+    """Return the number of checks in 1000 steps."""
+    checks = []
+    running = Record(
+        t=0.0, _steps=0, _job=Record(settings=Record(tuning={})), _relaxed=True, _turns=Record(any=False), _forget=nothing,
+        _advance=nothing, _advance_without_drift=checks.append,
+    )  # fmt: skip
+    for _ in range(1000):
+        simulation.Simulation.step(running, 1.0)
+    return len(checks)
+
+
+def tolerance_of_restarts(rtol):
+    with patch.object(stepping, "changed", lambda _, change: change["rtol"]):
+        return stepping._finer(Record(rtol=rtol, atol=None))
+
+
+def least_component_along_y():
+    def accepts(y):
+        wheel = Record(axis=[np.sqrt(max(1 - y**2, 0.0)), y, 0.0], side="wheel", carrier="a")
+        return not refused(lambda: axle._check([wheel], ""))
+
+    return count_while(accepts, 1.5 * BELOW)
+
+
+def largest_offset_on_an_axle():
+    """Return the offset along x, in quarter octaves of 0.01 m, of two wheels on an axle."""
+
+    def has_both(offset):
+        tyres = {name: Record(i=Record(body=name)) for name in ("a", "b")}
+        model = Record(forces=tyres, bodies={}, point=lambda i: [10.0 - offset * (i.body == "b")])
+        with patch.multiple(axle, Tyre=Record, _of_body=lambda *_: 1):
+            return len(axle._with_tyres(model, "front", None)) == 2
+
+    return count_while(lambda offset: has_both(0.01 * offset), DOUBLES[:40])
+
+
+def largest_angle_of_roll_paths():
+    def meet(sine):
+        hubs = [
+            Record(contact=np.array([0.0, y, 0.0]), path=path) for y, path in ((1.0, (1.0, 0.0)), (-1.0, (1.0, sine)))
+        ]
+        pose = Record(hubs=hubs, contact_velocity=lambda hub, _: np.array([0.0, *hub.path]), setup=Record(plane=0.0))
+        return np.isfinite(characteristics._roll_centre(pose, None)["roll_centre_height"])
+
+    return count_while(meet, BELOW)
+
+
+def amplitude_of_a_rotated_joint():
+    with patch.object(kinematics_and_compliance, "replace", lambda _, **changes: changes["amplitude"]):
+        return kinematics_and_compliance._case(Record(name="steer"), True)
+
+
+def largest_compared_value():
+    def is_compared(value):
+        channels = {"left.a": np.array([value]), "right.a": np.zeros(1)}
+        found = Record(sweeps={"s": Record(case=Record(opposite=False), channels=channels)})
+        asymmetry = kinematics_and_compliance.KinematicsAndCompliance.asymmetry
+        return (asymmetry.fget if isinstance(asymmetry, property) else asymmetry)(found) > 0.0
+
+    return count_while(lambda value: is_compared(1e3 * value), DOUBLES)
+
+
+def has_an_axis(*omega):
+    twist = Record(omega=np.array(omega), v=np.zeros(3))
+    return steering_axis.steering_axis(twist, None, None) is not None
+
+
+def least_stiffness():
+    eye = np.eye(1)
+    found = Record(_scale=np.ones(1), _jacobian=eye, _reactions=eye, _stiffness=eye)
+    with patch.multiple(tangent, Constraints=lambda _: Record(null_space=eye), _inverse=lambda _, least: reach(least)):
+        return reached(lambda: tangent.Changes(found, np.array([0]), np.zeros((0, 1))))
+
+
+def largest_violation():
+    def accepts(violation):
+        found = Record(_jacobian=np.eye(1), _scale=np.ones(1), row=lambda _: 0, size=1)
+        changes = Record(
+            _tangent=found, _rows=np.array([0]), _locked=np.zeros((0, 1)), _with_free=nothing,
+            _constraints=Record(smallest=lambda right: right + violation),
+        )  # fmt: skip
+        return not refused(lambda: tangent.Changes.moved(changes, "j"))
+
+    return count_while(lambda violation: accepts(1e-9 * violation), DOUBLES)
+
+
+def cases_of_a_chunk(cases):
+    """Return the number of cases that one worker is given together."""
+    store = Record(close=nothing, done=list)
+    planned = Record(task=None, cases=range(cases), parts=None)
+    with patch.multiple(
+        sweep,
+        Store=lambda *_: store,
+        executor_of=lambda *_: nullcontext((None, 1)),
+        _chunks=lambda *args: reach(args[-1]),
+    ):
+        return reached(lambda: sweep.Study.solve(planned))
+
+
+def loads_of_a_tyre():
+    tyre = Record(has_pressure=False, nominal_load=1.0, nominal_pressure=None)
+    with patch.object(tyre_curves, "_curve", lambda _tyre, load, *_: load):
+        return sum(tyre_curves.tyre_curves(tyre, Record(pressure=None, load=None)))
+
+
+def ends_of_curves(function):
+    """Return the ends of slip and slip angle of curves of a tyre."""
+    ends = []
+
+    def within(_tyre, _name, end):
+        ends.append(end)
+        return -end, end
+
+    tyre = Record(steady_state=lambda *_: reach(ends))
+    with patch.object(tyre_curves, "_within", within):
+        return reached(lambda: function(tyre, 1.0, None, Record(points=3, camber=0.0, speed=1.0)))
+
+
+def directions_of_an_ellipse():
+    tyre = Record(steady_state=lambda _load, kappa, *_: reach(len(kappa)))
+    with patch.object(tyre_curves, "_within", lambda *_: (-1.0, 1.0)):
+        return reached(lambda: tyre_curves._ellipse(tyre, 1.0, None, Record(points=3, camber=0.0, speed=1.0)))
+
+
+DECISIONS = {
+    "studies.case_solver:MOST_STRUCTURES": kept_structures,
+    "studies.case_solver:MOST_WORDS": length_of_a_message,
+    "studies.executors:STUDIES": lambda: executed("studies.executors")._solvers.cache_info().maxsize,
+    "studies.executors:AHEAD": chunks_under_way,
+    "studies.executors:TRIES": attempts,
+    "studies.fit:CONFIDENCE": half_of_a_confidence_interval,
+    "studies.fit:ROUNDS": fits_with_other_weights,
+    "studies.fit:INSIDE": lambda: reached(lambda: fitted(lambda point, _: reach(point[0]))),
+    "studies.fit:FAR": residual_without_a_solution,
+    "studies.fmu.build:LONGEST_NAME": lambda: len(build.model_name(500 * "a")),
+    "studies.fmu.slave:AT_ONE_TIME": largest_difference_of_times,
+    "studies.follow:SHARE": reports_of_a_run,
+    "studies.handling.braking:BEFORE_BRAKING": lambda: braking._turn(Record(lateral_acceleration=1.0, radius=1.0))[1],
+    "studies.handling.car:MISPLACED": largest_misplacement,
+    "studies.handling.car:Manoeuvre.output": lambda: car.Manoeuvre(1.0, 1.0).output,
+    "studies.handling.lane_changes:BEFORE": start_of_lanes,
+    "studies.handling.metrics:LINEAR": lambda: metrics.gradient_at_zero(np.arange(-10, 11), np.arange(-10.0, 11) ** 5),
+    "studies.handling.metrics:UNEQUAL": largest_difference_of_steps,
+    "studies.handling.steady_state_cornering:PROBE": lambda: steady_state_cornering.probe(Record(angular=False)).speed,
+    "studies.handling.steady_state_cornering:SPUN": lambda: length_of_a_ramp(
+        np.arange(1.0, 101.0), 0.01 * np.arange(100)
+    ),
+    "studies.handling.steady_state_cornering:DROP": lambda: count_while(
+        lambda part: length_of_a_ramp(np.array([2.0, 2.0 * part, 3.0]), np.zeros(3)) == 3, 1.1 * BELOW
+    ),
+    "studies.handling.steady_state_cornering:BEGUN": values_of_a_steady_ramp,
+    "studies.handling.steady_state_cornering:SETTLED": time_on_a_circle,
+    "studies.handling.steering_inputs:STEER_BEGIN": lambda: steering_inputs.dwell_end(Record(frequency=1.0, dwell=0.0)),
+    "studies.handling.study:WIDER": width_beyond_the_track,
+    "studies.handling.vibration:Weighting.f1": lambda: weighting(0.4),
+    "studies.handling.vibration:Weighting.f2": lambda: weighting(100.0),
+    "studies.input_numbers:MOST_KEPT": states_before_angles,
+    "studies.measured:ROUNDS": estimates_of_noise,
+    "studies.optimise:STEP": step_of_differences,
+    "studies.sensitivities.formulas:SAME": lambda: formulas._rounding(np.ones(1)),
+    "studies.sensitivities.formulas:ZERO": lambda: formulas._rounding(np.zeros(1)),
+    "studies.sensitivities.formulas:ALIKE": largest_difference_of_slopes,
+    "studies.sensitivities.parameters:STEP": lambda: step_of_a_parameter(1.0),
+    "studies.sensitivities.parameters:ALMOST_ZERO": negligible_value,
+    "studies.sensitivities.sensitivities:TIGHTER": tolerance_of_sensitivities,
+    "studies.sensitivities.sensitivities:FEWEST": longest_step_with_sensitivities,
+    "studies.sensitivities.sensitivities:AT_THE_LIMIT": longest_step_below_the_limit,
+    "studies.simulation:DRIFT_CHECK_INTERVAL": checks_of_drift,
+    "studies.stepping:PART": lambda: tolerance_of_restarts(1e-3),
+    "studies.stepping:FINEST": lambda: tolerance_of_restarts(1e-11),
+    "studies.suspension.axle:AXIS_ALONG_Y": least_component_along_y,
+    "studies.suspension.axle:SAME_AXLE": largest_offset_on_an_axle,
+    "studies.suspension.axle:ON_MIDDLE_PLANE": lambda: count_while(
+        lambda y: axle._side(np.array([0.0, y, 0.0])) == "left", BELOW
+    ),
+    "studies.suspension.characteristics:STRAIGHT": lambda: count_while(
+        lambda angle: np.isfinite(characteristics._ackermann([angle, angle], 0.5, 2.0)["turning_radius"]), BELOW
+    ),
+    "studies.suspension.characteristics:PARALLEL": largest_angle_of_roll_paths,
+    "studies.suspension.kinematics_and_compliance:STEER_ANGLE": amplitude_of_a_rotated_joint,
+    "studies.suspension.kinematics_and_compliance:NEARLY_STRAIGHT": largest_compared_value,
+    "studies.suspension.steering_axis:STILL": lambda: count_while(lambda rate: has_an_axis(0.0, 0.0, rate), BELOW),
+    "studies.suspension.steering_axis:LEVEL": lambda: count_while(lambda up: has_an_axis(1.0, 0.0, up), BELOW),
+    "studies.suspension.tangent:IDLE": least_stiffness,
+    "studies.suspension.tangent:UNMET": largest_violation,
+    "studies.sweep:LARGEST_CHUNK": lambda: cases_of_a_chunk(10**6),
+    "studies.sweep:CHUNKS_PER_WORKER": lambda: cases_of_a_chunk(32),
+    "studies.tyre_curves:PARTS_OF_LOAD": loads_of_a_tyre,
+    "studies.tyre_curves:SLIP": lambda: ends_of_curves(tyre_curves._curve)[0],
+    "studies.tyre_curves:ANGLE": lambda: ends_of_curves(tyre_curves._curve)[1],
+    "studies.tyre_curves:FAR_SLIP": lambda: ends_of_curves(tyre_curves._ellipse)[0],
+    "studies.tyre_curves:FAR_ANGLE": lambda: ends_of_curves(tyre_curves._ellipse)[1],
+    "studies.tyre_curves:DIRECTIONS": directions_of_an_ellipse,
+}  # fmt: skip
+EXPECTED = {
+    "studies.case_solver:MOST_STRUCTURES": 8, "studies.case_solver:MOST_WORDS": 1000, "studies.executors:STUDIES": 2,
+    "studies.executors:AHEAD": 3, "studies.executors:TRIES": 3, "studies.fit:CONFIDENCE": 1.959963986912325, "studies.fit:ROUNDS": 3,
+    "studies.fit:INSIDE": 1e-06, "studies.fit:FAR": 1000.0, "studies.fmu.build:LONGEST_NAME": 60, "studies.fmu.slave:AT_ONE_TIME": 27,
+    "studies.follow:SHARE": 21, "studies.handling.braking:BEFORE_BRAKING": 201.0, "studies.handling.car:MISPLACED": 27,
+    "studies.handling.car:Manoeuvre.output": 0.01, "studies.handling.lane_changes:BEFORE": 30.0,
+    "studies.handling.metrics:LINEAR": -79.55555555555564, "studies.handling.metrics:UNEQUAL": 7,
+    "studies.handling.steady_state_cornering:PROBE": 10.0, "studies.handling.steady_state_cornering:SPUN": 26,
+    "studies.handling.steady_state_cornering:DROP": 1, "studies.handling.steady_state_cornering:BEGUN": 31,
+    "studies.handling.steady_state_cornering:SETTLED": 45.0, "studies.handling.steering_inputs:STEER_BEGIN": 2.0,
+    "studies.handling.study:WIDER": 0.2, "studies.handling.vibration:Weighting.f1": 0.7071067810960379,
+    "studies.handling.vibration:Weighting.f2": 0.7071067810960378, "studies.input_numbers:MOST_KEPT": 1001, "studies.measured:ROUNDS": 4,
+    "studies.optimise:STEP": 0.001, "studies.sensitivities.formulas:SAME": 1e-12, "studies.sensitivities.formulas:ZERO": 1e-14,
+    "studies.sensitivities.formulas:ALIKE": 27, "studies.sensitivities.parameters:STEP": 0.0001,
+    "studies.sensitivities.parameters:ALMOST_ZERO": 1e-300, "studies.sensitivities.sensitivities:TIGHTER": 1e-09,
+    "studies.sensitivities.sensitivities:FEWEST": 0.005, "studies.sensitivities.sensitivities:AT_THE_LIMIT": 26,
+    "studies.simulation:DRIFT_CHECK_INTERVAL": 21, "studies.stepping:PART": 1e-05, "studies.stepping:FINEST": 1e-12,
+    "studies.suspension.axle:AXIS_ALONG_Y": 4, "studies.suspension.axle:SAME_AXLE": 20, "studies.suspension.axle:ON_MIDDLE_PLANE": 80,
+    "studies.suspension.characteristics:STRAIGHT": 26, "studies.suspension.characteristics:PARALLEL": 159,
+    "studies.suspension.kinematics_and_compliance:STEER_ANGLE": 10.0, "studies.suspension.kinematics_and_compliance:NEARLY_STRAIGHT": 27,
+    "studies.suspension.steering_axis:STILL": 119, "studies.suspension.steering_axis:LEVEL": 80, "studies.suspension.tangent:IDLE": 1e-12,
+    "studies.suspension.tangent:UNMET": 27, "studies.sweep:LARGEST_CHUNK": 8, "studies.sweep:CHUNKS_PER_WORKER": 4,
+    "studies.tyre_curves:PARTS_OF_LOAD": 3.0, "studies.tyre_curves:SLIP": 0.3, "studies.tyre_curves:ANGLE": 0.2617993877991494,
+    "studies.tyre_curves:FAR_SLIP": 1.0, "studies.tyre_curves:FAR_ANGLE": 0.6981317007977318, "studies.tyre_curves:DIRECTIONS": 73,
+}  # fmt: skip
