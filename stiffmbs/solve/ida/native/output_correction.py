@@ -24,7 +24,11 @@ output_correction_view = view_of("OutputCorrection", OUTPUT_CORRECTION)
 
 
 @compiled
-def _interpolated(b, t):
+def _placed(b, t):
+    """Load the state to be corrected: the prediction of the current step, or the interpolant at a time."""
+    if b.predicts:
+        call_int(b.predict, (b.memory, b.at_zero, b.at_y))
+        return call_int(b.predict_rate, (b.memory, b.at_zero, b.at_yp)) >= OK
     if call_int(b.interpolate, (b.memory, t, int32(0), b.at_y)) < OK:
         return False
     return call_int(b.interpolate, (b.memory, t, int32(1), b.at_yp)) >= OK
@@ -129,8 +133,8 @@ def _remaining(b, s, e, t):
 
 @compiled
 def _first_correction(b, s, e, t, parts):
-    """Correct the interpolant by the matrix of a step that is shorter by a factor; return False on failure."""
-    if not (_interpolated(b, t) and _factored(b, s, e, t, parts * b.current)):
+    """Correct the state by the matrix of a step that is shorter by a factor; return False on failure."""
+    if not (_placed(b, t) and _factored(b, s, e, t, parts * b.current)):
         return False
     _look(b, s, e, t)
     _corrected(b, e, b.current)
@@ -154,7 +158,7 @@ def _by_new_factors(b, s, e, t):
 
 @compiled
 def _converged(b, s, e, t):
-    """Correct the interpolant by new factors; return False if it does not converge.
+    """Correct the state by new factors; return False if it does not converge.
 
     The geometric stiffness of forces by interpolation errors may exceed inertia. A matrix of a shorter step removes
     these forces first. At convergence to the rounding of coordinates, forces may balance less than required.
@@ -177,7 +181,7 @@ def corrected(output_correction, state, equations, t):
     b = output_correction_view(output_correction)
     s = state_view(state)
     e = equations_view(equations)
-    if not _interpolated(b, t):
+    if not _placed(b, t):
         return False
     _look(b, s, e, t)
     if _left(b, s, e, t) <= 1.0:
@@ -187,7 +191,7 @@ def corrected(output_correction, state, equations, t):
     if b.factored > 0.0:
         if _remaining(b, s, e, t) == 0.0:
             return True
-        _interpolated(b, t)
+        _placed(b, t)
         _look(b, s, e, t)
     if _converged(b, s, e, t):
         return True
@@ -195,3 +199,23 @@ def corrected(output_correction, state, equations, t):
         b.first_failed = t
     b.failed = b.failed + 1
     return False
+
+
+@compiled
+def solved(output_correction, state, equations, t, cj, total):
+    """Compute the corrections of the current step from its prediction; return False if they do not converge."""
+    b = output_correction_view(output_correction)
+    s = state_view(state)
+    e = equations_view(equations)
+    b.current = cj
+    b.predicts = 1
+    converges = False
+    if _placed(b, t) and call_int(b.weights, (b.memory, b.at_weight)) >= OK:
+        _look(b, s, e, t)
+        converges = _converged(b, s, e, t)
+        copied(total, b.y, e.n)
+        _placed(b, t)
+        for k in range(e.n):
+            total[k] -= b.y[k]
+    b.predicts = 0
+    return converges
