@@ -163,11 +163,10 @@ def _converged(b, s, e, t):
     The geometric stiffness of forces by interpolation errors may exceed inertia. A matrix of a shorter step removes
     these forces first. At convergence to the rounding of coordinates, forces may balance less than required.
     """
-    unbalanced = _left(b, s, e, t)
     parts = 1.0
     for _ in range(POLISHING.most_corrections):
         size = _by_new_factors(b, s, e, t)
-        if size == 0.0 or (size < 1.0 and _left(b, s, e, t) < unbalanced):
+        if size == 0.0:
             return True
         parts *= CONSISTENCY.step_parts
         if not _first_correction(b, s, e, t, parts):
