@@ -170,7 +170,8 @@ def _converged(b, s, e, t):
             return True
         parts *= CONSISTENCY.step_parts
         if not _first_correction(b, s, e, t, parts):
-            return False
+            break
+    b.factored = 0.0  # the factors of a short step make any correction small
     return False
 
 
