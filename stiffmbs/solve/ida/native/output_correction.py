@@ -111,12 +111,12 @@ def _corrected(b, e, cj):
 
 
 @compiled
-def _remaining(b, s, e, t):
+def _remaining(b, s, e, t, most):
     """Correct until the error is negligible, by the convergence rate, or forces balance; return 0, or the last correction."""
     rate = 1.0
     before = 0.0
     size = 0.0
-    for k in range(POLISHING.most_corrections):
+    for k in range(most):
         size = _corrected(b, e, b.factored)
         if k > 0:
             rate = size / before
@@ -132,45 +132,45 @@ def _remaining(b, s, e, t):
 
 
 @compiled
-def _first_correction(b, s, e, t, parts):
-    """Correct the state by the matrix of a step that is shorter by a factor; return False on failure."""
-    if not (_placed(b, t) and _factored(b, s, e, t, parts * b.current)):
-        return False
-    _look(b, s, e, t)
-    _corrected(b, e, b.current)
-    _look(b, s, e, t)
-    return True
+def _without_spurious_forces(b, s, e, t, parts):
+    """Correct the state by matrices of steps that are shorter by factors from `parts` to 1; return False on failure."""
+    while parts > 1.0:
+        if not _factored(b, s, e, t, parts * b.current):
+            return False
+        _corrected(b, e, b.current)
+        _look(b, s, e, t)
+        parts /= CONSISTENCY.step_parts
+    return _factored(b, s, e, t, b.current)
 
 
 @compiled
-def _by_new_factors(b, s, e, t):
-    """Correct the state by new factors while corrections become smaller; return 0, or the smallest correction."""
+def _by_new_factors(b, s, e, t, parts):
+    """Correct the state by new factors while corrections become smaller; return True if they converge."""
     before = INFINITE
     for _ in range(POLISHING.most_corrections):
-        if not _factored(b, s, e, t, b.current):
-            return INFINITE
-        size = _remaining(b, s, e, t)
+        if not _without_spurious_forces(b, s, e, t, parts):
+            return False
+        size = _remaining(b, s, e, t, POLISHING.most_corrections if parts == 1.0 else 1)
         if not 0.0 < size < before:
-            return min(size, before)
+            return size == 0.0
         before = size
-    return before
+    return False
 
 
 @compiled
 def _converged(b, s, e, t):
     """Correct the state by new factors; return False if it does not converge.
 
-    The geometric stiffness of forces by interpolation errors may exceed inertia. A matrix of a shorter step removes
-    these forces first. At convergence to the rounding of coordinates, forces may balance less than required.
+    The geometric stiffness of spurious forces may exceed inertia. Matrices of shorter steps remove these forces first.
     """
     parts = 1.0
     for _ in range(POLISHING.most_corrections):
-        size = _by_new_factors(b, s, e, t)
-        if size == 0.0:
+        if _by_new_factors(b, s, e, t, parts):
             return True
         parts *= CONSISTENCY.step_parts
-        if not _first_correction(b, s, e, t, parts):
+        if not _placed(b, t):
             break
+        _look(b, s, e, t)
     b.factored = 0.0  # the factors of a short step make any correction small
     return False
 
@@ -189,7 +189,7 @@ def corrected(output_correction, state, equations, t):
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
     if b.factored > 0.0:
-        if _remaining(b, s, e, t) == 0.0:
+        if _remaining(b, s, e, t, POLISHING.most_corrections) == 0.0:
             return True
         _placed(b, t)
         _look(b, s, e, t)
