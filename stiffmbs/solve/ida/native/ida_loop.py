@@ -23,7 +23,7 @@ from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view, watched
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
 from stiffmbs.solve.ida.native.layouts import NO_EVENT, PASSED_INTERVAL, STEP_WIDTH
-from stiffmbs.solve.ida.native.output_correction import corrected, output_correction_view
+from stiffmbs.solve.ida.native.output_correction import corrected, output_correction_view, remove_spurious_forces
 from stiffmbs.solve.ida.native.parameters import LOOP
 
 STALLED: Final = -101
@@ -184,11 +184,20 @@ def stepped(c, ida, toward, stop):
         return STALLED
     if seen != NO_EVENT:
         flag = int32(ROOT_RETURN)
+    if flag == ROOT_RETURN and _interpolates_stiffly(c):
+        remove_spurious_forces(c.output_correction, c.state, c.equations, c.returned, array_of(c, c.y))
     if flag >= 0:
         _keep_if_long(c, begun)
     if flag >= 0 and c.trace:
         _keep_step(c, begun)
     return flag
+
+
+@compiled
+def _interpolates_stiffly(c):
+    """Return True if interpolation in the last step does not keep the balance of stiff forces."""
+    b = output_correction_view(c.output_correction)
+    return b.interpolate != 0 and c.size > b.long
 
 
 @compiled
@@ -277,8 +286,8 @@ def _report_at(c, t, derivative, current, row):
     if t == c.returned:
         _report(c, array_of(c, current), row)
         return int32(OK)
-    b = output_correction_view(c.output_correction)
-    if b.interpolate != 0 and c.size > b.long and corrected(c.output_correction, c.state, c.equations, t):
+    if _interpolates_stiffly(c) and corrected(c.output_correction, c.state, c.equations, t):
+        b = output_correction_view(c.output_correction)
         _report(c, b.yp if derivative else b.y, row)
         return int32(OK)
     flag = call_int(c.interpolate, (c.memory, t, int32(derivative), c.at_output))

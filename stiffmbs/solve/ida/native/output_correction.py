@@ -202,6 +202,23 @@ def corrected(output_correction, state, equations, t):
 
 
 @compiled
+def remove_spurious_forces(output_correction, state, equations, t, y):
+    """Remove spurious forces from an interpolated state y at an event, if that improves the balance.
+
+    Forces may jump there, so that no state has a balance. Matrices of shorter steps move stiff directions only.
+    """
+    b = output_correction_view(output_correction)
+    s = state_view(state)
+    e = equations_view(equations)
+    if not _placed(b, t):
+        return
+    _look(b, s, e, t)
+    unbalanced = _left(b, s, e, t)
+    if unbalanced > 1.0 and _without_spurious_forces(b, s, e, t, 1e4) and _left(b, s, e, t) < unbalanced:
+        copied(y, b.y, e.n)
+
+
+@compiled
 def solved(output_correction, state, equations, t, cj, total):
     """Compute the corrections of the current step from its prediction; return False if they do not converge."""
     b = output_correction_view(output_correction)
