@@ -50,6 +50,22 @@ def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.nd
     return at
 
 
+def projected(dynamics: Dynamics, t: float, states: States, step: float) -> States:
+    """Return q and u at the end of a long implicit step, s, projected without a change of stiff forces, if possible.
+
+    The state of `dynamics` is changed.
+    """
+    q, u = (array.copy() for array in states)
+    return (q, u) if _projection(dynamics).project(t, step, q, u) else states
+
+
+def _projection(dynamics: Dynamics) -> StiffProjection:
+    """Return the projection that a system keeps, without pivots of earlier states."""
+    projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
+    projection.forget_pivots()
+    return projection
+
+
 def lengths_of_steps(trajectory: Trajectory) -> np.ndarray:
     """Return the lengths of the implicit steps that contain the output times, s; zero for explicit steps."""
     ends = np.append(trajectory.t[:1], trajectory.step_times)
@@ -88,16 +104,14 @@ def _bounds(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarray
 
 def _changes(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarray) -> np.ndarray:
     """Return the changes of forces by the projections of some rows, divided by roots of inertias."""
-    projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
-    return projection.force_changes(rows.t[at], before, (rows.q[at], rows.u[at]))
+    return _projection(dynamics).force_changes(rows.t[at], before, (rows.q[at], rows.u[at]))
 
 
 def _projected_again(
     dynamics: Dynamics, states: States, rows: OutputRows, at: np.ndarray, steps: np.ndarray
 ) -> OutputRows:
     """Return rows of which some are projected without a change of stiff forces, where that changes forces less."""
-    projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
-    projection.forget_pivots()
+    projection = _projection(dynamics)
     t, (q, u) = rows.t[at], _of(states, at)
     each = zip(t.tolist(), steps[at].tolist(), q, u, strict=True)
     done = np.array([projection.project(*state) for state in each])

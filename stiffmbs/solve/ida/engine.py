@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -94,6 +95,11 @@ class Engine(ABC):
     @abstractmethod
     def statistics(self) -> dict[str, int | float | str]:
         """Return the name of the linear solver, and counters since the first start."""
+
+    @property
+    def long_step(self) -> float:
+        """Return the step size, s, above which steps are long for the stiffest force; infinite if unknown."""
+        return math.inf
 
     def last_step(self) -> tuple[float, int] | None:
         """Return the size, s, and order of the last step, if known."""

@@ -265,6 +265,10 @@ class NativeEngine(Engine):
     def statistics(self) -> dict[str, int | float | str]:
         return {"linear_solver": self.matrix.sentence(), **self._ida.statistics()}
 
+    @property
+    def long_step(self) -> float:
+        return self._stiffness.long_step
+
     def last_step(self) -> tuple[float, int] | None:
         return self._ida.history.last
 
