@@ -98,13 +98,13 @@ def _left(b, s, e, t):
 
 
 @compiled
-def _corrected(b, e, cj):
+def _corrected(b, e):
     """Apply one correction; return its size in units of the tolerance."""
     call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
     squares = 0.0
     for k in range(e.n):
         b.y[k] -= b.correction[k]
-        b.yp[k] -= cj * b.correction[k]
+        b.yp[k] -= b.current * b.correction[k]
         part = b.correction[k] * b.weight[k]
         squares += part * part
     return (squares / e.n) ** 0.5
@@ -117,7 +117,7 @@ def _remaining(b, s, e, t, most):
     before = 0.0
     size = 0.0
     for k in range(most):
-        size = _corrected(b, e, b.factored)
+        size = _corrected(b, e)
         if k > 0:
             rate = size / before
         if (size if k > 0 and not rate < POLISHING.slowest else rate * size) <= b.enough:
@@ -137,7 +137,7 @@ def _without_spurious_forces(b, s, e, t, parts):
     while parts > 1.0:
         if not _factored(b, s, e, t, parts * b.current):
             return False
-        _corrected(b, e, b.current)
+        _corrected(b, e)
         _look(b, s, e, t)
         parts /= CONSISTENCY.step_parts
     return _factored(b, s, e, t, b.current)
@@ -216,6 +216,7 @@ def remove_spurious_forces(output_correction, state, equations, t, y):
     unbalanced = _left(b, s, e, t)
     if unbalanced > 1.0 and _without_spurious_forces(b, s, e, t, 1e4) and _left(b, s, e, t) < unbalanced:
         copied(y, b.y, e.n)
+    b.factored = 0.0  # another step follows
 
 
 @compiled
