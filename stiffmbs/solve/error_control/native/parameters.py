@@ -65,6 +65,9 @@ class PolishingParameters:
     """Largest number of corrections of a state, of radau too."""
     slowest: float = 0.3
     """Ratio of successive corrections above which factors are replaced, or the iteration fails."""
+    at_events: float = 100.0
+    """Step relative to that of the last matrix that corrects a state at an event; for the first matrix, its square. The
+    state moves in stiff directions only, not to the other side of the event."""
 
 
 POLISHING = tuned("polishing", PolishingParameters())

@@ -132,15 +132,15 @@ def _remaining(b, s, e, t, most):
 
 
 @compiled
-def _without_spurious_forces(b, s, e, t, parts):
-    """Correct the state by matrices of steps that are shorter by factors from `parts` to 1; return False on failure."""
-    while parts > 1.0:
+def _corrected_by(b, s, e, t, parts, least):
+    """Correct the state by matrices of steps shorter by factors from `parts` to `least`; return False on failure."""
+    while parts >= least:
         if not _factored(b, s, e, t, parts * b.current):
             return False
         _corrected(b, e)
         _look(b, s, e, t)
         parts /= CONSISTENCY.step_parts
-    return _factored(b, s, e, t, b.current)
+    return True
 
 
 @compiled
@@ -148,7 +148,7 @@ def _by_new_factors(b, s, e, t, parts):
     """Correct the state by new factors while corrections become smaller; return True if they converge."""
     before = INFINITE
     for _ in range(POLISHING.most_corrections):
-        if not _without_spurious_forces(b, s, e, t, parts):
+        if not (_corrected_by(b, s, e, t, parts, CONSISTENCY.step_parts) and _factored(b, s, e, t, b.current)):
             return False
         size = _remaining(b, s, e, t, POLISHING.most_corrections if parts == 1.0 else 1)
         if not 0.0 < size < before:
@@ -214,8 +214,9 @@ def remove_spurious_forces(output_correction, state, equations, t, y):
         return
     _look(b, s, e, t)
     unbalanced = _left(b, s, e, t)
-    if unbalanced > 1.0 and _without_spurious_forces(b, s, e, t, 1e4) and _left(b, s, e, t) < unbalanced:
-        copied(y, b.y, e.n)
+    if unbalanced > 1.0 and _corrected_by(b, s, e, t, POLISHING.at_events**2, POLISHING.at_events):
+        if _left(b, s, e, t) < unbalanced:
+            copied(y, b.y, e.n)
     b.factored = 0.0  # another step follows
 
 
