@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from itertools import repeat
 from typing import TypeAlias
 
 import numpy as np
@@ -36,7 +37,7 @@ def with_stiff_forces(
     rtol : float
     """
     at = _suspects(dynamics, states, rows, steps, rtol)
-    return _projected_again(dynamics, states, rows, at, steps) if len(at) else rows
+    return _projected_again(dynamics, states, rows, at, float(steps.max())) if len(at) else rows
 
 
 def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.ndarray, rtol: float) -> np.ndarray:
@@ -108,13 +109,15 @@ def _changes(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarra
 
 
 def _projected_again(
-    dynamics: Dynamics, states: States, rows: OutputRows, at: np.ndarray, steps: np.ndarray
+    dynamics: Dynamics, states: States, rows: OutputRows, at: np.ndarray, step: float
 ) -> OutputRows:
-    """Return rows of which some are projected without a change of stiff forces, where that changes forces less."""
+    """Return rows of which some are projected without a change of stiff forces, where that changes forces less.
+
+    `step`: longest step, s. Short ones after a restart would weigh inertia as much as stiff forces.
+    """
     projection = _projection(dynamics)
     t, (q, u) = rows.t[at], _of(states, at)
-    each = zip(t.tolist(), steps[at].tolist(), q, u, strict=True)
-    done = np.array([projection.project(*state) for state in each])
+    done = np.array([projection.project(*state) for state in zip(t.tolist(), repeat(step), q, u)])
     less = projection.force_changes(t, _of(states, at), (q, u)) < _changes(dynamics, _of(states, at), rows, at)
     at, t, q, u = (array[done & less] for array in (at, t, q, u))
     return _replaced(rows, at, dynamics.report(t, q, u, project=False)) if len(at) else rows
