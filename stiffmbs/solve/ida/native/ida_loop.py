@@ -23,7 +23,7 @@ from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view, watched
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
 from stiffmbs.solve.ida.native.layouts import NO_EVENT, PASSED_INTERVAL, STEP_WIDTH
-from stiffmbs.solve.ida.native.output_correction import corrected, output_correction_view, remove_spurious_forces
+from stiffmbs.solve.ida.native.output_correction import corrected, corrected_at_event, output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
 
 STALLED: Final = -101
@@ -185,7 +185,7 @@ def stepped(c, ida, toward, stop):
     if seen != NO_EVENT:
         flag = int32(ROOT_RETURN)
     if flag == ROOT_RETURN and _interpolates_stiffly(c):
-        remove_spurious_forces(c.output_correction, c.state, c.equations, c.returned, array_of(c, c.y))
+        corrected_at_event(c.output_correction, c.state, c.equations, c.returned, array_of(c, c.y))
     if flag >= 0:
         _keep_if_long(c, begun)
     if flag >= 0 and c.trace:

@@ -176,6 +176,20 @@ def _converged(b, s, e, t):
 
 
 @compiled
+def _without_spurious_forces(b, s, e, t):
+    """Interpolate, and remove spurious forces; return True if that improves the balance.
+
+    Forces may jump at an event, so that no state has a balance. Matrices of shorter steps move stiff directions only.
+    """
+    if not _placed(b, t):
+        return False
+    _look(b, s, e, t)
+    unbalanced = _left(b, s, e, t)
+    corrects = unbalanced > 1.0 and _corrected_by(b, s, e, t, POLISHING.at_events**2, POLISHING.at_events)
+    return corrects and _left(b, s, e, t) < unbalanced
+
+
+@compiled
 def corrected(output_correction, state, equations, t):
     """Interpolate and correct the state in the table's y and y'; return False if the interpolant is to be used."""
     b = output_correction_view(output_correction)
@@ -198,25 +212,19 @@ def corrected(output_correction, state, equations, t):
     if b.failed == 0:
         b.first_failed = t
     b.failed = b.failed + 1
-    return False
+    corrects = _without_spurious_forces(b, s, e, t)
+    b.factored = 0.0  # the factors of a short step make any correction small
+    return corrects
 
 
 @compiled
-def remove_spurious_forces(output_correction, state, equations, t, y):
-    """Remove spurious forces from an interpolated state y at an event, if that improves the balance.
-
-    Forces may jump there, so that no state has a balance. Matrices of shorter steps move stiff directions only.
-    """
+def corrected_at_event(output_correction, state, equations, t, y):
+    """Remove spurious forces from an interpolated state y at an event, if that improves the balance."""
     b = output_correction_view(output_correction)
     s = state_view(state)
     e = equations_view(equations)
-    if not _placed(b, t):
-        return
-    _look(b, s, e, t)
-    unbalanced = _left(b, s, e, t)
-    if unbalanced > 1.0 and _corrected_by(b, s, e, t, POLISHING.at_events**2, POLISHING.at_events):
-        if _left(b, s, e, t) < unbalanced:
-            copied(y, b.y, e.n)
+    if _without_spurious_forces(b, s, e, t):
+        copied(y, b.y, e.n)
     b.factored = 0.0  # another step follows
 
 
