@@ -15,7 +15,7 @@ from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.dynamics.native.block_systems import to_position_constraints
 from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.error_control.native.parameters import POLISHING
+from stiffmbs.solve.error_control.native.parameters import NEWTON, POLISHING
 from stiffmbs.solve.ida.native.layouts import OUTPUT_CORRECTION
 
 INFINITE = float("inf")
@@ -147,14 +147,15 @@ def _corrected_by(b, s, e, t, parts, least):
 def _by_new_factors(b, s, e, t, parts):
     """Correct the state by new factors while corrections become smaller; return True if they converge."""
     before = INFINITE
+    size = INFINITE
     for _ in range(POLISHING.most_corrections):
         if not (_corrected_by(b, s, e, t, parts, CONSISTENCY.step_parts) and _factored(b, s, e, t, b.current)):
             return False
         size = _remaining(b, s, e, t, POLISHING.most_corrections if parts == 1.0 else 1)
         if not 0.0 < size < before:
-            return size == 0.0
+            break
         before = size
-    return False
+    return size == 0.0 or (size <= NEWTON.loosest and b.balanced * _left(b, s, e, t) <= POLISHING.rounded_off)
 
 
 @compiled
