@@ -24,6 +24,7 @@ def _right_side(s, factors, equations, values, before, part):
 def _moved(s, t, factors, equations, before, cj):
     """Move velocities, or positions for a positive cj, as long as that restores forces; return True if joints are closed."""
     last = float("inf")
+    closed = False
     for _ in range(CONSISTENCY.most_moves):
         values = evaluate(s, MOTION, t)
         change = _right_side(s, factors, equations, values, before, 1.0 / cj if cj > 0.0 else 1.0)
@@ -40,7 +41,7 @@ def _moved(s, t, factors, equations, before, cj):
         else:
             for k in range(s.n_u):
                 s.u[k] += f.b[k]
-    return False
+    return closed
 
 
 def project_stiffly(t, cj, before, positions, velocities, factors, state):

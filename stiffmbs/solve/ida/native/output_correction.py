@@ -111,12 +111,15 @@ def _corrected(b, e):
 
 
 @compiled
-def _remaining(b, s, e, t, most):
-    """Correct until the error is negligible, by the convergence rate, or forces balance; return 0, or the last correction."""
+def _remaining(b, s, e, t, once):
+    """Correct once, or until the error is negligible by the convergence rate, or forces balance.
+
+    Return 0 if it is, or they do, otherwise the last correction.
+    """
     rate = 1.0
     before = 0.0
     size = 0.0
-    for k in range(most):
+    for k in range(1 if once else POLISHING.most_corrections):
         size = _corrected(b, e)
         if k > 0:
             rate = size / before
@@ -151,7 +154,7 @@ def _by_new_factors(b, s, e, t, parts):
     for _ in range(POLISHING.most_corrections):
         if not (_corrected_by(b, s, e, t, parts, CONSISTENCY.step_parts) and _factored(b, s, e, t, b.current)):
             return False
-        size = _remaining(b, s, e, t, POLISHING.most_corrections if parts == 1.0 else 1)
+        size = _remaining(b, s, e, t, parts > 1.0)
         if not 0.0 < size < before:
             break
         before = size
@@ -204,7 +207,7 @@ def corrected(output_correction, state, equations, t):
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
     if b.factored > 0.0:
-        if _remaining(b, s, e, t, POLISHING.most_corrections) == 0.0:
+        if _remaining(b, s, e, t, False) == 0.0:
             return True
         _placed(b, t)
         _look(b, s, e, t)
