@@ -42,7 +42,9 @@ def with_stiff_forces(
 
 def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.ndarray, rtol: float) -> np.ndarray:
     """Return the rows whose projections may have changed a force by more than `rtol` of the largest."""
-    at = np.flatnonzero((rows.drift > CONSISTENCY.position_tolerance) & (steps[: len(rows.t)] > 0.0))
+    changed = np.abs(rows.u - states[1][: len(rows.t)]).max(axis=1, initial=0.0)
+    moved = np.maximum(rows.drift, changed) > CONSISTENCY.position_tolerance
+    at = np.flatnonzero(moved & (steps[: len(rows.t)] > 0.0))
     if not len(at):
         return at
     allowed = rtol * _largest_force(dynamics, _of(states, at[-1:]), float(rows.t[at[-1]]))

@@ -25,7 +25,7 @@ def _moved(s, t, factors, equations, before, cj):
     """Move velocities, or positions for a positive cj, as long as that restores forces; return True if joints are closed."""
     last = float("inf")
     closed = False
-    for _ in range(CONSISTENCY.most_moves):
+    for move in range(CONSISTENCY.most_moves):
         values = evaluate(s, MOTION, t)
         change = _right_side(s, factors, equations, values, before, 1.0 / cj if cj > 0.0 else 1.0)
         closed = largest_open(s, values) <= max(CONSISTENCY.position_tolerance, ROUNDING * largest_of(s.q, s.n_pose))
@@ -33,7 +33,7 @@ def _moved(s, t, factors, equations, before, cj):
             return True
         f = factors_view(factors)
         solve(f, f.b)
-        if closed:
+        if closed and move > 0:
             last = change
         if cj > 0.0:
             add_rates(s, f.b, 1.0, s.q)
