@@ -161,6 +161,6 @@ def test_restarts_in_a_loop_keep_stiff_forces(rigid_four_bar, solver, rtol):
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 @pytest.mark.parametrize("damping", [1e9, 1e11])
 def test_corrections_of_velocities_keep_the_forces_of_strong_dampers(rigid_four_bar, solver, damping):
-    """The smallest corrections of velocities made reactions wrong by WRONG times the largest."""
+    """The smallest corrections of velocities made reactions wrong by 1.7 and 253 times the largest."""
     found = stiffmbs.run(four_bar(f"solver: {solver}, rtol: 1e-4", 1e8, damping))
     assert error(found, rigid_four_bar) < 0.01
