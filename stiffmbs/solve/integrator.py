@@ -78,8 +78,9 @@ class Integrator:
     def on_constraints(self, reached: Reached) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u that were reached; those after a long step are projected without a change of stiff forces."""
         state, last = self.split(reached.y), self.engine.last_step()
-        long = last is not None and last[0] > self.engine.long_step
-        return projected(self.dynamics, reached.t, state, last[0]) if last and long else state
+        if not last or last[0] <= self.engine.long_step or not self.dynamics.system.n_c:
+            return state
+        return projected(self.dynamics, reached.t, state, last[0])
 
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
         """Yield the progress at the times of the grid, or after each step; a failure comes last.

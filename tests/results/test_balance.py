@@ -45,7 +45,7 @@ def test_force_of_a_stiff_bearing_between_steps(stiffness, as_interpolated):
     plain = swinging(stiffness)
     assert force_error(balanced) < 1e-3
     assert force_error(plain) > 0.5  # what the interpolant makes of it
-    assert balanced.solver["steps"] == plain.solver["steps"]
+    assert balanced.solver["steps"] <= plain.solver["steps"]  # corrections also solve steps whose Newton iteration fails
     np.testing.assert_allclose(balanced["bar.angle"], plain["bar.angle"], atol=2e-6)
 
 
