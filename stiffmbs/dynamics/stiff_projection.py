@@ -75,6 +75,8 @@ class StiffProjection:
         """Project a state within a step, s, in place, by the matrix of a shorter implicit step; return False on failure."""
         state = self._state
         state.q[:], state.u[:] = q, u
-        status = PROJECT.short_call(t, CONSISTENCY.step_parts / step, address(self._work), *self._tables, self._at_state)
+        status = PROJECT.short_call(
+            t, CONSISTENCY.step_parts / step, address(self._work), *self._tables, self._at_state
+        )
         q[:], u[:] = state.q, state.u
         return status == 0 and bool(np.isfinite(q).all() and np.isfinite(u).all())

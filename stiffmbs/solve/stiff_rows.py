@@ -110,9 +110,7 @@ def _changes(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarra
     return _projection(dynamics).force_changes(rows.t[at], before, (rows.q[at], rows.u[at]))
 
 
-def _projected_again(
-    dynamics: Dynamics, states: States, rows: OutputRows, at: np.ndarray, step: float
-) -> OutputRows:
+def _projected_again(dynamics: Dynamics, states: States, rows: OutputRows, at: np.ndarray, step: float) -> OutputRows:
     """Return rows of which some are projected without a change of stiff forces, where that changes forces less.
 
     `step`: longest step, s. Short ones after a restart would weigh inertia as much as stiff forces.
