@@ -20,7 +20,7 @@ FORCE_CHANGES, PROJECT = together(
     "stiffmbs.dynamics.native.stiff_projection",
     SHORT,
     force_changes="void(int64, float64*, float64*, float64*, float64*, float64*, int64, int64*, int64*, float64*, float64*, float64*, int64*)",
-    project_stiffly="int64(float64, float64, int64*, int64*, int64*, int64*)",
+    project_stiffly="int64(float64, float64, float64*, int64*, int64*, int64*, int64*)",
 )
 _MATRIX = (
     Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "u", "f_u", -1), Block("u", "q", "f_q", -1),
@@ -28,10 +28,10 @@ _MATRIX = (
     Block("q", "u", "Z", -1), Block("q", "q", "I", constant=0, cj=1),
 )  # fmt: skip
 _POSITIONS, _VELOCITIES = (
-    Formulation(f"{level} by an implicit step", ("u", "lam", "q"), "motion", "tangent", (Product("lam", -1, level),), _MATRIX)
+    Formulation(f"{level} by an implicit step", ("u", "lam", "q"), "motion", "tangent", (Product("u", +1, "f"), Product("lam", -1, level)), _MATRIX)
     for level in "CV"
 )  # fmt: skip
-"""[cj M - f_u, J^T, -f_q; J, 0, 0; -Z, 0, cj I] [v; w; dq] = [0; -C or -V; 0]. v is the change of u, or Z v that of q."""
+"""[cj M - f_u, J^T, -f_q; J, 0, 0; -Z, 0, cj I] [v; w; dq] = [d; -C or -V; 0]. d restores forces. v is the change of u, or Z v that of q."""
 
 
 class StiffProjection:
@@ -72,6 +72,8 @@ class StiffProjection:
         """Project a state within a step, s, in place, by the matrix of a shorter implicit step; return False on failure."""
         state = self._state
         state.q[:], state.u[:] = q, u
-        status = PROJECT.short_call(t, CONSISTENCY.step_parts / step, *self._tables, self._at_state)
+        status = PROJECT.short_call(
+            t, CONSISTENCY.step_parts / step, address(self._work), *self._tables, self._at_state
+        )
         q[:], u[:] = state.q, state.u
         return status == 0 and bool(np.isfinite(q).all() and np.isfinite(u).all())

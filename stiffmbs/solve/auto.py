@@ -132,7 +132,7 @@ class _AutoRun:
         self._messages.append(
             f"projected again from t = {reached.t:.4g} s on (the steps of {self._implicit.name} had become too short)"
         )
-        return _Left(reached.t, *integrator.split(reached.y))
+        return _Left(reached.t, *integrator.on_constraints(reached))
 
     def _rerun_implicit(self, start: InitialValues, message: str) -> None:
         """Integrate the whole run with the implicit integrator, because explicit steps have failed."""

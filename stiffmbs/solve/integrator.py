@@ -22,6 +22,7 @@ from .events.restart import just_after, restarted_past, straight_on
 from .ida.choice import driven_natively
 from .ida.native.parameters import LOOP
 from .ida.native_engine import NativeEngine, Reached
+from .stiff_rows import projected
 from .trajectory import Grid
 
 Driver = Callable[[Dynamics, RunSettings, ErrorControl], tuple[Equations, NativeEngine, float]]
@@ -60,6 +61,13 @@ class Integrator:
         (q,), (u,) = self.equations.states(y[None, self.equations.independent])
         return q, u
 
+    def on_constraints(self, reached: Reached) -> tuple[np.ndarray, np.ndarray]:
+        """Return q and u that were reached; those after a long step are projected without a change of stiff forces."""
+        state, last = self.split(reached.y), self.engine.last_step()
+        if not last or last[0] <= self.engine.long_step or not self.dynamics.system.n_c:
+            return state
+        return projected(self.dynamics, reached.t, state, last[0])
+
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
         """Yield the progress at the times of the grid, or after each step; a failure comes last.
 
@@ -94,7 +102,7 @@ class Integrator:
                 chattering.note_event(reached.t, *self.split(reached.y), reached.fired[0] if reached.fired else -1)
             before = t = reached.t
             if t < grid.end:
-                q, u = self.split(reached.y)
+                q, u = self.on_constraints(reached)
                 if self._masked.any:
                     self._masked.note(t, q, u, self.steps(), reached.fired)
                 if t >= stops[0]:  # min(2*t, 1) still rises at its breakpoint; its later branch holds after it

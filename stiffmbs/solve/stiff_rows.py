@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from itertools import repeat
 from typing import TypeAlias
 
 import numpy as np
@@ -29,18 +30,36 @@ def with_stiff_forces(
     lengths of the implicit steps that contain the times, s; 0 for explicit steps, which are short for all forces.
     """
     at = _suspects(dynamics, states, rows, steps, rtol)
-    return _projected_again(dynamics, states, rows, at, steps) if len(at) else rows
+    return _projected_again(dynamics, states, rows, at, float(steps.max())) if len(at) else rows
 
 
 def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.ndarray, rtol: float) -> np.ndarray:
     """Return the rows whose projections may have changed a force by more than `rtol` of the largest."""
-    at = np.flatnonzero((rows.drift > CONSISTENCY.position_tolerance) & (steps[: len(rows.t)] > 0.0))
+    changed = np.abs(rows.u - states[1][: len(rows.t)]).max(axis=1, initial=0.0)
+    moved = np.maximum(rows.drift, changed) > CONSISTENCY.position_tolerance
+    at = np.flatnonzero(moved & (steps[: len(rows.t)] > 0.0))
     if not len(at):
         return at
     allowed = rtol * _largest_force(dynamics, _of(states, at[-1:]), float(rows.t[at[-1]]))
     for changes in (_bounds, _changes):
         at = at[changes(dynamics, _of(states, at), rows, at) > allowed] if len(at) else at
     return at
+
+
+def projected(dynamics: Dynamics, t: float, states: States, step: float) -> States:
+    """Return q and u at the end of a long implicit step, s, projected without a change of stiff forces, if possible.
+
+    The state of `dynamics` is changed.
+    """
+    q, u = (array.copy() for array in states)
+    return (q, u) if _projection(dynamics).project(t, step, q, u) else states
+
+
+def _projection(dynamics: Dynamics) -> StiffProjection:
+    """Return the projection that a system keeps, without pivots of earlier states."""
+    projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
+    projection.forget_pivots()
+    return projection
 
 
 def lengths_of_steps(trajectory: Trajectory) -> np.ndarray:
@@ -81,19 +100,17 @@ def _bounds(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarray
 
 def _changes(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarray) -> np.ndarray:
     """Return the changes of forces by the projections of some rows, divided by roots of inertias."""
-    projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
-    return projection.force_changes(rows.t[at], before, (rows.q[at], rows.u[at]))
+    return _projection(dynamics).force_changes(rows.t[at], before, (rows.q[at], rows.u[at]))
 
 
-def _projected_again(
-    dynamics: Dynamics, states: States, rows: OutputRows, at: np.ndarray, steps: np.ndarray
-) -> OutputRows:
-    """Return rows of which some are projected without a change of stiff forces, where that changes forces less."""
-    projection = dynamics.kept("stiff projection", None, lambda: StiffProjection(dynamics))
-    projection.forget_pivots()
+def _projected_again(dynamics: Dynamics, states: States, rows: OutputRows, at: np.ndarray, step: float) -> OutputRows:
+    """Return rows of which some are projected without a change of stiff forces, where that changes forces less.
+
+    `step`: longest step, s. Short ones after a restart would weigh inertia as much as stiff forces.
+    """
+    projection = _projection(dynamics)
     t, (q, u) = rows.t[at], _of(states, at)
-    each = zip(t.tolist(), steps[at].tolist(), q, u, strict=True)
-    done = np.array([projection.project(*state) for state in each])
+    done = np.array([projection.project(*state) for state in zip(t.tolist(), repeat(step), q, u)])
     less = projection.force_changes(t, _of(states, at), (q, u)) < _changes(dynamics, _of(states, at), rows, at)
     at, t, q, u = (array[done & less] for array in (at, t, q, u))
     return _replaced(rows, at, dynamics.report(t, q, u, project=False)) if len(at) else rows

@@ -72,14 +72,31 @@ def largest_closed_gap():
         s = Record(n_q=1, n_pose=1, n_u=0, n_c=1, q=[0.0], left_open=[0.0])
         replaced = {
             "evaluate": lambda *_: [gap], "add_entries": nothing, "factored": lambda _: native_stiff_projection.DONE,
-            "_move": lambda *_: [], "add_rates": lambda *_: moved.append(1), "take_unit_length": nothing,
+            "_right_side": lambda *_: 0.0, "solve": lambda *_: moved.append(1), "add_rates": nothing, "take_unit_length": nothing,
         }  # fmt: skip
-        table = Record(matrix_set=0, a=None)
+        table = Record(b=[])
         with interpreted(native_stiff_projection, **replaced):
-            native_stiff_projection.project_stiffly(0.0, 1.0, table, table, table, s)
-        return not moved
+            native_stiff_projection._moved(s, 0.0, table, None, [], 1.0)
+        return len(moved) == 2
 
     return count_while(lambda gap: stays(1e-15 * gap), DOUBLES)
+
+
+def least_restoring_ratio():
+    """Return the ratio, in percent, of successive changes of forces from which on a stiff projection ends."""
+
+    def goes_on(ratio):
+        changes, moved = iter((0.01 * ratio) ** np.arange(100)), []
+        s = Record(n_q=1, n_pose=1, n_u=0, n_c=1, q=[0.0], left_open=[0.0])
+        replaced = {
+            "evaluate": lambda *_: [0.0], "_right_side": lambda *_: next(changes), "solve": lambda *_: moved.append(1),
+            "add_rates": nothing, "take_unit_length": nothing,
+        }  # fmt: skip
+        with interpreted(native_stiff_projection, **replaced):
+            native_stiff_projection._moved(s, 0.0, Record(b=[]), None, [], 1.0)
+        return len(moved) > 2
+
+    return count_while(goes_on, range(1, 200))
 
 
 def moves_of_other_factors(ratio, most=1e300):
@@ -127,7 +144,7 @@ def part_of_a_step():
     """Return the reciprocal step of the matrix that projects a state within a step of 1 s."""
     found = []
     state = Record(q=np.zeros(1), u=np.zeros(1), table=None)
-    projection = Record(_state=state, _tables=(), _at_state=0)
+    projection = Record(_state=state, _tables=(), _work=np.zeros(1), _at_state=0)
     seen = SimpleNamespace(short_call=lambda t, cj, *_: found.append(cj) or 0)
     with patch.object(stiff_projection, "PROJECT", seen):
         stiff_projection.StiffProjection.project(projection, 0.0, 1.0, np.zeros(1), np.zeros(1))
@@ -303,6 +320,7 @@ DECISIONS = {
     "consistency.amplified": lambda: largest_move(1e-10),
     "consistency.moved": lambda: largest_move(0.0),
     "consistency.step_parts": part_of_a_step,
+    "consistency.restored": least_restoring_ratio,
     "consistency.most_iterations": lambda: iterated(multiplier=oscillating(0.5))[0],
     "consistency.converged": lambda: accepted_multipliers(1e-15, 2),
     "consistency.rounded_off": lambda: accepted_multipliers(1e-15, 10**6),
@@ -341,7 +359,7 @@ EXPECTED = {
     "consistency.most_damped_moves": 202, "consistency.nudge": 0.001, "consistency.close": 40,
     "consistency.most_assembly_moves": 50, "consistency.most_moves": 20, "consistency.position_tolerance": 40,
     "consistency.most_frozen_moves": 3, "consistency.contraction": 27, "consistency.amplified": 67,
-    "consistency.moved": 40, "consistency.step_parts": 10, "consistency.most_iterations": 40,
+    "consistency.moved": 40, "consistency.step_parts": 10, "consistency.restored": 49, "consistency.most_iterations": 40,
     "consistency.converged": 23, "consistency.rounded_off": 76, "consistency.state_rounded_off": 36,
     "consistency.slow": 33, "consistency.zero_slope": 133, "consistency.rate_interval": 1e-06,
     "consistency.worth_telling": 14, "consistency.much_less": 40, "consistency.large_shift": 19,

@@ -18,6 +18,7 @@ from stiffmbs.flexible_bodies.matrices import from_archive
 from stiffmbs.flexible_bodies.read import read_flexible_body
 from stiffmbs.flexible_bodies.reduced import reduced_body
 from stiffmbs.model.flexible import _Parts
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.studies.simulation import simulation
 
 from .bars import HEIGHT, LENGTH, MASS, REFERENCES, WIDTH, E, bar
@@ -153,6 +154,20 @@ def test_a_very_stiff_body_moves_as_a_rigid_one(folder, rtol):
         np.testing.assert_allclose(flexible[f"bar.b.{name}"], rigid[name], atol=1e-6)
     for name in ("pin.fx", "pin.fy"):  # vibrations from the start fade within 10 ms
         np.testing.assert_allclose(flexible[name][10:], rigid[name][10:], atol=1e-3 * np.abs(rigid[name]).max())
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-5, 1e-6])
+def test_the_slider_of_a_crank_with_a_very_stiff_rod_is_moved_as_by_a_rigid_one(rtol):
+    """The pin's force is mass times acceleration, d2/dt2 (a cos wt + sqrt(b^2 - a^2 sin^2 wt)). bdf was off by 94 to 1047 N of 382 N."""
+    crank = Path(__file__).parents[2] / "examples" / "flexible" / "flexible_slider_crank.yaml"
+    stiff = read_scene(crank.read_text().replace("E: 200 GPa", "E: 2e8 GPa"), file=crank)
+    found = run(stiff, solver="bdf", rtol=rtol, duration=0.06)
+    a, b, rate, mass = 0.15, 0.3, 150.0, 0.075552
+    sine, cosine = np.sin(rate * found.t), np.cos(rate * found.t)
+    root = np.sqrt(b**2 - a**2 * sine**2)
+    acceleration = -(a * cosine + a**2 * (cosine**2 - sine**2) / root + (a**2 * sine * cosine) ** 2 / root**3) * rate**2
+    late = slice(5, None)  # vibrations from the start have faded
+    np.testing.assert_allclose(found["wrist_pin.fx"][late], -mass * acceleration[late], atol=5.0)
 
 
 def test_a_simulation_and_a_run_have_the_same_reactions(folder):

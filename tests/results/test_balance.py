@@ -44,8 +44,10 @@ def test_force_of_a_stiff_bearing_between_steps(stiffness, as_interpolated):
     plain = swinging(stiffness)
     assert force_error(balanced) < 1e-3
     assert force_error(plain) > 0.5  # what the interpolant makes of it
-    assert balanced.solver["steps"] == plain.solver["steps"]
-    np.testing.assert_allclose(balanced["bar.angle"], plain["bar.angle"], atol=2e-6)
+    assert balanced.solver["steps"] <= plain.solver["steps"]  # the correction also solves steps
+    exact = swing(balanced.t, np.pi / 2, bar_rate(1.0)) - np.pi / 2
+    for found in (balanced, plain):
+        np.testing.assert_allclose(found["bar.angle"], exact, atol=5e-6)
 
 
 def test_forces_balance_where_joints_are_closed(examples):

@@ -11,31 +11,56 @@ from stiffmbs.dynamics.native.parameters import CONSISTENCY
 
 
 @compiled
-def _move(factors, equations, values):
-    """Return the move that closes the violations among some values."""
+def _right_side(s, factors, equations, values, before, part):
+    """Set the violations and a part of the changes of forces as right side; return the largest of these changes."""
     f = factors_view(factors)
     add_products(equations_view(equations), values, f.previous, f.previous, f.b)
-    solve(f, f.b)
-    return f.b
+    for k in range(s.n_u):
+        f.b[k] = part * (f.b[k] - before[k])
+    return largest_of(f.b, s.n_u)
 
 
-def project_stiffly(t, cj, positions, velocities, factors, state):
-    """Project q and u by moves with the matrix of an implicit step, cj M - f_u - f_q / cj; 0 or a negative status."""
+@compiled
+def _moved(s, t, factors, equations, before, cj):
+    """Move velocities, or positions for a positive cj, as long as that restores forces; return True if joints are closed."""
+    last = float("inf")
+    closed = False
+    for move in range(CONSISTENCY.most_moves):
+        values = evaluate(s, MOTION, t)
+        change = _right_side(s, factors, equations, values, before, 1.0 / cj if cj > 0.0 else 1.0)
+        closed = largest_open(s, values) <= max(CONSISTENCY.position_tolerance, ROUNDING * largest_of(s.q, s.n_pose))
+        if closed and not change < CONSISTENCY.restored * last:
+            return True
+        f = factors_view(factors)
+        solve(f, f.b)
+        if closed and move > 0:
+            last = change
+        if cj > 0.0:
+            add_rates(s, f.b, 1.0, s.q)
+            take_unit_length(s)
+        else:
+            for k in range(s.n_u):
+                s.u[k] += f.b[k]
+    return closed
+
+
+def project_stiffly(t, cj, before, positions, velocities, factors, state):
+    """Project q and u by moves with the matrix of an implicit step, cj M - f_u - f_q / cj; 0 or a negative status.
+
+    Moves on each level go on while they restore forces. `before`: memory for n_u forces.
+    """
     s = state_view(state)
     e = equations_view(positions)
-    add_entries(e, evaluate(s, e.matrix_set, t), cj, factors_view(factors).a)
+    f = factors_view(factors)
+    for k in range(s.n_u):
+        before[k] = 0.0
+    _right_side(s, factors, positions, evaluate(s, MOTION, t), before, 1.0)
+    copied(before, f.b, s.n_u)
+    add_entries(e, evaluate(s, e.matrix_set, t), cj, f.a)
     if factored(factors) != DONE:
         return SINGULAR
-    for _ in range(CONSISTENCY.most_moves):
-        values = evaluate(s, MOTION, t)
-        if largest_open(s, values) <= max(CONSISTENCY.position_tolerance, ROUNDING * largest_of(s.q, s.n_pose)):
-            move = _move(factors, velocities, values)
-            for k in range(s.n_u):
-                s.u[k] += move[k]
-            return 0
-        add_rates(s, _move(factors, positions, values), 1.0, s.q)
-        take_unit_length(s)
-    return NO_CONVERGENCE
+    moved = _moved(s, t, factors, positions, before, cj) and _moved(s, t, factors, velocities, before, 0.0)
+    return 0 if moved else NO_CONVERGENCE
 
 
 @compiled

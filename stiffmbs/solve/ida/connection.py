@@ -120,7 +120,12 @@ class BDF:
             connection.ask("IDARootInit", connection.n_event_functions, SWITCHES.address)
             connection.ask("IDASetNoInactiveRootWarn")
         if self._predicted_residual:
-            solver = iteration.solver(session, connection.memory, connection.y_vector)
+            of_prediction = {
+                "output_correction": connection.output_correction.table,
+                "state": tables[0],
+                "equations": tables[1],
+            }
+            solver = iteration.solver(session, connection.memory, connection.y_vector, of_prediction)
             connection.ask("IDASetNonlinearSolver", solver)
             iteration.take_over(session, solver)
 

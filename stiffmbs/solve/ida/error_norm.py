@@ -86,7 +86,7 @@ class Iteration:
         self._cells = self.table.view(ITERATION.cells)[0]
         self._cells["cj"] = np.inf
 
-    def solver(self, session: Session, memory: int, y_vector: int) -> int:
+    def solver(self, session: Session, memory: int, y_vector: int, tables: dict[str, np.ndarray]) -> int:
         """Create the solver; IDA sets its own test when the solver is attached, so `take_over` must follow."""
         libraries = session.libraries
         made = libraries.SUNNonlinSol_Newton(y_vector, session.context)
@@ -96,7 +96,8 @@ class Iteration:
             {
                 "n": self._n, "by_reactions": int(self._by_reactions), "memory": memory,
                 "array_of": libraries.address("N_VGetArrayPointer"), "cj_of": libraries.address("IDAGetCurrentCj"),
-                "iteration_of": libraries.address("SUNNonlinSolGetCurIter"),
+                "iteration_of": libraries.address("SUNNonlinSolGetCurIter"), "time_of": libraries.address("IDAGetCurrentTime"),
+                **tables,
             },
         )  # fmt: skip
         return session.keep(made, libraries.SUNNonlinSolFree, "a nonlinear solver")

@@ -252,6 +252,10 @@ class NativeEngine:
         """Return the name of the linear solver, and counters since the first start."""
         return {"linear_solver": self.matrix.sentence(), **self.ida.statistics()}
 
+    @property
+    def long_step(self) -> float:
+        return self._stiffness.long_step
+
     def last_step(self) -> tuple[float, int] | None:
         """Return the size, s, and order of the last step, if known."""
         return self.ida.history.last

@@ -11,7 +11,7 @@ from ..linear_solvers.fixed_order import Assembled, FixedOrder
 from .native.layouts import OUTPUT_CORRECTION
 from .session import Session
 
-VECTORS = "y", "yp", "defect", "correction", "weight", "size"
+VECTORS = "y", "yp", "defect", "correction", "weight", "size", "zero"
 
 
 class OutputCorrection:
@@ -45,7 +45,7 @@ class OutputCorrection:
         force_row, force_end = _rows_of_motion(self._equations)
         joint_row, pose = _rows_of_joints(self._equations), np.zeros(self._equations.system.n_q)
         functions = {
-            "interpolate": "IDAGetDky", "weights": "IDAGetErrWeights",
+            "interpolate": "IDAGetDky", "weights": "IDAGetErrWeights", "predict": "IDAComputeY", "predict_rate": "IDAComputeYp",
             "setup": "SUNLinSolSetup", "solve": "SUNLinSolSolve",
         }  # fmt: skip
         fill(

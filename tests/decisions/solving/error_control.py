@@ -100,8 +100,33 @@ def corrections(ratio):
     count = []
     replaced = {"_corrected": lambda *_: count.append(1) or next(sizes), "_look": nothing, "_left": lambda *_: 2.0}
     with interpreted(output_correction, **replaced):
-        output_correction._remaining(Record(enough=0.0, factored=1.0), None, None, 0.0)
+        output_correction._remaining(Record(enough=0.0, factored=1.0), None, None, 0.0, False)
     return len(count)
+
+
+def largest_rounded_off_imbalance():
+    """Return the imbalance, in quarter octaves, up to which corrections that become no smaller have converged."""
+
+    def converges(part):
+        replaced = {
+            "_corrected_by": always, "_factored": always, "_remaining": lambda *_: 1e-3, "_left": lambda *_: part,
+        }  # fmt: skip
+        with interpreted(output_correction, **replaced):
+            return output_correction._by_new_factors(Record(current=1.0, balanced=1.0), None, None, 0.0, 1.0)
+
+    return count_while(converges, 1e-6 * DOUBLES[:200])
+
+
+def steps_at_an_event():
+    """Return the product of the factors by which the matrices at an event are those of shorter steps."""
+    factors, imbalance = [], iter([3.0, 2.0])
+    replaced = {
+        "_placed": always, "_factored": lambda b, s, e, t, cj: factors.append(cj) or True, "_corrected": nothing, "_look": nothing,
+        "_left": lambda *_: next(imbalance),
+    }  # fmt: skip
+    with interpreted(output_correction, **replaced):
+        assert output_correction._without_spurious_forces(Record(current=1.0), None, None, 0.0)
+    return np.prod(factors)
 
 
 def filtering(failures=0, steps=1, order=1, trouble=0.0):
@@ -218,6 +243,8 @@ DECISIONS = {
     "polishing.unbalanced": balance_between_steps,
     "polishing.most_corrections": lambda: corrections(0.1),
     "polishing.slowest": lambda: count_while(lambda k: corrections(0.01 * k) > 2, range(1, 100)),
+    "polishing.rounded_off": largest_rounded_off_imbalance,
+    "polishing.at_events": steps_at_an_event,
     "error_filter.fades_low": lambda: filtering(steps=100, trouble=1.0).trouble,
     "error_filter.fades": lambda: filtering(steps=2, order=3, trouble=1.0).trouble,
     "error_filter.troubled": lambda: count_while(lambda k: filtering(failures=k).until == 0, range(100)),
@@ -239,7 +266,7 @@ EXPECTED = {
     "newton.loosest": 0.03, "newton.soft": 0.001, "newton.negligible": 1e-06, "newton.precision": 0.001, "newton.unknown": 20,
     "newton.diverging": 900, "newton.slowest": 100, "newton.trusted": 20, "newton.least": 0.05, "newton.last": 32, "newton.long_steps": 50,
     "newton.many_failures": 201, "newton.eased": 0.0001, "newton.easiest": 0.33, "polishing.amplified": 2, "polishing.unbalanced": 3e-07,
-    "polishing.most_corrections": 8, "polishing.slowest": 29, "error_filter.fades_low": 0.3660323413, "error_filter.fades": 0.64,
+    "polishing.most_corrections": 8, "polishing.slowest": 29, "polishing.rounded_off": 54, "polishing.at_events": 1e9, "error_filter.fades_low": 0.3660323413, "error_filter.fades": 0.64,
     "error_filter.troubled": 8, "error_filter.lasts": 1001, "error_filter.no_estimate": 40, "accumulation.steps_apart": 2,
     "accumulation.halved_apart": 125, "accumulation.faster": 0.001, "accumulated_errors.tolerances": 67, "relaxation.of_positions": 1e-09,
     "relaxation.of_velocities": 1e-12, "relaxation.check_interval": 20, "divergence.followed_steps": 20, "explicit_steps.enough_steps": 21,

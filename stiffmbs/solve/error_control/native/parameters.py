@@ -65,6 +65,11 @@ class PolishingParameters:
     """Largest number of corrections of a state, of radau too."""
     slowest: float = 0.3
     """Ratio of successive corrections above which factors are replaced, or the iteration fails."""
+    rounded_off: float = 1e-2
+    """Imbalance, relative to the largest force, that counts as rounding of coordinates if corrections become no smaller."""
+    at_events: float = 100.0
+    """Step relative to that of the last matrix that corrects a state at an event; for the first matrix, its square. The
+    state moves in stiff directions only, not to the other side of the event."""
 
 
 POLISHING = tuned("polishing", PolishingParameters())

@@ -23,7 +23,7 @@ from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view, watched
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
 from stiffmbs.solve.ida.native.layouts import NO_EVENT, PASSED_INTERVAL, STEP_WIDTH
-from stiffmbs.solve.ida.native.output_correction import corrected, output_correction_view
+from stiffmbs.solve.ida.native.output_correction import corrected, corrected_at_event, output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
 
 STALLED: Final = -101
@@ -182,11 +182,20 @@ def stepped(c, ida, toward, stop):
         return STALLED
     if seen != NO_EVENT:
         flag = int32(ROOT_RETURN)
+    if flag == ROOT_RETURN and _interpolates_stiffly(c):
+        corrected_at_event(c.output_correction, c.state, c.equations, c.returned, array_of(c, c.y))
     if flag >= 0:
         _keep_if_long(c, begun)
     if flag >= 0 and c.trace:
         _keep_step(c, begun)
     return flag
+
+
+@compiled
+def _interpolates_stiffly(c):
+    """Return True if interpolation in the last step does not keep the balance of stiff forces."""
+    b = output_correction_view(c.output_correction)
+    return b.interpolate != 0 and c.size > b.long
 
 
 @compiled
@@ -275,9 +284,8 @@ def _report_at(c, t, row):
     if t == c.returned:
         _report(c, array_of(c, c.y), row)
         return int32(OK)
-    b = output_correction_view(c.output_correction)
-    if b.interpolate != 0 and c.size > b.long and corrected(c.output_correction, c.state, c.equations, t):
-        _report(c, b.y, row)
+    if _interpolates_stiffly(c) and corrected(c.output_correction, c.state, c.equations, t):
+        _report(c, output_correction_view(c.output_correction).y, row)
         return int32(OK)
     flag = call_int(c.interpolate, (c.memory, t, int32(0), c.at_output))
     _report(c, c.output, row)

@@ -22,6 +22,7 @@ from stiffmbs.compile.machine.native.access import address_of, compiled, floats,
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.solve.error_control.native.parameters import NEWTON
 from stiffmbs.solve.ida.native.layouts import ITERATION
+from stiffmbs.solve.ida.native.output_correction import output_correction_view, solved
 
 SETTLED: Final = 0
 GO_ON: Final = 901
@@ -95,7 +96,19 @@ def _later(c, size, enough):
     left = _left(rate, size)
     if left <= enough:
         return SETTLED
-    return GIVE_UP if age > 0 and left * rate ** (NEWTON.last - done) > enough else GO_ON
+    hopeless = age > 0 and left * rate ** (NEWTON.last - done) > enough
+    return GIVE_UP if hopeless or done >= NEWTON.last else GO_ON
+
+
+@compiled
+def _solved_otherwise(c, total):
+    """Return True if corrections by matrices of shorter steps solve the equations of a long step."""
+    b = output_correction_view(c.output_correction)
+    if c.age > 0 or b.interpolate == 0 or b.long * c.cj >= 1.0:
+        return False
+    call_int(c.time_of, (c.memory, address_of(c.t)))
+    corrections = floats(call_address(c.array_of, total))
+    return solved(c.output_correction, c.state, c.equations, c.t, c.cj, corrections)
 
 
 def converged(solver, total, correction, enough, weights, table):
@@ -107,6 +120,9 @@ def converged(solver, total, correction, enough, weights, table):
         call_int(c.cj_of, (c.memory, address_of(c.cj)))
     allowed_residual = max(enough, min(NEWTON.loosest, enough * c.cj / NEWTON.long_steps))
     verdict = _first(c, size, allowed_residual) if c.done == 0 else _later(c, size, allowed_residual)
+    if verdict == GIVE_UP and _solved_otherwise(c, total):
+        verdict = SETTLED
+        c.slow = 1
     if verdict == GIVE_UP:
         c.given_up = 1
     elif verdict == SETTLED and c.age > 0:

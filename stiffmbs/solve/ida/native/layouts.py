@@ -67,6 +67,7 @@ OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL, "failed": INT_CELL, "first_failed": FLOAT_CELL,
     "balanced": FLOAT_CELL, "force_end": INTS, "force_row": INTS,
     "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
+    "predicts": INT_CELL, "predict": INT, "predict_rate": INT, "at_zero": INT,
     "memory": INT, "interpolate": INT, "weights": INT, "setup": INT, "solve": INT,
     "solver": INT, "matrix": INT, "entries": INT,
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
@@ -76,12 +77,14 @@ OUTPUT_CORRECTION = Layout({
 
 Cells: cj of the factors (0 for none), cj of IDA, part of the tolerance that may remain, step, s, above which states
 within it are corrected; number of states that could not be corrected, time of the first, s; allowed imbalance relative to the largest force.  Then rows of the equations of motion, forces
-before moments, and their ends; rows of position constraints; system that closes joints; memory for a pose."""
+before moments, and their ends; rows of position constraints; system that closes joints; memory for a pose; 1 to correct
+the prediction of the current step; zeros."""
 
 ITERATION = Layout({
     "n": INT, "by_reactions": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
     "cj": FLOAT_CELL, "matrix_cj": FLOAT_CELL, "first": FLOAT_CELL, "by_cj": FLOAT_CELL, "growth": FLOAT_CELL, "span": FLOAT_CELL,
     "done": INT_CELL, "age": INT_CELL, "since": INT_CELL, "slow": INT_CELL, "given_up": INT_CELL,
+    "output_correction": INTS, "state": INTS, "equations": INTS, "time_of": INT, "t": FLOAT_CELL,
 })  # fmt: skip
 """Convergence test of Newton's iteration in a step (`stiffmbs.solve.ida.native.iteration`).
 

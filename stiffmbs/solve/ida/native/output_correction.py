@@ -15,7 +15,7 @@ from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.dynamics.native.block_systems import to_position_constraints
 from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.error_control.native.parameters import POLISHING
+from stiffmbs.solve.error_control.native.parameters import NEWTON, POLISHING
 from stiffmbs.solve.ida.native.layouts import OUTPUT_CORRECTION
 
 INFINITE = float("inf")
@@ -24,7 +24,11 @@ output_correction_view = view_of("OutputCorrection", OUTPUT_CORRECTION)
 
 
 @compiled
-def _interpolated(b, t):
+def _placed(b, t):
+    """Load the state to be corrected: the prediction of the current step, or the interpolant at a time."""
+    if b.predicts:
+        call_int(b.predict, (b.memory, b.at_zero, b.at_y))
+        return call_int(b.predict_rate, (b.memory, b.at_zero, b.at_yp)) >= OK
     if call_int(b.interpolate, (b.memory, t, int32(0), b.at_y)) < OK:
         return False
     return call_int(b.interpolate, (b.memory, t, int32(1), b.at_yp)) >= OK
@@ -91,26 +95,29 @@ def _left(b, s, e, t):
 
 
 @compiled
-def _corrected(b, e, cj):
+def _corrected(b, e):
     """Apply one correction; return its size in units of the tolerance."""
     call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
     squares = 0.0
     for k in range(e.n):
         b.y[k] -= b.correction[k]
-        b.yp[k] -= cj * b.correction[k]
+        b.yp[k] -= b.current * b.correction[k]
         part = b.correction[k] * b.weight[k]
         squares += part * part
     return (squares / e.n) ** 0.5
 
 
 @compiled
-def _remaining(b, s, e, t):
-    """Correct until the error is negligible, by the convergence rate, or forces balance; return 0, or the last correction."""
+def _remaining(b, s, e, t, once):
+    """Correct once, or until the error is negligible by the convergence rate, or forces balance.
+
+    Return 0 if it is, or they do, otherwise the last correction.
+    """
     rate = 1.0
     before = 0.0
     size = 0.0
-    for k in range(POLISHING.most_corrections):
-        size = _corrected(b, e, b.factored)
+    for k in range(1 if once else POLISHING.most_corrections):
+        size = _corrected(b, e)
         if k > 0:
             rate = size / before
         if (size if k > 0 and not rate < POLISHING.slowest else rate * size) <= b.enough:
@@ -125,47 +132,62 @@ def _remaining(b, s, e, t):
 
 
 @compiled
-def _first_correction(b, s, e, t, parts):
-    """Correct the interpolant by the matrix of a step that is shorter by a factor; return False on failure."""
-    if not (_interpolated(b, t) and _factored(b, s, e, t, parts * b.current)):
-        return False
-    _look(b, s, e, t)
-    _corrected(b, e, b.current)
-    _look(b, s, e, t)
+def _corrected_by(b, s, e, t, parts, least):
+    """Correct the state by matrices of steps shorter by factors from `parts` to `least`; return False on failure."""
+    while parts >= least:
+        if not _factored(b, s, e, t, parts * b.current):
+            return False
+        _corrected(b, e)
+        _look(b, s, e, t)
+        parts /= CONSISTENCY.step_parts
     return True
 
 
 @compiled
-def _by_new_factors(b, s, e, t):
-    """Correct the state by new factors while corrections become smaller; return 0, or the smallest correction."""
+def _by_new_factors(b, s, e, t, parts):
+    """Correct the state by new factors while corrections become smaller; return True if they converge."""
     before = INFINITE
+    size = INFINITE
     for _ in range(POLISHING.most_corrections):
-        if not _factored(b, s, e, t, b.current):
-            return INFINITE
-        size = _remaining(b, s, e, t)
+        if not (_corrected_by(b, s, e, t, parts, CONSISTENCY.step_parts) and _factored(b, s, e, t, b.current)):
+            return False
+        size = _remaining(b, s, e, t, parts > 1.0)
         if not 0.0 < size < before:
-            return min(size, before)
+            break
         before = size
-    return before
+    return size == 0.0 or (size <= NEWTON.loosest and b.balanced * _left(b, s, e, t) <= POLISHING.rounded_off)
 
 
 @compiled
 def _converged(b, s, e, t):
-    """Correct the interpolant by new factors; return False if it does not converge.
+    """Correct the state by new factors; return False if it does not converge.
 
-    The geometric stiffness of forces by interpolation errors may exceed inertia. A matrix of a shorter step removes
-    these forces first. At convergence to the rounding of coordinates, forces may balance less than required.
+    The geometric stiffness of spurious forces may exceed inertia. Matrices of shorter steps remove these forces first.
     """
-    unbalanced = _left(b, s, e, t)
     parts = 1.0
     for _ in range(POLISHING.most_corrections):
-        size = _by_new_factors(b, s, e, t)
-        if size == 0.0 or (size < 1.0 and _left(b, s, e, t) < unbalanced):
+        if _by_new_factors(b, s, e, t, parts):
             return True
         parts *= CONSISTENCY.step_parts
-        if not _first_correction(b, s, e, t, parts):
-            return False
+        if not _placed(b, t):
+            break
+        _look(b, s, e, t)
+    b.factored = 0.0  # the factors of a short step make any correction small
     return False
+
+
+@compiled
+def _without_spurious_forces(b, s, e, t):
+    """Interpolate, and remove spurious forces; return True if that improves the balance.
+
+    Forces may jump at an event, so that no state has a balance. Matrices of shorter steps move stiff directions only.
+    """
+    if not _placed(b, t):
+        return False
+    _look(b, s, e, t)
+    unbalanced = _left(b, s, e, t)
+    corrects = unbalanced > 1.0 and _corrected_by(b, s, e, t, POLISHING.at_events**2, POLISHING.at_events)
+    return corrects and _left(b, s, e, t) < unbalanced
 
 
 @compiled
@@ -174,7 +196,7 @@ def corrected(output_correction, state, equations, t):
     b = output_correction_view(output_correction)
     s = state_view(state)
     e = equations_view(equations)
-    if not _interpolated(b, t):
+    if not _placed(b, t):
         return False
     _look(b, s, e, t)
     if _left(b, s, e, t) <= 1.0:
@@ -182,13 +204,46 @@ def corrected(output_correction, state, equations, t):
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
     if b.factored > 0.0:
-        if _remaining(b, s, e, t) == 0.0:
+        if _remaining(b, s, e, t, False) == 0.0:
             return True
-        _interpolated(b, t)
+        _placed(b, t)
         _look(b, s, e, t)
     if _converged(b, s, e, t):
         return True
     if b.failed == 0:
         b.first_failed = t
     b.failed = b.failed + 1
-    return False
+    corrects = _without_spurious_forces(b, s, e, t)
+    b.factored = 0.0  # the factors of a short step make any correction small
+    return corrects
+
+
+@compiled
+def corrected_at_event(output_correction, state, equations, t, y):
+    """Remove spurious forces from an interpolated state y at an event, if that improves the balance."""
+    b = output_correction_view(output_correction)
+    s = state_view(state)
+    e = equations_view(equations)
+    if _without_spurious_forces(b, s, e, t):
+        copied(y, b.y, e.n)
+    b.factored = 0.0  # another step follows
+
+
+@compiled
+def solved(output_correction, state, equations, t, cj, total):
+    """Compute the corrections of the current step from its prediction; return False if they do not converge."""
+    b = output_correction_view(output_correction)
+    s = state_view(state)
+    e = equations_view(equations)
+    b.current = cj
+    b.predicts = 1
+    converges = False
+    if _placed(b, t) and call_int(b.weights, (b.memory, b.at_weight)) >= OK:
+        _look(b, s, e, t)
+        converges = _converged(b, s, e, t)
+        copied(total, b.y, e.n)
+        _placed(b, t)
+        for k in range(e.n):
+            total[k] -= b.y[k]
+    b.predicts = 0
+    return converges

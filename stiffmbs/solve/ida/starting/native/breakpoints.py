@@ -106,7 +106,8 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
             return int32(flag)
         t = c.returned + w.indistinct * abs(c.returned)
         same = t + w.indistinct * abs(t)
-        if same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
+        long = c.size > output_correction_view(c.output_correction).long
+        if long or same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
             return int32(flag)
         if _restarted_at_breakpoint(w, b, c, t) < 0:
             return int32(flag)
