@@ -104,14 +104,6 @@ def test_every_solver_sees_a_short_input_after_a_long_rest(force, how):
     assert solution["b.vx"][-1] == pytest.approx(impulse / 2, rel=1e-4)
 
 
-def test_the_fallback_engine_sees_it_too(monkeypatch):
-    from stiffmbs.solve import integrator
-
-    monkeypatch.setattr(integrator, "available", lambda: (False, "not here"))
-    solution = stiffmbs.run(scene("1000*exp(-((t - 8)/0.5 ms)^2)"), duration=10.0, points=11, rtol=1e-6, solver="bdf")
-    assert solution["b.vx"][-1] == pytest.approx(0.25 * np.sqrt(np.pi), rel=1e-4)
-
-
 @pytest.mark.parametrize("force", ["3", "t^2 - 4*t", "b.x", "abs(t - 3)", "step(t, 2, 0, 5, 1)", "p(t)"])
 def test_inputs_without_narrow_features_bound_no_step(force):
     assert len(features(force, p=PULSE).starts) == 0

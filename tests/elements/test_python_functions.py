@@ -9,7 +9,6 @@ import pytest
 import stiffmbs
 from stiffmbs import AppliedForce, Body, InputError, Marker, Model, PythonForce, PythonFunction, spatial
 from stiffmbs.errors import AssemblyError
-from stiffmbs.solve import integrator
 
 OF = ("ball.x", "ball.vx", "ball.vy")
 
@@ -59,14 +58,6 @@ def test_the_motion_is_the_same_in_space():
     )
     np.testing.assert_allclose(space["ball.x"], plane["ball.x"], atol=1e-6)
     np.testing.assert_allclose(space["ball.wz"], plane["ball.omega"], atol=1e-5)
-
-
-def test_ida_by_callbacks_calls_it_too(monkeypatch):
-    native = stiffmbs.run(model(), duration=0.5, rtol=1e-8)
-    monkeypatch.setattr(integrator, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
-    slower = stiffmbs.run(model(), duration=0.5, rtol=1e-8)
-    assert "native" not in slower.solver["linear_solver"]
-    np.testing.assert_allclose(slower["ball.x"], native["ball.x"], atol=1e-6)
 
 
 @pytest.mark.parametrize(("way", "words"), [("differences", "central differences"), ("complex_step", "a complex step")])

@@ -10,7 +10,6 @@ from stiffmbs import AlgebraicState, AppliedForce, Body, Model, Prismatic, Revol
 from stiffmbs.analyses.run import prepare
 from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.elements.planar_kinds import FORCES
-from stiffmbs.solve import integrator
 from stiffmbs.solve.events import chattering
 from stiffmbs.solve.events.chattering import CHATTERING, Chattering
 from stiffmbs.solve.events.discontinuity import sliding
@@ -21,17 +20,11 @@ from stiffmbs.tuning import parameters_of
 from tests.stress.families.roads.kinks import SLIDES, belts, follower
 from tests.stress.families.roads.kinks import wheel as wheel_on_road
 
-SOLVERS = ["bdf", "callbacks", "auto", "dop853", "dopri5"]
+SOLVERS = ["bdf", "auto", "dop853", "dopri5"]
 
 
-def solve(model, solver, monkeypatch, **how):
-    if solver == "callbacks":
-        monkeypatch.setattr(integrator, "available", lambda: (False, "not wanted here"))
-    chosen = (
-        {"solver": "projected", "scheme": solver}
-        if solver.startswith("dop")
-        else {"solver": solver.replace("callbacks", "bdf")}
-    )
+def solve(model, solver, **how):
+    chosen = {"solver": "projected", "scheme": solver} if solver.startswith("dop") else {"solver": solver}
     return stiffmbs.run(model, **chosen, **{"duration": 2.0, "points": 101, **how})
 
 
@@ -95,9 +88,9 @@ STUCK = {
 
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("scene", STUCK)
-def test_a_force_that_jumps_where_the_motion_stays_is_told_soon(scene, solver, monkeypatch):
+def test_a_force_that_jumps_where_the_motion_stays_is_told_soon(scene, solver):
     make, instant = STUCK[scene]
-    solution = solve(make(), solver, monkeypatch, duration=4.0, points=401)
+    solution = solve(make(), solver, duration=4.0, points=401)
     assert solution.outcome is Outcome.STOPPED
     assert "'push' chatters" in solution.message
     stopped = float(solution.message.split("t = ")[1].split(" s")[0])
@@ -144,22 +137,22 @@ def spun_up():
 def test_events_within_steps_count_too(monkeypatch):
     """IDA knows no event function of events that the search within its steps has found: a run of them did not end."""
     monkeypatch.setattr(NativeIda, "roots", lambda ida: np.zeros(ida.n_event_functions, dtype=int))
-    found = solve(spun_up(), "bdf", monkeypatch, duration=40.0)
+    found = solve(spun_up(), "bdf", duration=40.0)
     assert found.outcome is Outcome.STOPPED and "chatters: it has passed breakpoints" in found.message
 
 
-@pytest.mark.parametrize("solver", [solver for solver in SOLVERS if solver != "callbacks"])
-def test_a_law_that_changes_ever_faster_is_told_within_some_thousand_changes(solver, monkeypatch):
-    solution = solve(spun_up(), solver, monkeypatch, duration=1.0)
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_law_that_changes_ever_faster_is_told_within_some_thousand_changes(solver):
+    solution = solve(spun_up(), solver, duration=1.0)
     assert solution.outcome is Outcome.STOPPED
     assert "'push' chatters" in solution.message
     assert 2 * CHATTERING.window <= solution.solver["events"] <= 5 * CHATTERING.window
 
 
 @pytest.mark.parametrize("solver", ["auto", "dop853", "bdf"])
-def test_a_relay_that_swings_on_and_on_is_followed(solver, monkeypatch):
+def test_a_relay_that_swings_on_and_on_is_followed(solver):
     """x'' = -5 sign(x) from x = 0 at 0.01 m/s swings with 250 Hz; each change of law is one of the motion."""
-    solution = solve(block("-5*sign(block.x)", velocity=(0.01, 0)), solver, monkeypatch, rtol=1e-8)
+    solution = solve(block("-5*sign(block.x)", velocity=(0.01, 0)), solver, rtol=1e-8)
     assert solution.outcome is Outcome.DONE
     assert abs(solution.solver["events"] - 500) < 15
     assert np.max(np.abs(solution["block.x"])) < 1.2e-5
@@ -183,7 +176,7 @@ def test_steps_too_short_to_arrive_end_the_run(solver, monkeypatch):
     changed = replace(parameters_of(chattering.CHATTERING), steps_seen=5000, steps_ahead=20_000)
     monkeypatch.setattr(chattering, "CHATTERING", changed)
     rub = "-1000*block.vx/sqrt(block.vx^2 + block.vy^2)"
-    solution = solve(block(rub, velocity=(1, 0)), solver, monkeypatch, duration=10.0)
+    solution = solve(block(rub, velocity=(1, 0)), solver, duration=10.0)
     assert solution.outcome is Outcome.STOPPED
     assert solution.solver["steps"] < 100_000
 
@@ -210,14 +203,14 @@ def test_a_jump_that_drives_the_motion_back_is_found():
     [(wheel_on_road, "crest", 50.0), (follower, "crest", 0.0), (follower, "pothole", 50.0), (follower, "bump", 500.0)],
 )
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_a_damper_over_a_kink_is_passed(solver, scene, profile, damping, monkeypatch):
+def test_a_damper_over_a_kink_is_passed(solver, scene, profile, damping):
     """The force of a spring and damper jumps through zero where its support bends: an event function that jumps does not slide."""
-    solution = solve(scene(profile, 20.0, damping), solver, monkeypatch, duration=1.5, rtol=1e-5)
+    solution = solve(scene(profile, 20.0, damping), solver, duration=1.5, rtol=1e-5)
     assert solution.outcome is Outcome.DONE, solution.message
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_friction_slides_on_the_belt_whose_speed_is_reached_not_where_belts_meet(solver, monkeypatch):
-    solution = solve(belts(), solver, monkeypatch, duration=8.0, points=401)
+def test_friction_slides_on_the_belt_whose_speed_is_reached_not_where_belts_meet(solver):
+    solution = solve(belts(), solver, duration=8.0, points=401)
     assert "'f' chatters" in solution.message
     assert abs(solution.t[-1] - SLIDES) < 0.05
