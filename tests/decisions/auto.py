@@ -83,7 +83,7 @@ def slowest_mechanism_with_a_fast_one(implicit):
 
 
 DECISIONS = {
-    "auto.steps_per_radian": lambda: auto_decisions.steps_of_decay(parameters("auto"), np.e, 1.0, 2.0),
+    "auto.steps_per_radian": lambda: auto_decisions.steps_of_decay(parameters("auto"), np.e, 1.0),
     "auto.loose": lambda: count_while(lambda rtol: auto_decisions.implicit_solver(parameters("auto"), 2.0, rtol, 10.0) == "bdf", HALVES),
     "auto.trial_margin": lambda: count_while(
         lambda k: auto_decisions.implicit_solver(parameters("auto"), 2.0, 1e-9, 0.1 * k) == "bdf", range(100)
