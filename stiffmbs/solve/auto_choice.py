@@ -87,11 +87,11 @@ class Choice:
             return None
         self.implicit.choose(rates, self.remaining(t) * rate / self.explicit_step, pieces)
         decay = steps_of_decay(AUTO, self._excitation(start, rates.fastest), rates.decay_ratio)
-        if not explicit_cost > self._least_cost(pieces, decay):
-            return None
-        self.implicit.create()
         saving = explicit_cost - self._least_cost(pieces, decay)
-        if not saving > self.implicit.growth:  # what a failed trial loses
+        if saving > self.implicit.growth:  # what a failed trial loses; by lower bounds of the costs
+            self.implicit.create()
+            saving = explicit_cost - self._least_cost(pieces, decay)
+        if not saving > self.implicit.growth:
             return None
         reason = f"{self.implicit.name} (fastest rate {rates.fastest:.3g} 1/s)"
         return Switch(reason, rate, self.thresholds.of_trial(saving / explicit_cost))
