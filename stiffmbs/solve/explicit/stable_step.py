@@ -45,7 +45,9 @@ class StabilityBoundParameters:
 STABILITY_BOUND = tuned("stability_bound", StabilityBoundParameters())
 
 FASTEST_RATES = Routine(
-    "stiffmbs.solve.explicit.native.fastest_rate", "fastest_rates", "void(float64, float64*, float64*, float64*, int64*, int64)"
+    "stiffmbs.solve.explicit.native.fastest_rate",
+    "fastest_rates",
+    "void(float64, float64*, float64*, float64*, int64*, int64)",
 )
 NOT_ASKED: Final = 0.0
 """Bound that has not been computed."""
