@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Final, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from ..tuning import tuned
 
@@ -108,18 +108,15 @@ class Thresholds:
         return replace(self, loss=0.0, penalty=max(cost, 2.0 * self.penalty))
 
 
-STABLE_BDF: Final = math.cos(math.radians(51.84))
-"""Damping ratio from which on BDF is stable up to order 5 (Hairer, Wanner 1996, table V.2.1, angle alpha)."""
-
-
 def implicit_solver(parameters: AutoParameters, damping_ratio: float, rtol: float, run_length: float) -> str:
     """Return the name of the implicit integrator, ``bdf`` or ``radau``.
 
-    BDF is taken where it is stable at each order, at loose tolerances, or if small steps after starts are a large part of
-    the run. `damping_ratio`: that of the stiffest motion. `run_length`: number of explicit steps at the cost of steps of bdf, relative to the cost of the small steps of radau.
+    BDF is taken for overdamped motions at loose tolerances, or if small steps after starts are a large part of the run.
+    `damping_ratio`: that of the stiffest motion. `run_length`: number of explicit steps at the cost of steps of bdf,
+    relative to the cost of the small steps of radau.
     """
     pays = rtol < parameters.loose and run_length > parameters.trial_margin
-    return "radau" if pays or damping_ratio < STABLE_BDF else "bdf"
+    return "radau" if damping_ratio < 1.0 or pays else "bdf"
 
 
 def steps_of_decay(parameters: AutoParameters, excitation: float, damping_ratio: float) -> float:

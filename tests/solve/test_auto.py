@@ -269,8 +269,7 @@ def test_radau_is_tried_sooner_at_a_loose_tolerance(examples, rtol, name):
 @pytest.mark.parametrize(
     ("damping_ratio", "rtol", "long", "name"),
     [
-        (0.61, 1e-3, 1.0, "radau"),
-        (0.63, 1e-3, 1.0, "bdf"),
+        (0.9, 1e-3, 1.0, "radau"),
         (1.5, 1e-4, 100.0, "bdf"),
         (np.inf, 1e-4, 100.0, "bdf"),
         (1.5, 0.9e-4, 100.0, "radau"),
@@ -278,7 +277,7 @@ def test_radau_is_tried_sooner_at_a_loose_tolerance(examples, rtol, name):
         (1.5, 0.9e-4, 3.1, "radau"),
     ],
 )
-def test_bdf_is_taken_where_it_is_stable_at_loose_tolerances_and_in_short_runs(damping_ratio, rtol, long, name):
+def test_bdf_is_taken_for_overdamped_motions_at_loose_tolerances_and_in_short_runs(damping_ratio, rtol, long, name):
     assert implicit_solver(AUTO, damping_ratio, rtol, long) == name
 
 
