@@ -32,7 +32,7 @@ class AutoParameters:
         radau save more than its iterations cost.
     """
 
-    steps_per_radian: float = 0.5
+    steps_per_radian: float = 0.35
     trial_margin: float = 3.0
     check_interval: float = 0.25
     loose: float = 1e-4

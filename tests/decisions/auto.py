@@ -99,7 +99,7 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
-    "auto.steps_per_radian": 0.5, "auto.loose": 54, "auto.trial_margin": 31, "auto.check_interval": 250, "cost.restart_steps": 27,
+    "auto.steps_per_radian": 0.35, "auto.loose": 54, "auto.trial_margin": 31, "auto.check_interval": 250, "cost.restart_steps": 27,
     "solve.auto:MOST_MESSAGES": 3, "solve.radau.radau:ITERATIONS": 15, "solve.radau.radau:START_STEPS": 4, "solve.radau.radau:RESIDUAL": 4.0,
     "solve.subsystems:IMPLICIT_STEPS": 75, "solve.subsystems:EXPLICIT_STEPS": 45,
 }  # fmt: skip

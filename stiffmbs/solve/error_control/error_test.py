@@ -51,9 +51,11 @@ class ErrorControl:
 
     def tolerances(self, equations: Equations, settings: RunSettings) -> tuple[float, np.ndarray]:
         """Return IDA's relative and absolute tolerances, corrected for its norm, which divides by all unknowns."""
-        named, of_independent = equations.formulation.tested, independent_tolerances(equations, settings)
-        tested = _among(equations, (*named, *self.by_step))
-        of_independent[tested & ~_among(equations, named)] *= -1.0
+        named = equations.formulation.tested
+        by_step = tuple(name for name in self.by_step if name not in named)
+        tested, of_independent = _among(equations, (*named, *by_step)), independent_tolerances(equations, settings)
+        if by_step:
+            of_independent[_among(equations, by_step)] *= -1.0
         atol = np.full(equations.n, self.multipliers)
         atol[equations.independent[tested]] = of_independent[tested]
         correction = self.margin * np.sqrt(equations.n / max(int(tested.sum()), 1))

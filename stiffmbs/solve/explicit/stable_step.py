@@ -166,7 +166,8 @@ def rates_at(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> Rate
     arrays = dynamics.system.mass, found, work, dynamics.table
     FASTEST_RATES.call(t, *addresses(*arrays), ACCELERATE.address)
     dynamics.forget_pivots()
-    return Rates(*found.tolist(), _of_states(dynamics, t, q, u))
+    vibration, decay, damping = found.tolist()
+    return Rates(vibration, decay, damping, _of_states(dynamics, t, q, u))
 
 
 def _of_states(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:

@@ -66,7 +66,7 @@ def _growth(t, of_pose, mass, work, s, dynamics, accelerate):
     for _ in range(FASTEST_RATE.iterations):
         if _answered(t, of_pose, work, s, dynamics, accelerate) < 0:
             return 0.0
-        growth = sqrt(_product(mass, w, w, n) / _product(mass, v, v, n))
+        growth = sqrt(_product(mass, w, w, n)) / sqrt(_product(mass, v, v, n))
         if not 0.0 < growth < float("inf"):
             return 0.0
         copied(v, w, n)
