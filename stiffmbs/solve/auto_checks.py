@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .auto_choice import Choice, Switch
-from .auto_decisions import AUTO, ExplicitSteps, cost_ahead, loss_of_trial, since, tolerable_loss
+from .auto_decisions import AUTO, ExplicitSteps, Interval, cost_ahead, loss_of_trial, since, tolerable_loss
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED
 from .ida.native_engine import Reached
@@ -46,23 +46,28 @@ class ImplicitCheck:
     def __init__(self, choice: Choice, t: float) -> None:
         self._choice, self._implicit = choice, choice.implicit
         self._counted, self._begun = self._implicit.steps(t), self._implicit.integrator.steps()
-        self.rate, self.loss, self._covered = np.inf, 0.0, 0.0
+        self.rate, self.loss = np.inf, 0.0
+        self._first: Interval | None = None
         self._wait(t)
 
     def __call__(self, reached: Reached) -> bool:
         """Add the loss since the last check; return True if the implicit integrator is kept."""
-        if self._implicit.integrator.steps() < self._next or self._choice.is_breakpoint(reached.t):
+        t, choice = reached.t, self._choice
+        if self._implicit.integrator.steps() < self._next or t <= self._counted.time or choice.is_breakpoint(t):
             return True  # an event between two checks
-        counted = self._implicit.steps(reached.t)
+        counted = self._implicit.steps(t)
         taken, self._counted = since(self._counted, counted), counted
-        before, apart = self.rate, 0.5 * (self._covered + taken.time)
-        self._covered, self.rate = taken.time, taken.cost / taken.time if taken.time else np.inf
-        self.loss = loss_of_trial(
-            self.loss, taken.cost, self._choice.explicit_cost(taken.time, taken.restarts, taken.long)
-        )
-        remaining = self._choice.remaining(reached.t)
-        gains = cost_ahead(before, self.rate, apart, remaining) < self._choice.explicit_cost(remaining, 0)
-        return self._wait(reached.t) > 0.0 or gains
+        self.rate = taken.cost / taken.time
+        self.loss = loss_of_trial(self.loss, taken.cost, choice.explicit_cost(taken.time, taken.restarts, taken.long))
+        gains = self._gains(Interval(t - 0.5 * taken.time, self.rate))
+        return self._wait(t) > 0.0 or gains
+
+    def _gains(self, last: Interval) -> bool:
+        """Return True if the rest of the implicit steps costs less by the decay of their cost, which two intervals show."""
+        first, t = self._first or last, self._counted.time
+        remaining = self._choice.remaining(t)
+        self._first = first
+        return first is last or cost_ahead(first, last, t, t + remaining) < self._choice.explicit_cost(remaining, 0)
 
     def _wait(self, t: float) -> float:
         """Set the next check, before which average steps do not exceed the tolerable loss; return the remaining loss."""

@@ -15,12 +15,11 @@ from ..model.settings import RunSettings
 from . import cost
 from .auto_decisions import AUTO, ExplicitSteps, Thresholds, saving_by_return, steps_of_decay
 from .auto_implicit import Implicit
-from .error_control.newton import Stiffness, stiffness_at
 from .error_control.tolerances import absolute_tolerances
 from .events.restart import just_after, just_before
 from .explicit import DOP853
 from .explicit.integration import Integration
-from .explicit.stable_step import fastest_rate
+from .explicit.stable_step import Rates, rates_at
 from .trajectory import Grid
 
 
@@ -63,22 +62,21 @@ class Choice:
     def first_trial(self, start: InitialValues) -> Switch | None:
         """Return the decision to begin with the implicit integrator, because stability would limit explicit steps; None to begin explicit."""
         t = self._grid.start
-        fastest = fastest_rate(self._dynamics, t, start.q, start.u)
-        rate = self._stable_rate(fastest)
+        rates = rates_at(self._dynamics, t, start.q, start.u)
+        rate = self._stable_rate(rates)
         pieces = 1 + self._breakpoints_after(t)
         explicit_cost = self.remaining(t) * rate + (pieces - 1) * cost.COSTS.restart_steps * self.explicit_step
         if not explicit_cost > self._least_cost(pieces):
             return None
-        stiffness = self._stiffness(t, start.q, start.u)
-        self.implicit.choose(stiffness, self.remaining(t) * rate / self.explicit_step, pieces)
-        decay = steps_of_decay(AUTO, self._excitation(start, fastest), fastest, stiffness.of_velocities)
-        if not explicit_cost > self._least_cost(pieces, decay):
-            return None
-        self.implicit.create()
+        self.implicit.choose(rates, self.remaining(t) * rate / self.explicit_step, pieces)
+        decay = steps_of_decay(AUTO, self._excitation(start, rates.fastest), rates.decay_ratio)
         saving = explicit_cost - self._least_cost(pieces, decay)
-        if not saving > self.implicit.growth:  # what a failed trial loses
+        if saving > self.implicit.growth:  # what a failed trial loses; by lower bounds of the costs
+            self.implicit.create()
+            saving = explicit_cost - self._least_cost(pieces, decay)
+        if not saving > self.implicit.growth:
             return None
-        reason = f"{self.implicit.name} (fastest rate {fastest:.3g} 1/s)"
+        reason = f"{self.implicit.name} (fastest rate {rates.fastest:.3g} 1/s)"
         return Switch(reason, rate, self.thresholds.of_trial(saving / explicit_cost))
 
     def _least_cost(self, pieces: int, decay: float = 0.0) -> float:
@@ -100,17 +98,17 @@ class Choice:
         if not saving > self._justifying(work.t):
             return None
         pieces = 1 + self._breakpoints_after(work.t)
-        self.implicit.choose(self._stiffness(work.t, work.q, work.u), saving / self.explicit_step, pieces)
+        rates = rates_at(self._dynamics, work.t, work.q.copy(), work.u.copy())
+        rate = self._stable_rate(rates)
+        self.implicit.choose(rates, saving / self.explicit_step, pieces)
         if not saving > self._justifying(work.t):
             return None
-        fastest = fastest_rate(self._dynamics, work.t, work.q, work.u)
-        rate = self._stable_rate(fastest)
         self.implicit.create()
         if not min(saving, self.remaining(work.t) * rate) > self._justifying(work.t):
             return None
         reason = (
             f"{self.implicit.name} from t = {work.t:.4g} s on (stability limited {100 * share:.0f} % of the "
-            f"explicit steps, fastest rate {fastest:.3g} 1/s)"
+            f"explicit steps, fastest rate {rates.fastest:.3g} 1/s)"
         )
         return Switch(reason, rate, self.thresholds.of_trial(share))
 
@@ -123,9 +121,9 @@ class Choice:
         reason = f"{self.implicit.name} again from t = {t:.4g} s on (explicit steps cost more)"
         return Switch(reason, rate, self.thresholds.after_return())
 
-    def _stable_rate(self, fastest: float) -> float:
-        """Return the cost of explicit steps per second if stability limits them, for a fastest rate in 1/s."""
-        return self.explicit_step * fastest / DOP853.stability
+    def _stable_rate(self, rates: Rates) -> float:
+        """Return the cost of explicit steps per second if stability limits them."""
+        return self.explicit_step * rates.fastest / DOP853.stability
 
     def _excitation(self, start: InitialValues, fastest: float) -> float:
         """Return the largest change of a velocity in a step limited by stability, in tolerances."""
@@ -135,11 +133,6 @@ class Choice:
         tolerances = self._dynamics.kept("tolerances", settings, lambda: absolute_tolerances(system, settings))
         change = np.abs(start.acceleration) * (DOP853.stability / fastest)
         return float((change / (tolerances[system.n_q :] + settings.rtol * np.abs(start.u))).max(initial=0.0))
-
-    def _stiffness(self, t: float, q: np.ndarray, u: np.ndarray) -> Stiffness:
-        """Return the stiffness of a state."""
-        self._dynamics.state.q[:], self._dynamics.state.u[:] = q, u
-        return stiffness_at(self._dynamics, t)
 
     def _breakpoints_after(self, t: float) -> int:
         """Return the number of input breakpoints after a time."""

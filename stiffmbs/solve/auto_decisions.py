@@ -28,7 +28,7 @@ class AutoParameters:
       higher orders of radau save more than its iterations cost.
     """
 
-    steps_per_radian: float = 0.5
+    steps_per_radian: float = 0.35
     trial_margin: float = 3.0
     check_interval: float = 0.25
     loose: float = 1e-4
@@ -103,22 +103,21 @@ def implicit_solver(parameters: AutoParameters, damping_ratio: float, rtol: floa
     """Return the name of the implicit integrator, ``bdf`` or ``radau``.
 
     BDF is taken for overdamped motions at loose tolerances, or if small steps after starts are a large part of the run.
-    `damping_ratio`: that of the stiffest vibration. `run_length`: number of explicit steps at the cost of steps of bdf,
+    `damping_ratio`: that of the stiffest motion. `run_length`: number of explicit steps at the cost of steps of bdf,
     relative to the cost of the small steps of radau.
     """
     pays = rtol < parameters.loose and run_length > parameters.trial_margin
     return "radau" if damping_ratio < 1.0 or pays else "bdf"
 
 
-def steps_of_decay(parameters: AutoParameters, excitation: float, fastest: float, damping: float) -> float:
+def steps_of_decay(parameters: AutoParameters, excitation: float, damping_ratio: float) -> float:
     """Return the implicit steps in which a vibration decays to the tolerances; infinite without damping.
 
-    `excitation`: largest change of a velocity in an explicit step, in tolerances. `fastest`: fastest rate, 1/s.
-    `damping`: twice the rate of decay, 1/s.
+    `excitation`: largest change of a velocity in an explicit step, in tolerances.
     """
     if excitation <= 1.0:
         return 0.0
-    return parameters.steps_per_radian * math.log(excitation) * 2.0 * fastest / damping if damping > 0.0 else math.inf
+    return parameters.steps_per_radian * math.log(excitation) / damping_ratio if damping_ratio > 0.0 else math.inf
 
 
 def saving_by_return(explicit_rate: float, implicit_rate: float, ratio: float, remaining: float) -> float:
@@ -135,16 +134,24 @@ def loss_of_trial(before: float, implicit_cost: float, explicit_cost: float) -> 
     return max(before + implicit_cost - explicit_cost, 0.0)
 
 
-def cost_ahead(before: float, rate: float, apart: float, remaining: float) -> float:
-    """Return the cost of implicit steps up to the end if their cost per second falls on as that of a decaying vibration does.
+class Interval(NamedTuple):
+    """Implicit steps between two checks: the time at their middle, s, and their cost per second of the motion."""
 
-    `before`, `rate`: cost per second in the last two intervals, s^-1, infinite if unknown; `apart`: time between their
-    centres, s. `remaining`: time up to the end of the run, s. Steps follow a root of the amplitude, an exponential too.
+    middle: float
+    rate: float
+
+
+def cost_ahead(first: Interval, last: Interval, begin: float, end: float) -> float:
+    """Return the cost of implicit steps if their rate falls on as that of a decaying vibration does.
+
+    `first`, `last`: intervals since the start. `begin`, `end`: of the steps, s. Steps follow a root of the amplitude, which
+    is an exponential too.
     """
-    if not 0.0 < rate < before:
-        return rate * remaining
-    constant = apart / math.log(before / rate)
-    return -rate * constant * math.expm1(-remaining / constant) if constant else 0.0
+    if not 0.0 < last.rate < first.rate:
+        return last.rate * (end - begin)
+    constant = (last.middle - first.middle) / math.log(first.rate / last.rate)
+    at_begin = last.rate * math.exp((last.middle - begin) / constant)
+    return -at_begin * constant * math.expm1((begin - end) / constant)
 
 
 def tolerable_loss(start: float, allowed: float, remaining_cost: float) -> float:

@@ -8,7 +8,7 @@ from ..dynamics.dynamics import Dynamics
 from ..model.settings import RunSettings
 from . import bdf, cost
 from .auto_decisions import AUTO, ImplicitSteps, implicit_solver
-from .error_control.newton import Stiffness
+from .explicit.stable_step import Rates
 from .integrator import Integrator
 from .radau import radau
 from .solver import Traits
@@ -29,8 +29,8 @@ class Implicit:
         self.name, self._created = "", False
         self._estimate(None)
 
-    def choose(self, stiffness: Stiffness, explicit_steps: float, pieces: int) -> None:
-        """Choose the integrator by the stiffness of a state, unless one exists.
+    def choose(self, rates: Rates, explicit_steps: float, pieces: int) -> None:
+        """Choose the integrator by the rates of the motion about a state, unless one exists.
 
         `explicit_steps`: explicit steps in place of implicit ones. `pieces`: number of starts and restarts.
         """
@@ -38,7 +38,7 @@ class Implicit:
             of_bdf = cost.ImplicitCost.of(self._dynamics)
             self._be("radau")
             run_length = explicit_steps * of_bdf.step / (pieces * self.growth)
-            self._be(implicit_solver(AUTO, stiffness.damping_ratio, self._settings.rtol, run_length))
+            self._be(implicit_solver(AUTO, rates.damping_ratio, self._settings.rtol, run_length))
 
     def _be(self, name: str) -> None:
         if name != self.name:

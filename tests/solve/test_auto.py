@@ -7,8 +7,8 @@ import stiffmbs
 from stiffmbs import AppliedForce, Body, Bushing, Distance, Model, Prismatic
 from stiffmbs.analyses.job import prepare
 from stiffmbs.solve import auto_checks, auto_choice
-from stiffmbs.solve.auto_decisions import AUTO, Thresholds, cost_ahead, implicit_solver, steps_of_decay
-from stiffmbs.solve.explicit.stable_step import fastest_rate
+from stiffmbs.solve.auto_decisions import AUTO, Interval, Thresholds, cost_ahead, implicit_solver, steps_of_decay
+from stiffmbs.solve.explicit.stable_step import rates_at
 from tests.bench.drives import CARS
 from tests.stress.mechanisms.parallelogram import parallelogram, swing_error
 
@@ -167,7 +167,7 @@ def test_output_points_within_one_explicit_step_do_not_ask_for_a_change_of_hands
 
 def test_the_rate_is_asked_for_once_where_explicit_steps_to_the_end_cost_less_than_trials(examples, monkeypatch):
     asked = []
-    monkeypatch.setattr(auto_choice, "fastest_rate", lambda *state: asked.append(state[1]) or fastest_rate(*state))
+    monkeypatch.setattr(auto_choice, "rates_at", lambda *state: asked.append(state[1]) or rates_at(*state))
     scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e5")])
     solution = stiffmbs.run(scene, solver="auto", rtol=1e-4)
     assert solution.solver["name"] == "projected"
@@ -203,24 +203,27 @@ def test_a_first_trial_loses_no_more_than_it_can_save():
 
 def test_the_cost_ahead_follows_the_decay_of_a_vibration():
     """The rate halves each second; it is compared with a sum over short intervals. A rate that does not fall stays."""
-    t = np.linspace(0.0, 3.0, 3001)
-    exact = np.trapezoid(100.0 * 0.5**t, t)
-    assert cost_ahead(200.0, 100.0, 1.0, 3.0) == pytest.approx(exact, rel=1e-6)
-    assert cost_ahead(100.0, 100.0, 1.0, 3.0) == cost_ahead(50.0, 100.0, 1.0, 3.0) == 300.0
-    assert cost_ahead(np.inf, 100.0, 1.0, 3.0) == 0.0
+    t = np.linspace(2.5, 5.5, 3001)
+    exact = np.trapezoid(100.0 * 0.5 ** (t - 2.0), t)
+    last = Interval(2.0, 100.0)
+    assert cost_ahead(Interval(0.0, 400.0), last, 2.5, 5.5) == pytest.approx(exact, rel=1e-6)
+    assert cost_ahead(last, last, 2.5, 5.5) == cost_ahead(Interval(0.0, 50.0), last, 2.5, 5.5) == 300.0
 
 
-def test_radau_is_kept_if_the_rest_of_its_steps_costs_less(examples):
-    """A vibration has decayed when the trial has lost what it may; 14 steps remain, and 510 explicit ones would."""
-    scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e7"), ("zeta", "0.01")])
-    assert stiffmbs.run(scene, solver="auto", duration=3.0, rtol=1e-7).solver["name"] == "radau"
+@pytest.mark.parametrize(
+    ("stiffness", "duration", "rtol"), [("1e7", 3.0, 1e-7), ("3e5", 10.0, 1e-5), ("1e5", 10.0, 1e-3)]
+)
+def test_radau_is_kept_if_the_rest_of_its_steps_costs_less(examples, stiffness, duration, rtol):
+    """A vibration has almost decayed when the trial has lost what it may: 12 to 65 steps remain of 200 to 280."""
+    scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", stiffness), ("zeta", "0.01")])
+    assert stiffmbs.run(scene, solver="auto", duration=duration, rtol=rtol).solver["name"] == "radau"
 
 
 def test_steps_up_to_the_decay_of_a_vibration():
-    """Nothing is seen of a vibration within a tolerance; e tolerances decay in 1/25 s, 40 radians."""
-    assert steps_of_decay(AUTO, 1.0, 1000.0, 0.0) == 0.0
-    assert steps_of_decay(AUTO, 2.0, 1000.0, 0.0) == np.inf
-    assert steps_of_decay(AUTO, np.e, 1000.0, 50.0) == pytest.approx(40.0 * AUTO.steps_per_radian)
+    """Nothing is seen of a vibration within a tolerance; e tolerances decay in 40 radians."""
+    assert steps_of_decay(AUTO, 1.0, 0.0) == 0.0
+    assert steps_of_decay(AUTO, 2.0, 0.0) == np.inf
+    assert steps_of_decay(AUTO, np.e, 0.025) == pytest.approx(40.0 * AUTO.steps_per_radian)
 
 
 def test_explicit_steps_are_not_taken_to_be_longer_than_those_of_radau(examples):
@@ -248,10 +251,11 @@ def test_radau_comes_back_where_explicit_steps_cost_more_than_its_own_had(exampl
 
 
 @pytest.mark.long
-def test_a_car_whose_start_excites_vibrations_keeps_explicit_steps():
-    """The stiff bushings do not carry the weight at the start; radau takes 125 ms for the first second, explicit steps 44 ms."""
+@pytest.mark.parametrize(("stiffness", "zeta"), [("1e6", "0.05"), ("3e6", "0.01")])
+def test_a_car_whose_start_excites_vibrations_keeps_explicit_steps(stiffness, zeta):
+    """The stiff bushings do not carry the weight at the start; radau takes 3 and 5 times as long for the first second."""
     car = CARS[0]
-    model = car.model("sweep", **{car.stiffness: "1e6", "zeta": "0.05"})
+    model = car.model("sweep", **{car.stiffness: stiffness, "zeta": zeta})
     assert stiffmbs.run(model, solver="auto", duration=1.0, rtol=1e-3).solver["name"] == "projected"
 
 
@@ -265,7 +269,7 @@ def test_radau_is_tried_sooner_at_a_loose_tolerance(examples, rtol, name):
 @pytest.mark.parametrize(
     ("damping_ratio", "rtol", "long", "name"),
     [
-        (0.7, 1e-3, 1.0, "radau"),
+        (0.9, 1e-3, 1.0, "radau"),
         (1.5, 1e-4, 100.0, "bdf"),
         (np.inf, 1e-4, 100.0, "bdf"),
         (1.5, 0.9e-4, 100.0, "radau"),

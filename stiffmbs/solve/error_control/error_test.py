@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -37,24 +38,29 @@ class ErrorControl:
     growth: float = 2.0
     predicted_residual: bool = True
 
+    by_step: ClassVar[tuple[str, ...]] = ()
+    """Unknowns that are tested times the step if the formulation does not test them; they have negative absolute tolerances."""
+
     def tolerances(self, equations: Equations, settings: RunSettings) -> tuple[float, np.ndarray]:
         """Return IDA's relative and absolute tolerances, corrected for its norm, which divides by all unknowns."""
-        tested, of_independent = self._tested(equations), independent_tolerances(equations, settings)
+        named = equations.formulation.tested
+        by_step = tuple(name for name in self.by_step if name not in named)
+        tested, of_independent = _among(equations, (*named, *by_step)), independent_tolerances(equations, settings)
+        if by_step:
+            of_independent[_among(equations, by_step)] *= -1.0
         atol = np.full(equations.n, self.multipliers)
         atol[equations.independent[tested]] = of_independent[tested]
         correction = self.margin * np.sqrt(equations.n / max(int(tested.sum()), 1))
         return settings.rtol * correction, atol * correction
 
-    @staticmethod
-    def _tested(equations: Equations) -> np.ndarray:
-        """Return a mask of the independent unknowns in the error test; not those that follow multipliers."""
-        independent, tested = equations.coordinates, equations.formulation.tested
-        counted = np.repeat(
-            ["q" in tested, "u" in tested], [independent.independent.sum(), independent.independent_u.sum()]
-        )
-        pressed = np.isin(np.flatnonzero(independent.independent), equations.system.following_reactions)
-        counted[: len(pressed)] &= ~pressed
-        return counted
+
+def _among(equations: Equations, named: tuple[str, ...]) -> np.ndarray:
+    """Return a mask of the independent unknowns of these names; not those that follow multipliers."""
+    independent = equations.coordinates
+    counted = np.repeat(["q" in named, "u" in named], [independent.independent.sum(), independent.independent_u.sum()])
+    pressed = np.isin(np.flatnonzero(independent.independent), equations.system.following_reactions)
+    counted[: len(pressed)] &= ~pressed
+    return counted
 
 
 PLANAR = tuned("error_test", ErrorControl())

@@ -28,11 +28,6 @@ class Stiffness(NamedTuple):
         return max(self.of_positions, self.of_velocities * self.of_velocities)  # infinite where a power would raise
 
     @property
-    def damping_ratio(self) -> float:
-        """Return the damping ratio of the stiffest vibration; infinite without stiffness."""
-        return self.of_velocities / (2.0 * math.sqrt(self.of_positions)) if self.of_positions > 0 else math.inf
-
-    @property
     def allowed_residual(self) -> float:
         """Return the part of the error tolerance that causes no significant force."""
         return NEWTON.soft / self.fastest if self.fastest > 0 else np.inf

@@ -8,8 +8,9 @@ at a step's end indicate that the limit is far exceeded, or that it has limited 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -43,8 +44,10 @@ class StabilityBoundParameters:
 
 STABILITY_BOUND = tuned("stability_bound", StabilityBoundParameters())
 
-FASTEST_RATE = Routine(
-    "stiffmbs.solve.explicit.native.fastest_rate", "fastest_rate", "float64(float64, float64*, float64*, int64*, int64)"
+FASTEST_RATES = Routine(
+    "stiffmbs.solve.explicit.native.fastest_rate",
+    "fastest_rates",
+    "void(float64, float64*, float64*, float64*, int64*, int64)",
 )
 NOT_ASKED: Final = 0.0
 """Bound that has not been computed."""
@@ -105,7 +108,7 @@ class StableStep:
         self._next = work.count("steps") + STABILITY_BOUND.worth
         if end - work.t < STABILITY_BOUND.worth * min(work.h, bound) or work.count("uncertain"):
             return
-        rate = fastest_rate(self._dynamics, work.t, work.q.copy(), work.u.copy())
+        rate = rates_at(self._dynamics, work.t, work.q.copy(), work.u.copy()).fastest
         if rate > 0:
             work.stable = self._stability / rate
             self._wait(work)
@@ -116,18 +119,55 @@ class StableStep:
         self._apart = min(STABILITY_BOUND.soon * self._apart, STABILITY_BOUND.most_apart)
 
 
-def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:
-    """Return a lower bound of the largest |lambda|, 1/s, of the motion about a state on the constraints.
+class Rates(NamedTuple):
+    """Fastest rates of the motion about a state, 1/s; bounds from below, which are close for separate rates.
 
-    It costs about as much as a step of order 8.
+    Attributes
+    ----------
+    vibration : float
+        Circular frequency of the fastest vibration without damping.
+    decay : float
+        Damping of that vibration: twice the rate of its decay.
+    damping : float
+        Largest damping of any motion: its rate of decay without stiffness.
+    states : float
+        Rate of the user-defined states at a fixed motion.
+    """
+
+    vibration: float
+    decay: float
+    damping: float
+    states: float
+
+    @property
+    def fastest(self) -> float:
+        """Return the largest |lambda|."""
+        return max(self.vibration, self.damping, self.states)
+
+    @property
+    def damping_ratio(self) -> float:
+        """Return the largest damping over that which makes the fastest vibration aperiodic; infinite without a vibration."""
+        return self.damping / (2.0 * self.vibration) if self.vibration > 0.0 else math.inf
+
+    @property
+    def decay_ratio(self) -> float:
+        """Return the decay of the fastest motion in a radian of it: the damping ratio of a vibration, 1/2 of damping alone."""
+        return 0.5 * (self.decay / self.vibration if self.vibration > self.damping else 1.0)
+
+
+def rates_at(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> Rates:
+    """Return the fastest rates of the motion about a state on the constraints.
+
+    They cost about as much as a step of order 8.
     """
     state = dynamics.state
     state.q[:], state.u[:] = q, u
-    work = np.empty(3 * dynamics.system.n_u + dynamics.system.n_q)
-    arrays = dynamics.system.mass, work, dynamics.table
-    rate = FASTEST_RATE.call(t, *addresses(*arrays), ACCELERATE.address)
+    found, work = np.zeros(3), np.empty(3 * dynamics.system.n_u + dynamics.system.n_q)
+    arrays = dynamics.system.mass, found, work, dynamics.table
+    FASTEST_RATES.call(t, *addresses(*arrays), ACCELERATE.address)
     dynamics.forget_pivots()
-    return max(float(rate), _of_states(dynamics, t, q, u))
+    vibration, decay, damping = found.tolist()
+    return Rates(vibration, decay, damping, _of_states(dynamics, t, q, u))
 
 
 def _of_states(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:

@@ -83,7 +83,7 @@ def slowest_mechanism_with_a_fast_one(implicit):
 
 
 DECISIONS = {
-    "auto.steps_per_radian": lambda: auto_decisions.steps_of_decay(parameters("auto"), np.e, 1.0, 2.0),
+    "auto.steps_per_radian": lambda: auto_decisions.steps_of_decay(parameters("auto"), np.e, 1.0),
     "auto.loose": lambda: count_while(lambda rtol: auto_decisions.implicit_solver(parameters("auto"), 2.0, rtol, 10.0) == "bdf", HALVES),
     "auto.trial_margin": lambda: count_while(
         lambda k: auto_decisions.implicit_solver(parameters("auto"), 2.0, 1e-9, 0.1 * k) == "bdf", range(100)
@@ -99,7 +99,7 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
-    "auto.steps_per_radian": 0.5, "auto.loose": 54, "auto.trial_margin": 31, "auto.check_interval": 250, "cost.restart_steps": 27,
+    "auto.steps_per_radian": 0.35, "auto.loose": 54, "auto.trial_margin": 31, "auto.check_interval": 250, "cost.restart_steps": 27,
     "solve.auto:MOST_MESSAGES": 3, "solve.radau.radau:ITERATIONS": 15, "solve.radau.radau:START_STEPS": 4, "solve.radau.radau:RESIDUAL": 4.0,
     "solve.subsystems:IMPLICIT_STEPS": 75, "solve.subsystems:EXPLICIT_STEPS": 45,
 }  # fmt: skip

@@ -1,4 +1,4 @@
-"""Fastest rate of the motion about a state, by power iteration on differences of accelerations.
+"""Fastest rates of the motion about a state, by power iteration on differences of accelerations.
 
 Apart from the steps and linked by addresses: runs of implicit solvers need the rate, too, and compile little for it.
 """
@@ -24,57 +24,74 @@ def _accelerated(t, target, dynamics, accelerate):
 
 
 @compiled
-def _size(mass, v, n):
-    """Return the norm of a motion in the mass matrix, in which stiffness and damping are symmetric."""
+def _product(mass, v, w, n):
+    """Return the product of two motions in the mass matrix, in which stiffness and damping are symmetric."""
     total = 0.0
     for k in range(n):
-        total += mass[k] * v[k] * v[k]
-    return sqrt(total)
+        total += mass[k] * v[k] * w[k]
+    return total
+
+
+@compiled
+def _answered(t, of_pose, work, s, dynamics, accelerate):
+    """Compute w, the change of accelerations by a small change of the pose, or of velocities, by v; 0 or a negative status."""
+    n = s.n_u
+    at_start, v, w, start = work, shifted(work, n), shifted(work, 2 * n), shifted(work, 3 * n)
+    scale = FASTEST_RATE.move / largest_of(v, n)
+    if of_pose:
+        copied(start, s.q, s.n_q)
+        add_rates(s, v, scale, s.q)
+    else:
+        copied(start, s.u, n)
+        for k in range(n):
+            s.u[k] += scale * v[k]
+    status = _accelerated(t, w, dynamics, accelerate)
+    if of_pose:
+        copied(s.q, start, s.n_q)
+    else:
+        copied(s.u, start, n)
+    for k in range(n):
+        w[k] = (w[k] - at_start[k]) / scale
+    return status
 
 
 @compiled
 def _growth(t, of_pose, mass, work, s, dynamics, accelerate):
-    """Return the amplification from changes of the pose, or of velocities, to accelerations."""
+    """Return the amplification from changes of the pose, or of velocities, to accelerations; the motion is in v then."""
     n = s.n_u
-    at_start, v, w, start = work, shifted(work, n), shifted(work, 2 * n), shifted(work, 3 * n)
-    if of_pose:
-        copied(start, s.q, s.n_q)
-    else:
-        copied(start, s.u, n)
+    v, w = shifted(work, n), shifted(work, 2 * n)
     for k in range(n):
         v[k] = sin(1.0 + 3.7 * k) / mass[k]
     growth = 0.0
     for _ in range(FASTEST_RATE.iterations):
-        scale = FASTEST_RATE.move / largest_of(v, n)
-        if of_pose:
-            add_rates(s, v, scale, s.q)
-        else:
-            for k in range(n):
-                s.u[k] += scale * v[k]
-        status = _accelerated(t, w, dynamics, accelerate)
-        if of_pose:
-            copied(s.q, start, s.n_q)
-        else:
-            copied(s.u, start, n)
-        if status < 0:
+        if _answered(t, of_pose, work, s, dynamics, accelerate) < 0:
             return 0.0
-        for k in range(n):
-            w[k] = (w[k] - at_start[k]) / scale
-        growth = _size(mass, w, n) / _size(mass, v, n)
+        growth = sqrt(_product(mass, w, w, n)) / sqrt(_product(mass, v, v, n))
         if not 0.0 < growth < float("inf"):
             return 0.0
         copied(v, w, n)
     return growth
 
 
-def fastest_rate(t, mass, work, dynamics, accelerate):
-    """Return the largest |lambda|, 1/s, of the motion at the current state; 0 without accelerations.
+@compiled
+def _damping(t, mass, work, s, dynamics, accelerate):
+    """Return the damping of the motion v by its Rayleigh quotient, twice its rate of decay."""
+    n = s.n_u
+    v, w = shifted(work, n), shifted(work, 2 * n)
+    if _answered(t, 0, work, s, dynamics, accelerate) < 0:
+        return 0.0
+    return -_product(mass, v, w, n) / _product(mass, v, v, n)
 
-    `accelerate`: address of `stiffmbs.dynamics.native.dynamics.accelerate`.
+
+def fastest_rates(t, mass, found, work, dynamics, accelerate):
+    """Find the rates of the motion at the current state, 1/s: its fastest vibration, the damping of that, the largest damping.
+
+    They stay zero without accelerations. `accelerate`: address of `stiffmbs.dynamics.native.dynamics.accelerate`.
     """
     s = state_view(dynamics_view(dynamics).state)
     if _accelerated(t, work, dynamics, accelerate) < 0:
-        return 0.0
-    stiffness = _growth(t, 1, mass, work, s, dynamics, accelerate)
-    damping = _growth(t, 0, mass, work, s, dynamics, accelerate)
-    return max(sqrt(stiffness), damping)
+        return
+    found[0] = sqrt(_growth(t, 1, mass, work, s, dynamics, accelerate))
+    if found[0] > 0.0:
+        found[1] = _damping(t, mass, work, s, dynamics, accelerate)
+    found[2] = _growth(t, 0, mass, work, s, dynamics, accelerate)

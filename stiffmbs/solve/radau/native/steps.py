@@ -42,9 +42,11 @@ LEAST_ERROR = 1e-2
 
 @compiled
 def set_weights(x):
-    """Compute the inverse tolerances at the state."""
+    """Compute the inverse tolerances at the state, times the step where the absolute one is negative."""
     for k in range(x.n):
-        x.weight[k] = 1.0 / (x.rtol * abs(x.y[k]) + x.atol[k]) if x.atol[k] < EXCLUDED else 0.0
+        atol = x.atol[k]
+        part = 1.0 if atol > 0.0 else x.h
+        x.weight[k] = part / (x.rtol * abs(x.y[k]) + abs(atol)) if atol < EXCLUDED else 0.0
 
 
 @compiled
@@ -208,6 +210,7 @@ def _begun(x):
     set_weights(x)
     if x.h == 0.0:
         x.h = first_step(x)
+        set_weights(x)
     _choose_unknowns(x)
     x.rejected = 0
     x.failures = 0
