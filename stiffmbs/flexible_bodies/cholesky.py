@@ -161,9 +161,9 @@ def _fronts(matrix: csc_array, ends: list[int], precision: type) -> list[Front]:
         rows = np.unique(np.concatenate([row[row >= begin], *(rows for rows, _ in parts)]))
         k, later = end - begin, rows[end - begin :]
         place[rows] = np.arange(len(rows))
-        front = np.zeros((len(rows), k), precision, order="F")
+        front: np.ndarray = np.zeros((len(rows), k), precision, order="F")
         front[place[row[row >= begin]], column[row >= begin]] = value[row >= begin]
-        complement = np.zeros((len(later), len(later)), precision, order="F")
+        complement: np.ndarray = np.zeros((len(later), len(later)), precision, order="F")
         while parts:
             rows, part = parts.pop()
             at, own = place[rows], int(np.searchsorted(rows, end))

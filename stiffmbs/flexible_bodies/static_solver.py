@@ -21,6 +21,8 @@ BLOCK = 8
 """Right-hand sides of a static solution in Lanczos' method: the factors are read once for all of them."""
 CONVERGED = 1e-13
 """Residual of a normal mode, relative to its compliance, at which Lanczos' method ends."""
+DEPENDENT = 1e-15
+"""Square of a size, relative to the largest, below which a combination of shapes is zero apart from rounding."""
 
 
 class StaticSolver:
@@ -180,10 +182,14 @@ def _lanczos_modes(
 
     R. G. Grimes, J. G. Lewis, H. D. Simon, SIAM J. Matrix Anal. Appl. 15 (1994) 228-272.
     """
-    start = np.random.default_rng(0).standard_normal((mass.shape[0], BLOCK))
-    block, _ = _orthonormal(solve(mass @ start), mass)
-    basis, projected = np.empty((mass.shape[0], 0)), np.empty((0, 0))
+    random = np.random.default_rng(0)
+    block = basis = np.empty((mass.shape[0], 0))
+    projected = np.empty((0, 0))
     while True:
+        while not block.shape[1]:  # at the start, and where static solutions of the modes so far are among these
+            block = solve(mass @ random.standard_normal((mass.shape[0], BLOCK)))
+            block -= basis @ (basis.T @ (mass @ block))
+            block, _ = _orthonormal(block, mass)
         basis = np.column_stack([basis, block])
         following = solve(mass @ block)
         column = np.zeros((basis.shape[1], block.shape[1]))
@@ -202,9 +208,11 @@ def _lanczos_modes(
 
 
 def _orthonormal(shapes: np.ndarray, mass: csr_array) -> tuple[np.ndarray, np.ndarray]:
-    """Return shapes of unit modal mass, and the factors R of the given ones, shapes = found @ R."""
+    """Return independent shapes of unit modal mass, and the factors R of the given ones, shapes = found @ R."""
     found, factors = shapes, np.eye(shapes.shape[1])
     for _ in range(2):  # rounding leaves a part after the first time
-        upper = np.linalg.cholesky(found.T @ (mass @ found)).T
-        found, factors = np.linalg.solve(upper.T, found.T).T, upper @ factors
+        values, vectors = eigh(found.T @ (mass @ found))
+        vectors = vectors[:, values > DEPENDENT * values[-1]]
+        sizes = np.sqrt(values[-vectors.shape[1] :])
+        found, factors = found @ (vectors / sizes), sizes[:, None] * vectors.T @ factors
     return found, factors

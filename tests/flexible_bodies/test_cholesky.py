@@ -5,7 +5,7 @@ import pytest
 import skfem
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.sparse import coo_array, csc_array
+from scipy.sparse import coo_array, csc_array, eye_array
 from scipy.sparse.linalg import eigsh
 from skfem.helpers import dot
 from skfem.models.elasticity import lame_parameters, linear_elasticity
@@ -193,6 +193,20 @@ def test_modes_are_those_of_arpack(tmp_path, count):
     assert shapes.T @ (model.mass @ shapes) == pytest.approx(np.eye(count), abs=1e-10)
     force = (model.stiffness @ shapes - model.mass @ shapes * squares)[free]
     assert np.abs(force).max() < 1e-7 * np.abs(model.stiffness @ shapes).max()
+
+
+@pytest.mark.parametrize(("equal", "others"), [(24, np.linspace(2, 1000, 576)), (600, [])])
+def test_equal_frequencies_are_all_found(equal, others):
+    """As of a hub with many blades: ARPACK with single vectors finds 8 of 24 equal ones and higher ones in their place."""
+    from stiffmbs.flexible_bodies.static_solver import _lanczos_modes
+
+    expected = np.append(np.ones(equal), others)
+    turn = np.linalg.qr(np.random.default_rng(5).standard_normal((600, 600)))[0]
+    squares, shapes = _lanczos_modes(
+        lambda force: turn @ ((turn.T @ force).T / expected).T, eye_array(600, format="csr"), 30
+    )
+    assert squares == pytest.approx(expected[:30], rel=1e-12)
+    assert shapes.T @ shapes == pytest.approx(np.eye(30), abs=1e-11)
 
 
 def test_a_body_of_interface_nodes_alone(tmp_path):
