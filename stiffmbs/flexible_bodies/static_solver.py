@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.linalg import eigh
 from scipy.sparse import coo_array, csc_array, csr_array
-from scipy.sparse.linalg import LinearOperator, eigsh
 
 from ..errors import InputError
 from .cholesky import Cholesky
@@ -18,6 +17,12 @@ from .interfaces import AVERAGE, Interface
 LOGGER = logging.getLogger(__name__)
 DENSE = 400
 """Unknowns up to which eigenvalues are computed by a dense method."""
+BLOCK = 8
+"""Right-hand sides of a static solution in Lanczos' method: the factors are read once for all of them."""
+CONVERGED = 1e-13
+"""Residual of a normal mode, relative to its compliance, at which Lanczos' method ends."""
+DEPENDENT = 1e-15
+"""Square of a size, relative to the largest, below which a combination of shapes is zero apart from rounding."""
 
 
 class StaticSolver:
@@ -145,15 +150,10 @@ class StaticSolver:
             return np.empty(0), found
         LOGGER.info("computing %d normal modes", count)
         mass = self._model.mass[self.free][:, self.free]
-        if count > n - 2 or n <= DENSE:
+        if n <= max(DENSE, 3 * count):
             squares, shapes = _dense_modes(self._solve(mass.toarray()), mass, count)
         else:
-            inverse = LinearOperator((n, n), matvec=lambda force: self._solve(force.ravel()), dtype=float)
-            start = self._solve(mass @ np.random.default_rng(0).standard_normal(n))
-            # only the shape of the first argument is used
-            squares, shapes = eigsh(inverse, count, mass, sigma=0.0, OPinv=inverse, v0=start, tol=1e-13)
-            order = np.argsort(squares)
-            squares, shapes = squares[order], shapes[:, order]
+            squares, shapes = _lanczos_modes(self._solve, mass, count)
         found[self.free] = shapes
         return squares, found
 
@@ -173,3 +173,46 @@ def _dense_modes(by_mass: np.ndarray, mass: csr_array, count: int) -> tuple[np.n
     compliances, shapes = eigh((work + work.T) / 2, mass.toarray())
     highest = np.argsort(compliances)[::-1][:count]
     return 1.0 / compliances[highest], shapes[:, highest]
+
+
+def _lanczos_modes(
+    solve: Callable[[np.ndarray], np.ndarray], mass: csr_array, count: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest modes by block Lanczos iterations with static solutions and full orthogonalisation.
+
+    R. G. Grimes, J. G. Lewis, H. D. Simon, SIAM J. Matrix Anal. Appl. 15 (1994) 228-272.
+    """
+    random = np.random.default_rng(0)
+    block = basis = np.empty((mass.shape[0], 0))
+    projected = np.empty((0, 0))
+    while True:
+        while not block.shape[1]:  # at the start, and where static solutions of the modes so far are among these
+            block = solve(mass @ random.standard_normal((mass.shape[0], BLOCK)))
+            block -= basis @ (basis.T @ (mass @ block))
+            block, _ = _orthonormal(block, mass)
+        basis = np.column_stack([basis, block])
+        following = solve(mass @ block)
+        column = np.zeros((basis.shape[1], block.shape[1]))
+        for _ in range(2):  # rounding leaves a part after the first time
+            part = basis.T @ (mass @ following)
+            following -= basis @ part
+            column += part
+        known = len(projected)
+        projected = np.block([[projected, column[:known]], [column[:known].T, column[known:]]])
+        compliances, vectors = eigh((projected + projected.T) / 2)
+        block, sizes = _orthonormal(following, mass)
+        residuals = np.linalg.norm(sizes @ vectors[known:, -count:], axis=0)
+        if len(compliances) >= count and (residuals <= CONVERGED * compliances[-count:]).all():
+            highest = slice(None, -count - 1, -1)
+            return 1.0 / compliances[highest], basis @ vectors[:, highest]
+
+
+def _orthonormal(shapes: np.ndarray, mass: csr_array) -> tuple[np.ndarray, np.ndarray]:
+    """Return independent shapes of unit modal mass, and the factors R of the given ones, shapes = found @ R."""
+    found, factors = shapes, np.eye(shapes.shape[1])
+    for _ in range(2):  # rounding leaves a part after the first time
+        values, vectors = eigh(found.T @ (mass @ found))
+        vectors = vectors[:, values > DEPENDENT * values[-1]]
+        sizes = np.sqrt(values[-vectors.shape[1] :])
+        found, factors = found @ (vectors / sizes), sizes[:, None] * vectors.T @ factors
+    return found, factors
