@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from pydantic import Field
@@ -70,7 +69,7 @@ class TyreCurve:
     ellipse: tuple[np.ndarray, np.ndarray]
     constants: dict[str, float]
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return the numbers for JSON."""
         names = {"kappa": self.kappa, "Fx": self.fx, "alpha": self.alpha, "Fy": self.fy, "Mz": self.mz}
         ellipse = {name: x.tolist() for name, x in zip(("Fx", "Fy"), self.ellipse, strict=True)}

@@ -82,7 +82,7 @@ class Mechanism:
     def __init__(self, dataset: Dataset) -> None:
         self.dataset = dataset
         self.further: dict[str, Place] = {}
-        self.tables: dict[str, dict[str, Any]] = {}
+        self.tables: dict[str, dict[str, object]] = {}
         self.variables: dict[str, str] = {}
         self.inputs: dict[str, float] = {}
         self.states: dict[str, dict[str, Any]] = {}
