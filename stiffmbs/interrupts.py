@@ -10,7 +10,7 @@ import os
 import signal
 import sys
 from collections.abc import Iterator
-from typing import Any, NoReturn
+from typing import NoReturn
 
 INTERRUPTED = 128 + signal.SIGINT.value
 """Exit status of a command that is interrupted before it has results, as of shells."""
@@ -96,5 +96,5 @@ def _is_the_command() -> bool:
     return by_module or os.path.basename(sys.argv[0] if sys.argv else "").removesuffix(".exe") == "stiffmbs"
 
 
-def _end(number: int, frame: Any) -> NoReturn:
+def _end(number: int, frame: object) -> NoReturn:
     os._exit(INTERRUPTED)

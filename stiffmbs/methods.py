@@ -98,7 +98,7 @@ class ModelMethods(NotebookMethods):
         return stiffmbs.check(self, settings, **changes)
 
     def draw(
-        self: Any, path: str | Path | None = None, at: float | None = None, described: bool = False, checked: bool = False,
+        self: object, path: str | Path | None = None, at: float | None = None, described: bool = False, checked: bool = False,
         view: str = "", names: bool = True, forces: bool | None = None,
     ) -> Sheet | None:  # fmt: skip
         """Draw the model at a given time; parameters, result and errors are those of `stiffmbs.draw`."""

@@ -8,7 +8,6 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from ..errors import InputError
 from ..reading.files.text_file import file_text, source_name
@@ -57,7 +56,7 @@ class ListedStatement:
         detail = f" ({' '.join(self.arguments)})" if self.arguments else self.reason and f", {self.reason}"
         return f"{self.file}, line {self.line}, {what}: {self.fate}{detail}"
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return an entry of ``statements`` of ``stiffmbs check --json``."""
         return asdict(self)
 

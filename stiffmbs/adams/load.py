@@ -70,7 +70,7 @@ def other_commands(commands_file: Path, name: str) -> str:
     return file_text(path if path.suffix else path.with_suffix(COMMANDS), ENCODING)
 
 
-def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
+def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, object]:
     """Return the scene with the Adams/View names of its elements as comments."""
     from ruamel.yaml.comments import CommentedMap
 
@@ -99,7 +99,7 @@ def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Datas
         raise InputError(f"{source}: {error}") from None
 
 
-def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
+def _commanded(path: str | Path) -> tuple[Dataset, dict[str, object]]:
     """Load a dataset file with the changes and simulations of its command file, if any."""
     commands_file = command_file(path)
     text, source = file_text(path, ENCODING, ZERO_BYTE), source_name(path)
@@ -114,7 +114,7 @@ def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
     reported = [*first.notes(commands_file.name), *asked.notes]
     if asked.segments:
 
-        def read(segment: Segment) -> tuple[Dataset, dict[str, Any]]:
+        def read(segment: Segment) -> tuple[Dataset, dict[str, object]]:
             return _scene(text, source, segment.changes)
 
         with prefixed(f"{commands_file}, ", DatasetFault):
@@ -125,7 +125,7 @@ def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
     return dataset, found | ({"notes": notes} if notes else {})
 
 
-def _line(dataset: Dataset, path: Sequence[Any]) -> int | None:
+def _line(dataset: Dataset, path: Sequence[object]) -> int | None:
     """Return the line of the statement from which the scene element at a path was made."""
     for name in path[1:2]:
         keyword, _, rest = str(name).rpartition("_")

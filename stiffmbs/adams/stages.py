@@ -67,16 +67,16 @@ def _by_dynamics(segment: Segment) -> Segment:
 
 def _staged(
     segments: Sequence[Segment], described: Described, read: Callable[[Segment], Described], source: str, watched: bool
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Return one stage per simulation; if sensors may end stages (`watched`), an end time stays absolute."""
-    stages: list[dict[str, Any]] = []
+    stages: list[dict[str, object]] = []
     count = len(segments)
     notes = [f"{source} runs {f'{count} simulations in succession' if count > 1 else 'one simulation'}"]
     units = described[0].units
     time, before, known = 0.0, segments[0], described
     for k, segment in enumerate(segments, start=1):
         simulation = segment.simulation
-        stage: dict[str, Any] = {"analysis": "static"} if simulation.kind == STATICS else {}
+        stage: dict[str, object] = {"analysis": "static"} if simulation.kind == STATICS else {}
         if segment.changes != before.changes:
             now = read(segment)
             stage |= _changed(known, now, segment)
@@ -101,7 +101,7 @@ def _in_si(segment: Segment, units: Units) -> dict[str, float]:
     return {name: value * (units.time if name == "max_step" else 1.0) for name, value in segment.settings.items()}
 
 
-def _changed(before: Described, now: Described, segment: Segment) -> dict[str, Any]:
+def _changed(before: Described, now: Described, segment: Segment) -> dict[str, object]:
     """Return the changes of a stage relative to the previous scene."""
     patch = merge_patch(_without(before[1]), _without(now[1]))
     _refuse_other_turns(patch.get("joints") or {}, now[0], segment)
@@ -110,14 +110,14 @@ def _changed(before: Described, now: Described, segment: Segment) -> dict[str, A
     return {"change": kept} if kept else {}
 
 
-def _with_all_bodies(patch: Mapping[str, Any]) -> dict[str, Any]:
+def _with_all_bodies(patch: Mapping[str, Any]) -> dict[str, object]:
     """Return a patch that removes no body: an auxiliary body of a deactivated CVCV moves on freely."""
     bodies = {name: part for name, part in (patch.get("bodies") or {}).items() if part is not None}
     others = {name: part for name, part in patch.items() if name != "bodies"}
     return others | ({"bodies": bodies} if bodies else {})
 
 
-def _without(found: dict[str, Any]) -> dict[str, Any]:
+def _without(found: dict[str, object]) -> dict[str, object]:
     return {name: value for name, value in found.items() if name not in NOT_OF_A_STAGE}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Unpack
+from typing import Unpack
 
 from ..compile.system import System
 from ..compile.written_values import table_notes
@@ -81,7 +81,7 @@ class Report(NotebookMethods):
     messages: tuple[str, ...]
     sound: bool
 
-    def as_dict(self, scene: str) -> dict[str, Any]:
+    def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs check --json``; `scene` is the file or name of the scene."""
         return {
             "scene": scene,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 
@@ -31,7 +31,13 @@ from .steady import settled_in_motion
 
 
 def solution_at_rest(
-    job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray, message: str, notes: tuple[str, ...], solver: dict[str, Any]
+    job: Job,
+    t: np.ndarray,
+    q: np.ndarray,
+    u: np.ndarray,
+    message: str,
+    notes: tuple[str, ...],
+    solver: dict[str, object],
 ) -> Solution:
     """Return the channels of equilibria with these instants, s, poses and velocities.
 
@@ -50,7 +56,7 @@ def solution_at_rest(
 
 def solution_of_rows(
     name: str, data: ModelData, system: System, rows: OutputRows, not_unique: tuple[str, ...], message: str,
-    notes: tuple[str, ...], solver: dict[str, Any],
+    notes: tuple[str, ...], solver: dict[str, object],
 ) -> Solution:  # fmt: skip
     """Return the channels of rows that no integrator has computed."""
     nothing = np.empty(0)
@@ -98,7 +104,7 @@ class EquilibriumFound:
     eigenvalues: tuple[complex, ...]
     solution: Solution
 
-    def as_dict(self, scene: str) -> dict[str, Any]:
+    def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs equilibrium --json``; `scene` is the file or name of the scene."""
         return {
             "scene": scene, "status": "done", "message": self.solution.message,

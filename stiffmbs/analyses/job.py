@@ -193,7 +193,7 @@ def refuse_tolerances(data: ModelData) -> None:
 
 
 def prepare(
-    model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Any
+    model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: object
 ) -> Job:
     """Compile and assemble a model; parameters and errors as for `run`."""
     found = examined(model, settings, start_from, **changes)
@@ -289,7 +289,7 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
 
 
 def examined(
-    model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Any
+    model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: object
 ) -> Examined:
     """Compile a model and examine it for redundant equations; parameters and errors as for `run`."""
     data = data_of(model)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -200,7 +199,7 @@ def _change(system: System, name: str, force: Element, data: ModelData) -> Chang
     return Change(group, element, force, first, values, of_inputs)
 
 
-def with_numbers(job: Job, name: str, **numbers: Any) -> Job:
+def with_numbers(job: Job, name: str, **numbers: object) -> Job:
     """Return a job with changed parameters of a force, without a new compilation, examination or presolve.
 
     The model is prepared again only if its equations change, if the presolve solves mechanisms separately, or if it leaves

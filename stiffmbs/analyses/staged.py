@@ -78,7 +78,7 @@ def run_until(
     conditions: Mapping[str, Until],
     interval: float | None,
     inputs: Mapping[str, Given] | None,
-    **changes: Any,
+    **changes: object,
 ) -> Ended:
     """Solve up to the condition that ends the stage, or over the whole time, with changes of settings and ``start_from``.
 
@@ -110,7 +110,7 @@ def run_until(
 
 
 def _up_to_the_first(
-    run: Run, conditions: Mapping[str, Until], interval: float | None, fresh: bool, **changes: Any
+    run: Run, conditions: Mapping[str, Until], interval: float | None, fresh: bool, **changes: object
 ) -> tuple[Solution, str, float]:
     """Return the run up to the first condition, the name of the condition (empty for none), and the remaining time."""
     whole = run(**{**changes, "points": "steps", "output": None})
@@ -192,7 +192,7 @@ def run_stages(
     watch: ProgressCallback | None = None,
     start_from: StartFrom | None = None,
     inputs: Mapping[str, Given] | None = None,
-    **changes: Any,
+    **changes: object,
 ) -> Solution:
     """Solve all stages of a scene, up to the first that stops early; parameters and errors as for `stiffmbs.run`.
 
@@ -259,7 +259,7 @@ def _solved(
     return Ended(joined(scene.name, rows))
 
 
-def _interval(scene: Scene, changes: dict[str, Any]) -> float | None:
+def _interval(scene: Scene, changes: dict[str, object]) -> float | None:
     """Return the time between the output points of a stage of full length."""
     times = output_grid(changed(scene.run, changes)).times
     return None if times is None else float(times[1] - times[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -41,7 +41,7 @@ def state_to_start_from(given: StartFrom | None) -> SavedState | None:
     )
 
 
-def starting_at(state: SavedState | None, given: RunSettings | None, changes: dict[str, Any]) -> dict[str, Any]:
+def starting_at(state: SavedState | None, given: RunSettings | None, changes: dict[str, object]) -> dict[str, object]:
     """Return settings changes with the state's time as the start, unless the caller requests another start."""
     asked = "start" in changes or (given is not None and "start" in given.model_fields_set)
     return changes if state is None or asked else {**changes, "start": state.t}

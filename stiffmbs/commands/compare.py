@@ -61,7 +61,7 @@ if TYPE_CHECKING:
 @CHANGES
 @output_option("Draw the figure: .svg, .png or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of tables.")
-def compare(scene: str, output: Path | None, as_json: bool, **options: Any) -> None:
+def compare(scene: str, output: Path | None, as_json: bool, **options: object) -> None:
     """Measure run time against error of solvers, schemes and formulations on SCENE.
 
     The reference is a motion on which bdf and dop853 agree at tight tolerances; if they disagree, the comparison is

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 @solving_options
 def equilibrium(
     scene: str, output: Path | None, as_json: bool, velocity: str | None, rotation: str | None, about: str | None,
-    rolling: tuple[str, ...], speed: str | None, state: str | None, at: float | None, **options: Any,
+    rolling: tuple[str, ...], speed: str | None, state: str | None, at: float | None, **options: object,
 ) -> None:  # fmt: skip
     """Find the equilibrium of SCENE from its described pose: poses, forces, and free motions.
 
@@ -77,7 +77,7 @@ def _motion(
 ) -> SteadyMotion | None:
     """Return the steady motion that options request, or None."""
     turning = _numbers(rotation)
-    given: dict[str, Any] = {
+    given: dict[str, object] = {
         "velocity": _numbers(velocity), "rotation": turning[0] if turning and len(turning) == 1 else turning,
         "about": _numbers(about), "rolling": rolling or None, "speed": speed,
     }  # fmt: skip

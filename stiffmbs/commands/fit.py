@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @solving_options
-def sensitivities(scene: str, to: tuple[str, ...], of: str, as_json: bool, **options: Any) -> None:
+def sensitivities(scene: str, to: tuple[str, ...], of: str, as_json: bool, **options: object) -> None:
     """Compute derivatives of an output of SCENE by parameters, by forward sensitivity analysis along the steps of bdf
     or radau.
 
@@ -75,7 +75,7 @@ _search_options = several(
 @_search_options
 @solving_options
 def fit(
-    scene: str, data: str, parameters: tuple[str, ...], start: tuple[str, ...], as_json: bool, **options: Any
+    scene: str, data: str, parameters: tuple[str, ...], start: tuple[str, ...], as_json: bool, **options: object
 ) -> None:
     """Fit parameters of SCENE to the channels in FILE, with 95 % confidence intervals.
 
@@ -101,7 +101,7 @@ def fit(
 @solving_options
 def optimise(
     scene: str, minimise: str, keep: tuple[str, ...], parameters: tuple[str, ...], start: tuple[str, ...], as_json: bool,
-    **options: Any,
+    **options: object,
 ) -> None:  # fmt: skip
     """Find the parameters of SCENE that minimise an output, within bounds and under constraints.
 
@@ -117,7 +117,7 @@ def optimise(
     sys.exit(0 if found.success else Status.FAILED)
 
 
-def _ranges(parameters: tuple[str, ...]) -> dict[str, Any]:
+def _ranges(parameters: tuple[str, ...]) -> dict[str, object]:
     from ..reading.variation import read_variation
 
     return {one.name: one for one in (read_variation(text, "--parameter") for text in parameters)}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -90,7 +89,7 @@ def _number(name: str, names: list[str]) -> int:
 @solving_options
 def stresses(
     scene: str, body: str, results: Path | None, output: Path | None, nodes: tuple[int, ...], scale: float, every: int,
-    as_json: bool, **options: Any,
+    as_json: bool, **options: object,
 ) -> None:  # fmt: skip
     """Run SCENE, or read its RESULTS (.npz), and report stresses and strain energy of its flexible BODY.
 

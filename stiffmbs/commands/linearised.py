@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
 import click
 
@@ -37,7 +36,7 @@ from .scene import changes_of, in_file, is_written, output_option, refuse_own_in
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @solving_options
 def modes(
-    scene: str, state: str | None, at: float | None, output: Path | None, amplitude: float, as_json: bool, **options: Any
+    scene: str, state: str | None, at: float | None, output: Path | None, amplitude: float, as_json: bool, **options: object
 ) -> None:  # fmt: skip
     """Linearise SCENE about a state: frequency, damping and participation of each mode, one per degree of freedom.
 
@@ -97,7 +96,7 @@ def modes(
 @solving_options
 def response(
     scene: str, inputs: tuple[str, ...], outputs: tuple[str, ...], lowest: float, highest: float, points: int,
-    at: float | None, path: Path | None, as_json: bool, **options: Any,
+    at: float | None, path: Path | None, as_json: bool, **options: object,
 ) -> None:  # fmt: skip
     """Linearise SCENE about a state, and show the frequency response of outputs to inputs: gain and phase.
 

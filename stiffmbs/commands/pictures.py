@@ -6,7 +6,7 @@ import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -46,7 +46,7 @@ def _name(path: Path, paths: Sequence[Path]) -> str:
     return stem if [other.name for other in paths].count(path.name) == 1 else str(path)
 
 
-def runs_of(source: str, others: Sequence[Path], options: dict[str, Any]) -> dict[str, Solution]:
+def runs_of(source: str, others: Sequence[Path], options: dict[str, object]) -> dict[str, Solution]:
     """Return the run of a scene, or of a file of results, and other runs from files; a single run has no name."""
     if source.endswith(RESULTS):
         changed = changes_of(options)
@@ -74,7 +74,7 @@ def runs_of(source: str, others: Sequence[Path], options: dict[str, Any]) -> dic
 @solving_options
 def draw(
     scene: str, output: Path | None, at: float | None, described: bool, checked: bool, view: str, names: bool, forces: bool | None,
-    as_json: bool, **options: Any,
+    as_json: bool, **options: object,
 ) -> None:  # fmt: skip
     """Draw SCENE at an instant: bodies, joints, forces and ground by their symbols, force arrows in the plane to scale.
 
@@ -123,7 +123,7 @@ def draw(
 @solving_options
 def animate(
     scene: str, results: tuple[Path, ...], output: Path | None, view: str, speed: float, rate: float, traces: tuple[str, ...],
-    names: bool, forces: bool | None, as_json: bool, **options: Any,
+    names: bool, forces: bool | None, as_json: bool, **options: object,
 ) -> None:  # fmt: skip
     """Animate SCENE: its run, or RESULTS (.npz) of runs and of mode shapes, drawn over each other.
 
@@ -174,7 +174,7 @@ def animate(
 @solving_options
 def plot(
     source: str, channels: tuple[str, ...], against: str, others: tuple[Path, ...], title: str, output: Path | None,
-    live: bool, as_json: bool, **options: Any,
+    live: bool, as_json: bool, **options: object,
 ) -> None:  # fmt: skip
     """Plot CHANNELS of a run: of RESULTS (.npz), or of SCENE, which is solved first.  Each unit has its own plot.
 
@@ -204,7 +204,7 @@ def plot(
 
 def _live(
     source: str, channels: tuple[str, ...], against: str, title: str, others: tuple[Path, ...], output: Path | None,
-    options: dict[str, Any],
+    options: dict[str, object],
 ) -> Figure:  # fmt: skip
     """Solve a scene and plot the solution so far in a window."""
     from ..show.figure import show_live

@@ -24,7 +24,7 @@ class Display:
         self._seen = sys.stderr.isatty()
         self._shown: Any = None
 
-    def _started(self, made: Callable[[], Any]) -> Any:
+    def _started(self, made: Callable[[], object]) -> Any:
         if self._shown is None:
             self._shown = made()
             self._shown.start()

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 @solving_options
 def report(
     scene: str, other: str | None, output: Path | None, verify: bool, equilibrium: bool, compare: bool, kc: tuple[str, ...], loads: bool,
-    **options: Any,
+    **options: object,
 ) -> None:  # fmt: skip
     """Check and solve SCENE and write a report: findings, settings, peaks with error bars, figures, solver steps.
 

@@ -49,7 +49,7 @@ READ_BY_RICH = "COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "J
 )
 def run(
     scene: str, output: Path | None, figure: Path | None, as_json: bool, all_loads: bool, verify: bool, state: str | None,
-    at: float | None, **options: Any,
+    at: float | None, **options: object,
 ) -> None:  # fmt: skip
     """Solve SCENE and show the range of every joint force.
 

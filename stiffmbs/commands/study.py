@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 @solving_options
 def study(
     scene: str, vary: tuple[str, ...], sample: str | None, seed: int, outputs: tuple[str, ...], workers: int,
-    processes: bool, output: Path | None, as_json: bool, **options: Any,
+    processes: bool, output: Path | None, as_json: bool, **options: object,
 ) -> None:  # fmt: skip
     """Solve SCENE for a grid or a sample of values, and keep the requested outputs of each run.
 

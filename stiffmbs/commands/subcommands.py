@@ -62,7 +62,7 @@ def _tell_more(context: click.Context, _: click.Parameter, count: int) -> None:
     LOGGER.addHandler(handler)
     LOGGER.setLevel(level)
 
-    def leave(*_: Any) -> None:
+    def leave(*_: object) -> None:
         LOGGER.removeHandler(handler)
         LOGGER.setLevel(before)
 

@@ -6,7 +6,6 @@ import itertools
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -69,7 +68,7 @@ class Row:
     steps: int
     message: str = ""  # reason of a failure; else empty
 
-    def as_dict(self, measure: str) -> dict[str, Any]:
+    def as_dict(self, measure: str) -> dict[str, object]:
         """Return a row of ``stiffmbs compare --json``; a failed run has a message, and None as error and time."""
         found = {"solver": self.solver, "setting": self.setting, "error": _finite(self.errors.get(measure, np.nan))}
         stated = {"message": self.message} if self.message else {}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from ..analyses.job import Runnable, data_of
 from ..errors import InputError
@@ -53,7 +53,7 @@ class Comparison:
 
         return conclusion(self)
 
-    def as_dict(self, scene: str) -> dict[str, Any]:
+    def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs compare --json``; `scene` is the file or name of the scene."""
         return {
             "scene": scene, "measure": self.measure, "rows": [row.as_dict(self.measure) for row in self.rows],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,7 +30,7 @@ class Crossing:
     between: tuple[float, float]  # values of the parameter on both sides
     measured: bool  # True if both have a time on both sides; otherwise one of them fails there, and `at` is the middle
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return an entry of ``crossings`` in ``stiffmbs compare --json``."""
         return {"before": self.before, "then": self.then, "at": self.at, "between": list(self.between)}
 
@@ -90,7 +90,7 @@ class ComparisonOver:
 
         return conclusion_over(self)
 
-    def as_dict(self, scene: str) -> dict[str, Any]:
+    def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs compare --over ... --json``, with a row for each value and solver."""
         return {
             "scene": scene, "measure": self.measure, "rows": [row for one in self.values for row in self._rows(one)],
@@ -102,11 +102,11 @@ class ComparisonOver:
             "conclusion": self.conclusion, "interrupted": self.interrupted,
         }  # fmt: skip
 
-    def _rows(self, one: AtValue) -> list[dict[str, Any]]:
+    def _rows(self, one: AtValue) -> list[dict[str, object]]:
         setting = f"{self.parameter}={one.value:.4g}"
         found = []
         for entry in self.entries:
-            row: dict[str, Any] = {"solver": entry.name, "setting": setting}
+            row: dict[str, object] = {"solver": entry.name, "setting": setting}
             if one.at and entry.name in one.at.seconds:
                 row |= {
                     "error": self.error,

@@ -5,12 +5,11 @@ from __future__ import annotations
 import os
 import platform
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any
 
 PACKAGES = ("stiffmbs", "numpy", "scipy", "numba", "scikit-sundae", "exudyn", "casadi")
 
 
-def machine() -> dict[str, Any]:
+def machine() -> dict[str, object]:
     """Return the processor, the system, and versions of packages."""
     return {
         "processor": _processor(),

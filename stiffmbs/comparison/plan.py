@@ -94,7 +94,7 @@ def _entries(name: str, formulations: Sequence[str], settings: RunSettings) -> l
     ]
 
 
-def _entry(name: str, chosen: dict[str, Any], settings: RunSettings) -> Entry:
+def _entry(name: str, chosen: dict[str, object], settings: RunSettings) -> Entry:
     traits = traits_of(changed(settings, chosen))
     varied = "" if traits.exact else "step" if traits.fixed_steps else "rtol"
     neither = traits.switches or traits.exact

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Shape: TypeAlias = tuple[Any, ...]
 """Structure of a field's equations without its numbers."""
 
-ShapeOf: TypeAlias = Callable[[Any, "Compilable", "ElementData"], Shape]
+ShapeOf: TypeAlias = Callable[[object, "Compilable", "ElementData"], Shape]
 """Function that returns the shape of a value and appends its data."""
 REACTION = "reaction"
 """Prefix of the index of a joint's reaction or coordinate in a formula's shape."""

@@ -203,7 +203,7 @@ def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tup
     return _parts({name: values[name] for name in type(element).__pydantic_fields__}, model, data)
 
 
-def _parts(values: Mapping[str, Any], model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
+def _parts(values: Mapping[str, object], model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
     return tuple((name, _shape(value, model, data)) for name, value in values.items())
 
 

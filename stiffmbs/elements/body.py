@@ -71,7 +71,7 @@ class Body(Described):
 class LineBody(Described):
     """Base of bodies that consist of several rigid bodies and the forces between them, such as beams."""
 
-    def add_to(self, model: Any, name: str) -> Any:
+    def add_to(self, model: object, name: str) -> Any:
         """Add the rigid bodies and forces to a model built in Python, and return a handle."""
         raise NotImplementedError
 

@@ -145,7 +145,7 @@ class Element(Described):
     type: str = ""
 
     @classmethod
-    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+    def __pydantic_init_subclass__(cls, **options: object) -> None:
         """Refuse fields with the name of an attribute of the base class or of the symbolic element."""
         super().__pydantic_init_subclass__(**options)
         base = next(base for base in cls.__mro__ if base.__module__ == __name__)
@@ -156,11 +156,11 @@ class Element(Described):
 
     @model_validator(mode="before")
     @classmethod
-    def _of_its_kind(cls, found: object) -> Any:
+    def _of_its_kind(cls, found: object) -> object:
         return typed(cls.kind, found)
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, object]:
         schema = handler(core_schema)
         handler.resolve_ref_schema(schema)["properties"]["type"] = {
             "const": cls.kind, "default": cls.kind, "title": "Type", "type": "string",
@@ -250,7 +250,7 @@ class Joint(Element):
     keeps_in_plane: ClassVar[bool] = False
 
     @classmethod
-    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+    def __pydantic_init_subclass__(cls, **options: object) -> None:
         """Name the channels of a new kind's free coordinates."""
         super().__pydantic_init_subclass__(**options)
         if cls.free_coordinates():

@@ -110,7 +110,7 @@ def check_class(element: object) -> None:
         raise InputError(f"{getattr(element, '__name__', repr(element))}: {reason}")
 
 
-def _lacks(element: Any) -> Iterator[str]:
+def _lacks(element: object) -> Iterator[str]:
     if not isinstance(element, type) or not issubclass(element, Joint | Force):
         yield "found no subclass of Joint or Force, expected one"
         return

@@ -15,7 +15,7 @@ from ..reading.files.files_read import file_beside
 from ..reading.files.quoted import written
 
 Context = Mapping[str, Any] | None
-JsonSchema = dict[str, Any]
+JsonSchema = dict[str, object]
 
 
 @dataclass(frozen=True)
@@ -35,11 +35,11 @@ class ReadBy:
 
         return core_schema.with_info_plain_validator_function(read)
 
-    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> JsonSchema:
+    def __get_pydantic_json_schema__(self, schema: object, handler: GetJsonSchemaHandler) -> JsonSchema:
         return self.schema(lambda kind: handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, [])))
 
 
-def in_file(kind: type[Any], read: Callable[[Path], Any], description: str) -> ReadBy:
+def in_file(kind: type[Any], read: Callable[[Path], object], description: str) -> ReadBy:
     """Return the marker of a field that takes an object, or the name of a file from which it is read."""
 
     def found_in_file(found: object, context: Context) -> Any:

@@ -25,7 +25,7 @@ class Samples:
 
     optional = False
 
-    def __init__(self, marker: Callable[[int], Any], joints: Mapping[str, Joint]) -> None:
+    def __init__(self, marker: Callable[[int], object], joints: Mapping[str, Joint]) -> None:
         self.marker, self.joints = marker, joints
 
     def number(self, mark: Measured) -> float:
@@ -36,7 +36,7 @@ class Samples:
         """Return a valid formula for a field."""
         return "1"
 
-    def made(self, kind: type[Element], form: Mapping[str, Any], left_out: frozenset[str] = frozenset()) -> Element:
+    def made(self, kind: type[Element], form: Mapping[str, object], left_out: frozenset[str] = frozenset()) -> Element:
         """Return an element of a class.
 
         `form`: given fields. `left_out`: fields that are not filled. Raises InputError if no choice of joints fits the
@@ -69,7 +69,7 @@ class Samples:
             return values if several else values[0]
         return None
 
-    def _joined(self, kind: type[Element], fields: dict[str, Any], names: list[str]) -> Element:
+    def _joined(self, kind: type[Element], fields: dict[str, object], names: list[str]) -> Element:
         for chosen in itertools.permutations(self.joints, len(names)):
             element = kind(**fields, **dict(zip(names, chosen, strict=True)))
             if not any(True for _ in element.validation_errors(self.joints)):
@@ -77,14 +77,14 @@ class Samples:
         raise InputError(f"{kind.__name__}: found no joints that it fits among {', '.join(self.joints)}")
 
 
-def types_in(annotation: Any) -> Iterator[Any]:
+def types_in(annotation: object) -> Iterator[Any]:
     """Yield a type and all types that it contains."""
     yield annotation
     for inner in get_args(annotation):
         yield from types_in(inner)
 
 
-def _takes_marker(types: list[Any]) -> bool:
+def _takes_marker(types: list[object]) -> bool:
     return any(isinstance(part, type) and issubclass(part, MarkerReference) for part in types)
 
 

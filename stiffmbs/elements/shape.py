@@ -64,7 +64,7 @@ class OneFor:
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.no_info_before_validator_function(self.listed, handler(source))
 
-    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, object]:
         several = handler(schema)
         return {"anyOf": [several, several["items"] if "items" in several else several["prefixItems"][0]]}
 

@@ -161,7 +161,7 @@ class UpTo(Described):
 
     @field_validator("up_to", mode="before")
     @classmethod
-    def _cycles(cls, found: object) -> Any:
+    def _cycles(cls, found: object) -> object:
         if isinstance(found, str) and NOT_CYCLES.search(found):
             raise ValueError(f"found '{found}', expected a frequency in Hz")
         return found
@@ -207,7 +207,7 @@ class FlexibleBody(Described):
 
     @field_validator("modes", mode="before")
     @classmethod
-    def _count_or_frequency(cls, found: object, info: ValidationInfo) -> Any:
+    def _count_or_frequency(cls, found: object, info: ValidationInfo) -> object:
         if isinstance(found, dict):
             try:
                 return UpTo.model_validate(found, context=info.context)

@@ -136,17 +136,17 @@ def _placed(matrix: csr_array, labels: np.ndarray | None, nodes: Nodes) -> csr_a
     )
 
 
-def _matrix_market(path: Path) -> tuple[Mapping[str, Any], dict[str, np.ndarray]]:
+def _matrix_market(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
     return {"matrix": mmread(path)}, {}
 
 
-def _op4(path: Path) -> tuple[Mapping[str, Any], dict[str, np.ndarray]]:
+def _op4(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
     with needs("pyyeti", "flexible"):
         from pyyeti.nastran import op4
     return op4.read(str(path), sparse=True), {}
 
 
-def _op2(path: Path) -> tuple[Mapping[str, Any], dict[str, np.ndarray]]:
+def _op2(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
     """Return the matrices of an OUTPUT2 file, and those of its DMIG tables."""
     with needs("pyyeti", "flexible"):
         from pyyeti.nastran import bulk, op2
@@ -158,7 +158,7 @@ def _op2(path: Path) -> tuple[Mapping[str, Any], dict[str, np.ndarray]]:
     return tables, {name: np.array(table.index.tolist()) for name, table in tables.items()}
 
 
-def _punch(path: Path) -> tuple[Mapping[str, Any], dict[str, np.ndarray]]:
+def _punch(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
     """Return the DMIG matrices of a punch file; entries of a symmetric matrix are given once."""
     with needs("pyyeti", "flexible"):
         from pyyeti.nastran import bulk
@@ -182,7 +182,7 @@ def _punch(path: Path) -> tuple[Mapping[str, Any], dict[str, np.ndarray]]:
     return matrices, labels
 
 
-def _full(path: Path) -> tuple[Mapping[str, Any], dict[str, np.ndarray]]:
+def _full(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
     with needs("ansys", "ansys"):
         from ansys.mapdl.reader import read_binary
     file = read_binary(str(path))
@@ -193,7 +193,7 @@ def _full(path: Path) -> tuple[Mapping[str, Any], dict[str, np.ndarray]]:
     return {"K": K, "M": M}, {"K": labels, "M": labels}
 
 
-def _calculix(path: Path) -> tuple[Mapping[str, Any], dict[str, np.ndarray]]:
+def _calculix(path: Path) -> tuple[Mapping[str, object], dict[str, np.ndarray]]:
     row, column, value = np.loadtxt(path, ndmin=2).T
     rows, columns = row.astype(np.int64) - 1, column.astype(np.int64) - 1
     size = max(rows.max(), columns.max()) + 1

@@ -91,7 +91,7 @@ class Solid:
     def _basis(self, at_nodes: bool = False) -> Any:
         with needs("skfem", "flexible"):
             import skfem
-        rule: dict[str, Any] = {"intorder": self.order}
+        rule: dict[str, object] = {"intorder": self.order}
         if at_nodes:
             places = self.element.doflocs.T
             rule = {"quadrature": (places, np.ones(places.shape[1]))}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -60,7 +59,7 @@ class Mode:
         """True if no part of the mode grows exponentially."""
         return max(value.real for value in self.eigenvalues) <= 0
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return the mode as a dictionary for JSON."""
         return {
             "frequency": self.natural_frequency,

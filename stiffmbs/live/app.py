@@ -178,7 +178,7 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
             schema.append(json.dumps(await asyncio.to_thread(scene_schema)).encode())
         return Response(schema[0], media_type="application/json")
 
-    async def job(request: Request, content: dict[str, Any]) -> Response:
+    async def job(request: Request, content: dict[str, object]) -> Response:
         """Send a job to the worker of a page, and stream its messages as lines of JSON."""
         worker = workers.of(str(content.get("page", "")))
         if content.get("what") == STOP:
@@ -191,7 +191,7 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
 
         return StreamingResponse(lines(), media_type="application/x-ndjson")
 
-    async def save(request: Request, content: dict[str, Any]) -> Response:
+    async def save(request: Request, content: dict[str, object]) -> Response:
         """Write the document, unless its file was changed elsewhere."""
         try:
             digest = (
@@ -207,7 +207,7 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
         except OSError as error:
             return JSONResponse({"message": f"not saved: {error.strerror or error}"}, status_code=409)
 
-    async def close(request: Request, content: dict[str, Any]) -> Response:
+    async def close(request: Request, content: dict[str, object]) -> Response:
         workers.end(str(content.get("page", "")))
         return JSONResponse({})
 
@@ -225,7 +225,7 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
 
 
 def _posted(
-    answer: Callable[[Request, dict[str, Any]], Awaitable[Response]],
+    answer: Callable[[Request, dict[str, object]], Awaitable[Response]],
 ) -> Callable[[Request], Awaitable[Response]]:
     """Return a route that reads a JSON object."""
 

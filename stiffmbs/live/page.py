@@ -62,7 +62,7 @@ class LivePage:
         return f'<iframe src="{escape(self.url)}" width="100%" height="{FRAME_HEIGHT}" style="border: 0"></iframe>'
 
 
-def open(model: Any, port: int = 0, browser: bool = True, **changes: Any) -> LivePage:  # the public name
+def open(model: Any, port: int = 0, browser: bool = True, **changes: object) -> LivePage:  # the public name
     """Open a page in the browser that solves a scene again after every change.
 
     Parameters
@@ -123,7 +123,7 @@ def _file(path: Path) -> Path:
     return path.resolve()
 
 
-def _text(data: ModelData, changes: dict[str, Any]) -> str | None:
+def _text(data: ModelData, changes: dict[str, object]) -> str | None:
     """Return a model as the text of a scene; None if it cannot be written."""
     from ..model.settings import RunSettings
     from ..solve.settings import changed

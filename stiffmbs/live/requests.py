@@ -6,7 +6,6 @@ import base64
 import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -28,7 +27,7 @@ MOST_CASES = 41
 MOST_INSTANTS = 400
 """Largest number of instants of a band."""
 PAGES = (".html", ".report.html")
-Tell = Callable[[dict[str, Any]], None]
+Tell = Callable[[dict[str, object]], None]
 """Function that reports progress to the page."""
 
 
@@ -39,7 +38,7 @@ class Request:
     the text. `rest`: further fields.
     """
 
-    def __init__(self, content: Mapping[str, Any]) -> None:
+    def __init__(self, content: Mapping[str, object]) -> None:
         self.what, self.text = str(content.get("what", "")), str(content.get("text", ""))
         numbers = content.get("numbers")
         self.numbers = {str(k): str(v) for k, v in numbers.items()} if isinstance(numbers, dict) else {}
@@ -58,28 +57,28 @@ class Request:
         return float(found)
 
 
-Answer = Callable[[LiveSolver, Request, ProgressCallback, Tell], dict[str, Any]]
+Answer = Callable[[LiveSolver, Request, ProgressCallback, Tell], dict[str, object]]
 
 
-def _solve(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+def _solve(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
     return shown(solver.solve(request.text, request.numbers, watch), request.names("channels"))
 
 
-def _check(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+def _check(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
     return {"status": "done", "text": str(check(solver.scene(request.text, request.numbers)))}
 
 
-def _modes(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+def _modes(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
     return {"status": "done", "text": modes_text(modes(solver.scene(request.text, request.numbers)))}
 
 
-def _verify(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+def _verify(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
     judged = verdict(verify(solver.scene(request.text, request.numbers), watch=watch))
     notes = [f"- {note}" for note in judged.to_check] or ["Nothing to check."]
     return {"status": judged.status, "text": "\n".join([judged.headline, judged.digits_words, *notes])}
 
 
-def _compare(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+def _compare(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
     def line(text: str) -> None:
         watch(np.nan)
         tell({"stage": text})
@@ -91,7 +90,7 @@ def _compare(solver: LiveSolver, request: Request, watch: ProgressCallback, tell
     }
 
 
-def _sweep(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+def _sweep(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
     """Return each channel over time for several values of a parameter, and the least and greatest value at each instant."""
     name = str(request.rest.get("parameter", ""))
     count = int(request.number("count", 2, MOST_CASES))
@@ -129,7 +128,7 @@ def _sweep(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: 
     return {"status": "done", "text": "\n".join([head, *notes]), "time": time[rows].tolist(), "bands": bands}
 
 
-def _export(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+def _export(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
     """Return the file of the results, of the page in motion, or of the report, in base64."""
     suffix = str(request.rest.get("suffix", ""))
     if suffix not in (*WRITERS, *PAGES):

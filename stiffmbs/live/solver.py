@@ -7,7 +7,6 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 from zlib import Z_BEST_SPEED
 
 import numpy as np
@@ -140,7 +139,7 @@ def functions_of(element: Element) -> list[PythonFunction]:
     return [part for _, part in element.parts(PythonFunction)]
 
 
-def shown(found: Solved, channels: Sequence[str]) -> dict[str, Any]:
+def shown(found: Solved, channels: Sequence[str]) -> dict[str, object]:
     """Return a solution as a page shows it: the motion, chosen channels, and the verdict."""
     scene, solution = found.scene, found.solution
     figure = solution.figure.y if solution.figure else ()
@@ -162,7 +161,7 @@ def preview(scene: ModelData) -> dict[str, str]:
     return page_data(drawing_of(scene, along=poses), {"": poses}, level=Z_BEST_SPEED)
 
 
-def parameters_of(scene: ModelData) -> list[dict[str, Any]]:
+def parameters_of(scene: ModelData) -> list[dict[str, object]]:
     """Return the parameters of a scene: name, value in SI units, and the value with its unit as text."""
     if not isinstance(scene, Scene):
         return []
@@ -174,7 +173,7 @@ def parameters_of(scene: ModelData) -> list[dict[str, Any]]:
     ]
 
 
-def error_of(error: StiffmbsError, source: str) -> dict[str, Any]:
+def error_of(error: StiffmbsError, source: str) -> dict[str, object]:
     """Return an error as a page shows it, with the line in the text, or 0 if unknown."""
     message = str(error)
     head = message.partition(": ")[0] if message.startswith(source) else ""

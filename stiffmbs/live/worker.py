@@ -27,7 +27,7 @@ from .solver import LiveSolver, NeedsConsent, error_of, preview, timed
 BETWEEN = 0.2
 """Least time between two messages on progress, s."""
 STOP = "stop"
-Send = Callable[[dict[str, Any]], None]
+Send = Callable[[dict[str, object]], None]
 
 
 @dataclass
@@ -96,12 +96,12 @@ class Worker:
             answer = self._answer(message, number)
             self._send({**answer, "number": number, "seconds": timed(begun)})
 
-    def _answer(self, message: dict[str, Any], number: int) -> dict[str, Any]:
+    def _answer(self, message: dict[str, object], number: int) -> dict[str, object]:
         if message.get("allow"):
             self._solver.allow()
         reported = time.monotonic()
 
-        def tell(progress: dict[str, Any]) -> None:
+        def tell(progress: dict[str, object]) -> None:
             nonlocal reported
             if time.monotonic() - reported > BETWEEN:
                 reported = time.monotonic()
@@ -146,7 +146,7 @@ def main() -> None:
 
     writing = threading.Lock()
 
-    def send(message: dict[str, Any]) -> None:
+    def send(message: dict[str, object]) -> None:
         with writing:
             answers.write(json_line(message) + "\n")
             answers.flush()

@@ -25,11 +25,11 @@ class Channel:
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
-        self._waiting: dict[int, asyncio.Queue[dict[str, Any]]] = {}
+        self._waiting: dict[int, asyncio.Queue[dict[str, object]]] = {}
         self._number = 0
         self.ended = False
 
-    def receive(self, message: dict[str, Any]) -> None:
+    def receive(self, message: dict[str, object]) -> None:
         """Accept an answer, from any thread."""
         self._loop.call_soon_threadsafe(self._deliver, message)
 
@@ -42,11 +42,11 @@ class Channel:
             found.put_nowait(message)
 
     async def answers(
-        self, request: dict[str, Any], put: Callable[[dict[str, Any]], None]
-    ) -> AsyncIterator[dict[str, Any]]:
+        self, request: dict[str, object], put: Callable[[dict[str, object]], None]
+    ) -> AsyncIterator[dict[str, object]]:
         """Yield the progress of a request, and its answer last."""
         self._number += 1
-        number, answers = self._number, asyncio.Queue[dict[str, Any]]()
+        number, answers = self._number, asyncio.Queue[dict[str, object]]()
         self._waiting[number] = answers
         try:
             put({**request, "number": number})
@@ -86,7 +86,7 @@ class Process:
         except RuntimeError:  # the server's loop is closed
             return
 
-    def put(self, message: dict[str, Any]) -> None:
+    def put(self, message: dict[str, object]) -> None:
         """Send a request."""
         assert self._process.stdin is not None
         try:
@@ -109,7 +109,7 @@ class Thread:
         self.channel = Channel(loop)
         self._worker = of_model(model, self.channel.receive)
 
-    def put(self, message: dict[str, Any]) -> None:
+    def put(self, message: dict[str, object]) -> None:
         """Send a request."""
         self._worker.take(message)
 

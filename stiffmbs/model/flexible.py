@@ -71,7 +71,7 @@ class SceneFlexibleBody(FlexibleBody):
     )
 
 
-def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
+def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, object]:
     """Return a scene whose flexible bodies are replaced by their frames, modal coordinates and interfaces.
 
     Raises InputError.
@@ -79,8 +79,8 @@ def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dic
     if raw.get("dimensions", 2) != 3:
         raise InputError("dimensions: found a flexible body, expected 3: flexible bodies are in space")
     bodies, joints = raw["bodies"], raw.get("joints")
-    added_bodies: dict[str, Any] = {}
-    added_joints: dict[str, Any] = dict(joints) if isinstance(joints, dict) else {}
+    added_bodies: dict[str, object] = {}
+    added_joints: dict[str, object] = dict(joints) if isinstance(joints, dict) else {}
     for name, entry in bodies.items():
         if not isinstance(entry, dict) or entry.get("type") != FLEXIBLE:
             added_bodies[name] = entry
@@ -102,7 +102,7 @@ def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dic
     return {**raw, "bodies": added_bodies, "joints": added_joints}
 
 
-def described_bodies(bodies: Mapping[str, Any]) -> dict[str, SceneFlexibleBody]:
+def described_bodies(bodies: Mapping[str, object]) -> dict[str, SceneFlexibleBody]:
     """Return the descriptions of the flexible bodies of a scene by their names."""
     frames = ((name, body) for name, body in bodies.items() if isinstance(body, FloatingFrame))
     return {name.removesuffix(f".{FRAME}"): frame.source[0] for name, frame in frames}
@@ -161,7 +161,7 @@ class _Parts:
     """
 
     def __init__(
-        self, name: str, body: SceneFlexibleBody, reduced: ReducedBody, folder: Path, axes: Any = None,
+        self, name: str, body: SceneFlexibleBody, reduced: ReducedBody, folder: Path, axes: object = None,
         turn: np.ndarray | None = None,
     ) -> None:  # fmt: skip
         self._inertia = reduced.inertia.tolist() if axes is None else axes
@@ -261,7 +261,7 @@ class _Parts:
         )
         modal_mass = np.trace(pairs, axis1=2, axis2=3) - mass * np.eye(n)
         (X, _), of_Y, of_pairs = components(square), components(second), components(pairs + second_moments)
-        found: dict[str, Any] = {
+        found: dict[str, object] = {
             "d0": to_axes @ offset, "X": X, "moments": frame.principal_moments(), "modal_mass": mass,
             "stretch": len(static) if stiffened else 0, "known": len(static), "gravity": 0.0,
             "stiffened": int(stiffened) if self._body.mesh else -1, "coupled": n if self._turned else 0,

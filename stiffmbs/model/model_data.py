@@ -71,14 +71,14 @@ class ModelData(NotebookMethods, Described):
 
     @field_validator("markers", mode="before")
     @classmethod
-    def _named_markers(cls, markers: Any) -> Any:
+    def _named_markers(cls, markers: object) -> object:
         if isinstance(markers, dict):
             check_names(markers, "marker")
         return markers
 
     @field_validator("bodies", "states", "inputs", "joints", "forces", "requests", mode="before")
     @classmethod
-    def _names(cls, named: Any, info: Any) -> Any:
+    def _names(cls, named: object, info: object) -> object:
         if isinstance(named, dict):
             check_names(named, "entry")
             for name in named:
@@ -234,9 +234,9 @@ def contents(model: Any) -> str:
 def check_element(
     where: str,
     element: Element,
-    bodies: Mapping[str, Any],
+    bodies: Mapping[str, object],
     joints: Mapping[str, Joint],
-    on_ground: Mapping[str, Any],
+    on_ground: Mapping[str, object],
     names: FormulaNames,
     states: Collection[str],
 ) -> None:

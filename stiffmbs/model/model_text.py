@@ -45,7 +45,7 @@ def model_text(data: ModelData) -> str:
 
 
 def written(
-    value: object, marker: Callable[[Any], Any] | None = None, formula: Callable[[Any], Any] | None = None
+    value: object, marker: Callable[[Any], object] | None = None, formula: Callable[[object], object] | None = None
 ) -> Any:
     """Return a value in the form of a scene file.
 
@@ -106,8 +106,8 @@ def _quantity(value: float, known: Known) -> float | str:
     return in_text(Quantity(value, known.exponents)) if known.stated else value
 
 
-def _agreed(pairs: Iterator[tuple[str, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+def _agreed(pairs: Iterator[tuple[str, object]]) -> dict[str, object]:
+    found: dict[str, object] = {}
     for name, value in pairs:
         if found.setdefault(name, value) != value:
             raise InputError(

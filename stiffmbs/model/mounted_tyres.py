@@ -33,7 +33,7 @@ class _Wheel:
         return along if self.axis @ other.axis > 1 - ALONG and aside < ALONG * abs(along) else 0.0
 
 
-def mounted_alike(bodies: Mapping[str, Any], forces: Mapping[str, Any]) -> Iterator[str]:
+def mounted_alike(bodies: Mapping[str, object], forces: Mapping[str, object]) -> Iterator[str]:
     """Yield notes on axles whose outer tyres have the same hand, although left and right tyres differ."""
     wheels = [_wheel(bodies, name, tyre) for name, tyre in forces.items() if isinstance(tyre, Tyre)]
     for right in wheels:

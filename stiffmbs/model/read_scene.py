@@ -84,8 +84,8 @@ def read_scene(
 
 
 def made_scene(
-    found: dict[str, Any],
-    changes: Sequence[tuple[str, Any]],
+    found: dict[str, object],
+    changes: Sequence[tuple[str, object]],
     source: str,
     line_of: LineOf,
     folder: Path | None = None,
@@ -110,7 +110,7 @@ def made_scene(
 
 
 def read_changed(
-    written: WrittenScene, changes: Sequence[tuple[str, Any]], unchanged: Unchanged | None = None
+    written: WrittenScene, changes: Sequence[tuple[str, object]], unchanged: Unchanged | None = None
 ) -> Scene:
     """Read a scene with other values, without what was validated before; errors as for `made_scene`."""
     content = copy.deepcopy(dict(written.content))
@@ -118,7 +118,7 @@ def read_changed(
 
 
 def _made_scene(
-    found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str, line_of: LineOf, folder: Path | None,
+    found: dict[str, object], changes: Sequence[tuple[str, object]], source: str, line_of: LineOf, folder: Path | None,
     known: Unchanged, kept: WrittenScene | None,
 ) -> Scene:  # fmt: skip
     found, chosen, changes = chosen_options(unshared(found), changes, source)
@@ -152,8 +152,8 @@ def _made_scene(
 
 
 def chosen_options(
-    found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str
-) -> tuple[dict[str, Any], dict[str, Any], Sequence[tuple[str, Any]]]:
+    found: dict[str, object], changes: Sequence[tuple[str, object]], source: str
+) -> tuple[dict[str, object], dict[str, Any], Sequence[tuple[str, Any]]]:
     """Return a scene with its chosen options merged, the choices for parts, and the other changes."""
     words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
     for path, word in words.items():
@@ -194,7 +194,7 @@ def _held_at_start(scene: Scene, source: str) -> Scene:
     return made_scene(dict(held.content), held.changes, f"{source}, at_start", lambda path: None, held.folder)
 
 
-def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
+def _keep_one_grid(found: dict[str, object], changed: set[str]) -> None:
     """Remove one of ``run.output`` and ``run.points`` if only the other one is changed."""
     run, grids = found.get("run"), ("output", "points")
     chosen = [name for name in grids if f"run.{name}" in changed]
@@ -204,7 +204,7 @@ def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
                 run.pop(name, None)
 
 
-def _place(fault: tuple[Any, ...], changes: Sequence[tuple[str, Any]], line_of: LineOf) -> str:
+def _place(fault: tuple[object, ...], changes: Sequence[tuple[str, object]], line_of: LineOf) -> str:
     """Return the location of a fault, as the beginning of a message: a change, or a line."""
     for path, _ in changes:
         keys = tuple(path.split("."))
@@ -214,7 +214,7 @@ def _place(fault: tuple[Any, ...], changes: Sequence[tuple[str, Any]], line_of: 
     return f"line {line}, " if line else ""
 
 
-def _unknown_entry(fault: tuple[Any, ...], paths: Sequence[str], known: Mapping[str, Sequence[str]]) -> str:
+def _unknown_entry(fault: tuple[object, ...], paths: Sequence[str], known: Mapping[str, Sequence[str]]) -> str:
     """Return a clause on a change within an entry that the scene does not have, if the fault is there."""
     for path in paths:
         section, *keys = path.split(".")
@@ -227,16 +227,16 @@ def _unknown_entry(fault: tuple[Any, ...], paths: Sequence[str], known: Mapping[
 class _Located(Exception):
     """Error with the path of keys at which it occurred."""
 
-    def __init__(self, message: str, path: tuple[Any, ...]) -> None:
+    def __init__(self, message: str, path: tuple[object, ...]) -> None:
         super().__init__(message)
         self.path = path
 
 
 def _validated(
-    found: dict[str, Any],
+    found: dict[str, object],
     replaced: Mapping[str, Quantity],
-    in_parts: Sequence[tuple[str, Any]],
-    known: Mapping[str, Any],
+    in_parts: Sequence[tuple[str, object]],
+    known: Mapping[str, object],
     unchanged: Unchanged,
 ) -> Scene:
     try:
@@ -248,7 +248,7 @@ def _validated(
         }
         raw = with_beams(raw, parameters)
         variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
-        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, **known}
+        context: dict[str, object] = {"parameters": parameters, "tables": tables, "variables": variables, **known}
         context["roads"] = read_roads(raw.get("roads"), context)
         raw = _with_flexible_bodies(raw, context)
         raw, context = with_parts(raw, _family(raw), context, in_parts)
@@ -272,7 +272,7 @@ def _validated(
     return scene
 
 
-def _with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
+def _with_flexible_bodies(raw: dict[str, object], context: Mapping[str, object]) -> dict[str, object]:
     """Return a scene with its flexible bodies expanded; their package is imported only for these."""
     bodies = raw.get("bodies")
     entries = bodies.values() if isinstance(bodies, dict) else ()
@@ -283,7 +283,7 @@ def _with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> di
     return with_flexible_bodies(raw, context)
 
 
-def _with_path(raw: dict[str, Any], parameters: Mapping[str, Quantity]) -> dict[str, Any]:
+def _with_path(raw: dict[str, object], parameters: Mapping[str, Quantity]) -> dict[str, object]:
     """Return a scene with the tables of its path; their module is imported only for spatial scenes with one."""
     if raw.get("path") is None or raw.get("dimensions") != 3:
         return raw
@@ -292,7 +292,7 @@ def _with_path(raw: dict[str, Any], parameters: Mapping[str, Quantity]) -> dict[
     return with_path(raw, parameters)
 
 
-def _with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
+def _with_vehicle(raw: dict[str, object], context: Mapping[str, object]) -> dict[str, object]:
     """Return a scene with the channels of its vehicle; their module is imported only for spatial scenes with one."""
     if raw.get("vehicle") is None or raw.get("dimensions") != 3:
         return raw
@@ -301,7 +301,7 @@ def _with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, 
     return with_vehicle(raw, context)
 
 
-def _family(raw: dict[str, Any]) -> type[Scene]:
+def _family(raw: dict[str, object]) -> type[Scene]:
     """Return the class of scenes of the given dimension; planar by default."""
     found = raw.get("dimensions", 2)
     if found not in (2, 3):
@@ -309,7 +309,7 @@ def _family(raw: dict[str, Any]) -> type[Scene]:
     return scene_class(found)
 
 
-def _right_in_space(raw: dict[str, Any], context: dict[str, Any]) -> bool:
+def _right_in_space(raw: dict[str, object], context: dict[str, object]) -> bool:
     """Return True if a scene that is invalid in the plane is valid in space."""
     try:
         scene_class(3).model_validate(raw, context=context)

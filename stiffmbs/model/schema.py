@@ -13,7 +13,7 @@ from .parts.planar_frame import PlanarUse
 from .planar_scene import PlanarScene
 
 
-def scene_schema() -> dict[str, Any]:
+def scene_schema() -> dict[str, object]:
     """Return the JSON schema of planar and spatial scene files.
 
     Returns
@@ -58,7 +58,9 @@ def scene_schema() -> dict[str, Any]:
     return {"if": three, "then": in_space, "else": in_plane, "$defs": schema["$defs"]}
 
 
-def _add_beams(properties: dict[str, Any], beam: dict[str, Any], load: dict[str, Any], contact: dict[str, Any]) -> None:
+def _add_beams(
+    properties: dict[str, Any], beam: dict[str, object], load: dict[str, object], contact: dict[str, Any]
+) -> None:
     """Add line bodies, distributed loads and contacts of beams to the sections of a scene."""
     bodies, forces = properties["bodies"], properties["forces"]["additionalProperties"]
     bodies["additionalProperties"] = {"anyOf": [bodies["additionalProperties"], {**beam, "required": ["type"]}]}

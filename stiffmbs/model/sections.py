@@ -40,16 +40,16 @@ class Sections(Generic[Data, Body, BodyHandle]):
     handle_type: type[BodyHandle]
     kinds: ClassVar[tuple[Kinds, Kinds]]
 
-    def __init__(self, name: str, gravity: Any) -> None:
+    def __init__(self, name: str, gravity: object) -> None:
         self.name = name
         self.gravity = gravity
-        self.markers: dict[str, Any] = {}
+        self.markers: dict[str, object] = {}
         self.bodies: dict[str, Body] = {}
         self.states: dict[str, StateEntry] = {}
-        self.inputs: dict[str, Any] = {}
+        self.inputs: dict[str, object] = {}
         self.joints: dict[str, Joint] = {}
         self.forces: dict[str, Force] = {}
-        self.requests: dict[str, Any] = {}
+        self.requests: dict[str, object] = {}
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {contents(self)}>"
@@ -64,7 +64,7 @@ class Sections(Generic[Data, Body, BodyHandle]):
         near = did_you_mean(key_of(name), [known for section in (self.markers, *self._sections()) for known in section])
         raise InputError(f"{name}: found no part of that name{near}, expected one of {self!r}")
 
-    def _section_for(self, name: str, part: Any) -> dict[str, Any]:
+    def _section_for(self, name: str, part: object) -> dict[str, Any]:
         if isinstance(part, self.body_type):
             return self.bodies
         if isinstance(part, StateEntry):
@@ -78,7 +78,7 @@ class Sections(Generic[Data, Body, BodyHandle]):
             )
         return self.joints if isinstance(part, Joint) else self.forces
 
-    def _changed(self, name: str, section: dict[str, Any], change: Callable[[], object]) -> None:
+    def _changed(self, name: str, section: dict[str, object], change: Callable[[], object]) -> None:
         """Change a section; restore it if other parts then refer to missing ones."""
         before = dict(section)
         change()

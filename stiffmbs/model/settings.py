@@ -113,7 +113,7 @@ class RunSettings(Described):
 
     @field_validator("solver", mode="before")
     @classmethod
-    def _no_scheme(cls, solver: Any) -> Any:
+    def _no_scheme(cls, solver: object) -> object:
         if solver in get_args(SchemeName):
             raise ValueError(
                 f"found '{solver}', which is a scheme of the solver 'projected'; expected solver: projected, scheme: {solver}"
@@ -122,7 +122,7 @@ class RunSettings(Described):
 
     @field_validator("tuning", mode="before")
     @classmethod
-    def _known_parameters(cls, found: object, info: ValidationInfo) -> Any:
+    def _known_parameters(cls, found: object, info: ValidationInfo) -> object:
         from .tuning import checked  # few runs have it
 
         return checked(found, lambda entry: Measured("number").read(entry, info))

@@ -17,12 +17,12 @@ Read = Callable[[Any], float]
 """Conversion of an entry to a number; raises a ValueError for other entries."""
 
 
-def checked(found: object, read: Read) -> dict[str, dict[str, Any]]:
+def checked(found: object, read: Read) -> dict[str, dict[str, object]]:
     """Return changed parameters by subsystem and name.
 
     ValueError if a name is unknown, or a value has another type than the default, or is out of its range.
     """
-    changes: dict[str, dict[str, Any]] = {}
+    changes: dict[str, dict[str, object]] = {}
     for name, values in _entries(found, "subsystems"):
         _refuse_unknown("", "subsystem", name, SUBSYSTEMS)
         usual = numbers_of(defaults_of(name))
@@ -39,7 +39,7 @@ def _entries(found: object, names: str) -> list[tuple[Any, Any]]:
     return list(found.items())
 
 
-def _refuse_unknown(where: str, what: str, found: object, known: Mapping[str, Any]) -> None:
+def _refuse_unknown(where: str, what: str, found: object, known: Mapping[str, object]) -> None:
     if found not in known:
         raise ValueError(f"{where}found the unknown {what} '{quoted(found)}'{instead_of(found, known)}")
 

@@ -86,7 +86,7 @@ class Vehicle(Described):
     )
 
 
-def with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
+def with_vehicle(raw: dict[str, object], context: Mapping[str, object]) -> dict[str, object]:
     """Return a scene with the channels of its section ``vehicle`` among its requests.
 
     `raw`: spatial scene with its parts expanded. `context`: validation context. Raises InputError if the section is
@@ -114,9 +114,9 @@ def with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, A
     }
 
 
-def _requests(vehicle: Vehicle, tyres: Iterable[str]) -> dict[str, Any]:
+def _requests(vehicle: Vehicle, tyres: Iterable[str]) -> dict[str, object]:
     body = f"{vehicle.body}.{VEHICLE}"
-    found: dict[str, Any] = {name: formula.format(m=body) for name, formula in WHOLE.items()}
+    found: dict[str, object] = {name: formula.format(m=body) for name, formula in WHOLE.items()}
     for marker, start in ((body, ""), *((f"{body}_{name}", f"{name}.") for name in vehicle.points)):
         found |= {
             f"{start}{name}": formula.format(m=marker, p=f"{VEHICLE}.{start}") for name, formula in OF_POINT.items()
@@ -129,7 +129,7 @@ def _requests(vehicle: Vehicle, tyres: Iterable[str]) -> dict[str, Any]:
     return found
 
 
-def _tyres(vehicle: Vehicle, forces: Mapping[str, Any]) -> tuple[str, ...]:
+def _tyres(vehicle: Vehicle, forces: Mapping[str, object]) -> tuple[str, ...]:
     """Return the names of the tyres to report."""
     known = tuple(name for name, force in forces.items() if _is_tyre(force))
     for name in vehicle.tyres or ():
@@ -138,14 +138,14 @@ def _tyres(vehicle: Vehicle, forces: Mapping[str, Any]) -> tuple[str, ...]:
     return known if vehicle.tyres is None else vehicle.tyres
 
 
-def _is_tyre(force: Any) -> bool:
+def _is_tyre(force: object) -> bool:
     if isinstance(force, Element):
         return isinstance(force, Tyre)
     kind = force.get("type") if isinstance(force, dict) else None
     return isinstance(kind, str) and kind in FORCES and issubclass(FORCES[kind], Tyre)
 
 
-def _with_markers(body: Any, markers: Mapping[str, Any]) -> Any:
+def _with_markers(body: object, markers: Mapping[str, object]) -> Any:
     """Return a body, as written or validated, with further markers."""
     found = body.markers if isinstance(body, Body) else body.get("markers") if isinstance(body, dict) else None
     own = found if isinstance(found, Mapping) else {}
@@ -158,7 +158,7 @@ def _with_markers(body: Any, markers: Mapping[str, Any]) -> Any:
     return {**body, "markers": {**own, **markers}} if isinstance(body, dict) else body
 
 
-def _section(raw: Mapping[str, Any], name: str) -> dict[str, Any]:
+def _section(raw: Mapping[str, object], name: str) -> dict[str, object]:
     found = raw.get(name) or {}
     if not isinstance(found, dict):
         raise InputError(f"{name}: found {written(found)}, expected a mapping of names to entries")

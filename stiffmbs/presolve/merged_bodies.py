@@ -94,8 +94,8 @@ def merge(model: ModelData, held: Container[str]) -> MergedBodies | None:
     used = [name for name in joints if groups.join(name)]
     if not used:
         return None
-    bodies: dict[str, Any] = {}
-    members: dict[str, tuple[str, Any]] = {}
+    bodies: dict[str, object] = {}
+    members: dict[str, tuple[str, object]] = {}
     for first, placements in groups.placements.items():
         if len(placements) == 1:
             bodies[first], members[first] = model.bodies[first], (first, *placements.values())

@@ -225,12 +225,12 @@ class _Mirror:
             yield values / max(scale, np.abs(values).max(initial=0.0)), signs
 
 
-def _even(components: Sequence[Any], signs: np.ndarray) -> bool:
+def _even(components: Sequence[object], signs: np.ndarray) -> bool:
     """Return True if all components with another sign than 1 are zero."""
     return all(sign > 0 or _is_zero(component) for sign, component in zip(signs.tolist(), components, strict=True))
 
 
-def _is_zero(component: Any) -> bool:
+def _is_zero(component: object) -> bool:
     """Return True for the number zero, for nothing and for the formula 0."""
     if isinstance(component, Formula):
         tree = getattr(component.tree, "body", component.tree)

@@ -43,12 +43,12 @@ class SpinningBodies(NamedTuple):
         return self.model.dimensions
 
     @property
-    def bodies(self) -> Mapping[str, Any]:
+    def bodies(self) -> Mapping[str, object]:
         """All bodies by name."""
         return self.model.bodies
 
     @property
-    def joints(self) -> Mapping[str, Any]:
+    def joints(self) -> Mapping[str, object]:
         """All joints by name."""
         return self.model.joints
 
@@ -68,7 +68,7 @@ class SpinningBodies(NamedTuple):
         """Return the size of the model, m."""
         return self.model.size()
 
-    def carried(self, marker: Any) -> tuple[str, Any]:
+    def carried(self, marker: object) -> tuple[str, Any]:
         """Return the body that carries a marker, and the marker's placement on it."""
         return self.model.carried(marker)
 
@@ -172,7 +172,7 @@ def _seen_in_measure(name: str) -> str:
     return REFUSED if name[0] == "a" else BODY if name[0] == "w" else POINT
 
 
-def _axis(body: Any, demands: Sequence[_Demand], turns: np.ndarray, size: float) -> str:
+def _axis(body: object, demands: Sequence[_Demand], turns: np.ndarray, size: float) -> str:
     """Return the principal axis of a body's spin, or an empty string."""
     for k, (axis, symmetric) in enumerate(zip(AXES, _symmetric_about(body), strict=True)):
         if symmetric and all(demand.met(k, size) for demand in demands) and _is_spun(demands, turns, k):

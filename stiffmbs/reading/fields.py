@@ -53,7 +53,7 @@ class _SignatureWhenAsked:
 class _OneSentence(type(BaseModel)):  # type: ignore[misc]
     """Metaclass that reports errors of construction and of class definition as `InputError`."""
 
-    def __new__(mcs, name: str, *arguments: Any, **options: Any) -> Any:
+    def __new__(mcs, name: str, *arguments: object, **options: object) -> Any:
         try:
             made = super().__new__(mcs, name, *arguments, **options)
         except PydanticUserError as error:
@@ -62,7 +62,7 @@ class _OneSentence(type(BaseModel)):  # type: ignore[misc]
             made.__signature__ = _SignatureWhenAsked()
         return made
 
-    def __call__(cls, *unnamed: Any, **fields: Any) -> Any:
+    def __call__(cls, *unnamed: object, **fields: object) -> Any:
         if unnamed:
             names = ", ".join(f"{field.alias or name}=..." for name, field in cls.model_fields.items())
             found = ", ".join(map(repr, unnamed))
@@ -89,7 +89,7 @@ else:
         model_config = ConfigDict(defer_build=True)
 
         @classmethod
-        def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
+        def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: object) -> bool | None:
             """Build the class on first use; skip the rebuild of a generic class whose type is chosen, as no object of it exists."""
             is_complete = getattr(cls, "__pydantic_fields_complete__", False)  # since pydantic 2.11
             if options.get("_types_namespace") is not None and is_complete:
@@ -120,7 +120,7 @@ class Described(_Base):
 
     @model_validator(mode="before")
     @classmethod
-    def _no_unknown_key(cls, found: object) -> Any:
+    def _no_unknown_key(cls, found: object) -> object:
         if isinstance(found, dict):
             known = _keys(cls)
             for key in found:
@@ -132,7 +132,7 @@ class Described(_Base):
 
     @model_validator(mode="before")
     @classmethod
-    def _arrays_as_lists(cls, found: object) -> Any:
+    def _arrays_as_lists(cls, found: object) -> object:
         """Convert NumPy arrays and numbers to Python objects."""
         if not isinstance(found, dict):
             return found
@@ -187,9 +187,9 @@ class Measured:
             self.read, serialization=core_schema.plain_serializer_function_ser_schema(lambda value: value)
         )
 
-    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(self, schema: object, handler: GetJsonSchemaHandler) -> dict[str, object]:
         bounds = {"exclusiveMinimum": self.above, "minimum": self.at_least, "maximum": self.at_most}
-        number: dict[str, Any] = {name: bound for name, bound in bounds.items() if bound is not None}
+        number: dict[str, object] = {name: bound for name, bound in bounds.items() if bound is not None}
         excluded = {} if self.other_than is None else {"not": {"const": self.other_than}}
         unit = DIMENSIONS[self.dimension][1]
         text = {"type": "string", "description": f"a formula with units that converts to {unit}"}
@@ -233,7 +233,7 @@ def located(where: str) -> Iterator[None]:
         raise InputError(f"{where}{'.' if begins_with_field else ': '}{message}") from None
 
 
-def location(parts: tuple[Any, ...]) -> str:
+def location(parts: tuple[object, ...]) -> str:
     """Return the path of a fault in the form of ``--set``: ``bodies.cart.mass``, without the branches of unions."""
     named = [str(part) for part in parts]
     while named and ("[" in named[-1] or named[-1] in ("int", "float", "str")):

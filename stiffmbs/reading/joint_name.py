@@ -46,7 +46,7 @@ class JointName(str):
         return joint.coordinates[0] if len(joint.coordinates) == 1 else None
 
     @classmethod
-    def __get_pydantic_core_schema__(cls, source: object, handler: Any) -> Any:
+    def __get_pydantic_core_schema__(cls, source: object, handler: object) -> Any:
         from pydantic_core import core_schema
 
         return core_schema.with_info_after_validator_function(

@@ -51,7 +51,7 @@ class MarkerReference(Described):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_reference(cls, found: object, info: ValidationInfo) -> Any:
+    def _from_reference(cls, found: object, info: ValidationInfo) -> object:
         names = names_of(info)
         if isinstance(found, Handle):
             return {"body": found.name}
@@ -76,7 +76,7 @@ class MarkerReference(Described):
         return found
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, object]:
         return {"anyOf": [_REFERENCE, handler(core_schema)]}
 
     def placement(self) -> Any:
@@ -110,7 +110,9 @@ class Marker(MarkerReference):
         return Placement.model_construct(point=self.point, angle=self.angle)  # checked already
 
 
-def check_marker(where: str, marker: MarkerReference, bodies: Mapping[str, Any], on_ground: Mapping[str, Any]) -> None:
+def check_marker(
+    where: str, marker: MarkerReference, bodies: Mapping[str, Any], on_ground: Mapping[str, object]
+) -> None:
     """Refuse a marker on an unknown body, or a marker name that its body does not have."""
     if marker.body != GROUND and marker.body not in bodies:
         raise ValueError(
@@ -124,7 +126,7 @@ def check_marker(where: str, marker: MarkerReference, bodies: Mapping[str, Any],
         )
 
 
-def listed(bodies: Mapping[str, Any]) -> str:
+def listed(bodies: Mapping[str, object]) -> str:
     """Return the names of bodies as a list for a message."""
     names = list(bodies)
     return ", ".join([*names[:8], *(["..."] if len(names) > 8 else []), GROUND])
@@ -133,7 +135,7 @@ def listed(bodies: Mapping[str, Any]) -> str:
 class Carries(Protocol):
     """Model that provides the placement of markers, also with merged bodies."""
 
-    def carried(self, marker: Any) -> tuple[str, Any]:
+    def carried(self, marker: object) -> tuple[str, Any]:
         """Return the body that carries a marker, and the placement on it."""
 
 

@@ -26,7 +26,7 @@ class PythonFunction:
         requires that it accepts complex numbers and is analytic (without ``abs`` and comparisons).
     """
 
-    def __init__(self, function: Callable[..., Any], derivatives: Way = "differences") -> None:
+    def __init__(self, function: Callable[..., object], derivatives: Way = "differences") -> None:
         self.function, self.derivatives = function, derivatives
 
     @property
@@ -53,5 +53,5 @@ class PythonFunction:
         return core_schema.no_info_plain_validator_function(cls.read)
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(cls, schema: object, handler: GetJsonSchemaHandler) -> dict[str, object]:
         return {"not": {}, "description": "a Python function, which only a Model built in Python can have"}

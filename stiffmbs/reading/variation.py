@@ -91,7 +91,7 @@ class Variation:
         return tuple(self.values[k] for k in picked)
 
 
-def variation(name: str, found: str | Range | Variation | Sequence[Any] | ArrayLike) -> Variation:
+def variation(name: str, found: str | Range | Variation | Sequence[object] | ArrayLike) -> Variation:
     """Return the variation of a parameter; text is read as by `read_variation`, without the name.
 
     Each value may be a vector or a matrix. Raise an InputError for anything else, or for no values.

@@ -122,7 +122,7 @@ class SparseMatrix:
         return (A @ A.T + shift * identity(self.shape[0])).tocsc()
 
 
-def _factors(gram: Any) -> Any:
+def _factors(gram: object) -> Any:
     from scipy.sparse.linalg import splu
 
     return splu(gram, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})

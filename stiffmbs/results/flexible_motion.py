@@ -109,7 +109,7 @@ class FlexibleMotion:
         solver, _ = static_solver(model, interfaces, model.rigid_modes(self.reduced.centre))
         return partial(displacement_of_second_order, model, interfaces, solver)
 
-    def displacement(self, nodes: Sequence[int] | None = None, at: Any = slice(None)) -> np.ndarray:
+    def displacement(self, nodes: Sequence[int] | None = None, at: object = slice(None)) -> np.ndarray:
         """Return the displacements of nodes in the floating frame, m, in the axes of the mesh.
 
         Parameters
@@ -148,7 +148,7 @@ class FlexibleMotion:
         """Stresses xx yy zz xy yz zx at the nodes by mode, shape (modes, nodes, 6)."""
         return nodal_stresses(self.model, self.reduced.modes)
 
-    def stress(self, at: Any = slice(None)) -> np.ndarray:
+    def stress(self, at: object = slice(None)) -> np.ndarray:
         """Return the stresses at the nodes, N/m^2, in the axes of the mesh.
 
         They are linear in the modal coordinates, and the mean of the elements at a node.
@@ -170,11 +170,11 @@ class FlexibleMotion:
         """
         return np.tensordot(self.modal[at], self._stress_modes, 1)
 
-    def von_mises(self, at: Any = slice(None)) -> np.ndarray:
+    def von_mises(self, at: object = slice(None)) -> np.ndarray:
         """Return the von Mises stresses at the nodes, N/m^2, shape (times, nodes); see `stress`."""
         return von_mises(self.stress(at))
 
-    def principal(self, at: Any = slice(None)) -> np.ndarray:
+    def principal(self, at: object = slice(None)) -> np.ndarray:
         """Return the principal stresses at the nodes, N/m^2, the largest first, shape (times, nodes, 3); see `stress`."""
         return principal_stresses(self.stress(at))
 

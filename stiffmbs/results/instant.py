@@ -31,7 +31,7 @@ from .requests import value_over_time
 
 LEVELS = {"d": "point", "v": "velocity", "w": "omega", "acc": "acceleration", "wdt": "alpha"}
 """Vectors of a marker whose differences are measures, by the name of their components without the last letter."""
-BUILT_IN: dict[str, Callable[..., Any]] = {
+BUILT_IN: dict[str, Callable[..., object]] = {
     **{name: function.value for name, function in FUNCTIONS.items() if function.in_numbers}, "sqrt": math.sqrt,
 }  # fmt: skip
 _GROUND = GroundFrame()
@@ -216,14 +216,14 @@ class NotCompiledError(Exception):
 def compiled(output: Output) -> Callable[[Instant], float]:
     """Return a request as a function of an instant."""
     terms = {placeholder(k): term for k, term in enumerate(output.terms)}
-    constants: dict[str, Any] = {"power": _power}
+    constants: dict[str, object] = {"power": _power}
 
     def kept(value: object) -> ast.expr:
         name = f"k{len(constants)}"
         constants[name] = value
         return ast.Name(name, ast.Load())
 
-    def method(name: str, argument: Any) -> ast.expr:
+    def method(name: str, argument: object) -> ast.expr:
         return ast.Call(ast.Attribute(ast.Name("instant", ast.Load()), name, ast.Load()), [kept(argument)], [])
 
     def written(node: ast.expr) -> ast.expr:

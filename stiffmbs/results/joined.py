@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -110,9 +109,9 @@ def _notes(of_runs: Sequence[Sequence[str]]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _statistics(solutions: Sequence[Solution]) -> dict[str, Any]:
+def _statistics(solutions: Sequence[Solution]) -> dict[str, object]:
     """Return the sums of counters, and the other statistics of the last run."""
-    found: dict[str, Any] = {}
+    found: dict[str, object] = {}
     for solution in solutions:
         for name, value in solution.solver.items():
             found[name] = found.get(name, 0) + value if name in COUNTED else value

@@ -73,7 +73,7 @@ SCALARS: dict[str, Between] = {
 
 
 AXES = "xyz"
-Functions = Mapping[str, Callable[..., Any]]
+Functions = Mapping[str, Callable[..., object]]
 _FUNCTIONS: Functions = {name: function.array for name, function in FUNCTIONS.items()}
 
 

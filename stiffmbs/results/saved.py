@@ -29,7 +29,7 @@ TEXTS = ("notes", "not_unique", "presolve", "verification")
 
 def record(solution: Solution) -> dict[str, np.ndarray]:
     """Return the arrays to save in addition to the channels."""
-    about: dict[str, Any] = {
+    about: dict[str, object] = {
         "name": solution.name,
         "outcome": solution.outcome.name,
         "message": solution.message,

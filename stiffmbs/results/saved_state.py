@@ -146,12 +146,12 @@ def _number_of_row(source: str, time: np.ndarray, at: float) -> int:
     return k
 
 
-def _npz(path: Path) -> dict[str, Any]:
+def _npz(path: Path) -> dict[str, object]:
     with readable(path), np.load(path, allow_pickle=False) as archive:
         return {name: archive[name] for name in archive.files if "/" not in name or name.startswith(TURNS)}
 
 
-def _csv(path: Path) -> dict[str, Any]:
+def _csv(path: Path) -> dict[str, object]:
     with readable(path), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # NumPy warns of a table without rows
         file = io.StringIO(content_of(path).decode())
@@ -160,7 +160,7 @@ def _csv(path: Path) -> dict[str, Any]:
     return _named(heads, table.T)
 
 
-def _netcdf(path: Path) -> dict[str, Any]:
+def _netcdf(path: Path) -> dict[str, object]:
     from scipy.io import netcdf_file
 
     with readable(path), netcdf_file(path, mmap=False) as file:
@@ -170,7 +170,7 @@ def _netcdf(path: Path) -> dict[str, Any]:
         return _named(names, [np.array(variable[...], dtype=float) for variable in file.variables.values()])
 
 
-def _named(names: Iterable[str], columns: Iterable[np.ndarray]) -> dict[str, Any]:
+def _named(names: Iterable[str], columns: Iterable[np.ndarray]) -> dict[str, object]:
     return dict(zip(names, columns, strict=True))
 
 

@@ -125,7 +125,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     def __repr__(self) -> str:
         return f"<Solution '{self.name}': {len(self.channels)} channels at {len(self.time)} times, {self.message}>"
 
-    def __array__(self, *_: Any, **__: Any) -> NoReturn:
+    def __array__(self, *_: object, **__: object) -> NoReturn:
         raise InputError(
             "found a solution instead of an array, expected one channel, solution['energy.total'], or solution.to_pandas()"
         )

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
@@ -57,7 +56,7 @@ def convert_robot(
     return scene_text(_found(path, coordinates, rates))
 
 
-def _found(path: str | Path, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, Any]:
+def _found(path: str | Path, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, object]:
     try:
         return scene(_read(path), coordinates, rates)
     except RobotFault as fault:

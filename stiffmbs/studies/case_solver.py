@@ -80,7 +80,7 @@ class CaseSolver:
         """Take over the jobs of another solver, whose structures may occur again; it must not be used any more."""
         self._jobs = other._jobs
 
-    def scene(self, values: Sequence[Any]) -> Scene:
+    def scene(self, values: Sequence[object]) -> Scene:
         """Return the scene of a case.
 
         Raises InputError if a value is not valid, or a file has changed since the study began.
@@ -110,18 +110,18 @@ class CaseSolver:
                 )
         self._files |= {name: digest for name, digest in files.items() if name not in self._task.scene.files}
 
-    def solution(self, values: Sequence[Any]) -> Solution:
+    def solution(self, values: Sequence[object]) -> Solution:
         """Return the solution of a case; errors as for `stiffmbs.run`."""
         return solved(self.job(self.scene(values)))
 
-    def channels(self, values: Sequence[Any]) -> tuple[str, ...]:
+    def channels(self, values: Sequence[object]) -> tuple[str, ...]:
         """Return the names of the channels of a case; errors as for `stiffmbs.run`."""
         job = self.job(self.scene(values))
         start = job.start
         rows = job.dynamics.report(np.array([job.grid.start]), start.q[None], start.u[None], project=False)
         return tuple(channels_of(job.data, job.dynamics.system, rows))
 
-    def row(self, case: int, values: Sequence[Any]) -> Row:
+    def row(self, case: int, values: Sequence[object]) -> Row:
         """Solve a case and return its outputs, or its error."""
         try:
             solution = finished(self.job(self.scene(values)))

@@ -43,7 +43,7 @@ def data_set(
                 array[row.case, : len(value)] = value
             else:
                 array[row.case] = value
-    variables: dict[str, Any] = {}
+    variables: dict[str, object] = {}
     for one, array in zip(outputs, arrays, strict=True):
         over_time = (TIME,) if one.is_series else ()
         variables[one.name] = (
@@ -66,7 +66,7 @@ def _coordinates(cases: Cases) -> tuple[tuple[str, ...], dict[str, Any]]:
             coordinates |= _along(name, CASE, values)
         return (CASE,), coordinates
     dimensions: list[str] = []
-    found: dict[str, Any] = {}
+    found: dict[str, object] = {}
     for one in cases.variations:
         array = _array(one.name, one.values)
         dimension = one.name if array.ndim == 1 else f"{one.name}.number"
@@ -75,12 +75,12 @@ def _coordinates(cases: Cases) -> tuple[tuple[str, ...], dict[str, Any]]:
     return tuple(dimensions), found
 
 
-def _along(name: str, dimension: str, values: Sequence[Any]) -> dict[str, Any]:
+def _along(name: str, dimension: str, values: Sequence[object]) -> dict[str, Any]:
     array = _array(name, values)
     return {name: ((dimension, *(f"{name}.{k}" for k in range(array.ndim - 1))), array)}
 
 
-def _array(name: str, values: Sequence[Any]) -> np.ndarray:
+def _array(name: str, values: Sequence[object]) -> np.ndarray:
     """Return values of one shape as an array, of numbers if all are numbers."""
     try:
         array = np.array(values)
@@ -167,7 +167,7 @@ def _at(data: xarray.Dataset, name: str, extreme: Any) -> str:
     return f"{data[name].values.ravel()[k]:.6g} ({where})"
 
 
-def _case(data: xarray.Dataset, number: int) -> dict[str, Any]:
+def _case(data: xarray.Dataset, number: int) -> dict[str, object]:
     """Return the varied values of a case."""
     dims = data[STATUS].dims
     index = dict(zip(dims, np.unravel_index(number, data[STATUS].shape), strict=True))

@@ -66,7 +66,7 @@ class Fit:
     success: bool
     message: str
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return the content of ``stiffmbs fit --json``."""
         return {
             "status": "done" if self.success else "stopped", "message": self.message, "runs": self.runs,
@@ -80,12 +80,12 @@ class Fit:
 
 def fit(
     scene: Runnable,
-    data: Any,
-    parameters: Mapping[str, Any],
+    data: object,
+    parameters: Mapping[str, object],
     *,
     start: Mapping[str, float] | None = None,
     sigma: Mapping[str, float] | None = None,
-    **settings: Any,
+    **settings: object,
 ) -> Fit:
     """Fit parameters of a model to measured channels.
 
@@ -152,7 +152,7 @@ def _weights(found: Measured, sigma: Mapping[str, float] | None) -> dict[str, fl
 class _Model:
     """Model at points of the unit cube, compared with the data."""
 
-    def __init__(self, scene: Any, ranges: ParameterRanges, data: Measured, settings: Mapping[str, Any]) -> None:
+    def __init__(self, scene: Any, ranges: ParameterRanges, data: Measured, settings: Mapping[str, object]) -> None:
         self._outputs: tuple[Output, ...] = outputs_of({name: name for name in data.channels})
         self._solver = CaseSolver(Task(scene, ranges.names, {}, self._outputs))
         self._ranges, self._data = ranges, data

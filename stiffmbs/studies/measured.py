@@ -23,7 +23,7 @@ class Measured:
     channels: dict[str, np.ndarray]  # values, shapes (n,); nan where a channel has no value
 
 
-def measured(data: Any) -> Measured:
+def measured(data: object) -> Measured:
     """Return the data of a fit.
 
     `data`: channels by name with ``time``; a frame whose index is the time; or a file .csv, .npz or .nc of these.
@@ -50,7 +50,7 @@ def measured(data: Any) -> Measured:
     return Measured(time, arrays)
 
 
-def _read(data: Any) -> tuple[Any, dict[str, Any]]:
+def _read(data: Any) -> tuple[Any, dict[str, object]]:
     if isinstance(data, str | Path):
         data = _from_file(Path(data))
     if isinstance(data, Solution):
@@ -63,7 +63,7 @@ def _read(data: Any) -> tuple[Any, dict[str, Any]]:
     raise InputError("data: found no times, expected channels over 'time'")
 
 
-def _from_file(path: Path) -> dict[str, Any]:
+def _from_file(path: Path) -> dict[str, object]:
     source = quoted(str(path))
     if path.suffix not in READERS:
         raise InputError(f"{source}: found the ending '{path.suffix}', expected one of {', '.join(READERS)}")

@@ -51,7 +51,7 @@ class Optimum:
     success: bool
     message: str
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return the content of ``stiffmbs optimise --json``."""
         return {
             "status": "done" if self.success else "stopped", "message": self.message, "runs": self.runs,
@@ -62,12 +62,12 @@ class Optimum:
 def optimise(
     scene: Runnable,
     objective: str,
-    parameters: Mapping[str, Any],
+    parameters: Mapping[str, object],
     constraints: Mapping[str, tuple[float | None, float | None]] | None = None,
     *,
     start: Mapping[str, float] | None = None,
     tolerance: float = 1e-6,
-    **settings: Any,
+    **settings: object,
 ) -> Optimum:
     """Minimise an output of a scene: find a local minimum by sequential quadratic programming.
 
@@ -128,7 +128,7 @@ class _Model:
 
     def __init__(
         self, written: WrittenScene, objective: str, limits: Mapping[str, tuple[float | None, float | None]], ranges: ParameterRanges,
-        settings: Mapping[str, Any],
+        settings: Mapping[str, object],
     ) -> None:  # fmt: skip
         self._texts = [objective, *limits]
         outputs = outputs_of({str(k): text for k, text in enumerate(self._texts)})
@@ -198,7 +198,7 @@ class _Model:
                     found.append(self._side(k, float(bound), sign / (abs(bound) or 1.0)))
         return found
 
-    def _side(self, k: int, bound: float, sign: float) -> dict[str, Any]:
+    def _side(self, k: int, bound: float, sign: float) -> dict[str, object]:
         return {
             "type": "ineq",
             "fun": lambda at: sign * (self.outputs(at)[k] - bound),

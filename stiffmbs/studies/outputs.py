@@ -44,11 +44,11 @@ REDUCTIONS: dict[str, Callable[[Series, Series], float]] = {
     "t_min": lambda t, x: float(t[int(np.argmin(x))]), "t_max": lambda t, x: float(t[int(np.argmax(x))]),
 }  # fmt: skip
 """Reductions of a channel over time: ``peak`` is the largest magnitude; integrals use the trapezoidal rule."""
-FUNCTIONS: dict[str, Callable[..., Any]] = {
+FUNCTIONS: dict[str, Callable[..., object]] = {
     "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "atan2": np.arctan2, "hypot": np.hypot,
 }  # fmt: skip
-OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {
+OPERATORS: dict[type[ast.AST], Callable[..., object]] = {
     ast.Add: np.add, ast.Sub: np.subtract, ast.Mult: np.multiply, ast.Div: np.divide, ast.Pow: np.power,
     ast.USub: np.negative, ast.UAdd: np.positive,
 }  # fmt: skip
@@ -188,7 +188,7 @@ def _is_series(node: ast.AST) -> bool:
     return channel_of(node) is not None
 
 
-def evaluated(node: ast.AST, channel: Callable[[str], Any], reduced: Callable[[str, Any], Any]) -> Any:
+def evaluated(node: ast.AST, channel: Callable[[str], object], reduced: Callable[[str, Any], object]) -> Any:
     """Return the value of a formula in any algebra that ufuncs of NumPy accept.
 
     `channel`: returns a channel or the time by name. `reduced`: returns a reduction of a value, given its name.

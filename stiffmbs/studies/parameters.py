@@ -50,7 +50,7 @@ class ParameterRanges:
         ])  # fmt: skip
 
 
-def parameter_ranges(parameters: Mapping[str, Any], scene: WrittenScene) -> ParameterRanges:
+def parameter_ranges(parameters: Mapping[str, object], scene: WrittenScene) -> ParameterRanges:
     """Return parameters of a scene with their ranges, each a `Range`, its text, or a pair of its ends.
 
     Raises InputError if there is no parameter, or a range is invalid.

@@ -10,7 +10,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -104,7 +104,7 @@ def _chunks(cases: Cases, done: set[int], size: int) -> Iterator[Chunk]:
 
 def sweep(
     scene: Runnable,
-    vary: Mapping[str, Any] | Sequence[Variation] = (),
+    vary: Mapping[str, object] | Sequence[Variation] = (),
     *,
     sample: str | None = None,
     seed: int = 0,
@@ -113,7 +113,7 @@ def sweep(
     executor: Executor | None = None,
     store: str | Path | None = None,
     watch: StudyProgress | None = None,
-    **parameters: Any,
+    **parameters: object,
 ) -> xarray.Dataset:
     """Solve a scene for many values of its parameters (needs xarray, the extra ``netcdf``).
 
@@ -169,11 +169,11 @@ def sweep(
 
 def study_of(
     scene: Runnable,
-    vary: Mapping[str, Any] | Sequence[Variation],
+    vary: Mapping[str, object] | Sequence[Variation],
     sample: str | None,
     seed: int,
     outputs: Mapping[str, str] | Sequence[str] | str | None,
-    parameters: Mapping[str, Any],
+    parameters: Mapping[str, object],
 ) -> Study:
     """Return a study after a check that one of its cases can be prepared; parameters and errors as for `sweep`."""
     refuse_text("vary", vary, "variations, or values by parameter")
@@ -231,7 +231,7 @@ def _refuse_other_instants(cases: Cases, outputs: Sequence[Output]) -> None:
         )
 
 
-def _instants(scene: Scene, settings: Mapping[str, Any], outputs: Sequence[Output]) -> np.ndarray:
+def _instants(scene: Scene, settings: Mapping[str, object], outputs: Sequence[Output]) -> np.ndarray:
     """Return the output instants of series; empty if there are none."""
     if not any(one.is_series for one in outputs):
         return np.empty(0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from pydantic import Field
@@ -59,7 +58,7 @@ class TyreCurve:
     ellipse: tuple[np.ndarray, np.ndarray]  # fx and Fy of largest magnitude in each direction of slip
     constants: dict[str, float]  # stiffnesses, friction, radii and relaxation lengths at zero slip
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return the numbers for JSON."""
         names = {"kappa": self.kappa, "Fx": self.fx, "alpha": self.alpha, "Fy": self.fy, "Mz": self.mz}
         ellipse = {name: x.tolist() for name, x in zip(("Fx", "Fy"), self.ellipse, strict=True)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..statements.arguments import Arguments
 from ..statements.text import DatasetFault, Statement
@@ -46,7 +46,7 @@ class Simulation:
             raise self.fault(f"found END = {self.end}, expected a time after {start:g}, where it begins")
         return length
 
-    def settings(self, start: float, units: Units) -> dict[str, Any]:
+    def settings(self, start: float, units: Units) -> dict[str, object]:
         """Return duration, output and solver of the run."""
         if not self.takes_time:
             return {}
@@ -54,13 +54,13 @@ class Simulation:
         solver = {"solver": "kinematic"} if self.kind == KINEMATICS else {}
         return {"duration": length * units.time, **self._output(length, self.between_outputs(length), units), **solver}
 
-    def settings_up_to_its_end(self, units: Units) -> dict[str, Any]:
+    def settings_up_to_its_end(self, units: Units) -> dict[str, object]:
         """Return output and solver of the run, independent of its start."""
         steps = {"points": round(self.steps) + 1} if self.steps else {}
         output = {"output": self.interval * units.time} if self.interval else steps
         return output | ({"solver": "kinematic"} if self.kind == KINEMATICS else {})
 
-    def _output(self, length: float, interval: float | None, units: Units) -> dict[str, Any]:
+    def _output(self, length: float, interval: float | None, units: Units) -> dict[str, object]:
         if interval is None:
             return {}
         if self.interval:
@@ -91,7 +91,7 @@ def read_simulation(command: Statement) -> Simulation:
     return Simulation(analysis, command.line, *times)
 
 
-def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, Any] | None:
+def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, object] | None:
     """Return the settings of one run equivalent to consecutive simulations; None if they need several runs.
 
     Raises DatasetFault if a simulation ends before it starts.

@@ -92,7 +92,7 @@ class Curves:
         yield statement("CURVE", number, sort, "CURVE_POINTS", "ORDER = 4", f"MATRIX = {number}")
         return number
 
-    def _seen(self, point: Any, marker: MarkerReference) -> np.ndarray:
+    def _seen(self, point: object, marker: MarkerReference) -> np.ndarray:
         """Return a point of the ground in the axes of a marker at the start."""
         place = self._model.place(marker)
         origin, axes = np.zeros(3), np.eye(3)

@@ -66,7 +66,7 @@ def command_text(scene: Scene) -> str:
 
 
 def _each(
-    section: str, entries: Iterable[tuple[str, Any]], write: Callable[[str, Any], Iterable[str]], refused: list[str]
+    section: str, entries: Iterable[tuple[str, object]], write: Callable[[str, Any], Iterable[str]], refused: list[str]
 ) -> Iterator[str]:
     """Yield the statements of each entry under its name; add unsupported entries to `refused`."""
     for name, entry in entries:

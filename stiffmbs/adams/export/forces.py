@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping
 from functools import singledispatchmethod
-from typing import Any
 
 import numpy as np
 
@@ -156,7 +155,7 @@ class Forces:
         yield statement("BEAM", next(self._numbers), *self._numbering.ends(force), *_given(given), *damping)
 
 
-def _filled(values: Any) -> np.ndarray:
+def _filled(values: object) -> np.ndarray:
     found: np.ndarray = np.array(values, dtype=float)
     return np.nan_to_num(found, nan=0.0)
 

@@ -7,7 +7,6 @@ import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 from ...elements.spatial.number_format import plain
 from ...reading.files.quoted import quoted
@@ -38,7 +37,7 @@ def time_limit(seconds: float) -> Iterator[None]:
         yield
         return
 
-    def too_long(number: int, frame: Any) -> None:
+    def too_long(number: int, frame: object) -> None:
         raise TimeoutError
 
     before = signal.signal(signal.SIGALRM, too_long)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from .expression import constant
 from .function import Function
 from .trees import call, difference, number, power, product, times, total
 
-CURVES: dict[str, dict[str, Any]] = {
+CURVES: dict[str, dict[str, object]] = {
     "AKISPL": {"akima": True},
     "CUBSPL": {"ends": "not-a-knot"},
     "LINE": {"lines": True},

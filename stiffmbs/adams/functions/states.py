@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ...elements.spatial.number_format import plain, vector
 from ..statements.outputs import Variable
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from .translate import Translation
 
 
-def states(translation: Translation) -> dict[str, Any]:
+def states(translation: Translation) -> dict[str, object]:
     """Return the states of the scene by name.
 
     Raises DatasetFault if a system refers to a missing statement, or its matrices have inconsistent sizes.
     """
-    found: dict[str, Any] = {}
+    found: dict[str, object] = {}
     for statements in translation.mechanism.dataset.statements.values():
         for ident, one in statements.items():
             match one:
@@ -41,7 +41,7 @@ def states(translation: Translation) -> dict[str, Any]:
     return found
 
 
-def _differential(one: Differential, translation: Translation) -> dict[str, Any]:
+def _differential(one: Differential, translation: Translation) -> dict[str, object]:
     """Return a differential state; the rate of an implicit equation becomes an algebraic state.
 
     An implicit equation without its rate becomes an algebraic state itself.
@@ -117,7 +117,7 @@ def _inputs(user: Numbered, ident: int | None, translation: Translation) -> list
     return [translation.formula(Function(*law, user.line, user.label)) for law in laws]
 
 
-def _transfer(one: TransferFunction, translation: Translation) -> dict[str, Any]:
+def _transfer(one: TransferFunction, translation: Translation) -> dict[str, object]:
     """Return a transfer function with SI coefficients, highest power first."""
     unit, inputs = translation.units.time, _inputs(one, one.u, translation)
     if len(inputs) != 1:
@@ -126,7 +126,7 @@ def _transfer(one: TransferFunction, translation: Translation) -> dict[str, Any]
     return {"numerator": top, "denominator": bottom, "input": inputs[0]}
 
 
-def _linear(one: LinearSystem, translation: Translation) -> dict[str, Any]:
+def _linear(one: LinearSystem, translation: Translation) -> dict[str, object]:
     """Return a linear system in SI units; its outputs are those of the dataset and its states."""
     unit, inputs = translation.units.time, _inputs(one, one.u, translation)
     a = _rows(one, "A", one.a, translation)
@@ -141,7 +141,7 @@ def _linear(one: LinearSystem, translation: Translation) -> dict[str, Any]:
                 f"found {name} of {len(rows)} by {len(rows[0])} numbers, expected {high} rows and {wide} columns"
             )
     identity = [[1 if i == k else 0 for i in range(n)] for k in range(n)]
-    made: dict[str, Any] = {
+    made: dict[str, object] = {
         "a": [vector([x / unit for x in row]) for row in a],
         "b": [vector([x / unit for x in row]) for row in b],
         "c": [*(vector(row) for row in c), *identity],

@@ -15,12 +15,12 @@ from .initial_conditions import in_ground
 from .mechanism import Mechanism
 
 
-def bodies(mechanism: Mechanism) -> dict[str, Any]:
+def bodies(mechanism: Mechanism) -> dict[str, object]:
     """Return the bodies of the scene by name, with their markers."""
     return {part.name: _body(mechanism, part) for part in mechanism.moving}
 
 
-def ground_markers(mechanism: Mechanism) -> dict[str, Any]:
+def ground_markers(mechanism: Mechanism) -> dict[str, object]:
     """Return the markers of the scene's ground."""
     return {
         name: placement
@@ -30,9 +30,9 @@ def ground_markers(mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def _body(mechanism: Mechanism, part: Part) -> dict[str, Any]:
+def _body(mechanism: Mechanism, part: Part) -> dict[str, object]:
     initial = mechanism.center(part).within(part.frame)
-    body: dict[str, Any] = {
+    body: dict[str, object] = {
         "mass": plain(part.mass),
         **_any_moments(mechanism, part),
         "inertia": _inertia(mechanism, part),
@@ -49,20 +49,20 @@ def _body(mechanism: Mechanism, part: Part) -> dict[str, Any]:
     return body | ({"markers": markers} if markers else {})
 
 
-def _left_open(part: Part) -> dict[str, Any]:
+def _left_open(part: Part) -> dict[str, object]:
     """Return the unspecified velocities of a part, which Adams treats as free."""
     rates = {"velocity": part.velocity, "omega": part.omega}
     names = [name for name, rate in rates.items() if rate is None]
     return {"open": names} if names else {}
 
 
-def _pose(point: str, frame: Frame) -> dict[str, Any]:
+def _pose(point: str, frame: Frame) -> dict[str, object]:
     """Return the position of a frame, and its orientation unless it is the identity."""
     turned = {} if np.array_equal(frame.axes, IDENTITY) else {"orientation": quaternion(frame.axes)}
     return {point: vector(frame.point), **turned}
 
 
-def _markers(mechanism: Mechanism, part: Part) -> list[tuple[str, dict[str, Any]]]:
+def _markers(mechanism: Mechanism, part: Part) -> list[tuple[str, dict[str, object]]]:
     own: list[Marker] = [m for m in mechanism.dataset.markers.values() if mechanism.part_of(m) is part]
     places = [mechanism.placed(marker) for marker in own if not marker.floating]
     places += [place for place in mechanism.further.values() if place.body == part.name]
@@ -118,7 +118,7 @@ def _tensor(mechanism: Mechanism, part: Part) -> np.ndarray:
     return tensor
 
 
-def _any_moments(mechanism: Mechanism, part: Part) -> dict[str, Any]:
+def _any_moments(mechanism: Mechanism, part: Part) -> dict[str, object]:
     return {"any_moments": True} if _breaks_triangle(mechanism, part) else {}
 
 

@@ -6,8 +6,6 @@ that centre, with the opposite torque on the other body.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ...elements.forces.friction import AT_REST
@@ -31,7 +29,7 @@ SHAPES = {SPHERE: "ellipsoid", ELLIPSOID: "ellipsoid", CYLINDER: "cylinder", BOX
 """Scene names of the solids, any two of which may be in contact."""
 
 
-def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mechanism) -> dict[str, Any]:
+def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mechanism) -> dict[str, object]:
     """Return the element of a contact. Raises DatasetFault if no element supports this pair of shapes."""
     one, other = (second, first) if is_swapped(first, second) else (first, second)
     kind = PAIRS.get((one.sort, other.sort))
@@ -39,7 +37,7 @@ def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mec
         known = ", ".join(" and ".join(pair) for pair in ((SPHERE, PLANE), *PAIRS))
         raise contact.fault(f"found {first.sort} and {second.sort}, expected {known}, or two of {', '.join(SHAPES)}")
     units = mechanism.dataset.units
-    made: dict[str, Any] = {
+    made: dict[str, object] = {
         "type": kind or "solid_impact",
         "i": _middle(one, contact, mechanism),
         "j": _middle(other, contact, mechanism),
@@ -60,7 +58,7 @@ def is_swapped(first: Shape, second: Shape) -> bool:
     return (first.sort, second.sort) not in pairs and (second.sort, first.sort) in pairs
 
 
-def _solid(end: str, shape: Shape, units: Units) -> dict[str, Any]:
+def _solid(end: str, shape: Shape, units: Units) -> dict[str, object]:
     """Return shape and full dimensions at one end of a contact between two solids."""
     if shape.sort == CYLINDER:
         radius, length = shape.sizes
@@ -110,13 +108,13 @@ def _law(contact: Contact, units: Units) -> dict[str, float]:
     return {name: plain(value) for name, value in law.items()}
 
 
-def contacts(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+def contacts(mechanism: Mechanism, translation: Translation) -> dict[str, object]:
     """Return the forces of all contacts by name."""
     pairs = [pair for contact in mechanism.dataset.contacts.values() for pair in contact.of_pairs()]
     return of_each(pairs, lambda contact: _made(contact, mechanism, translation))
 
 
-def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> dict[str, object]:
     first, second = (_shape(contact, ident, mechanism) for ident in contact.pairs[0])
     if (first.sort, second.sort) == (SPHERE, SPHERE) and not contact.friction:
         return _of_spheres(contact, first, second, mechanism, translation)
@@ -151,7 +149,7 @@ def _impact(contact: Contact, gap: str, rate: str) -> str:
 
 def _of_spheres(
     contact: Contact, one: Shape, other: Shape, mechanism: Mechanism, translation: Translation
-) -> dict[str, Any]:
+) -> dict[str, object]:
     i, j = (mechanism.place(shape.marker, contact, "CM").reference for shape in (one, other))
     ends = f"({one.marker}, {other.marker})"
     law = _impact(contact, f"DM{ends} - {one.sizes[0] + other.sizes[0]!r}", f"VR{ends}")
@@ -161,12 +159,12 @@ def _of_spheres(
 
 def _on_plane(
     contact: Contact, sphere: Shape, plane: Shape, mechanism: Mechanism, translation: Translation
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Return the force in the axes of the plane's marker, whose z axis is the outward normal."""
     center, other = mechanism.place(sphere.marker, contact, "CM"), mechanism.place(plane.marker, contact, "RM")
     i, j, r = sphere.marker, plane.marker, sphere.sizes[0]
     normal = _impact(contact, f"DZ({i},{j},{j}) - {r!r}", f"VZ({i},{j},{j},{j})")
-    ends: dict[str, Any] = {"i": center.reference, "j": other.body, "frame": other.reference}
+    ends: dict[str, object] = {"i": center.reference, "j": other.body, "frame": other.reference}
     if contact.friction is None:
         force = [0, 0, translation.law(normal, contact)]
         return {contact.name: {"type": "force", **ends, "force": force}}

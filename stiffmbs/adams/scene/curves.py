@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -27,14 +26,14 @@ ELSEWHERE = 0.01
 """Tolerance on the stated first contact point relative to the drawn marker, as a fraction of the curve's size."""
 
 
-def curves(mechanism: Mechanism) -> dict[str, Any]:
+def curves(mechanism: Mechanism) -> dict[str, object]:
     """Return the curve joints of the scene by name."""
     return of_each(
         mechanism.dataset.points_on_curves.values(), lambda one: {one.name: _on_curve(one, mechanism)}
     ) | of_each(mechanism.dataset.curves_on_curves.values(), lambda pair: _touching(pair, mechanism))
 
 
-def touching_bodies(mechanism: Mechanism) -> dict[str, Any]:
+def touching_bodies(mechanism: Mechanism) -> dict[str, object]:
     """Return the auxiliary bodies of curve-to-curve contacts by name."""
     return of_each(
         mechanism.dataset.curves_on_curves.values(), lambda pair: {pair.name + TOUCH: _body(pair, mechanism)}
@@ -51,7 +50,7 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
         yield f"{labels}: the curve is a cubic spline through the points of its MATRIX; Adams' curve may differ between them"
 
 
-def _on_curve(one: PointOnCurve, mechanism: Mechanism) -> dict[str, Any]:
+def _on_curve(one: PointOnCurve, mechanism: Mechanism) -> dict[str, object]:
     i, j = mechanism.place(one.i, one, "I"), mechanism.place(one.axes, one, "RM")
     curve = fitted_curve(one, one.curve, j, mechanism)
     start = _ground_point(one.start, one, mechanism)
@@ -82,7 +81,7 @@ def _curves(pair: CurveOnCurve, mechanism: Mechanism) -> tuple[FittedCurve, Fitt
     return first, second
 
 
-def _touching(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
+def _touching(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, object]:
     """Return the joints of an auxiliary body; the first applies its force to the part of the first curve."""
     first, second = _curves(pair, mechanism)
     touch = pair.name + TOUCH
@@ -94,7 +93,7 @@ def _touching(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def _body(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
+def _body(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, object]:
     """Return the auxiliary body at the contact point: x along the tangent, z normal to the second curve's plane."""
     first, second = _curves(pair, mechanism)
     near, also_near = (_ground_point(start, pair, mechanism) for start in pair.starts)

@@ -31,7 +31,7 @@ class FittedCurve:
     off: np.ndarray | None = None  # signed distances of the points from the plane; None for a flat curve
 
     @property
-    def marker(self) -> dict[str, Any]:
+    def marker(self) -> dict[str, object]:
         """Scene marker whose axes define the curve."""
         on_body = self.frame.within(self.owner.on_body)
         return {"body": self.owner.body, "point": vector(on_body.point), "orientation": quaternion(on_body.axes)}
@@ -58,7 +58,7 @@ class FittedCurve:
         found = {value: self._table(self.values)}
         return found if self.off is None else found | {off: self._table(self.off)}
 
-    def _table(self, values: np.ndarray) -> dict[str, Any]:
+    def _table(self, values: np.ndarray) -> dict[str, object]:
         table = [[plain(a), plain(b)] for a, b in zip(self.arguments, values, strict=True)]
         return {"table": table, "ends": self.ends}
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import singledispatchmethod
 from operator import mul
-from typing import Any
 
 from ...elements.spatial.number_format import plain, vector
 from ..functions.expression import parse
@@ -27,16 +26,16 @@ class Forces:
         self._mechanism, self._translation = mechanism, translation
         self._units = mechanism.dataset.units
 
-    def all(self) -> dict[str, Any]:
+    def all(self) -> dict[str, object]:
         """Return the forces by name, ordered by kind of statement."""
         return of_each(self._mechanism.dataset.forces, self._made)
 
     @singledispatchmethod
-    def _made(self, force: Any) -> dict[str, Any]:
+    def _made(self, force: object) -> dict[str, object]:
         raise TypeError(f"no force of the scene for {force!r}")
 
     @_made.register
-    def _single(self, force: SingleForce) -> dict[str, Any]:
+    def _single(self, force: SingleForce) -> dict[str, object]:
         """Return a line force that pushes the markers apart, a torque about z of J, or an action-only force on I."""
         i, j = self._mechanism.ends(force)
         linear = force.sort == TRANSLATIONAL
@@ -45,18 +44,18 @@ class Forces:
         if linear and not force.action_only:
             return {force.name: {"type": "line_force", "i": i.reference, "j": j.reference, "force": law}}
         kind = "force" if linear else "torque"
-        made: dict[str, Any] = {"type": kind, "i": i.reference}
+        made: dict[str, object] = {"type": kind, "i": i.reference}
         if not force.action_only:
             made["j"] = j.reference
         return {force.name: made | {kind: [0, 0, law], "frame": j.reference}}
 
     @_made.register
-    def _vector(self, force: VectorForce) -> dict[str, Any]:
+    def _vector(self, force: VectorForce) -> dict[str, object]:
         """Return force and torque at I in the axes of RM, with the reaction on the part of JFLOAT."""
         i = self._mechanism.place(force.i, force, "I")
         other = self._mechanism.place(force.floating, force, "JFLOAT")
         frame = {} if force.axes is None else {"frame": self._mechanism.place(force.axes, force, "RM").reference}
-        made: dict[str, Any] = {}
+        made: dict[str, object] = {}
         for kind, functions, length in (("force", force.force, 0), ("torque", force.torque, 1)):
             if not any(functions):
                 continue
@@ -69,7 +68,7 @@ class Forces:
         return 0 if function is None else self._translation.formula(function, unit)
 
     @_made.register
-    def _spring(self, spring: SpringDamper) -> dict[str, Any]:
+    def _spring(self, spring: SpringDamper) -> dict[str, object]:
         """Return a spring-damper. Adams' preload pushes the markers apart; here it is a tension."""
         i, j = self._mechanism.ends(spring)
         linear = spring.sort == TRANSLATIONAL
@@ -81,12 +80,12 @@ class Forces:
         return {spring.name: made | {name: plain(value) for name, value in numbers.items() if value}}
 
     @_made.register
-    def _elastic(self, force: Elastic) -> dict[str, Any]:
+    def _elastic(self, force: Elastic) -> dict[str, object]:
         if not force.has_potential:
             return self._without_potential(force)
         i, j = self._mechanism.ends(force)
         kind = force.keyword.lower()
-        made: dict[str, Any] = {"type": kind, "i": i.reference, "j": j.reference}
+        made: dict[str, object] = {"type": kind, "i": i.reference, "j": j.reference}
         for name, rows in (("stiffness", force.stiffness), ("damping", force.damping)):
             diagonal = [row[k] for k, row in enumerate(rows)]
             coupled = any(part for k, row in enumerate(rows) for column, part in enumerate(row) if column != k)
@@ -100,7 +99,7 @@ class Forces:
             made["preload"] = vector(force.preload)
         return {force.name: made}
 
-    def _without_potential(self, force: Elastic) -> dict[str, Any]:
+    def _without_potential(self, force: Elastic) -> dict[str, object]:
         """Return a field with unsymmetric matrices as formula components at marker I, in the axes of J."""
         i, j = self._mechanism.ends(force)
         ends = f"({force.i},{force.j},{force.j})"
@@ -130,13 +129,13 @@ class Forces:
         return self._translation.formula(Function(text, parse(text), force.line, force.label), unit)
 
     @_made.register
-    def _beam(self, beam: Beam) -> dict[str, Any]:
+    def _beam(self, beam: Beam) -> dict[str, object]:
         i, j = self._mechanism.ends(beam)
         section = {
             "length": beam.length, "young": beam.young, "shear_modulus": beam.shear_modulus, "area": beam.area,
             "torsion": beam.torsion, "iyy": beam.iyy, "izz": beam.izz, "asy": beam.asy, "asz": beam.asz,
         }  # fmt: skip
-        made: dict[str, Any] = {"type": "beam", "i": i.reference, "j": j.reference}
+        made: dict[str, object] = {"type": "beam", "i": i.reference, "j": j.reference}
         made |= {name: plain(value) for name, value in section.items() if value}
         if isinstance(beam.damping, tuple):
             made["damping"] = [vector(row) for row in beam.damping]

@@ -8,7 +8,6 @@ below the stiction velocity; Adams' MAX_STICTION_DEFORMATION has no counterpart.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 from ...elements.forces.friction import AT_REST, TINY
 from ..functions.translate import Translation
@@ -22,7 +21,7 @@ from .relations import initial_displacement
 AXES = "XYZ"
 
 
-def frictions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+def frictions(mechanism: Mechanism, translation: Translation) -> dict[str, object]:
     """Return the friction forces and torques by name, except those of deactivated joints."""
     return of_each(
         _acting(mechanism),
@@ -75,19 +74,19 @@ class _FrictionLaw:
         self._places = i, j
         self._ends = {"i": i.reference, "j": j.body}
 
-    def made(self) -> dict[str, Any]:
+    def made(self) -> dict[str, object]:
         """Return the elements of the scene."""
         makers = {
             "REVOLUTE": self._pin, "TRANSLATIONAL": self._guide, "CYLINDRICAL": self._sleeve, "SPHERICAL": self._ball,
         }  # fmt: skip
         return makers.get(self._joint.kind, self._cross)()
 
-    def _pin(self) -> dict[str, Any]:
+    def _pin(self) -> dict[str, object]:
         return self._torque([None, None, self._about("Z", self._joint.j)], self._f.name)
 
-    def _cross(self) -> dict[str, Any]:
+    def _cross(self) -> dict[str, object]:
         """Return the torque of each arm as a pin, between the two parts: the mass of the cross is ignored."""
-        found: dict[str, Any] = {}
+        found: dict[str, object] = {}
         ends = zip(("I", "J"), ARMS[self._joint.kind], (self._joint.i, self._joint.j), self._places, strict=True)
         for end, arm, marker, place in ends:
             if end in self._f.yokes:
@@ -108,7 +107,7 @@ class _FrictionLaw:
         speed = f"{f.pin!r}*{self._turning(axis, marker)}"
         return f"-({self._coefficient(speed)})*({load}) - {self._preload(f.torque)}*({self._direction(speed)})"
 
-    def _guide(self) -> dict[str, Any]:
+    def _guide(self) -> dict[str, object]:
         f, speed = self._f, self._sliding
         load = self._sum(
             ("REACTION_FORCE", self._across("F")),
@@ -118,7 +117,7 @@ class _FrictionLaw:
         law = f"-({self._coefficient(speed)})*({load}) - {self._preload(f.force)}*({self._direction(speed)})"
         return self._force([None, None, law], f.name)
 
-    def _sleeve(self) -> dict[str, Any]:
+    def _sleeve(self) -> dict[str, object]:
         f, along, about = self._f, self._sliding, f"({self._f.pin!r}*{self._turning('Z')})"
         speed = self._speed(along, about)
         load = self._sum(
@@ -129,7 +128,7 @@ class _FrictionLaw:
         torque = f"-({f.pin!r}*({mu})*({load}) + {self._preload(f.torque)}*({direction}))*{about}/{speed}"
         return self._force([None, None, force], f.name) | self._torque([None, None, torque], f.name + TORQUE)
 
-    def _ball(self) -> dict[str, Any]:
+    def _ball(self) -> dict[str, object]:
         f = self._f
         parts = [f"({f.ball!r}*{self._turning(axis)})" for axis in AXES]
         speed = self._speed(*parts)
@@ -199,13 +198,13 @@ class _FrictionLaw:
         tiny = TINY / units.of(force=1, length=1 if letter == "T" else 0) ** 2
         return f"SQRT({' + '.join(f'{self._part(letter, axis, along)}**2' for axis in axes)} + {tiny!r})"
 
-    def _force(self, laws: list[str | None], name: str) -> dict[str, Any]:
+    def _force(self, laws: list[str | None], name: str) -> dict[str, object]:
         return {name: self._element("force", laws, self._places[1])}
 
-    def _torque(self, laws: list[str | None], name: str, place: Place | None = None) -> dict[str, Any]:
+    def _torque(self, laws: list[str | None], name: str, place: Place | None = None) -> dict[str, object]:
         return {name: self._element("torque", laws, place or self._places[1])}
 
-    def _element(self, kind: str, laws: list[str | None], place: Place) -> dict[str, Any]:
+    def _element(self, kind: str, laws: list[str | None], place: Place) -> dict[str, object]:
         arm = int(kind == "torque")
         formulas = [0 if law is None else self._translation.law(law, self._f, arm=arm) for law in laws]
         return {"type": kind, **self._ends, "frame": place.reference, kind: formulas}

@@ -8,7 +8,6 @@ the joints hold, whose contributions remain zero but carry part of the reaction.
 from __future__ import annotations
 
 import ast
-from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,7 @@ from .mechanism import Mechanism, Place
 from .relations import SORTS, coupled_joint, initial_displacement
 
 
-def gears(mechanism: Mechanism) -> dict[str, Any]:
+def gears(mechanism: Mechanism) -> dict[str, object]:
     """Return the scene's gears by name.
 
     Raises DatasetFault if a joint is not on the carrier, or does not let the teeth move.
@@ -31,7 +30,7 @@ def gears(mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def meshed(user: Numbered, joints: tuple[int, int], contact: Place, mechanism: Mechanism) -> dict[str, Any]:
+def meshed(user: Numbered, joints: tuple[int, int], contact: Place, mechanism: Mechanism) -> dict[str, object]:
     """Return the tooth constraint of two parts that mesh at a carrier marker; reported on the first joint's part.
 
     Raises DatasetFault as `gears`.

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -47,12 +46,12 @@ def set_in_motion(mechanism: Mechanism) -> Dataset:
     return replace(dataset, statements=statements)
 
 
-def at_start(mechanism: Mechanism) -> dict[str, Any]:
+def at_start(mechanism: Mechanism) -> dict[str, object]:
     """Return the joint initial conditions as drives at the start only, by name; empty if the parts satisfy them."""
     stating = _stating(mechanism.dataset)
     if not any(_differs(mechanism, joint) for joint in stating):
         return {}
-    drives: dict[str, Any] = {}
+    drives: dict[str, object] = {}
     for joint in stating:
         for sort, displacement, velocity in joint.start:
             given = {"position": displacement, "velocity": velocity}

@@ -41,7 +41,7 @@ Z_ALONG_X = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 Z_ALONG_Y = Z_ALONG_X.T
 
 
-def joints(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+def joints(mechanism: Mechanism, translation: Translation) -> dict[str, object]:
     """Return the joints of the scene by name, without motions and relations."""
     dataset = mechanism.dataset
     pairs = (*dataset.joints.values(), *dataset.primitives.values())
@@ -50,7 +50,7 @@ def joints(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
     )
 
 
-def held(mechanism: Mechanism) -> dict[str, Any]:
+def held(mechanism: Mechanism) -> dict[str, object]:
     """Return orientation joints that hold point masses."""
     return {
         f"{part.name}_axes": {
@@ -67,7 +67,7 @@ def _on_ground(frame: Frame) -> Any:
     return {"body": "ground", "orientation": quaternion(frame.axes)}
 
 
-def _joint(joint: Primitive, mechanism: Mechanism) -> dict[str, Any]:
+def _joint(joint: Primitive, mechanism: Mechanism) -> dict[str, object]:
     i, j = mechanism.ends(joint)
     match joint.kind:
         case "HOOKE":
@@ -79,14 +79,14 @@ def _joint(joint: Primitive, mechanism: Mechanism) -> dict[str, Any]:
     return {"type": KINDS[joint.kind], "i": i.reference, "j": j.reference}
 
 
-def turned(place: Place, axes: np.ndarray) -> dict[str, Any]:
+def turned(place: Place, axes: np.ndarray) -> dict[str, object]:
     """Return a marker with other axes, given in its own."""
     return {
         "body": place.body, "point": vector(place.on_body.point), "orientation": quaternion(place.on_body.axes @ axes),
     }  # fmt: skip
 
 
-def _general(constraint: GeneralConstraint, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+def _general(constraint: GeneralConstraint, mechanism: Mechanism, translation: Translation) -> dict[str, object]:
     distance = rod(constraint)
     if distance is not None:
         *ends, length = distance

@@ -57,7 +57,7 @@ class Mechanism:
         self.further: dict[str, Place] = {}  # auxiliary markers by reference; see `tip`
         # Splines, variables and states (motions integrated from functions without a formula of the integral) used by
         # functions so far, and inputs set by another program or a sensor, all in the dataset's units.
-        self.tables: dict[str, dict[str, Any]] = {}
+        self.tables: dict[str, dict[str, object]] = {}
         self.variables: dict[str, str] = {}
         self.inputs: dict[str, float] = {}
         self.states: dict[str, dict[str, Any]] = {}

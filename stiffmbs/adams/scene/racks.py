@@ -8,7 +8,6 @@ the pitch diameter from the axis, on the side where the rack is drawn. If the ra
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -24,7 +23,7 @@ SKEWED = 0.1
 """Cosine of the angle between z of marker I and the rack above which z is not the pinion's axis."""
 
 
-def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
+def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, object]:
     """Return the tooth constraint, whose force acts on the pinion at the pitch line.
 
     If one carrier has the pinion on a hinge and the rack on a guide, it is the position-level constraint of a gear.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ...elements.spatial.number_format import plain
@@ -31,12 +29,12 @@ def initial_displacement(sort: str, i: Place, j: Place) -> float:
     return float(np.arctan2(x @ b.axes[:, 1], x @ b.axes[:, 0]))
 
 
-def relations(mechanism: Mechanism) -> dict[str, Any]:
+def relations(mechanism: Mechanism) -> dict[str, object]:
     """Return the scene's couplers by name."""
     return {coupler.name: _coupled(coupler, mechanism) for coupler in mechanism.dataset.couplers.values()}
 
 
-def _coupled(coupler: Coupler, mechanism: Mechanism) -> dict[str, Any]:
+def _coupled(coupler: Coupler, mechanism: Mechanism) -> dict[str, object]:
     """Return a coupler: the sum of scales times displacements is zero."""
     tied = [coupled_joint(coupler, ident, mechanism) for ident in coupler.joints]
     sorts = [_sort(coupler, joint, sort) for joint, sort in zip(tied, coupler.sorts, strict=True)]
@@ -45,7 +43,7 @@ def _coupled(coupler: Coupler, mechanism: Mechanism) -> dict[str, Any]:
     return _tied(tied, sorts, [scale / scales[0] for scale in scales], mechanism)
 
 
-def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: Mechanism) -> dict[str, Any]:
+def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: Mechanism) -> dict[str, object]:
     """Return a coupler of two joints; for more joints an equation that holds at the initial pose."""
     if len(tied) == 2:
         first, second = (coordinate(joint, sort) for joint, sort in zip(tied, sorts, strict=True))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from ...elements.spatial.number_format import plain
 from ..functions.function import Function
@@ -23,13 +22,13 @@ EVALUATED = "_evaluate"
 """Name suffix for the request of a sensor's EVALUATE expression."""
 
 
-def conditions(dataset: Dataset, inputs: Mapping[str, float]) -> dict[str, Any]:
+def conditions(dataset: Dataset, inputs: Mapping[str, float]) -> dict[str, object]:
     """Return the end conditions by name; each watches the request of its name and may set inputs of the scene."""
     return {sensor.name: _condition(sensor, inputs, dataset.units) for sensor in dataset.active_sensors}
 
 
-def _condition(sensor: Sensor, inputs: Mapping[str, float], units: Units) -> dict[str, Any]:
-    made: dict[str, Any] = {"request": sensor.name, sensor.relation: plain(sensor.value)}
+def _condition(sensor: Sensor, inputs: Mapping[str, float], units: Units) -> dict[str, object]:
+    made: dict[str, object] = {"request": sensor.name, sensor.relation: plain(sensor.value)}
     if sensor.error and (sensor.relation == "equals" or sensor.then == "on"):
         made["within"] = plain(sensor.error)
     if sensor.then != "next":
@@ -72,9 +71,9 @@ class Requests:
         self._mechanism, self._translation = mechanism, OutputTranslation(mechanism)
         self.notes: list[str] = []
 
-    def all(self) -> dict[str, Any]:
+    def all(self) -> dict[str, object]:
         """Return the requests by name: components of requests, variables, and functions of sensors."""
-        found: dict[str, Any] = {}
+        found: dict[str, object] = {}
         for request in self._mechanism.dataset.requests.values():
             components = self._between_markers(request) if request.sort else self._functions(request)
             if components:

@@ -39,7 +39,7 @@ RUN = {"duration": 5, "output": 0.01}
 """Default run settings, which a dataset lacks."""
 
 
-def scene(dataset: Dataset) -> dict[str, Any]:
+def scene(dataset: Dataset) -> dict[str, object]:
     """Return the scene of a dataset for `stiffmbs.model.read_scene.read_scene`.
 
     Raises DatasetFault if statements contradict each other, or have no equivalent in a scene.
@@ -62,10 +62,10 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         ("forces", partial(frictions, mechanism, translation)),
     ]
     made = of_each(enumerate(makers), lambda numbered: {str(numbered[0]): numbered[1][1]()})
-    sections: dict[str, dict[str, Any]] = {"joints": {}, "states": {}, "forces": {}}
+    sections: dict[str, dict[str, object]] = {"joints": {}, "states": {}, "forces": {}}
     for (section, _), entries in zip(makers, made.values(), strict=True):
         sections[section] |= entries
-    found: dict[str, Any] = {
+    found: dict[str, object] = {
         "name": re.sub(r"(?i)^adams[/ ]view model name:\s*", "", dataset.title),
         "dimensions": 3,
         "gravity": vector(dataset.gravity),
@@ -96,17 +96,17 @@ def scene(dataset: Dataset) -> dict[str, Any]:
     return {key: value for key, value in found.items() if value or key == "bodies"}
 
 
-def motions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+def motions(mechanism: Mechanism, translation: Translation) -> dict[str, object]:
     """Return the scene's drives by name."""
 
-    def made(motion: Motion) -> dict[str, Any]:
+    def made(motion: Motion) -> dict[str, object]:
         of_pair = _between_markers if motion.joint is None else _of_joint
         return {motion.name: of_pair(motion, mechanism, translation)}
 
     return of_each(mechanism.dataset.motions.values(), made)
 
 
-def _of_joint(motion: Motion, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+def _of_joint(motion: Motion, mechanism: Mechanism, translation: Translation) -> dict[str, object]:
     joint = mechanism.dataset.joints.get(motion.joint or 0)
     if ("JOINT", motion.joint) in mechanism.dataset.inactive:
         raise motion.fault(
@@ -133,7 +133,7 @@ def _sort(motion: Motion, joint: Joint) -> str:
     return own
 
 
-def _between_markers(motion: Motion, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
+def _between_markers(motion: Motion, mechanism: Mechanism, translation: Translation) -> dict[str, object]:
     """Return a drive between two markers: a component in the axes of J, or a body-fixed x-y-z angle."""
     assert motion.i is not None and motion.j is not None and motion.component is not None
     i, j = mechanism.place(motion.i, motion, "I"), mechanism.place(motion.j, motion, "J")

@@ -59,7 +59,7 @@ class Numbered:
         """Raise DatasetFault for inconsistent arguments."""
 
 
-def read_by(read: Callable[[Arguments, Units], Any], *names: str, expressions: bool = False) -> Any:
+def read_by(read: Callable[[Arguments, Units], object], *names: str, expressions: bool = False) -> Any:
     """Declare a field that a function reads from the named arguments. `expressions`: they are function expressions."""
     return field(metadata={"read": read, "names": names, "expressions": expressions})
 

@@ -32,9 +32,9 @@ class CommandFault(DatasetFault):
     """Error in a command, with its line in the command file."""
 
 
-def of_each(things: Iterable[Thing], make: Callable[[Thing], dict[str, Any]]) -> dict[str, Any]:
+def of_each(things: Iterable[Thing], make: Callable[[Thing], dict[str, object]]) -> dict[str, Any]:
     """Merge the results of a function for each item; the faults of all items are raised as one."""
-    found: dict[str, Any] = {}
+    found: dict[str, object] = {}
     faults = []
     for thing in things:
         try:

@@ -74,7 +74,7 @@ def _factor(text: str) -> float:
     return quantity(text if text[0].isdigit() else f"1 {text}").value
 
 
-def _named(found: Arguments, kind: str, known: Mapping[str, Any]) -> Any:
+def _named(found: Arguments, kind: str, known: Mapping[str, object]) -> Any:
     """Return the value of a possibly abbreviated name."""
     word = (found.text(kind) or "").upper()
     for name, unit in known.items():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -32,7 +31,7 @@ def at_state(
     settings: RunSettings | None = None,
     at: float | None = None,
     start_from: StartFrom | None = None,
-    **changes: Any,
+    **changes: object,
 ) -> AtState:
     """Return a model at its start, or at a time of its motion, s; `start_from` and changes of settings as for `stiffmbs.run`.
 

@@ -70,7 +70,7 @@ def _input_of(data: ModelData, name: str) -> Parameterised:
     return lambda shift: data.model_copy(update={"inputs": {**data.inputs, name: Amount(value + shift)}})
 
 
-def _place(data: ModelData, body: str, marker: str) -> dict[str, Any]:
+def _place(data: ModelData, body: str, marker: str) -> dict[str, object]:
     """Return a named marker of a body, or its centre of mass, which may differ from its origin in space."""
     if marker:
         return {"body": body, "marker": marker}
@@ -78,7 +78,7 @@ def _place(data: ModelData, body: str, marker: str) -> dict[str, Any]:
     return {"body": body} if centre is None else {"body": body, "point": centre}
 
 
-def _applied(dimensions: int, at: dict[str, Any], loads: list[float]) -> Force:
+def _applied(dimensions: int, at: dict[str, object], loads: list[float]) -> Force:
     """Return the applied force or torque with the given components, of which at most one is nonzero."""
     force, torque = tuple(loads[:dimensions]), tuple(loads[dimensions:])
     if dimensions == 2:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -89,7 +89,7 @@ class Modes:
             raise InputError(f"mode {number}: found no such mode, expected one of 1 to {len(self.modes)}")
         return mode_shape(self.about, self.own_axes, self.modes[number - 1], number, amplitude, points)
 
-    def as_dict(self, scene: str) -> dict[str, Any]:
+    def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs modes --json``; `scene` is the file or name of the scene."""
         return {
             "scene": scene, "t": self.t, "degrees_of_freedom": self.degrees_of_freedom,

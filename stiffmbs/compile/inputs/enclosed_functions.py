@@ -110,7 +110,9 @@ def asin(x: Enclosure) -> Enclosure:
     return x.composed(outer)
 
 
-def _step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any, value: Callable[..., Any], ramp: Callable[..., Enclosure]) -> Any:
+def _step(
+    x: object, x0: Any, h0: object, x1: object, h1: Any, value: Callable[..., object], ramp: Callable[..., Enclosure]
+) -> Any:
     z = (x - x0) / (x1 - x0)
     return h0 + (h1 - h0) * (ramp(z) if isinstance(z, Enclosure) else value(z, 0.0, 0.0, 1.0, 1.0))
 
@@ -157,7 +159,7 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
     return z.composed(outer)
 
 
-def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+def step(x: object, x0: object, h0: object, x1: object, h1: object) -> Any:
     """Return Adams' STEP: a cubic from h0 at x0 to h1 at x1 with zero end slopes.
 
     Returns a number if all arguments are numbers.
@@ -165,7 +167,7 @@ def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     return _step(x, x0, h0, x1, h1, step_value, _cubic_ramp)
 
 
-def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+def step5(x: object, x0: object, h0: object, x1: object, h1: object) -> Any:
     """Return Adams' STEP5: a quintic with zero end slopes and curvatures, otherwise as `step`."""
     return _step(x, x0, h0, x1, h1, step5_value, _quintic_ramp)
 
@@ -214,7 +216,7 @@ def _mean_value(function: Callable[..., np.ndarray], x: Range, slope: Range) -> 
     return np.where(monotonic, ends, [middle - reach, middle + reach])
 
 
-FUNCTIONS: dict[str, Callable[..., Any]] = {
+FUNCTIONS: dict[str, Callable[..., object]] = {
     name: globals()[function.enclosure] if function.enclosure else _by_derivative(function)
     for name, function in IN_FORMULAS.items()
 }

@@ -67,16 +67,16 @@ class Input:
         evaluation = _Ranges(t, self.values, _OF_ENCLOSURES | tables, middle, (high - low) / 2)
         return t.constant(evaluation.value(part or self.tree))
 
-    def _of_arrays(self) -> dict[str, Callable[..., Any]]:
+    def _of_arrays(self) -> dict[str, Callable[..., object]]:
         return _OF_ARRAYS | {name: table.values for name, table in self.tables.items()}
 
 
 class _Evaluation:
     """Evaluation of parts of a formula in one algebra; repeated parts are evaluated once."""
 
-    def __init__(self, t: Any, values: Mapping[str, float], functions: Mapping[str, Callable[..., Any]]) -> None:
+    def __init__(self, t: object, values: Mapping[str, float], functions: Mapping[str, Callable[..., object]]) -> None:
         self._t, self._values, self._functions = t, values, functions
-        self._known: dict[str, Any] = {}
+        self._known: dict[str, object] = {}
 
     def value(self, node: ast.expr) -> Any:
         """Return the value of a node."""
@@ -107,7 +107,7 @@ class _Ranges(_Evaluation):
     """Enclosures of parts of a formula, narrowed by the values at interval midpoints (mean value form)."""
 
     def __init__(
-        self, t: Enclosure, values: Mapping[str, float], functions: Mapping[str, Callable[..., Any]], middle: _Evaluation,
+        self, t: Enclosure, values: Mapping[str, float], functions: Mapping[str, Callable[..., object]], middle: _Evaluation,
         half: np.ndarray,
     ) -> None:  # fmt: skip
         super().__init__(t, values, functions)
@@ -321,10 +321,10 @@ def _largest_parts(node: ast.expr, of_state: Set[str]) -> tuple[bool, bool, list
     return time, state, [node] if time and not state else found
 
 
-def _by_argument(of_numbers: Callable[..., Any], of_enclosures: Callable[..., Any]) -> Callable[..., Any]:
+def _by_argument(of_numbers: Callable[..., object], of_enclosures: Callable[..., object]) -> Callable[..., Any]:
     """Return a function that also accepts constants of formulas."""
     return lambda *x: (of_enclosures if any(isinstance(part, Enclosure) for part in x) else of_numbers)(*x)
 
 
-_OF_ARRAYS: dict[str, Callable[..., Any]] = {name: function.array for name, function in IN_FORMULAS.items()}
+_OF_ARRAYS: dict[str, Callable[..., object]] = {name: function.array for name, function in IN_FORMULAS.items()}
 _OF_ENCLOSURES = {name: _by_argument(of_arrays, ENCLOSED[name]) for name, of_arrays in _OF_ARRAYS.items()}

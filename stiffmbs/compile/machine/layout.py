@@ -70,7 +70,7 @@ def whole_lines(parts: list[np.ndarray]) -> list[np.ndarray]:
     return [*parts, np.zeros(-sum(map(len, parts)) % (CACHE_LINE // 8))]
 
 
-def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
+def packed(layout: Layout, values: Mapping[str, object]) -> np.ndarray:
     """Return the table for a layout: addresses of arrays, numbers, and cells, zero if no value is given.
 
     The arrays must be contiguous, of the layout's type, and live as long as the table is used. Arrays owned by compiled
@@ -85,7 +85,7 @@ RELEASE = ctypes.pythonapi.PyMem_RawFree
 """Frees the memory of `stiffmbs.compile.machine.native.memory`."""
 
 
-def packed_with_memory(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
+def packed_with_memory(layout: Layout, values: Mapping[str, object]) -> np.ndarray:
     """Return a table as `packed`; compiled code's own arrays are freed with it.
 
     Users of the table's address must keep the returned array.
@@ -103,7 +103,7 @@ def _free(words: np.ndarray, columns: list[int]) -> None:
         words[column] = 0
 
 
-def arrays_of(layout: Layout, lists: Mapping[str, Any]) -> dict[str, np.ndarray]:
+def arrays_of(layout: Layout, lists: Mapping[str, object]) -> dict[str, np.ndarray]:
     """Return lists of numbers, or of rows of numbers, as flat arrays of the layout's types."""
     return {name: np.asarray(values, dtype=DTYPES[layout[name]]).reshape(-1) for name, values in lists.items()}
 

@@ -106,8 +106,8 @@ class SymbolicElement:
         self.counts = True
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
-        self._rotations: dict[tuple[Any, Any], RelativeRotation] = {}
-        self._logarithms: dict[tuple[Any, Any], SpatialLogarithm | PlanarLogarithm] = {}
+        self._rotations: dict[tuple[object, object], RelativeRotation] = {}
+        self._logarithms: dict[tuple[object, object], SpatialLogarithm | PlanarLogarithm] = {}
         self.__dict__.update(fields)
 
     def __getattr__(self, name: str) -> Any:
@@ -196,7 +196,7 @@ class SymbolicElement:
         """Return the derivative of an expression by a symbol from `variable`, other variables held constant."""
         return self.derivatives.partial(self.read(x), variable)
 
-    def composed(self, outputs: Iterable[Any], variables: Sequence[sp.Symbol]) -> list[sp.Expr]:
+    def composed(self, outputs: Iterable[object], variables: Sequence[sp.Symbol]) -> list[sp.Expr]:
         """Name long expressions that depend on the state through few variables, to be differentiated through these."""
         return [self.derivatives.composed(self.read(x), variables, self._state) for x in outputs]
 
@@ -204,7 +204,7 @@ class SymbolicElement:
     def _state(self) -> list[sp.Symbol]:
         return [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities, *self.states, self.t]
 
-    def relative_rotation(self, i: Any, j: Any) -> RelativeRotation:
+    def relative_rotation(self, i: object, j: object) -> RelativeRotation:
         """Return the rotation of a spatial marker relative to one of another body."""
         if (i, j) not in self._rotations:
             self._rotations[i, j] = self._new_rotation(i, j)
@@ -229,7 +229,7 @@ class SymbolicElement:
         own = self.named([i.x, i.y, i.z][axis])
         return ShortestRotation(axis, sp.Matrix(self.named([own.dot(self.named(other)) for other in (j.x, j.y, j.z)])))
 
-    def logarithm(self, i: Any, j: Any) -> SpatialLogarithm | PlanarLogarithm:
+    def logarithm(self, i: object, j: object) -> SpatialLogarithm | PlanarLogarithm:
         """Return the logarithm of the displacement of a marker from one of another body."""
         if (i, j) not in self._logarithms:
             self._logarithms[i, j] = logarithm(self, i, j)
@@ -300,7 +300,7 @@ class SymbolicElement:
         """Return the unit normal between two solids, each a sum of ellipsoids."""
         return self.named(common_normal(offset, axes, first, second))
 
-    def at_extremum(self, function: Callable[[list[sp.Symbol]], Any], at: Any) -> sp.Expr:
+    def at_extremum(self, function: Callable[[list[sp.Symbol]], object], at: Any) -> sp.Expr:
         """Return a function of variables at its extremum over them."""
         variables = [sp.Symbol(f"extremal{k}", real=True) for k in range(len(at))]
         values = dict(zip(variables, at, strict=True))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import sympy as sp
 
@@ -135,7 +134,7 @@ class Frame:
         """Direction and its normal in ground axes."""
         return [self.axis, self.normal]
 
-    def angle_about(self, axis: str, other: Frame, e: Any) -> sp.Expr:
+    def angle_about(self, axis: str, other: Frame, e: object) -> sp.Expr:
         """Return the angle relative to another marker about the plane's normal, rad."""
         return self.angle - other.angle
 

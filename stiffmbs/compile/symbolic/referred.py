@@ -13,7 +13,7 @@ from .element import SymbolicElement
 class SymbolicComponent:
     """Component with symbols for its numbers; its equations are methods."""
 
-    def __init__(self, component: Any, fields: dict[str, object]) -> None:
+    def __init__(self, component: object, fields: dict[str, object]) -> None:
         self._component = component
         self.__dict__.update(fields)
 

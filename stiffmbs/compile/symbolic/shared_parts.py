@@ -199,7 +199,7 @@ def _share_multiples(graph: _Graph) -> None:
 def _share_pairs(graph: _Graph, kind: int) -> None:
     """Replace pairs of factors, or of terms up to their sign, that occur in several nodes by nodes of their own."""
     items = {k: list(node[1:]) for k, node in enumerate(graph.nodes) if node[0] == kind and len(node) > 2}
-    places: dict[tuple[Any, Any], dict[int, None]] = {}
+    places: dict[tuple[object, object], dict[int, None]] = {}
     for k, parts in items.items():
         for pair in _pairs(parts, kind):
             places.setdefault(pair, {})[k] = None
@@ -246,7 +246,7 @@ def _times(sign: int, part: Any, kind: int) -> Any:
     return (sign * part[0], part[1]) if kind == SUM else part
 
 
-def _sign_in(parts: list[Any], pair: tuple[Any, Any], kind: int) -> int:
+def _sign_in(parts: list[object], pair: tuple[object, object], kind: int) -> int:
     """Return the sign with which parts contain a pair, or 0."""
     first, second = pair
     if kind == PRODUCT:

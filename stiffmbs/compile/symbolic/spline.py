@@ -94,10 +94,10 @@ class PythonCall(sp.Function):  # type: ignore[misc]
         return PythonCall(address, count, output, sp.Integer(argindex - 5), *arguments)
 
 
-def python_law(address: sp.Symbol, read: Callable[[Any], sp.Expr]) -> Callable[..., Any]:
+def python_law(address: sp.Symbol, read: Callable[[object], sp.Expr]) -> Callable[..., Any]:
     """Return the function called by equations: ``e.law(x, y)`` for one value, ``e.law(x, y, count=3)`` for a list."""
 
-    def law(*arguments: Any, count: int | None = None) -> Any:
+    def law(*arguments: object, count: int | None = None) -> Any:
         """Return the values of the function as symbolic calls."""
         if not arguments:
             raise InputError("found a Python function without arguments, expected one at least")

@@ -176,7 +176,7 @@ class _Builder:
         return spatial_frames.SpatialFrame(self.frames[slot], numbers)
 
     def joint(
-        self, name: str, element: Any, fields: tuple[tuple[str, Shape], ...], slot: int, coordinate: str | None
+        self, name: str, element: object, fields: tuple[tuple[str, Shape], ...], slot: int, coordinate: str | None
     ) -> ReferredJoint:
         """Return a joint that is referred to."""
         own = {field_name: self.made(f"{name}_{field_name}", shape) for field_name, shape in fields}
@@ -273,7 +273,7 @@ class _Builder:
 
         return {name: noting(name, function) for name, function in IN_FORMULAS.items()}
 
-    def measure(self, name: str, markers: list[Any]) -> sp.Expr:
+    def measure(self, name: str, markers: list[object]) -> sp.Expr:
         """Return a measure between markers, or a coordinate of a spatial body in its own axes."""
         if name.startswith(OWN):
             return own_coordinate(name.removeprefix(OWN), markers[0])

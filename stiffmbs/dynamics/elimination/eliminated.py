@@ -5,7 +5,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Iterator
 from itertools import accumulate, combinations
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -171,7 +171,7 @@ class Side(NamedTuple):
     second: int
 
 
-def pin_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any] | None:
+def pin_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, object] | None:
     """Return the lists of `stiffmbs.dynamics.elimination.native.layouts.PIN_ELIMINATION`; None if a joint is not revolute.
 
     `kept`: entries of J in solved equations.

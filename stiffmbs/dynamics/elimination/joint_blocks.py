@@ -65,7 +65,7 @@ class Joints(Blocks):
         return list(accumulate(map(mul, self.sizes, self.right_width), initial=self.panels[-1]))
 
 
-def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any]:
+def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, object]:
     """Return the lists of joints in `stiffmbs.dynamics.elimination.native.layouts.BLOCK_ELIMINATION`.
 
     `kept`: entries of J in solved equations.

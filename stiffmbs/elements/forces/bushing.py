@@ -66,7 +66,7 @@ class Bushing(Force):
 
     @field_validator("stiffness", "damping", mode="before")
     @classmethod
-    def _rows(cls, found: object) -> Any:
+    def _rows(cls, found: object) -> object:
         if isinstance(found, list | tuple) and len(found) != 3:
             raise ValueError(f"found {len(found)} entries, expected 3, or 3 rows of a symmetric matrix")
         return from_diagonal(found)

@@ -79,7 +79,7 @@ class JointFriction(AnyJointFriction):
     )
 
     @classmethod
-    def joints_by_kind(cls) -> Mapping[str, Any]:
+    def joints_by_kind(cls) -> Mapping[str, object]:
         from ..planar_kinds import JOINTS
 
         return JOINTS

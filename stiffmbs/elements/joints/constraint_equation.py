@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, WithJsonSchema, field_validator
 
@@ -29,7 +29,7 @@ class UserConstraint(Joint):
 
     @field_validator("zero", mode="before")
     @classmethod
-    def _one_or_more(cls, found: object) -> Any:
+    def _one_or_more(cls, found: object) -> object:
         return tuple(found) if isinstance(found, list | tuple) else (found,)
 
     @field_validator("zero")

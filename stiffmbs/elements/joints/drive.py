@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from types import FunctionType
-from typing import Any
 
 from pydantic import Field, field_validator, model_validator
 
@@ -152,6 +151,6 @@ def _driven(e: Symbolic) -> Expr:
     return e.driven if e.joint is None else e.joint.coordinate
 
 
-def _at(law: Any, t: Expr) -> Expr:
+def _at(law: object, t: Expr) -> Expr:
     """Return the value of a law of time, a function for a table and an expression for a formula."""
     return law(t) if isinstance(law, FunctionType) else law

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, PrivateAttr, model_validator
 
@@ -113,7 +113,7 @@ class CrgRoad(Road):
     def extent(self) -> tuple[float, float]:
         return float(self.file.u[0]), float(self.file.u[-1])
 
-    def in_equations(self) -> dict[str, Any]:
+    def in_equations(self) -> dict[str, object]:
         """Return the tables of its long sections, filtered with `filter_radius`, and its reference line."""
         x, y, level = self._at_its_place()
         columns = self._columns

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
 from ...reading.units import si
@@ -38,7 +36,7 @@ class Envelope(Component):
         """Shape of a cam."""
         return Cam(self.length, self.height, self.order)
 
-    def in_equations(self) -> dict[str, Any]:
+    def in_equations(self) -> dict[str, object]:
         """Return the distance of the cams, and the positions of the tracks to the left of the wheel's plane."""
         count = self.tracks if self.width else 1
         across = tuple(self.width * (k / (count - 1) - 0.5) for k in range(count)) if count > 1 else (0.0,)

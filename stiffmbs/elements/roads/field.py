@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from types import MappingProxyType
-from typing import Annotated, Any
+from typing import Annotated
 
 from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.fields import located, named_entries
@@ -64,7 +64,7 @@ def _schema(schema_of: Callable[[type[Road]], JsonSchema]) -> JsonSchema:
 AnyRoad = Annotated[Road, ReadBy(read_road, _schema)]
 
 
-def read_roads(found: object, context: Mapping[str, Any]) -> dict[str, Road]:
+def read_roads(found: object, context: Mapping[str, object]) -> dict[str, Road]:
     """Read the roads of a scene, which its tyres use by name.
 
     Raises InputError if a name is not an identifier, or a road cannot be read.

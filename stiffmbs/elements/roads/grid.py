@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -95,7 +95,7 @@ class GridRoad(Road):
         points = self.file.tables[0].table
         return points[0][0], points[-1][0]
 
-    def in_equations(self) -> dict[str, Any]:
+    def in_equations(self) -> dict[str, object]:
         """Return its tables along x, filtered with `filter_radius`, and their positions y."""
         tables = tuple(through_filter(table, self.filter_shape) for table in self.file.tables)
         return {"friction": self.friction, "lines": tables, "across": self.file.across}

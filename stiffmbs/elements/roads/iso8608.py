@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from pydantic import Field, model_validator
 
@@ -77,7 +77,7 @@ class Iso8608Road(Road):
     def extent(self) -> tuple[float, float]:
         return 0.0, self.length
 
-    def in_equations(self) -> dict[str, Any]:
+    def in_equations(self) -> dict[str, object]:
         """Return the tables of its left and right track, filtered with `filter_radius`."""
         waves = self.track, self.length, self.longest, self.shortest, self.coherence
         tables = _tables(CLASSES.index(self.roughness), self.seed, *waves)

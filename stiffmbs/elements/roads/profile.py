@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from ...reading.did_you_mean import instead_of
@@ -30,7 +28,7 @@ class TableRoad(Road):
 
     @field_validator("profile", "left", "right", mode="before")
     @classmethod
-    def _by_name(cls, found: object, info: ValidationInfo) -> Any:
+    def _by_name(cls, found: object, info: ValidationInfo) -> object:
         if not isinstance(found, str):
             return found
         tables = (info.context or {}).get("tables") or {}
@@ -52,7 +50,7 @@ class TableRoad(Road):
         tables = [table.table for table in (self.profile, self.left, self.right) if table is not None]
         return min(table[0][0] for table in tables), max(table[-1][0] for table in tables)
 
-    def in_equations(self) -> dict[str, Any]:
+    def in_equations(self) -> dict[str, object]:
         """Return its tables, filtered with `filter_radius`."""
         own = dict(Component.in_equations(self))
         del own["filter_radius"]

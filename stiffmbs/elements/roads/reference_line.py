@@ -43,7 +43,7 @@ class ReferenceLine:
     direction: tuple[float, float]
     guess: Table
 
-    def in_equations(self) -> dict[str, Any]:
+    def in_equations(self) -> dict[str, object]:
         """Return the line as fields of a road."""
         return {"line_x": self.x, "line_y": self.y, "direction": self.direction, "guess": self.guess}
 

@@ -50,7 +50,7 @@ class Road(Component):
 
     @model_validator(mode="before")
     @classmethod
-    def _of_its_kind(cls, found: object) -> Any:
+    def _of_its_kind(cls, found: object) -> object:
         return typed(cls.kind, found)
 
     @model_validator(mode="after")
@@ -98,7 +98,7 @@ class Road(Component):
         except (AttributeError, TypeError, ValueError):  # of a function of symbols
             raise NotImplementedError from None
 
-    def in_equations(self) -> dict[str, Any]:
+    def in_equations(self) -> dict[str, object]:
         """Return its fields, and with `filter_radius` the table ``rolled`` of filtered heights."""
         own = dict(super().in_equations())
         del own["filter_radius"]
@@ -151,7 +151,7 @@ class Road(Component):
         return 1 if r.friction is None else r.friction(x, y)
 
 
-def functions_of(x: Any) -> Any:
+def functions_of(x: object) -> Any:
     """Return the module with the functions of x: of NumPy for arrays, of SymPy for symbols."""
     from importlib import import_module
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, ValidationInfo, WithJsonSchema, field_validator
@@ -66,7 +66,7 @@ class Body(Described):
 
     @field_validator("inertia", mode="before")
     @classmethod
-    def _diagonal(cls, found: object) -> Any:
+    def _diagonal(cls, found: object) -> object:
         """Return the tensor of three moments without products of inertia."""
         if not isinstance(found, list | tuple) or any(np.ndim(part) for part in found):
             return found

@@ -24,10 +24,10 @@ _Forces = tuple[K, K, K, Kc, Kc, Kc]
 _Torques = tuple[Kc, Kc, Kc, Kt, Kt, Kt]
 _ViscousForces = tuple[C, C, C, Cc, Cc, Cc]
 _ViscousTorques = tuple[Cc, Cc, Cc, Ct, Ct, Ct]
-_NUMBER: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+_NUMBER: dict[str, object] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
 
 
-def _lists(*counts: int) -> dict[str, Any]:
+def _lists(*counts: int) -> dict[str, object]:
     """Return the schema of nested lists of the given lengths."""
     if not counts:
         return _NUMBER
@@ -183,7 +183,7 @@ class Connection(Elastic):
         return has_moments(e.stiffness, e.preload)
 
 
-def pull_back(stiffness: Any, s: list[Expr], preload: Any) -> list[Expr]:
+def pull_back(stiffness: object, s: list[Expr], preload: Any) -> list[Expr]:
     """Return preload - K s."""
     return [(p or 0) - resisting for p, resisting in zip(preload, times(stiffness, s), strict=True)]
 

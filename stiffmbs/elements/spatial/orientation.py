@@ -112,11 +112,11 @@ class OrientationField:
             self.read, serialization=core_schema.plain_serializer_function_ser_schema(lambda value: value)
         )
 
-    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(self, schema: object, handler: GetJsonSchemaHandler) -> dict[str, object]:
         number = {"anyOf": [{"type": "number"}, {"type": "string"}]}
         three = {"type": "array", "items": number, "minItems": 3, "maxItems": 3}
         euler = {"euler": {"type": "string", "pattern": "^[xyz]{3}$"}, "angles": three}
-        forms: list[dict[str, Any]] = [
+        forms: list[dict[str, object]] = [
             {"type": "array", "items": number, "minItems": 4, "maxItems": 4, "description": "unit quaternion w, x, y, z"},
             {"type": "array", "items": three, "minItems": 3, "maxItems": 3, "description": "rotation matrix by rows"},
             {"type": "object", "properties": euler, "required": ["euler", "angles"], "additionalProperties": False},

@@ -57,7 +57,7 @@ def orient(i: Any, j: Any) -> list[Expr]:
     return [perpendicular(i.x, j.y), perpendicular(i.y, j.z), perpendicular(i.z, j.x)]
 
 
-def on_axis(i: Any, j: Any) -> list[Expr]:
+def on_axis(i: object, j: Any) -> list[Expr]:
     """Return the residuals of i's point on the z axis of j."""
     return [along(i, j, j.x), along(i, j, j.y)]
 

@@ -51,7 +51,7 @@ def _schema(schema_of: Callable[[type[Any]], JsonSchema]) -> JsonSchema:
 AnyState = Annotated[Any, ReadBy(_read, _schema)]
 
 
-def dimensions_of_entry(name: str, entry: object, parameters: Any) -> dict[str, Known]:
+def dimensions_of_entry(name: str, entry: object, parameters: object) -> dict[str, Known]:
     """Return the names that an entry defines for formulas, with their known dimensions, before its validation."""
     outputs = entry.get("outputs") if isinstance(entry, dict) else getattr(entry, "outputs_", None)
     if isinstance(outputs, list | tuple) and outputs:
@@ -90,9 +90,9 @@ def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str,
 
 def check_states(
     states: Mapping[str, Any],
-    bodies: Mapping[str, Any],
-    on_ground: Mapping[str, Any],
-    joints: Mapping[str, Any],
+    bodies: Mapping[str, object],
+    on_ground: Mapping[str, object],
+    joints: Mapping[str, object],
     names: FormulaNames,
     known: Collection[str] | None,
 ) -> None:
@@ -114,7 +114,7 @@ def check_states(
 def check_formula(
     where: str,
     formula: Formula,
-    bodies: Mapping[str, Any],
+    bodies: Mapping[str, object],
     joints: Mapping[str, Any],
     names: FormulaNames,
     states: Collection[str] | None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -156,7 +156,7 @@ def _refuse_other_dimension(field: str, formula: Formula, start: Amount, expecte
         )
 
 
-def dimension_of_state(entry: object, parameters: Any) -> Known:
+def dimension_of_state(entry: object, parameters: object) -> Known:
     """Return the known dimension of a state before its validation; unknown if its start cannot be read."""
     start = getattr(entry, "start", None)
     if isinstance(start, Amount):

@@ -220,7 +220,7 @@ class TyreProperties(Component):
             tracks=min(max(int(p.ELLIPS_NWIDTH), 1), MOST_TRACKS),
         )  # fmt: skip
 
-    def in_equations(self) -> dict[str, Any]:
+    def in_equations(self) -> dict[str, object]:
         """Return the names and values that the equations use."""
         own: dict[str, Any] = {
             "ellipse": "" if self.is_combined else "pac2002" if self.of_adams else "limit",
@@ -250,12 +250,12 @@ class TyreProperties(Component):
     def wrench(
         self,
         load: Any,
-        slip: Any = 0.0,
-        slip_angle: Any = 0.0,
-        camber: Any = 0.0,
-        speed: Any = None,
-        friction: Any = 1.0,
-        pressure: Any = None,
+        slip: object = 0.0,
+        slip_angle: object = 0.0,
+        camber: object = 0.0,
+        speed: object = None,
+        friction: object = 1.0,
+        pressure: object = None,
     ) -> dict[str, np.ndarray]:
         """Return forces and torques of steady slip, rolling forward, in ISO axes at the contact point.
 
@@ -287,14 +287,14 @@ class TyreProperties(Component):
 
     def steady_state(
         self,
-        Fz: Any,
-        kappa: Any = 0.0,
-        alpha: Any = 0.0,
-        gamma: Any = 0.0,
-        p: Any = None,
-        Vx: Any = None,
-        phit: Any = None,
-        friction: Any = 1.0,
+        Fz: object,
+        kappa: object = 0.0,
+        alpha: object = 0.0,
+        gamma: object = 0.0,
+        p: object = None,
+        Vx: object = None,
+        phit: object = None,
+        friction: object = 1.0,
     ) -> dict[str, np.ndarray]:
         """Return the steady state of the tyre in ISO axes at the contact point, with the symbols of the Magic Formula.
 

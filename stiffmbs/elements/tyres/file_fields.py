@@ -322,7 +322,7 @@ def relaxation_of(
             yield name, 0.0, f"{wrong}: steady slip does without it"
 
 
-def doubts(file: PropertyFile, formula: Version, found: Mapping[str, Any]) -> Iterator[str]:
+def doubts(file: PropertyFile, formula: Version, found: Mapping[str, object]) -> Iterator[str]:
     """Yield notes on sections that the file does not have, and on valid slip angles that may have another unit."""
     for name in RANGES["slip_angle"][:2]:
         entry, angle = file.entry(name), file.number(name, "angle") if file.entry(name) else math.inf

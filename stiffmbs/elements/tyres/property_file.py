@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ...errors import InputError
 from ...reading.files.quoted import quoted
@@ -303,7 +303,7 @@ OF_FORMAT = {
 """Version by PROPERTY_FILE_FORMAT; empty if FITTYP states it."""
 
 
-def plain(word: Any) -> str:
+def plain(word: object) -> str:
     """Return a name of a version without punctuation, such as MF52 for 'MF_5.2'."""
     return "".join(letter for letter in str(word).upper() if letter.isalnum())
 

@@ -38,7 +38,7 @@ def steady_state(
     gamma: Any = 0.0,
     p: Any = None,
     Vx: Any = None,
-    phit: Any = None,
+    phit: object = None,
     friction: Any = 1.0,
 ) -> dict[str, np.ndarray]:
     """Return the steady state of a tyre by the symbols of the Magic Formula; see `TyreProperties.steady_state`."""
@@ -71,7 +71,7 @@ def _check(load: np.ndarray, pressure: np.ndarray) -> None:
         raise InputError(f"found a pressure of {pressure[~(pressure > 0)].flat[0]:g} Pa, expected a number above zero")
 
 
-def _names(numbers: Mapping[str, Any]) -> tuple[str, ...]:
+def _names(numbers: Mapping[str, object]) -> tuple[str, ...]:
     return tuple(name for name, value in numbers.items() if isinstance(value, float))
 
 
@@ -167,11 +167,11 @@ def falling_root(
     return np.asarray(x)
 
 
-def _key(numbers: Mapping[str, Any]) -> tuple[Any, ...]:
+def _key(numbers: Mapping[str, object]) -> tuple[Any, ...]:
     return _names(numbers), numbers["formula"], numbers["ellipse"], False
 
 
-def _forces(numbers: Mapping[str, Any], turns: bool) -> Callable[..., dict[str, Any]]:
+def _forces(numbers: Mapping[str, object], turns: bool) -> Callable[..., dict[str, Any]]:
     return _compiled("forces", *_key(numbers)[:-1], turns)
 
 
@@ -192,12 +192,12 @@ def _compiled(
     return lambda *values: dict(zip(outputs, function(*values), strict=True))
 
 
-def _force_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
+def _force_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, object]:
     from . import magic_formula, magic_formula_6
 
     (*basic, turn, rolling), load, gamma, dpi = symbols, symbols[0], symbols[3], symbols[7]
     equations = VERSIONS[p.formula].equations
-    more: dict[str, Any] = {}
+    more: dict[str, object] = {}
     if equations.relaxation_lengths is not None:
         forces = equations.wrench(p, magic_formula.Slip(*basic), _same, p.ellipse)
         lengths = equations.relaxation_lengths(p, load, gamma, _same)
@@ -217,7 +217,7 @@ def _force_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _load_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
+def _load_outputs(p: object, symbols: list[Expr], turns: bool) -> dict[str, object]:
     from .deflection_6 import deflection, stiffening
 
     loaded, free, spin, dpi, gamma, fx, fy = symbols
@@ -225,7 +225,7 @@ def _load_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
     return {"load": load, "slope": load.diff(loaded), "rho": deflection(p, loaded, free, gamma)}
 
 
-def _radius_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
+def _radius_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, object]:
     equations = VERSIONS[p.formula].equations
     if equations.rolling_radius is not None:
         return {"Re": equations.rolling_radius(p, symbols[0], _same)}

@@ -74,7 +74,7 @@ class Beam(LineBody):
 
     @field_validator("section", "section_end", mode="before")
     @classmethod
-    def _drawn(cls, found: object) -> Any:
+    def _drawn(cls, found: object) -> object:
         return {"type": "points", **found} if isinstance(found, dict) and "points" in found else found
 
     @field_validator("stations")

@@ -112,7 +112,7 @@ def _between(start: Section, end: Section | None, share: float) -> Section:
         return start
     if isinstance(start, Numbers) and isinstance(end, Numbers):
         start, end = start.complete(), end.complete()
-    numbers: dict[str, Any] = {
+    numbers: dict[str, object] = {
         name: (1 - share) * a + share * getattr(end, name)
         for name in type(start).model_fields
         if isinstance(a := getattr(start, name), float) and getattr(end, name) is not None

@@ -57,7 +57,7 @@ class ElementsField:
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)
 
-    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(self, schema: object, handler: GetJsonSchemaHandler) -> dict[str, object]:
         number, length = (kind.__get_pydantic_json_schema__(schema, handler) for kind in (_NUMBER, _LENGTH))
         tolerance = {"type": "object", "properties": {"tolerance": length}, "required": ["tolerance"]}
         return {"anyOf": [number, {"type": "array", "items": number}, {**tolerance, "additionalProperties": False}]}

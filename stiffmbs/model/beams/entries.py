@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 GROUND_AXES = "ground_axes"
 """Marker of each node with axes parallel to those of the scene or part, for joints to bodies with such axes."""
@@ -12,8 +11,12 @@ LOAD, CONTACT = "distributed_load", "beam_contact"
 
 
 def with_beams(
-    sections: dict[str, Any], parameters: Mapping[str, Any], dimensions: Any = None, part: str = "", instance: str = ""
-) -> dict[str, Any]:
+    sections: dict[str, object],
+    parameters: Mapping[str, object],
+    dimensions: object = None,
+    part: str = "",
+    instance: str = "",
+) -> dict[str, object]:
     """Return the sections of a scene or part with beams replaced by their nodes and elements.
 
     The sections are as written, with repeated entries expanded; the dimensions are by default those that they contain.
@@ -32,7 +35,7 @@ def with_beams(
     return {**sections, "bodies": found, "forces": forces}
 
 
-def _any(section: Any, fits: Callable[[Any], bool]) -> bool:
+def _any(section: object, fits: Callable[[object], bool]) -> bool:
     """Return True if a section has an entry with a type that fits."""
     entries = section.values() if isinstance(section, dict) else ()
     return any(isinstance(entry, dict) and "type" in entry and fits(entry["type"]) for entry in entries)

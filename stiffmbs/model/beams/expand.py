@@ -26,7 +26,12 @@ BEAM = "beam"
 
 
 def expand_beams(
-    bodies: dict[str, Any], forces: Any, parameters: Mapping[str, Any], dimensions: Any, where: str, instance: str
+    bodies: dict[str, object],
+    forces: object,
+    parameters: Mapping[str, object],
+    dimensions: object,
+    where: str,
+    instance: str,
 ) -> tuple[Any, Any]:
     """Return the bodies and forces of a scene or part with beams replaced by their nodes and elements.
 
@@ -34,8 +39,8 @@ def expand_beams(
     the name of the part followed by a dot, for the record of all beams. InputError if a beam cannot be read, or one of
     its names is taken.
     """
-    found: dict[Any, Any] = {}
-    added: dict[Any, Any] = {}
+    found: dict[Any, object] = {}
+    added: dict[Any, object] = {}
     lines: dict[str, Line] = {}
     of_beams: set[str] = set()
     for name, entry in bodies.items():
@@ -66,14 +71,14 @@ def expand_beams(
     return found, added
 
 
-def _check_name(name: Any, where: str) -> None:
+def _check_name(name: object, where: str) -> None:
     with prefixed(f"{where.rpartition('.')[0]}: ", ValueError):
         check_names([name], "entry")
     if name in RESERVED:
         raise InputError(f"{where}: found the name '{name}', which is reserved, expected another")
 
 
-def _loads(name: str, entry: Any, lines: Mapping[str, Line], where: str, dimensions: Any) -> dict[str, Any]:
+def _loads(name: str, entry: Any, lines: Mapping[str, Line], where: str, dimensions: object) -> dict[str, object]:
     """Return the forces of a distributed load or a contact of a beam; other forces as they are."""
     kind = entry.get("type") if isinstance(entry, dict) else None
     if kind == CONTACT:
@@ -87,7 +92,7 @@ def _loads(name: str, entry: Any, lines: Mapping[str, Line], where: str, dimensi
     return node_forces(name, load, lines, where)
 
 
-def read_beam(entry: Mapping[str, Any], parameters: Mapping[str, Any], dimensions: Any, where: str) -> Beam:
+def read_beam(entry: Mapping[str, object], parameters: Mapping[str, object], dimensions: object, where: str) -> Beam:
     """Return the beam of an entry. Raises InputError if it has another type, or cannot be read."""
     kind = entry["type"]
     if kind != BEAM:
@@ -106,7 +111,7 @@ def read_beam(entry: Mapping[str, Any], parameters: Mapping[str, Any], dimension
         raise InputError(f"{where}{'.' if _begins_with_key(text) else ': '}{text}") from None
 
 
-def _right_in_space(entry: Mapping[str, Any], parameters: Mapping[str, Any]) -> bool:
+def _right_in_space(entry: Mapping[str, object], parameters: Mapping[str, object]) -> bool:
     """Return True if an entry that is invalid in the plane is valid in space."""
     try:
         SpatialBeam.model_validate(entry, context={"parameters": parameters})

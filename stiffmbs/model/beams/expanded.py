@@ -54,7 +54,7 @@ def _numbers(vector: Any) -> list[float]:
     return [float(part) for part in vector]
 
 
-def _planar_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) -> dict[str, Any]:
+def _planar_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) -> dict[str, object]:
     arm = node.point - start.point
     return {
         "mass": node.mass, "inertia": float(node.inertia[2, 2]), "position": _numbers(node.point[:2]),
@@ -70,7 +70,7 @@ def _unwrap(bodies: list[dict[str, Any]]) -> None:
         body["angle"] = float(angle)
 
 
-def _spatial_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) -> dict[str, Any]:
+def _spatial_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) -> dict[str, object]:
     omega = np.array(beam.omega)
     velocity = np.array(beam.velocity) + np.cross(omega, node.point - start.point)
     return {
@@ -86,16 +86,16 @@ def _angle(axes: np.ndarray) -> float:
     return float(np.arctan2(axes[1, 0], axes[0, 0]))
 
 
-def _planar_marker(body: str, turned: np.ndarray) -> dict[str, Any]:
+def _planar_marker(body: str, turned: np.ndarray) -> dict[str, object]:
     return {"body": body, "angle": _angle(turned)}
 
 
-def _spatial_marker(body: str, turned: np.ndarray) -> dict[str, Any]:
+def _spatial_marker(body: str, turned: np.ndarray) -> dict[str, object]:
     straight = np.allclose(turned, np.eye(3), rtol=0, atol=1e-14)
     return {"body": body, "orientation": list(IDENTITY if straight else from_matrix(turned))}
 
 
-def _of_torsion(element: Element) -> dict[str, Any]:
+def _of_torsion(element: Element) -> dict[str, object]:
     """Return the fields of an element whose torsion stretches and bends it."""
     return {name: [0.0, *_numbers(np.array(getattr(element, name)))] for name in ("shear_centre", "wagner")}
 

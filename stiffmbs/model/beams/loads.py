@@ -32,13 +32,13 @@ class DistributedLoad(Described):
 
     @field_validator("force")
     @classmethod
-    def _components(cls, force: tuple[Any, ...]) -> tuple[Any, ...]:
+    def _components(cls, force: tuple[object, ...]) -> tuple[object, ...]:
         if len(force) not in (2, 3):
             raise ValueError(f"found {len(force)} components, expected two in the plane or three in space")
         return force
 
 
-def node_forces(name: str, load: DistributedLoad, lines: Mapping[str, Line], where: str) -> dict[str, Any]:
+def node_forces(name: str, load: DistributedLoad, lines: Mapping[str, Line], where: str) -> dict[str, object]:
     """Return the nodal forces of a distributed load, as entries of a scene.
 
     Nodes have the same shares of the load as of the mass. Raises InputError if the load names an unknown beam.
@@ -53,8 +53,8 @@ def node_forces(name: str, load: DistributedLoad, lines: Mapping[str, Line], whe
 
 
 def node_contacts(
-    name: str, entry: Mapping[str, Any], lines: Mapping[str, Line], where: str, kind: str
-) -> dict[str, Any]:
+    name: str, entry: Mapping[str, object], lines: Mapping[str, Line], where: str, kind: str
+) -> dict[str, object]:
     """Return the contacts of nodes of an entry ``beam_contact``, as entries of a scene.
 
     They are of the given kind and have its fields, with `beam` in place of `i`. The stiffness is per length of the beam; the

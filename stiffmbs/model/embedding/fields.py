@@ -11,7 +11,7 @@ from ..model_text import written
 from .formulas import Angles, Written, formula, placement, point
 
 
-def same(element: Element, angles: Angles, **others: Any) -> Written:
+def same(element: Element, angles: Angles, **others: object) -> Written:
     """Return the spatial element of the same kind as a planar one, with fields of the same meaning.
 
     `angles` are those of its model. `others` are fields with other values; None for omitted ones.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from ...elements import shape as planar
 from ...elements.body import Body
@@ -84,7 +83,7 @@ def _body(name: str, body: Body, angles: Angles) -> Written:
     return {name: part for name, part in parts.items() if part}
 
 
-def _markers(owner: str, own: Mapping[str, Any], angles: Angles) -> Written:
+def _markers(owner: str, own: Mapping[str, object], angles: Angles) -> Written:
     return {name: placement(placed) for name, placed in own.items()} | angles.added.get(owner, {})
 
 

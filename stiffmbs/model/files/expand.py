@@ -38,7 +38,7 @@ def set_value(scene: dict[str, Any], path: str, value: object) -> None:
     if path in (scene.get("parameters") or {}):
         path = f"parameters.{path}"
     *parents, last = _keys(scene, path)
-    place: Any = scene
+    place: object = scene
     for k, parent in enumerate(parents):
         if isinstance(place, dict):
             place = place.setdefault(parent, {})
@@ -64,7 +64,7 @@ def unshared(found: object) -> Any:
     return found
 
 
-def _keys(place: Any, path: str) -> list[str]:
+def _keys(place: object, path: str) -> list[str]:
     """Return the keys of a path; a key of a mapping may contain dots."""
     keys: list[str] = []
     rest: str | None = path
@@ -130,7 +130,7 @@ def read_parameter(
     return found
 
 
-def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, Any]]) -> dict[str, Quantity]:
+def replaced_parameters(scene: dict[str, object], changes: Sequence[tuple[str, object]]) -> dict[str, Quantity]:
     """Return the original values of the parameters that changes replace; none if they cannot be read."""
     changed = {path.removeprefix("parameters.") for path, _ in changes}
     try:
@@ -155,14 +155,14 @@ def read_tables(found: object, parameters: Mapping[str, Quantity]) -> dict[str, 
     return tables
 
 
-def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity]) -> Any:
+def repeat_entries(section: str, entries: object, parameters: Mapping[str, Quantity]) -> Any:
     """Replace each entry with a ``for`` by the entries that it generates.
 
     Raises InputError if the loop cannot be read, or two entries have the same name.
     """
     if not isinstance(entries, dict):
         return entries
-    expanded: dict[Any, Any] = {}
+    expanded: dict[Any, object] = {}
     for name, entry in entries.items():
         where = f"{section}.{name}"
         if not (isinstance(entry, dict) and "for" in entry):

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 from pydantic import ValidationError as PydanticError
 
@@ -80,7 +79,7 @@ class OtherForces:
         expanded = scene is not None and not found <= scene.forces.keys()
         return found if as_written and not expanded else None
 
-    def scene(self, values: Sequence[Any]) -> Scene | None:
+    def scene(self, values: Sequence[object]) -> Scene | None:
         """Return the scene with the given values; None if it must be read as a whole."""
         before = self._unchanged.scene
         if self._affected is None or before is None or any(isinstance(value, str) for value in values):
@@ -100,7 +99,7 @@ class OtherForces:
         scene._quantities, scene._written = parameters, None
         return scene
 
-    def _parameters(self, values: Sequence[Any]) -> dict[str, Quantity]:
+    def _parameters(self, values: Sequence[object]) -> dict[str, Quantity]:
         content = self._content.get(PARAMETERS) or {}
         given = {name.removeprefix(f"{PARAMETERS}."): value for name, value in zip(self._names, values, strict=True)}
         found: dict[str, Quantity] = dict(self._unchanged.context[PARAMETERS])
@@ -109,7 +108,7 @@ class OtherForces:
                 found[name] = read_parameter(name, given.get(name, content[name]), found, self._replaced)
         return found
 
-    def _forces(self, values: Sequence[Any], context: Mapping[str, Any]) -> dict[str, Force]:
+    def _forces(self, values: Sequence[object], context: Mapping[str, object]) -> dict[str, Force]:
         assert self._unchanged.scene is not None and self._affected is not None
         content = {FORCES: {name: unshared(self._content[FORCES][name]) for name in self._affected}}
         for name, value in zip(self._names, values, strict=True):
@@ -122,7 +121,7 @@ class OtherForces:
         }
 
 
-def _following(parameters: Mapping[str, Any], changed: set[str]) -> set[str]:
+def _following(parameters: Mapping[str, object], changed: set[str]) -> set[str]:
     """Return the parameters whose formulas depend on changed ones, directly or indirectly."""
     found = set(changed)
     for name, value in parameters.items():  # each may use only earlier ones

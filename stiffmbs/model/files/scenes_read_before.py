@@ -34,7 +34,7 @@ OF_SCENES = frozenset(("stiffmbs", "ast", "builtins", "collections", "numpy", "p
 """Packages whose classes a cached scene may contain; code of other packages, such as user elements, may change."""
 
 
-def read_scene_file(text: str, changes: Sequence[tuple[str, Any]], source: str, file: Path) -> Scene:
+def read_scene_file(text: str, changes: Sequence[tuple[str, object]], source: str, file: Path) -> Scene:
     """Read a scene, or its cached form; results and errors are those of `stiffmbs.model.read_scene.read_scene`.
 
     `text`: text of the file. `source`: name of the scene in messages.

@@ -128,7 +128,7 @@ def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[Written
     return found
 
 
-def merged(old: Any, change: Any) -> Any:
+def merged(old: object, change: object) -> Any:
     """Apply a merge patch (RFC 7386)."""
     if not isinstance(change, Mapping):
         return change
@@ -141,7 +141,7 @@ def merged(old: Any, change: Any) -> Any:
     return found
 
 
-def merge_patch(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+def merge_patch(old: Mapping[str, object], new: Mapping[str, object]) -> dict[str, Any]:
     """Return the patch that converts one mapping to another; see `merged`."""
     patch: dict[str, Any] = {name: None for name in old if name not in new}
     for name, value in new.items():
@@ -154,7 +154,7 @@ def merge_patch(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any
     return patch
 
 
-def _of_stage(changes: Sequence[tuple[str, Any]], content: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
+def _of_stage(changes: Sequence[tuple[str, object]], content: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
     """Return the changes from outside, without those of joints, forces and requests that a stage does not have."""
 
     def is_there(path: str) -> bool:

@@ -34,7 +34,7 @@ def shipped_parts() -> tuple[str, ...]:
     return tuple(sorted(_files()))
 
 
-def shipped_part(name: str) -> dict[str, Any] | None:
+def shipped_part(name: str) -> dict[str, object] | None:
     """Return the definition of a part of the package, read-only; None for any other name."""
     return _read(name) if name in shipped_parts() else None
 
@@ -57,8 +57,8 @@ def included_texts(name: str) -> tuple[str, ...]:
 
 
 @functools.cache
-def _read(name: str) -> dict[str, Any]:
-    found: dict[str, Any]
+def _read(name: str) -> dict[str, object]:
+    found: dict[str, object]
     found, _ = read_including(shipped_text(name), f"{name}.yaml", _files()[name])
     return found
 
@@ -113,7 +113,7 @@ class Definitions:
             )
         return use, words
 
-    def of(self, part: str) -> dict[str, Any]:
+    def of(self, part: str) -> dict[str, object]:
         """Return a copy of the definition of a part. Raises InputError if it is not a mapping, or has unknown keys."""
         found = self.written(part)
         if not isinstance(found, dict):
@@ -125,7 +125,7 @@ class Definitions:
         return copy.deepcopy(found)
 
 
-def definition_in_components(definition: dict[str, Any], vectors: Vectors, where: str) -> dict[str, Any]:
+def definition_in_components(definition: dict[str, object], vectors: Vectors, where: str) -> dict[str, object]:
     """Return a definition with vectors replaced by their components."""
     with located(where):
         parameters = parameters_in_components(definition.get("parameters"), vectors, f"{where}.parameters")

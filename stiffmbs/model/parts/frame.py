@@ -58,11 +58,11 @@ class Frame:
         """Transform a vector of the part to the outer axes."""
 
     @abstractmethod
-    def placed(self, marker: Any) -> Any:
+    def placed(self, marker: object) -> Any:
         """Return a marker, a placement or a shape in the outer axes."""
 
     @abstractmethod
-    def placed_inertia(self, body: Any) -> Mapping[str, Any]:
+    def placed_inertia(self, body: Any) -> Mapping[str, object]:
         """Return the orientation, angular velocity and inertia of a body of the part."""
 
     def mirror(self) -> Self:

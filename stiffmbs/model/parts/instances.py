@@ -76,7 +76,7 @@ class Instances:
     found: list[Instance] = field(default_factory=list)
 
     def read(
-        self, used: Any, parameters: Mapping[str, Quantity], outer: Instance | None = None, depth: int = 0
+        self, used: object, parameters: Mapping[str, Quantity], outer: Instance | None = None, depth: int = 0
     ) -> None:
         """Add the instances of ``use`` and all nested ones.
 
@@ -148,7 +148,7 @@ class Instances:
         if self.values > MOST_VALUES:
             raise InputError(f"{where}: found parts of more than {MOST_VALUES} values in all, expected fewer")
 
-    def _set(self, instance: str, definition: dict[str, Any]) -> None:
+    def _set(self, instance: str, definition: dict[str, object]) -> None:
         """Apply the changes from outside to a definition."""
         for change in list(self.changes):
             path, value = change

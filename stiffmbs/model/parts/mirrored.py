@@ -49,7 +49,7 @@ class Mirror:
             raise InputError(
                 f"{where}: found the type {element.kind} in a mirrored part, expected one that can be mirrored"
             )
-        changed: dict[str, Any] = {}
+        changed: dict[str, object] = {}
         for name in type(element).model_fields:
             try:
                 changed[name] = self._field(element, name, where)

@@ -16,7 +16,7 @@ from ...reading.files.quoted import written
 OPTIONS, CHOOSE = "options", "choose"
 
 
-def choices_of(found: Mapping[str, Any], where: str) -> dict[str, dict[str, Any]]:
+def choices_of(found: Mapping[str, object], where: str) -> dict[str, dict[str, Any]]:
     """Return the options of a part or scene: for each choice its words with their sections.
 
     Raises InputError if they are not a mapping of choices to words to sections.
@@ -35,7 +35,7 @@ def choices_of(found: Mapping[str, Any], where: str) -> dict[str, dict[str, Any]
     return options
 
 
-def with_chosen(found: dict[str, Any], words: Any, where: str) -> dict[str, Any]:
+def with_chosen(found: dict[str, object], words: Any, where: str) -> dict[str, Any]:
     """Return a part or scene with the chosen sections merged, without its options.
 
     `words`: word by choice; unknown choices are ignored. `where`: path of its options. Raises InputError if a word is
@@ -52,7 +52,7 @@ def with_chosen(found: dict[str, Any], words: Any, where: str) -> dict[str, Any]
     return merged
 
 
-def words_chosen(found: object, where: str = CHOOSE) -> dict[str, Any]:
+def words_chosen(found: object, where: str = CHOOSE) -> dict[str, object]:
     """Return the choices of a scene. Raises InputError if they are not a mapping of choices to words."""
     if found is None:
         return {}
@@ -61,7 +61,7 @@ def words_chosen(found: object, where: str = CHOOSE) -> dict[str, Any]:
     return dict(found)
 
 
-def refuse_unknown_choices(words: Mapping[str, Any], known: Collection[str]) -> None:
+def refuse_unknown_choices(words: Mapping[str, object], known: Collection[str]) -> None:
     """Refuse choices that neither the scene nor any of its parts has; a misspelt choice would have no effect.
 
     Raises InputError: The message lists the known choices.
@@ -74,7 +74,7 @@ def refuse_unknown_choices(words: Mapping[str, Any], known: Collection[str]) -> 
             )
 
 
-def _together(before: Any, entries: Any, where: str) -> Any:
+def _together(before: object, entries: object, where: str) -> Any:
     if before is None:
         return entries
     if not isinstance(before, dict) or not isinstance(entries, dict):

@@ -85,7 +85,7 @@ def _limits_of(limits: object, part: str, own: Collection[str]) -> dict[str, str
     return known
 
 
-def _vector(name: Any, own: Mapping[Any, Any]) -> str:
+def _vector(name: object, own: Mapping[object, object]) -> str:
     """Return the name of the vector that a parameter is a component of, or its own name."""
     start, end = str(name)[:-2], str(name)[-2:]
     is_component = end in COMPONENT_ENDS and all(f"{start}{other}" in own for other in COMPONENT_ENDS[:2])

@@ -35,8 +35,8 @@ SECTIONS = ("markers", *NAMED)
 
 
 def with_parts(
-    raw: dict[str, Any], scene: type[Any], context: dict[str, Any], changes: Sequence[tuple[str, Any]]
-) -> tuple[dict[str, Any], dict[str, Any]]:
+    raw: dict[str, object], scene: type[Any], context: dict[str, Any], changes: Sequence[tuple[str, object]]
+) -> tuple[dict[str, object], dict[str, object]]:
     """Return a scene with its ``use`` expanded, and its validation context.
 
     The scene is as written, with repeated entries expanded; its type is that of the plane or of space. The context
@@ -194,7 +194,9 @@ class _Placed:
             )
         return body, frame.mirror().then(own)
 
-    def _further_mounts(self, instance: Instance, in_ground: Any) -> tuple[dict[str, tuple[str, Any]], dict[str, str]]:
+    def _further_mounts(
+        self, instance: Instance, in_ground: object
+    ) -> tuple[dict[str, tuple[str, object]], dict[str, str]]:
         """Return what else an instance connects to by local name: bodies with the part's frame in their axes, and joints."""
         inside = Names(local=instance.outer.local()) if instance.outer else Names()
         found, joints = {}, {}
@@ -233,7 +235,7 @@ class _Placed:
         self.raw["bodies"][name] = found.bodies[name]
         return found.bodies[name]
 
-    def _add_markers(self, on: str, markers: Mapping[str, Any]) -> None:
+    def _add_markers(self, on: str, markers: Mapping[str, object]) -> None:
         if on == GROUND:
             self._entries("markers").update(markers)
             return
@@ -246,17 +248,17 @@ class _Placed:
             raise InputError(f"{section}.{full}: found a name that a part makes too, expected another")
         entries[full] = value
 
-    def _entries(self, section: str) -> dict[str, Any]:
+    def _entries(self, section: str) -> dict[str, object]:
         """Return a section of the scene, to which parts add entries."""
         if self.raw.get(section) is None:
             self.raw[section] = {}
-        entries: Any = self.raw[section]
+        entries: object = self.raw[section]
         if not isinstance(entries, dict):
             raise InputError(f"{section}: found {written(entries)}, expected a mapping of names to entries")
         return entries
 
 
-def _on_mounts(element: Element, name: str, mounts: Mapping[str, tuple[str, Any]]) -> Element:
+def _on_mounts(element: Element, name: str, mounts: Mapping[str, tuple[str, object]]) -> Element:
     """Return an element of a part with its markers on local mounts moved to the mounted bodies."""
     moved = {}
     for field_name in type(element).model_fields:

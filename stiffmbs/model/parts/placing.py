@@ -11,8 +11,8 @@ from .definitions import NAMED
 
 
 def placed_in_use(
-    found: dict[str, Any], changes: Sequence[tuple[str, Any]]
-) -> tuple[dict[str, Any], Sequence[tuple[str, Any]]]:
+    found: dict[str, Any], changes: Sequence[tuple[str, object]]
+) -> tuple[dict[str, object], Sequence[tuple[str, Any]]]:
     """Return a scene and its changes, with the entries of ``parts`` that place a part moved to ``use``.
 
     ``parts: {front: {use: axle}}`` is equivalent to ``use: {front: {part: axle}}``. Raises InputError if a name occurs
@@ -39,7 +39,7 @@ def placed_in_use(
     return {**found, "parts": left, "use": used}, moved
 
 
-def as_written(message: str, parts: Any) -> str:
+def as_written(message: str, parts: object) -> str:
     """Return a message with the path of an entry of ``use`` as in the file: ``parts.left`` for ``use.left``."""
     section, *names = message.partition(":")[0].split(".")
     placed = section == "use" and names and isinstance(parts, dict) and _is_placed(parts.get(names[0]))
@@ -50,7 +50,7 @@ def _is_placed(entry: object) -> bool:
     return isinstance(entry, dict) and isinstance(entry.get("use"), str)
 
 
-def set_in_instances(path: str, used: Any) -> bool:
+def set_in_instances(path: str, used: object) -> bool:
     """Return True for the path of an entry of an instance of a part: ``bodies.front.left.arm.mass``."""
     section, _, rest = path.partition(".")
     if section not in (*NAMED, "markers") or not isinstance(used, dict):

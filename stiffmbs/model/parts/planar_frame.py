@@ -37,7 +37,7 @@ class PlanarFrame(Frame):
     angle: float = 0.0
 
     @classmethod
-    def of_use(cls, use: Any) -> Self:
+    def of_use(cls, use: object) -> Self:
         """Return the placement and mirroring of a use."""
         assert isinstance(use, PlanarUse)
         return cls(use.position, tuple(-1.0 if use.mirror == axis else 1.0 for axis in "xy"), use.angle)
@@ -82,5 +82,5 @@ class PlanarFrame(Frame):
         """Return a marker with an axis reversed."""
         return marker.model_copy(update={"angle": marker.angle + math.pi})
 
-    def placed_inertia(self, body: Body) -> dict[str, Any]:
+    def placed_inertia(self, body: Body) -> dict[str, object]:
         return {"angle": self.oriented(body.angle), "omega": self.handedness * body.omega}

@@ -48,7 +48,7 @@ class SpatialFrame(Frame):
     orientation: Quaternion = IDENTITY
 
     @classmethod
-    def of_use(cls, use: Any) -> Self:
+    def of_use(cls, use: object) -> Self:
         """Return the placement and mirroring of a use."""
         assert isinstance(use, SpatialUse)
         return cls(use.position, tuple(-1.0 if use.mirror == axis else 1.0 for axis in AXES), use.orientation)
@@ -98,7 +98,7 @@ class SpatialFrame(Frame):
         turn = about((AXES.index(axis) + 1) % 3, math.pi)
         return marker.model_copy(update={"orientation": product(marker.orientation, turn)})
 
-    def placed_inertia(self, body: Body) -> dict[str, Any]:
+    def placed_inertia(self, body: Body) -> dict[str, object]:
         """Return the fields of a body that depend on the frame: axes, omega, centre of mass and inertia."""
         inertia = np.outer(self.signs, self.signs) * np.array(body.inertia)
         return {

@@ -21,7 +21,7 @@ Vectors = Mapping[str, int]
 """Number of components of vectors by name."""
 
 
-def vectors_of(parameters: Any, where: str) -> dict[str, int]:
+def vectors_of(parameters: object, where: str) -> dict[str, int]:
     """Return the vectors among parameters: lists of two or three numbers, and formulas of preceding vectors.
 
     Raises InputError if a formula multiplies vectors, or adds a number to one.
@@ -35,14 +35,14 @@ def vectors_of(parameters: Any, where: str) -> dict[str, int]:
     return vectors
 
 
-def parameters_in_components(parameters: Any, vectors: Vectors, where: str) -> Any:
+def parameters_in_components(parameters: object, vectors: Vectors, where: str) -> Any:
     """Return parameters with vectors replaced by their components.
 
     Raises InputError if a vector has another value, or a component is also defined directly.
     """
     if not isinstance(parameters, dict):
         return parameters
-    found: dict[Any, Any] = {}
+    found: dict[object, object] = {}
     for name, value in parameters.items():
         if name not in vectors:
             entries = {name: value}

@@ -69,7 +69,7 @@ class Path(Described):
         return curve_through(np.array(self.points, dtype=float), self.closed)
 
 
-def with_path(raw: dict[str, Any], parameters: Mapping[str, Any]) -> dict[str, Any]:
+def with_path(raw: dict[str, object], parameters: Mapping[str, object]) -> dict[str, object]:
     """Return a scene with the tables of its section ``path``.
 
     Raises InputError if the section is invalid, or a table of the scene has the name of one of its tables.

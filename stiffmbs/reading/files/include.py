@@ -27,7 +27,7 @@ class Sources:
     # name in messages, text, and path of keys in the scene at which its content is inserted
     texts: list[tuple[str, str, tuple[str, ...]]] = field(default_factory=list)
 
-    def line(self, path: tuple[Any, ...]) -> str | None:
+    def line(self, path: tuple[object, ...]) -> str | None:
         """Return the line of the deepest known key of a path, with the file if it is an included one."""
         deepest, line = 0, None
         for k, (source, text, above) in enumerate(self.texts):
@@ -59,8 +59,8 @@ class _Including:
     sources: Sources
 
     def whole(
-        self, found: dict[str, Any], source: str, folder: Path, within: tuple[Path, ...], path: tuple[str, ...]
-    ) -> dict[str, Any]:
+        self, found: dict[str, object], source: str, folder: Path, within: tuple[Path, ...], path: tuple[str, ...]
+    ) -> dict[str, object]:
         """Return a mapping with its includes and those of its parts resolved."""
         found = self._opened(found, source, folder, within, path)
         parts = found.get(PARTS)
@@ -73,20 +73,20 @@ class _Including:
         return found
 
     def _opened(
-        self, found: dict[str, Any], source: str, folder: Path, within: tuple[Path, ...], path: tuple[str, ...]
-    ) -> dict[str, Any]:
+        self, found: dict[str, object], source: str, folder: Path, within: tuple[Path, ...], path: tuple[str, ...]
+    ) -> dict[str, object]:
         if INCLUDE not in found:
             return found
         where = f"{_place(self.sources, source, (*path, INCLUDE))}{'.'.join((*path, INCLUDE))}"
-        merged: dict[str, Any] = {}
-        owners: dict[tuple[Any, ...], str] = {}
+        merged: dict[str, object] = {}
+        owners: dict[tuple[object, ...], str] = {}
         for name in _listed(found[INCLUDE], where):
             file = folder / name
             _add(merged, self._content(file, where, within, path), str(file), owners, where)
         _add(merged, {key: value for key, value in found.items() if key != INCLUDE}, source, owners, where)
         return merged
 
-    def _content(self, file: Path, where: str, within: tuple[Path, ...], path: tuple[str, ...]) -> dict[str, Any]:
+    def _content(self, file: Path, where: str, within: tuple[Path, ...], path: tuple[str, ...]) -> dict[str, object]:
         if file.resolve() in within:
             raise InputError(f"{where}: found '{quoted(str(file))}', which includes itself, expected no circle")
         if len(self.sources.texts) > MOST_FILES:
@@ -123,7 +123,7 @@ def _listed(found: Any, where: str) -> list[str]:
 
 
 def _add(
-    merged: dict[str, Any], found: dict[str, Any], source: str, owners: dict[tuple[Any, ...], str], where: str
+    merged: dict[str, Any], found: dict[str, object], source: str, owners: dict[tuple[object, ...], str], where: str
 ) -> None:
     """Merge the sections of a file; a name may occur in one file only."""
     for section, value in found.items():
@@ -136,8 +136,8 @@ def _add(
 
 
 def _own(
-    path: tuple[Any, ...], place: dict[str, Any], name: Any, value: object, source: str,
-    owners: dict[tuple[Any, ...], str], where: str,
+    path: tuple[object, ...], place: dict[str, object], name: Any, value: object, source: str,
+    owners: dict[tuple[object, ...], str], where: str,
 ) -> None:  # fmt: skip
     if name in place and not (len(path) == 1 and place[name] == value):  # equal values may be repeated
         first = owners.get(path, "another file")

@@ -36,7 +36,7 @@ def own_sources(scene: Scene) -> dict[str, str]:
     return digests_of_code(own) if own else {}
 
 
-def digests_of_code(found: Iterable[Any]) -> dict[str, str]:
+def digests_of_code(found: Iterable[object]) -> dict[str, str]:
     """Return the digests by file of classes and functions, and of all user code that they use."""
     digests = {}
     for file, parts in _Walk(found).parts.items():
@@ -51,9 +51,9 @@ class _Walk:
     `parts`: texts from which the digest of each source file, or of a module without one, is computed.
     """
 
-    def __init__(self, found: Iterable[Any]) -> None:
+    def __init__(self, found: Iterable[object]) -> None:
         self.parts: defaultdict[str, list[str]] = defaultdict(list)
-        self._visited: dict[int, Any] = {}
+        self._visited: dict[int, object] = {}
         self._packages: set[str] = set()
         for each in found:
             self._packages.add(_module_of(each).partition(".")[0])
@@ -73,7 +73,7 @@ class _Walk:
             else:
                 self._visit_function(found)
 
-    def _visit_all(self, found: Iterable[Any]) -> None:
+    def _visit_all(self, found: Iterable[object]) -> None:
         for each in found:
             self._visit(each)
 

@@ -19,7 +19,7 @@ class Fields(Mapping[str, Value]):
     """
 
     def __init__(
-        self, kind: str, owner: str, values: Mapping[str, Value], defaults: Mapping[str, Any] | None = None
+        self, kind: str, owner: str, values: Mapping[str, Value], defaults: Mapping[str, object] | None = None
     ) -> None:
         self.kind, self.owner = kind, owner
         self._values, self._defaults = values, defaults or {}
@@ -82,13 +82,13 @@ def _listed(field: str, owners: list[str]) -> str:
     return f"{field} of {listed(named)}" if named else field
 
 
-def _same(value: object, default: Any) -> bool:
+def _same(value: object, default: object) -> bool:
     """Return True for two texts of the same number or word, and for equal numbers or sequences."""
     texts = [[str(part).strip().lower() for part in _parts(x)] for x in (value, default)]
     return len(texts[0]) == len(texts[1]) and all(a == b or _equal(a, b) for a, b in zip(*texts, strict=True))
 
 
-def _parts(x: Any) -> list[Any]:
+def _parts(x: object) -> list[Any]:
     if isinstance(x, str):
         return x.split()
     return list(x) if hasattr(x, "__iter__") else [x]

@@ -39,7 +39,7 @@ class Unchanged:
         """Copy as an empty record, because the scene of a copy is another object."""
         return Unchanged, ()
 
-    def keep(self, raw: Mapping[str, Any], context: Mapping[str, Any], scene: Scene) -> None:
+    def keep(self, raw: Mapping[str, object], context: Mapping[str, object], scene: Scene) -> None:
         """Record a scene with its entries before validation; only the first call has an effect."""
         if self.scene is not None:
             return
@@ -53,7 +53,7 @@ class Unchanged:
             for name, entry in (self._raw.get(section) or {}).items()
         }
 
-    def put_into(self, raw: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
+    def put_into(self, raw: Mapping[str, Any], context: Mapping[str, object]) -> dict[str, object]:
         """Return the entries of another reading, with unchanged ones in validated form."""
         scene = self.scene
         if scene is None or context["names"] != self.context["names"] or raw.get("dimensions") != self._raw.get("dimensions"):  # fmt: skip

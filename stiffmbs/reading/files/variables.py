@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Collection, Mapping
-from typing import Any
 
 from ...errors import InputError, prefixed
 from ..fields import NAME_PATTERN
@@ -18,7 +17,11 @@ from .yaml_text import quotes_hint
 
 
 def read_variables(
-    found: object, parameters: Mapping[str, Quantity], tables: Collection[str], states: Any = None, inputs: Any = None
+    found: object,
+    parameters: Mapping[str, Quantity],
+    tables: Collection[str],
+    states: object = None,
+    inputs: object = None,
 ) -> dict[str, ast.expr]:
     """Return the syntax trees of a scene's variables by name; `states` and `inputs` are sections of the scene.
 

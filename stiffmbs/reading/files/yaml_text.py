@@ -74,7 +74,7 @@ def _reason(error: Any) -> str:
     return f"found text that is not YAML ({problem})"
 
 
-def line_of(text: str, path: tuple[Any, ...]) -> int | None:
+def line_of(text: str, path: tuple[object, ...]) -> int | None:
     """Return the line of the deepest key of `path` in a text."""
     return line_and_depth(text, path)[0]
 
@@ -84,7 +84,7 @@ def line_and_depth(text: str, path: tuple[Any, ...]) -> tuple[int | None, int]:
     from ruamel.yaml import YAML
 
     try:
-        place: Any = YAML().load(StringIO(_with_plain_ends(text)))
+        place: object = YAML().load(StringIO(_with_plain_ends(text)))
     except Exception:  # this reader, which keeps lines, refuses some texts that `read_yaml` accepts
         return None, 0
     line, depth = None, 0
@@ -101,7 +101,7 @@ def line_and_depth(text: str, path: tuple[Any, ...]) -> tuple[int | None, int]:
     return line, len(path)
 
 
-def _line_in(marks: Any, key: Any) -> int | None:
+def _line_in(marks: Any, key: object) -> int | None:
     """Return the line of a key; None for a merged key."""
     try:
         return int(marks.key(key)[0]) + 1
@@ -186,7 +186,7 @@ def _check_scalar(found: object) -> None:
 WIDTH = 140
 
 
-def scene_text(found: dict[str, Any]) -> str:
+def scene_text(found: dict[str, object]) -> str:
     """Return a mapping as the text of a scene file; innermost lists and mappings are in flow style."""
     from ruamel.yaml import YAML
 

@@ -214,7 +214,7 @@ class FormulaOf:
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)
 
-    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(self, schema: object, handler: GetJsonSchemaHandler) -> dict[str, object]:
         names = [*self.variables, *(["t"] if self.time else []), *(["coordinates"] if self.coordinates else [])]
         text = {"type": "string", "description": f"a formula of {', '.join(names) or 'numbers'}"}
         table = [handler(Table.__pydantic_core_schema__)] if self.table else []

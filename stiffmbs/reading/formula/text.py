@@ -29,7 +29,7 @@ LONGEST_TEXT = 50 * MOST_PARTS
 UNIT_BY_KEYWORD = {"in": "inch"}
 """Units whose names are keywords of Python."""
 
-BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+BINARY: dict[type[ast.operator], Callable[[object, object], Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
@@ -171,10 +171,10 @@ OF_NUMBERS = BINARY | {ast.Pow: real_power}
 
 def evaluate(
     tree: ast.expr,
-    names: Callable[[str], Any],
-    functions: Mapping[str, Callable[..., Any]],
-    number: Callable[[int | float], Any] = float,
-    binary: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = BINARY,
+    names: Callable[[str], object],
+    functions: Mapping[str, Callable[..., object]],
+    number: Callable[[int | float], object] = float,
+    binary: Mapping[type[ast.operator], Callable[[Any, Any], object]] = BINARY,
 ) -> Any:
     """Evaluate a checked tree in any algebra (numbers, arrays, SymPy expressions).
 

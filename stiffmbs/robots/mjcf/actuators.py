@@ -40,7 +40,7 @@ class Disabled:
         return self._off, self._on
 
 
-def _bits(kind: Any) -> dict[str, int]:
+def _bits(kind: object) -> dict[str, int]:
     """Return the flags of an enumeration by name, without prefix."""
     return {name[7:]: int(getattr(kind, name)) for name in dir(kind) if name.startswith(("mjDSBL_", "mjENBL_"))}
 
@@ -122,7 +122,7 @@ def _tendon_of(m: Any, k: int) -> dict[str, Any]:
     return {"tendon": name_of(m, "tendon", tendon), "total": total} if total else {}
 
 
-def bounds(limited: Any, ends: Any) -> tuple[float, float] | None:
+def bounds(limited: object, ends: Any) -> tuple[float, float] | None:
     """Return the bounds of a limited range, else None."""
     return (float(ends[0]), float(ends[1])) if limited else None
 

@@ -83,7 +83,7 @@ class RequestedModel:
     `requested`: names of arrays with the index of an entry, None for all; options as ``opt.`` and their name.
     """
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: object) -> None:
         self._model = model
         self.requested: set[tuple[str, int | None]] = set()
 

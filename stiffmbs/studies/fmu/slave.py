@@ -25,7 +25,7 @@ AT_ONE_TIME = 1e-9
 """Difference of times that the sums of a simulating program may have, relative to the time or the step."""
 
 
-def hold(names: dict[str, Any]) -> None:
+def hold(names: dict[str, object]) -> None:
     """Take an extra reference to the globals of an FMU's script.
 
     PythonFMU 0.7 executes the script at each instantiation, and then releases a reference to its globals that it does not own.
@@ -40,7 +40,7 @@ def hold(names: dict[str, Any]) -> None:
 class SceneSlave(Fmi2Slave):  # type: ignore[misc]
     """FMU slave with the inputs, parameters and channels of a scene as variables."""
 
-    def __init__(self, **kwargs: Any) -> None:
+    def __init__(self, **kwargs: object) -> None:
         super().__init__(**kwargs)
         folder = Path(self.resources)
         about = json.loads((folder / ABOUT).read_text(encoding="utf-8"))
@@ -73,7 +73,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
                 SubElement(unknowns, "Unknown", {"index": output.attrib["index"]})
         return root
 
-    def _register(self, values: dict[str, float], causality: Any, variability: Any) -> None:
+    def _register(self, values: dict[str, float], causality: object, variability: object) -> None:
         """Register variables that another program sets."""
         for name, value in values.items():
 
@@ -125,7 +125,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
         self.log(str(error), Fmi2Status.error)
         return error
 
-    def _get_fmu_state(self) -> dict[str, Any]:
+    def _get_fmu_state(self) -> dict[str, object]:
         """Return the state for ``fmi2GetFMUstate``: the values that were set, and the time and state of the motion."""
         kept = None if self._simulation is None else self._simulation.state
         return {

@@ -205,7 +205,7 @@ def _strip(content: dict[str, Any], car: Car) -> tuple[str, ...]:
     return tuple(gone)
 
 
-def _set_roads(content: Any) -> None:
+def _set_roads(content: object) -> None:
     """Replace the roads of all tyres, also in definitions of parts."""
     if isinstance(content, dict):
         if str(content.get("type", "")).endswith("tyre"):
@@ -220,7 +220,7 @@ def _set_roads(content: Any) -> None:
 OF_A_PRESSED_PEDAL = ("presses", "pressing", "force")
 
 
-def _brake_by(driver: dict[str, Any], use: Mapping[str, Any], content: dict[str, Any]) -> None:
+def _brake_by(driver: dict[str, object], use: Mapping[str, object], content: dict[str, Any]) -> None:
     """Let the driver press the pedal of a part `brakes`, if the car has one."""
     for entry in use.values():
         if isinstance(entry, dict) and entry.get("part") == "brakes":
@@ -232,7 +232,7 @@ def _brake_by(driver: dict[str, Any], use: Mapping[str, Any], content: dict[str,
             content["variables"] = {**(content.get("variables") or {}), "braking": f"{DRIVER}.braking_force"}
 
 
-def _renamed(formula: Any, old: str) -> Any:
+def _renamed(formula: object, old: str) -> Any:
     """Return a formula that reads channels of the manoeuvre's driver in place of those of the scene's own."""
     return re.sub(rf"(?<![\w.]){re.escape(old)}\.", f"{DRIVER}.", formula) if isinstance(formula, str) else formula
 

@@ -17,7 +17,7 @@ SPEED: Final = 80 / 3.6
 """Test speed of ISO 7401, ISO 4138 (constant speed) and ISO 19365, m/s."""
 
 
-def parameter(default: Any, dimension: str, meaning: str, source: str = "") -> Any:
+def parameter(default: object, dimension: str, meaning: str, source: str = "") -> Any:
     """Return a field of a test: its default in SI units, dimension, meaning and the part of the standard it is from."""
     return field(default=default, metadata={"dimension": dimension, "meaning": meaning, "source": source})
 
@@ -121,7 +121,7 @@ PAIRS = (("first", "last"), ("slowest", "fastest"))
 """Parameters of which the first is smaller than the second."""
 
 
-def with_changes(given: Mapping[str, object], defaults: Mapping[str, Any]) -> dict[str, Any]:
+def with_changes(given: Mapping[str, object], defaults: Mapping[str, Any]) -> dict[str, object]:
     """Return the parameters of tests with changes of a user.
 
     `given`: values by ``test.parameter``, or by ``parameter`` for each of the tests that has it; text may have a unit.

@@ -61,7 +61,7 @@ class Handling:
         """Return the values of the metrics of a test."""
         return {name: value for name, (value, _) in self.tests[test].metrics.items()}
 
-    def as_dict(self, scene: str) -> dict[str, Any]:
+    def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs handling --json``; values without a number are null."""
         found = {
             test: {

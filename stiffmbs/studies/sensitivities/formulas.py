@@ -53,7 +53,7 @@ class Dual:
     value: Any
     slope: Any
 
-    def __array_ufunc__(self, function: np.ufunc, method: str, *arguments: Any) -> Dual:
+    def __array_ufunc__(self, function: np.ufunc, method: str, *arguments: object) -> Dual:
         values = [np.asarray(x.value if isinstance(x, Dual) else x, dtype=float) for x in arguments]
         with np.errstate(all="ignore"):
             value = function(*values)
@@ -108,12 +108,12 @@ class Formula:
         value = self._dual(node, dict.fromkeys(self._channels, 0.0)).value
         return np.broadcast_to(np.asarray(value, dtype=float), self._time.shape)
 
-    def dual(self, slopes: Mapping[str, Any]) -> Dual:
+    def dual(self, slopes: Mapping[str, object]) -> Dual:
         """Return the value with its derivatives, from those of the channels, shape (n, directions)."""
         with np.errstate(all="ignore"):
             return self._dual(self._tree, slopes)
 
-    def _dual(self, node: ast.AST, slopes: Mapping[str, Any]) -> Dual:
+    def _dual(self, node: ast.AST, slopes: Mapping[str, object]) -> Dual:
         def channel(name: str) -> Dual:
             """Return a channel with its derivatives."""
             if name == TIME:
@@ -159,7 +159,7 @@ def _times(factor: Any, slope: np.ndarray) -> np.ndarray:
     return factor[:, None] * slope if np.ndim(factor) == 1 else factor * slope
 
 
-SLOPES: dict[np.ufunc, Callable[..., tuple[Any, ...]]] = {
+SLOPES: dict[np.ufunc, Callable[..., tuple[object, ...]]] = {
     np.add: lambda y, a, b: (1.0, 1.0), np.subtract: lambda y, a, b: (1.0, -1.0), np.multiply: lambda y, a, b: (b, a),
     np.divide: lambda y, a, b: (1 / b, -y / b), np.power: lambda y, a, b: (b * a ** (b - 1), y * np.log(a)),
     np.negative: lambda y, x: (-1.0,), np.positive: lambda y, x: (1.0,),

@@ -44,11 +44,11 @@ class Scenes:
             return cls(written_scene(data), data.validated)
         return cls(written_scene(data))
 
-    def at(self, changes: Sequence[tuple[str, Any]]) -> Scenes:
+    def at(self, changes: Sequence[tuple[str, object]]) -> Scenes:
         """Return scenes that differ by one value from a scene with other values; errors as for `changed`."""
         return Scenes(replace(self._written, changes=(*self._written.changes, *changes)), self._unchanged)
 
-    def changed(self, changes: Sequence[tuple[str, Any]]) -> Scene:
+    def changed(self, changes: Sequence[tuple[str, object]]) -> Scene:
         """Return the scene with other values. Raises InputError if a value is invalid."""
         names, values = [path for path, _ in changes], [value for _, value in changes]
         if names and self._unchanged.scene is self.known:
@@ -112,7 +112,7 @@ def _found(scene: Scene, name: str) -> tuple[str, tuple[int, ...], Any]:
             f"to: found '{name}'{did_you_mean(name, scene.parameters)}, expected a parameter of the scene ({known}) or a path such as "
             "forces.spring.stiffness"
         )
-    at: Any = scene
+    at: object = scene
     k = 0
     if parts[0] == "bodies" and any(not body.rigid for body in scene.bodies.values()):
         from ...model.flexible import described_bodies
@@ -135,7 +135,7 @@ def _is_number(found: object) -> bool:
     return isinstance(found, int | float) and not isinstance(found, bool)
 
 
-def _next(at: Any, parts: Sequence[str], k: int, name: str) -> tuple[Any, int]:
+def _next(at: object, parts: Sequence[str], k: int, name: str) -> tuple[Any, int]:
     """Return the object under the next part of a path, or under several as names may have dots, and the next index."""
     for end in range(len(parts), k, -1):
         key = ".".join(parts[k:end])
@@ -145,7 +145,7 @@ def _next(at: Any, parts: Sequence[str], k: int, name: str) -> tuple[Any, int]:
     raise InputError(f"to: found '{name}', expected a path of the scene; it has no '{'.'.join(parts[: k + 1])}'")
 
 
-def _part(whole: Any, places: Sequence[int], name: str = "") -> Any:
+def _part(whole: object, places: Sequence[int], name: str = "") -> Any:
     for place in places:
         if not isinstance(whole, list | tuple) or place >= len(whole):
             raise InputError(f"to: found '{name}', expected a place of the vector or matrix there")
@@ -160,5 +160,5 @@ def _replaced(whole: Any, places: Sequence[int], value: float) -> Any:
     return [_replaced(part, rest, value) if k == first else _listed(part) for k, part in enumerate(whole)]
 
 
-def _listed(part: Any) -> Any:
+def _listed(part: object) -> Any:
     return [_listed(each) for each in part] if isinstance(part, list | tuple) else part

@@ -75,7 +75,7 @@ class Sensitivity:
     time: np.ndarray
     notes: tuple[str, ...] = ()
 
-    def as_dict(self, scene: str) -> dict[str, Any]:
+    def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs sensitivities --json``, with notes if there are any."""
         to = {name: np.asarray(slope).tolist() for name, slope in self.to.items()}
         value = np.asarray(self.value).tolist()
@@ -83,7 +83,7 @@ class Sensitivity:
         return {"scene": scene, "of": self.of, "value": value, "to": to, **notes}
 
 
-def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings: Any) -> Sensitivity:
+def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings: object) -> Sensitivity:
     """Compute derivatives of an output of a run by parameters of its scene, by forward sensitivity analysis.
 
     The equations of motion are differentiated exactly, and integrated along the steps of `bdf` with their own iteration

@@ -68,7 +68,7 @@ class SetUp:
 
         return with_same_modes(found, self._job.data)
 
-    def derivative(self, values: Sequence[Any]) -> np.ndarray:
+    def derivative(self, values: Sequence[object]) -> np.ndarray:
         """Return the derivative from the results of the scenes."""
         return np.asarray(sum(w * np.asarray(value) for w, value in zip(self._weights, values, strict=True)))
 
@@ -258,7 +258,7 @@ def _same_structure(a: System, b: System) -> bool:
     )  # fmt: skip
 
 
-def _has_table(shape: Any) -> bool:
+def _has_table(shape: object) -> bool:
     if not isinstance(shape, tuple):
         return False
     if shape[:1] == ("table",) or (

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -24,7 +23,7 @@ class Compliance:
     centre: np.ndarray
     contact: np.ndarray
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return the matrices for JSON with the names of their rows and columns."""
         return {
             "displacements": [f"{side}.{name}" for side in self.sides for name in DISPLACEMENTS],

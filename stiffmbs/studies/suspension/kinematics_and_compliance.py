@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from numbers import Integral, Real
-from typing import Any
 
 import numpy as np
 
@@ -129,7 +128,7 @@ class KinematicsAndCompliance:
                 worst = max(worst, float(np.max(np.abs(a - b), initial=0.0)) / largest)
         return worst
 
-    def as_dict(self, scene: str) -> dict[str, Any]:
+    def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs kc --json``."""
         cases = {
             name: {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -44,7 +43,7 @@ class RoadLoads:
     peaks: dict[str, tuple[Peak, ...]]
     loads: dict[str, dict[str, np.ndarray]]
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, object]:
         """Return the peaks for JSON: value, time and case by bushing and component."""
         return {
             name: {peak.component: {"value": peak.value, "time": peak.time, "case": peak.case} for peak in peaks}

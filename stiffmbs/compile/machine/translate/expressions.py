@@ -31,7 +31,7 @@ class Expressions:
     """
 
     def __init__(
-        self, code: Code, outside: Mapping[str, Any], wider: Mapping[str, str], given_once: AbstractSet[str]
+        self, code: Code, outside: Mapping[str, object], wider: Mapping[str, str], given_once: AbstractSet[str]
     ) -> None:
         self.code = code
         self.variables: dict[str, Value] = {}
@@ -241,7 +241,7 @@ def is_finite(code: Code, operand: Operand) -> Value:
     return compared(code, ast.Lt(), size, Value("float", "0x7FF0000000000000"))
 
 
-FUNCTIONS: dict[Callable[..., Any], Builtin] = {
+FUNCTIONS: dict[Callable[..., object], Builtin] = {
     abs: absolute, max: _extreme(ast.Gt()), min: _extreme(ast.Lt()), float: to_float, int: to_int,
     math.isfinite: is_finite, math.fabs: absolute,
     **{getattr(math, name): _library(f"llvm.{name}.f64") for name in INTRINSICS},

@@ -65,8 +65,8 @@ class Unit:
         self._inlined = inlined
         self._texts: list[str] = []
         self._declared: set[str] = set()
-        self._known: dict[tuple[Any, ...], tuple[str, str | None]] = {}
-        self._begun: set[tuple[Any, ...]] = set()
+        self._known: dict[tuple[object, ...], tuple[str, str | None]] = {}
+        self._begun: set[tuple[object, ...]] = set()
 
     def text(self) -> str:
         """Return the module."""
@@ -76,7 +76,7 @@ class Unit:
         """Declare an external function."""
         self._declared.add(declaration)
 
-    def called(self, code: Code, function: Callable[..., Any], values: Sequence[Operand]) -> Value | None:
+    def called(self, code: Code, function: Callable[..., object], values: Sequence[Operand]) -> Value | None:
         """Write the call of a function in the language; translate it if new."""
         key = (function, *(value.name if isinstance(value, Record) else _kind(value) for value in values))
         if key not in self._known:
@@ -102,7 +102,7 @@ class Unit:
         return code.put_value("float", f'call double @"{symbol}"({given})')
 
     def write(
-        self, tree: ast.FunctionDef, outside: Mapping[str, Any], symbol: str, values: Sequence[Operand],
+        self, tree: ast.FunctionDef, outside: Mapping[str, object], symbol: str, values: Sequence[Operand],
         wanted: str | None = None, linkage: str = "",
     ) -> str | None:  # fmt: skip
         """Translate one function for the kinds of `values`; return the kind of its result."""
@@ -155,7 +155,7 @@ def _stored(body: Sequence[ast.stmt]) -> Iterator[str]:
             yield from _stored(getattr(statement, part, ()))
 
 
-def _tree(function: Callable[..., Any]) -> ast.FunctionDef:
+def _tree(function: Callable[..., object]) -> ast.FunctionDef:
     return _functions(Path(function.__code__.co_filename).read_text(encoding="utf-8"))[function.__name__]
 
 

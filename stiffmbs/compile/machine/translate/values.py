@@ -78,11 +78,11 @@ class Builtin:
 
     lower: Callable[..., Any]
 
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *arguments: object) -> Any:
         raise TypeError(f"{self.lower.__name__}: exists in compiled code alone")
 
 
-def builtin(lower: Callable[..., Any]) -> Any:
+def builtin(lower: Callable[..., object]) -> Any:
     """Mark a function ``lower(code, *arguments)`` that writes instructions itself."""
     return Builtin(lower)
 

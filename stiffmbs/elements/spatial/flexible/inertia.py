@@ -168,7 +168,9 @@ class _Form:
         ])  # fmt: skip
 
 
-def flexible_inertias(bodies: Mapping[str, Any], gravity: tuple[float, ...]) -> Iterator[tuple[str, FlexibleInertia]]:
+def flexible_inertias(
+    bodies: Mapping[str, object], gravity: tuple[float, ...]
+) -> Iterator[tuple[str, FlexibleInertia]]:
     """Yield the inertia and elasticity of the flexible bodies by the names of their frames."""
     for name, body in bodies.items():
         if isinstance(body, FloatingFrame):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -57,7 +57,7 @@ class JointFriction(AnyJointFriction):
                 yield field, f"found one for the {joint.kind} joint '{self.joint}', expected none (for {fits} only)"
 
     @classmethod
-    def joints_by_kind(cls) -> Mapping[str, Any]:
+    def joints_by_kind(cls) -> Mapping[str, object]:
         from ..spatial_kinds import JOINTS
 
         return JOINTS
