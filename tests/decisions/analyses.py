@@ -40,13 +40,13 @@ def moves_of_a_message():
     return int(*check._assembly_sentence(start))
 
 
-def farthest_equilibrium():
+def farthest_equilibrium(notes):
     """Return the distance, in quarter octaves of 0.01 of a mechanism's size, that is not noted."""
     system = Record(of_body=Record(n_q=3, linear=2), bodies=["a"], size=1.0)
 
     def is_silent(distance):
         found, start = (Record(q=np.array([x, 0.0, 0.0])) for x in (distance, 0.0))
-        return not [*far_away.far_away(Record(system=system), start, found)]
+        return not [*notes(Record(system=system), start, found)]
 
     return count_while(lambda distance: is_silent(0.01 * distance), DOUBLES)
 
@@ -136,7 +136,7 @@ class linearised:
             names_of=lambda *_: ["a.vx"], n_u=1, of_body=Record(velocities=()), states=[], without_rate=np.zeros(0, dtype=bool)
         )  # fmt: skip
         found = Record(dynamics=Record(system=system), t=0.0)
-        return lambda: sides._breakpoint(found, Record(), Record(), np.ones(1))
+        return lambda: sides._breakpoint(found, Record(), Record(), np.ones(1), sides.MOVES)
 
     def __exit__(self, *_):
         self._patch.stop()
@@ -250,7 +250,7 @@ def branches():
     dynamics = Record(system=Record(states=[]), state=Record(q=np.zeros(1)))
     with patch.multiple(
         settled, find_equilibrium=lambda *_: pose, _directions=lambda *_: (np.ones(1), []), _branch=lambda *_: pose,
-        _branch_sentence=lambda *_: "", _settled=lambda _found, _start, notes, *_: len(notes) - 1,
+        _branch_sentence=lambda *_: "", _family=lambda _: (), _settled=lambda _dynamics, _found, _start, notes, *_: len(notes) - 1,
     ):  # fmt: skip
         return settled.settled(dynamics, Record(q=np.zeros(1)), 0.0)
 
@@ -266,8 +266,12 @@ def smallest_growth(of_largest):
 
     def grows(real):
         values = np.array([real, 1.0j]) if of_largest else np.array([real + 1.0j])
-        with patch.object(settled, "eigen", lambda *_: (values, None, None)):
-            return len(settled._growing(Record(matrix=None, n_poses=0, n_states=0))) > 0
+        state = Record(matrix=None, n_poses=0, n_states=0)
+        instant = Record(dynamics=Record(system=Record(per_velocity=nothing, size=1.0)))
+        with patch.multiple(
+            settled, eigen=lambda *_: (values, None, None), linearised_at=lambda *_: (None, state, None)
+        ):
+            return len(settled._growing(instant, settled.MOVES)[0]) > 0
 
     return count_while(grows, BELOW)
 
@@ -328,7 +332,8 @@ def in_steady_motion(imbalance=0.0):
 DECISIONS = {
     "analyses.beam_elements:MOST": most_elements_of_a_beam,
     "analyses.check:MOST_MOVES": moves_of_a_message,
-    "analyses.far_away:FAR": farthest_equilibrium,
+    "analyses.far_away:FAR": lambda: farthest_equilibrium(far_away.far_away),
+    "analyses.far_away:BEYOND": lambda: farthest_equilibrium(far_away.beyond_its_size),
     "analyses.given_inputs:FEWEST": lambda: points_of(lambda _: 1.0),
     "analyses.given_inputs:MOST": lambda: points_of(lambda t: float(t > 0.3)),
     "analyses.given_inputs:FOLLOWED": lambda: count_while(
@@ -372,7 +377,7 @@ DECISIONS = {
     "analyses.steady:VELOCITY_ERROR": lambda: count_while(lambda x: steady._rounded([x], 1.0) != [0.0], BELOW),
 }  # fmt: skip
 EXPECTED = {
-    "analyses.beam_elements:MOST": 512, "analyses.check:MOST_MOVES": 50, "analyses.far_away:FAR": 18, "analyses.given_inputs:FEWEST": 513,
+    "analyses.beam_elements:MOST": 512, "analyses.check:MOST_MOVES": 50, "analyses.far_away:FAR": 18, "analyses.far_away:BEYOND": 31, "analyses.given_inputs:FEWEST": 513,
     "analyses.given_inputs:MOST": 65579, "analyses.given_inputs:FOLLOWED": 27, "analyses.given_inputs:JUMP": 4,
     "analyses.given_inputs:ROUNDINGS": 9.094947017729282e-13, "analyses.job:DEPENDENT": 120, "analyses.linearised.modes:AT_REST": 27,
     "analyses.linearised.modes:UNHURRIED": 6.283185307179586, "analyses.linearised.sides:Moves.wide": 1e-06,

@@ -268,7 +268,7 @@ def number_of_relaxation_lengths():
 
 
 def widest_tyre():
-    found = {"UNLOADED_RADIUS": 1.0, "FNOMIN": 4000.0, "UMIN": 0.0, "UMAX": 1.0, "WIDTH": 1.0}
+    found = {"UNLOADED_RADIUS": 1.0, "FNOMIN": 4000.0, "UMIN": 0.0, "UMAX": 1.0, "CALPHA": 5e4, "WIDTH": 1.0}
     with patch.object(file_fields, "_check_range", lambda *args: reach(args[4][1])):
         return reached(lambda: file_fields._check_fiala(None, None, found))
 

@@ -32,7 +32,7 @@ def parts_of_a_chain():
 def additions_of_columns():
     """Return the number of times that columns of a matrix of 1000 are added."""
     shapes = []
-    numbers = Record(zeros=lambda shape: shapes.append(shape) or np.zeros(shape))
+    numbers = Record(zeros=lambda shape, *_: shapes.append(shape) or np.zeros(shape))
     with patch.object(cholesky, "np", numbers):
         cholesky._add_lower(np.zeros((1000, 1000)), np.arange(1000), np.zeros((1000, 1000)))
     return len(shapes)
@@ -122,12 +122,32 @@ def most_unknowns_of_dense_modes():
         solver = Record(
             free=np.arange(n), _functionals=[], _solve=nothing, _model=Record(nodes=range(n // 3 + 1), mass=eye_array(n, format="csr"))
         )  # fmt: skip
-        with patch.multiple(
-            static_solver, _dense_modes=lambda *_: reach(True), LinearOperator=lambda *_, **__: reach(False)
-        ):
+        with patch.multiple(static_solver, _dense_modes=lambda *_: reach(True), _lanczos_modes=lambda *_: reach(False)):
             return reached(lambda: static_solver.StaticSolver.normal_modes(solver, 1))
 
     return count_while(is_dense, (20 * DOUBLES[:40]).astype(int))
+
+
+def lanczos(squares):
+    """Return the widths of the blocks of static solutions for the lowest mode of unit masses with these stiffnesses."""
+    widths = []
+
+    def solve(force):
+        widths.append(force.shape[1])
+        return force / squares[:, None]
+
+    static_solver._lanczos_modes(solve, eye_array(len(squares), format="csr"), 1)
+    return widths
+
+
+def independent_shapes():
+    """Return the angle between two shapes, in quarter octaves of 1 rad, down to which they are independent."""
+
+    def are_two(angle):
+        shapes = np.array([[1.0, np.cos(angle)], [0.0, np.sin(angle)]])
+        return static_solver._orthonormal(shapes, eye_array(2, format="csr"))[0].shape[1] == 2
+
+    return count_while(are_two, BELOW)
 
 
 DECISIONS = {
@@ -156,6 +176,9 @@ DECISIONS = {
         [*solid.NodePairs.parts(Record(_place=np.zeros((1, 100))), 10**6)]
     ),
     "flexible_bodies.static_solver:DENSE": most_unknowns_of_dense_modes,
+    "flexible_bodies.static_solver:BLOCK": lambda: lanczos(np.arange(1.0, 101.0))[0],
+    "flexible_bodies.static_solver:CONVERGED": lambda: len(lanczos(np.linspace(1.0, 10.0, 3000))),
+    "flexible_bodies.static_solver:DEPENDENT": independent_shapes,
 }  # fmt: skip
 EXPECTED = {
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
@@ -163,4 +186,5 @@ EXPECTED = {
     "flexible_bodies.reduced:MOST": 100, "flexible_bodies.reduced:MOST_BYTES": 2000000000, "flexible_bodies.reduced:SAME_MASS": 23,
     "flexible_bodies.reduction:SAME_FREQUENCY": 27, "flexible_bodies.reduction:DEPENDENT": 133, "flexible_bodies.reduction:ZERO": 14,
     "flexible_bodies.reduction:MORE_MODES": 20, "flexible_bodies.solid:LARGEST_PART": 91, "flexible_bodies.static_solver:DENSE": 18,
+    "flexible_bodies.static_solver:BLOCK": 8, "flexible_bodies.static_solver:CONVERGED": 50, "flexible_bodies.static_solver:DEPENDENT": 96,
 }  # fmt: skip

@@ -22,10 +22,10 @@ from .bars import DENSITY, HEIGHT, LENGTH, NU, WIDTH, E, bar, face, mesh_of_bar
 @settings(deadline=None, max_examples=60)
 @given(
     seed=st.integers(0, 10**6), count=st.integers(1, 250), neighbours=st.integers(0, 4), flat=st.booleans(),
-    part=st.sampled_from([2, 64]), large=st.sampled_from([0, 100_000]),
+    part=st.sampled_from([2, 64]),
 )  # fmt: skip
-def test_solutions_of_random_graphs(seed, count, neighbours, flat, part, large):
-    """Also of graphs in several parts, of edges between distant points, and with factors in single precision."""
+def test_solutions_of_random_graphs(seed, count, neighbours, flat, part):
+    """Also of graphs in several parts, of edges between distant points."""
     rng = np.random.default_rng(seed)
     points = rng.random((count, 3)) * ([1.0, 0.0, 0.0] if flat else 1.0)
     first, second = rng.integers(0, count, (2, count * neighbours))
@@ -34,65 +34,8 @@ def test_solutions_of_random_graphs(seed, count, neighbours, flat, part, large):
     right = rng.standard_normal((3 * count, 2))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cholesky, "LARGEST_PART", part)
-        patch.setattr(cholesky, "LARGE", large)
         found = Cholesky(matrix, points).solve(right)
     assert found == pytest.approx(np.linalg.solve(matrix.toarray(), right), rel=1e-9, abs=1e-9)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("count", "precision"), [(33_333, np.float64), (33_334, np.float32)])
-def test_factors_of_more_than_100000_rows_are_in_single_precision(count, precision):
-    line = np.arange(count)
-    matrix = _of_edges(line[1:], line[:-1], count, np.random.default_rng(0))
-    factors = Cholesky(matrix, line[:, None] * [1.0, 0.0, 0.0])
-    expected = np.random.default_rng(1).standard_normal((3 * count, 2))
-    assert factors.precision is factors._fronts[0].own.dtype.type is precision
-    found = factors.solve(matrix @ expected)
-    assert factors.precision is precision
-    assert found == pytest.approx(expected, rel=0, abs=1e-12)
-
-
-@pytest.mark.parametrize(("slender", "precision"), [(1.0, np.float32), (50.0, np.float64)])
-def test_refinement_is_as_accurate_as_double_precision(tmp_path, monkeypatch, slender, precision):
-    """The factors of a very slender bar are computed again, in double precision."""
-    mesh = mesh_of_bar("tetra10", along=12, across=2)
-    mesh.points[:, 1:] /= slender
-    mesh.write(tmp_path / "bar.vtu")
-    model = from_mesh(tmp_path / "bar.vtu", 1e-3, E, NU, DENSITY)
-    free = np.flatnonzero(np.repeat(model.nodes[:, 0] > 1e-9, 3))
-    matrix, points = csc_array(model.stiffness[free][:, free]), model.nodes[model.nodes[:, 0] > 1e-9]
-    scale = np.sqrt(matrix.diagonal())
-    expected = np.random.default_rng(0).standard_normal(len(free)) / scale
-    right = matrix @ expected
-    double = Cholesky(matrix, points).solve(right)
-    monkeypatch.setattr(cholesky, "LARGE", 0)
-    factors = Cholesky(matrix, points)
-    single = factors.solve(right)
-    assert factors.precision is precision
-    errors = [np.linalg.norm(found - expected) / np.linalg.norm(expected) for found in (double, single)]
-    assert errors[1] < 3 * errors[0] + 1e-13
-
-
-def test_after_ten_corrections_the_factors_are_computed_again(monkeypatch):
-    """With a preconditioner that is nearly useless, on a chain of 400 nodes."""
-    line = np.arange(400)
-    springs = np.tile(np.eye(3), (399, 1, 1))
-    rows, columns = (3 * ends[:, None, None] + np.arange(3)[:, None] * [1, 1, 1] for ends in (line[1:], line[:-1]))
-    half = csc_array(coo_array((springs.ravel(), (rows.ravel(), columns.swapaxes(1, 2).ravel())), shape=(1200, 1200)))
-    matrix = csc_array(coo_array((np.full(1200, 2.0), (np.arange(1200),) * 2)) - half - half.T)
-    monkeypatch.setattr(cholesky, "LARGE", 0)
-    factors, counted = Cholesky(matrix, line[:, None] * [1.0, 0.0, 0.0]), []
-    assert factors.precision is np.float32
-    solve = factors._solve
-
-    def poor(right):
-        counted.append(factors.precision)
-        return right / 2 if factors.precision is np.float32 else solve(right)
-
-    factors._solve = poor
-    right = np.random.default_rng(0).standard_normal(1200)
-    assert matrix @ factors.solve(right) == pytest.approx(right, rel=0, abs=1e-9)
-    assert counted == [np.float32] * 11 + [np.float64]
 
 
 def _of_edges(first, second, count, rng):
@@ -166,7 +109,6 @@ def test_the_stages_of_a_reduction_are_logged(tmp_path, caplog):
     assert [record.getMessage() for record in caplog.records] == [
         "reading and assembling the mesh bar.vtu",
         f"factoring the stiffness matrix of {len(model.nodes)} nodes",
-        "computing factors in float64 precision",
         "computing 3 normal modes",
         "computing the geometric stiffening of 9 modes",
     ]
@@ -205,8 +147,8 @@ def test_equal_frequencies_are_all_found(equal, others):
     squares, shapes = _lanczos_modes(
         lambda force: turn @ ((turn.T @ force).T / expected).T, eye_array(600, format="csr"), 30
     )
-    assert squares == pytest.approx(expected[:30], rel=1e-12)
-    assert shapes.T @ shapes == pytest.approx(np.eye(30), abs=1e-11)
+    assert squares == pytest.approx(expected[:30], rel=1e-11)
+    assert shapes.T @ shapes == pytest.approx(np.eye(30), abs=1e-10)
 
 
 def test_a_body_of_interface_nodes_alone(tmp_path):
