@@ -76,21 +76,21 @@ def multiplied(value, factor):
 @contextmanager
 def of_class_with(owner, field, factor, modules):
     """Multiply the default of a field of a dataclass within a context, and the field of its instances in modules."""
-    usual = owner.__dataclass_fields__[field].default
     instances = {id(one): one for module in modules for one in vars(module).values() if type(one) is owner}
+    own = [(one, getattr(one, field)) for one in instances.values()]
     names = [name for name, one in signature(owner).parameters.items() if one.default is not one.empty]
     defaults = [
         multiplied(value, factor) if name == field else value
         for name, value in zip(names, owner.__init__.__defaults__, strict=True)
     ]
     try:
-        for one in instances.values():
-            object.__setattr__(one, field, multiplied(usual, factor))
+        for one, number in own:
+            object.__setattr__(one, field, multiplied(number, factor))
         with patch.object(owner.__init__, "__defaults__", tuple(defaults)):
             yield
     finally:
-        for one in instances.values():
-            object.__setattr__(one, field, usual)
+        for one, number in own:
+            object.__setattr__(one, field, number)
 
 
 def with_others(parameter):
