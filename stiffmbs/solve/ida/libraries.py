@@ -26,7 +26,7 @@ class Unavailable(SolverError):
 
     def __init__(self, reason: str) -> None:
         super().__init__(
-            f"solvers bdf and radau: {reason}; expected the libraries of a wheel of scikit-sundae with SUNDIALS {VERSION}; "
+            f"solvers bdf and radau: {reason}; expected the libraries of a wheel of scikit-sundae 1.2 or later with SUNDIALS {VERSION}; "
             "use solver projected"
         )
 

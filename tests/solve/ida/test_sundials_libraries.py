@@ -17,7 +17,7 @@ def loaded_again():
     libraries.ida_libraries.cache_clear()
 
 
-REMEDY = "expected the libraries of a wheel of scikit-sundae with SUNDIALS .; use solver projected$"
+REMEDY = "expected the libraries of a wheel of scikit-sundae 1.2 or later with SUNDIALS .; use solver projected$"
 
 
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
