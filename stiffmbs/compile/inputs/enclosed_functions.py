@@ -111,7 +111,7 @@ def asin(x: Enclosure) -> Enclosure:
 
 
 def _step(
-    x: object, x0: Any, h0: object, x1: object, h1: Any, value: Callable[..., object], ramp: Callable[..., Enclosure]
+    x: Any, x0: Any, h0: Any, x1: Any, h1: Any, value: Callable[..., object], ramp: Callable[..., Enclosure]
 ) -> Any:
     z = (x - x0) / (x1 - x0)
     return h0 + (h1 - h0) * (ramp(z) if isinstance(z, Enclosure) else value(z, 0.0, 0.0, 1.0, 1.0))
@@ -159,7 +159,7 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
     return z.composed(outer)
 
 
-def step(x: object, x0: object, h0: object, x1: object, h1: object) -> Any:
+def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     """Return Adams' STEP: a cubic from h0 at x0 to h1 at x1 with zero end slopes.
 
     Returns a number if all arguments are numbers.
@@ -167,7 +167,7 @@ def step(x: object, x0: object, h0: object, x1: object, h1: object) -> Any:
     return _step(x, x0, h0, x1, h1, step_value, _cubic_ramp)
 
 
-def step5(x: object, x0: object, h0: object, x1: object, h1: object) -> Any:
+def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     """Return Adams' STEP5: a quintic with zero end slopes and curvatures, otherwise as `step`."""
     return _step(x, x0, h0, x1, h1, step5_value, _quintic_ramp)
 

@@ -275,7 +275,7 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
         settled = b.where(low.value[1] <= high.value[0], a)
         return settled.where((a.value[1] <= b.value[0]) | (b.value[1] <= a.value[0]), open_one)
 
-    def of(*parts: object) -> Enclosure:
+    def of(*parts: Any) -> Enclosure:
         """Return the extremum of enclosures and numbers, at least one of them an enclosure."""
         known = next(part for part in parts if isinstance(part, Enclosure))
         chosen, *others = (known.constant(part) for part in parts)
@@ -289,7 +289,7 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
 minimum, maximum = _choice(False), _choice(True)
 
 
-def branch(x: object, below: object, at: object, above: object) -> Enclosure:
+def branch(x: Any, below: Any, at: Any, above: Any) -> Enclosure:
     """Return one of three values by the sign of the first; it jumps where that may be zero."""
     known = next(part for part in (x, below, at, above) if isinstance(part, Enclosure))
     sign_of, *values = (known.constant(part) for part in (x, below, at, above))
@@ -298,7 +298,7 @@ def branch(x: object, below: object, at: object, above: object) -> Enclosure:
     return jumping.where(around_zero(sign_of.value), settled)
 
 
-def atan2(y: object, x: Any) -> Enclosure:
+def atan2(y: Any, x: Any) -> Enclosure:
     """Return atan2 from the corners of the box of x and y; it jumps where the box meets the negative x axis."""
     known = y if isinstance(y, Enclosure) else x
     y, x = known.constant(y), known.constant(x)

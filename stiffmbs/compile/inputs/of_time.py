@@ -74,7 +74,7 @@ class Input:
 class _Evaluation:
     """Evaluation of parts of a formula in one algebra; repeated parts are evaluated once."""
 
-    def __init__(self, t: object, values: Mapping[str, float], functions: Mapping[str, Callable[..., object]]) -> None:
+    def __init__(self, t: Any, values: Mapping[str, float], functions: Mapping[str, Callable[..., object]]) -> None:
         self._t, self._values, self._functions = t, values, functions
         self._known: dict[str, object] = {}
 

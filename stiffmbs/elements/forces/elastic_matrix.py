@@ -42,7 +42,7 @@ def times(matrix: Any, vector: Sequence[Expr]) -> list[Expr]:
     return [sum(k * part for k, part in zip(row, vector, strict=True) if k is not None) for row in matrix]
 
 
-def stored(stiffness: object, s: Sequence[Expr], preload: Any) -> Expr:
+def stored(stiffness: Any, s: Sequence[Expr], preload: Any) -> Expr:
     """Return 1/2 s^T K s - preload . s, J."""
     resisting = times(stiffness, s)
     return sum(f * x / 2 - (p or 0) * x for f, p, x in zip(resisting, preload, s, strict=True))

@@ -151,7 +151,7 @@ class Road(Component):
         return 1 if r.friction is None else r.friction(x, y)
 
 
-def functions_of(x: object) -> Any:
+def functions_of(x: Any) -> Any:
     """Return the module with the functions of x: of NumPy for arrays, of SymPy for symbols."""
     from importlib import import_module
 

@@ -183,7 +183,7 @@ class Connection(Elastic):
         return has_moments(e.stiffness, e.preload)
 
 
-def pull_back(stiffness: object, s: list[Expr], preload: Any) -> list[Expr]:
+def pull_back(stiffness: Any, s: list[Expr], preload: Any) -> list[Expr]:
     """Return preload - K s."""
     return [(p or 0) - resisting for p, resisting in zip(preload, times(stiffness, s), strict=True)]
 

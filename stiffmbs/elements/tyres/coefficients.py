@@ -42,6 +42,7 @@ from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, di
 
 if TYPE_CHECKING:
     import numpy as np
+    from numpy.typing import ArrayLike
 
 WITH_TURN_SLIP: Final = 5
 """Last digit of USE_MODE with turn slip."""
@@ -249,13 +250,13 @@ class TyreProperties(Component):
 
     def wrench(
         self,
-        load: Any,
-        slip: object = 0.0,
-        slip_angle: object = 0.0,
-        camber: object = 0.0,
-        speed: object = None,
-        friction: object = 1.0,
-        pressure: object = None,
+        load: ArrayLike,
+        slip: ArrayLike = 0.0,
+        slip_angle: ArrayLike = 0.0,
+        camber: ArrayLike = 0.0,
+        speed: ArrayLike | None = None,
+        friction: ArrayLike = 1.0,
+        pressure: ArrayLike | None = None,
     ) -> dict[str, np.ndarray]:
         """Return forces and torques of steady slip, rolling forward, in ISO axes at the contact point.
 
@@ -287,14 +288,14 @@ class TyreProperties(Component):
 
     def steady_state(
         self,
-        Fz: object,
-        kappa: object = 0.0,
-        alpha: object = 0.0,
-        gamma: object = 0.0,
-        p: object = None,
-        Vx: object = None,
-        phit: object = None,
-        friction: object = 1.0,
+        Fz: ArrayLike,
+        kappa: ArrayLike = 0.0,
+        alpha: ArrayLike = 0.0,
+        gamma: ArrayLike = 0.0,
+        p: ArrayLike | None = None,
+        Vx: ArrayLike | None = None,
+        phit: ArrayLike | None = None,
+        friction: ArrayLike = 1.0,
     ) -> dict[str, np.ndarray]:
         """Return the steady state of the tyre in ISO axes at the contact point, with the symbols of the Magic Formula.
 

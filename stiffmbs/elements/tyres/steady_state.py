@@ -8,13 +8,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...errors import InputError
 from ..element import Expr
 from .property_file import VERSIONS
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 STATE = ("load", "kappa", "alpha", "gamma", "speed", "direction", "friction", "dpi", "turn", "rolling")
 """Arguments of the compiled equations of forces."""
@@ -32,14 +35,14 @@ BEYOND = 1.2
 
 def steady_state(
     numbers: Mapping[str, Any],
-    Fz: Any,
-    kappa: Any = 0.0,
-    alpha: Any = 0.0,
-    gamma: Any = 0.0,
-    p: Any = None,
-    Vx: Any = None,
-    phit: object = None,
-    friction: Any = 1.0,
+    Fz: ArrayLike,
+    kappa: ArrayLike = 0.0,
+    alpha: ArrayLike = 0.0,
+    gamma: ArrayLike = 0.0,
+    p: ArrayLike | None = None,
+    Vx: ArrayLike | None = None,
+    phit: ArrayLike | None = None,
+    friction: ArrayLike = 1.0,
 ) -> dict[str, np.ndarray]:
     """Return the steady state of a tyre by the symbols of the Magic Formula; see `TyreProperties.steady_state`."""
     nominal = numbers["NOMPRES"]

@@ -73,19 +73,19 @@ class FormulaFunction:
         return self.symbolic.startswith("sympy.")
 
 
-def step_value(x: object, x0: Any, h0: object, x1: object, h1: Any) -> Any:
+def step_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     """Return Adams' STEP for numbers or arrays: from h0 at x0 to h1 at x1 by a cubic with zero slope at both ends."""
     z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
     return h0 + (h1 - h0) * z**2 * (3 - 2 * z)
 
 
-def step5_value(x: object, x0: Any, h0: object, x1: object, h1: Any) -> Any:
+def step5_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     """Return Adams' STEP5 for numbers or arrays: a quintic with zero slope and curvature at both ends."""
     z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
     return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
 
 
-def branch_value(x: Any, below: object, at: Any, above: Any) -> Any:
+def branch_value(x: Any, below: Any, at: Any, above: Any) -> Any:
     """Return one of three values, numbers or arrays, by the sign of the first argument (Adams' IF)."""
     return np.select([np.less(x, 0), np.greater(x, 0)], [below, above], at)
 
@@ -103,7 +103,7 @@ def _least(*values: Any) -> Any:
     return reduce(np.minimum, values)
 
 
-def _sign(x: object) -> Any:
+def _sign(x: Any) -> Any:
     return np.where(np.asarray(x) >= 0, 1.0, -1.0)
 
 
