@@ -109,13 +109,15 @@ def response(
 
     from ..analyses.linearised.inputs import force_on, parameter_of
     from ..analyses.linearised.transfer import transfer
-    from ..results.files import write_text
+    from ..results.files import refuse_path, write_text
     from ..show.modes import response_as_json, response_csv, response_text
 
     changes = changes_of(options)
     with refusing(scene, as_json):
         if not lowest < highest:
             raise InputError(f"--from {lowest:g} --to {highest:g}: found no range, expected --from below --to")
+        if path is not None:
+            refuse_path("-o", path, (".csv",))
         refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes)
         with in_file(scene):

@@ -73,7 +73,7 @@ def kc(
 
     Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
     """
-    from ..results.files import write_text
+    from ..results.files import refuse_path, write_text
     from ..show.figure import check_figure
     from ..show.style import write_sheet
     from ..show.suspension import kc_csv, kc_figure, kc_text
@@ -83,6 +83,8 @@ def kc(
     with refusing(scene, as_json):
         if figure is not None:
             check_figure("--figure", figure)
+        if output is not None:
+            refuse_path("-o", output, (".csv",))
         refuse_own_input("--figure", scene, figure)
         refuse_own_input("-o", scene, output)
         loaded = load_scene(scene, changes)
