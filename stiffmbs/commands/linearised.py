@@ -116,9 +116,9 @@ def response(
     with refusing(scene, as_json):
         if not lowest < highest:
             raise InputError(f"--from {lowest:g} --to {highest:g}: found no range, expected --from below --to")
+        refuse_own_input("-o", scene, path)
         if path is not None:
             refuse_path("-o", path, (".csv",))
-        refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = {

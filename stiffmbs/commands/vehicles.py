@@ -83,10 +83,10 @@ def kc(
     with refusing(scene, as_json):
         if figure is not None:
             check_figure("--figure", figure)
-        if output is not None:
-            refuse_path("-o", output, (".csv",))
         refuse_own_input("--figure", scene, figure)
         refuse_own_input("-o", scene, output)
+        if output is not None:
+            refuse_path("-o", output, (".csv",))
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = VehicleOptions(**vehicle)
