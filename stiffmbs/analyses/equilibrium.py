@@ -161,6 +161,8 @@ def equilibrium(
     times = np.array([job.grid.start])
     assembly = [job.start.position_sentence(3)] if job.start.moved_far else []
     notes = (*notes_of(job.data), *assembly, *found.notes)
+    if motion is None:
+        notes = (*notes, *_resting_drives(job.dynamics, times))
     solution = solution_at_rest(job, times, start.q[None], start.u[None], _message(found), notes, how)
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))
@@ -234,7 +236,7 @@ def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes
 
 
 def _resting_drives(dynamics: Dynamics, times: np.ndarray) -> Iterator[str]:
-    """Yield a note if constraints prescribe velocities, which have no effect between equilibria."""
+    """Yield a note if constraints prescribe velocities, which have no effect on equilibria."""
     system, state = dynamics.system, dynamics.state
     state.u[:], moving = 0.0, np.zeros(system.n_c, dtype=bool)
     for t in times:
@@ -242,7 +244,7 @@ def _resting_drives(dynamics: Dynamics, times: np.ndarray) -> Iterator[str]:
         moving |= state.vector("motion", "V") != 0.0
     rows = np.flatnonzero(moving & system.active & ~system.holonomic)
     if names := [*dict.fromkeys(system.equations[row][0] for row in rows)]:
-        yield f"the velocities of {listed(names)} have no effect on equilibria: prescribe positions for motion between them"
+        yield f"equilibria are at rest: the velocities of {listed(names)} have no effect, and move nothing from one time to another"
 
 
 def equilibria_over_time(job: Job, times: np.ndarray) -> Iterator[Equilibrium]:
