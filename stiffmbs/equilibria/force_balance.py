@@ -219,7 +219,8 @@ def strayed(dynamics: Dynamics, t: float, start: np.ndarray) -> np.ndarray:
     for place, weight in zip(*PATH, strict=True):
         state.q[:] = system.of_body.moved(start, 0.5 * (1.0 + place) * move)
         state.evaluate("motion", t)
-        slopes = state.values["motion"][term.source] * move[term.column]
+        with np.errstate(invalid="ignore"):  # where an equation has no finite value, no equilibrium is found
+            slopes = state.values["motion"][term.source] * move[term.column]
         total += 0.5 * weight * np.bincount(term.row, slopes, system.n_c)
     state.q[:] = end
     return np.where(system.holonomic, 0.0, total)[rows]
