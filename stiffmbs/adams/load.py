@@ -101,8 +101,8 @@ def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Datas
 
 def _commanded(path: str | Path) -> tuple[Dataset, dict[str, object]]:
     """Load a dataset file with the changes and simulations of its command file, if any."""
-    commands_file = command_file(path)
     text, source = file_text(path, ENCODING, ZERO_BYTE), source_name(path)
+    commands_file = command_file(path)
     if commands_file is None:
         return _scene(text, source)
     with prefixed(f"{commands_file}, ", DatasetFault):

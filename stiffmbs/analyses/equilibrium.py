@@ -17,6 +17,7 @@ from ..errors import AssemblyError, SolverError, prefixed
 from ..model.model_data import ModelData
 from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
+from ..reading.files.quoted import listed
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
@@ -160,6 +161,8 @@ def equilibrium(
     times = np.array([job.grid.start])
     assembly = [job.start.position_sentence(3)] if job.start.moved_far else []
     notes = (*notes_of(job.data), *assembly, *found.notes)
+    if motion is None:
+        notes = (*notes, *_resting_drives(job.dynamics, times))
     solution = solution_at_rest(job, times, start.q[None], start.u[None], _message(found), notes, how)
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))
@@ -228,7 +231,20 @@ def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes
     q, u = (np.array([getattr(each, name) for each in found]) for name in ("q", "u"))
     moves = sum(each.moves for each in found)
     solver = {"name": "quasi_static", "moves": moves, "imbalance": max(each.imbalance for each in found)}
-    return solution_at_rest(job, times, q, u, f"{len(times)} equilibria after {moves} moves", (), solver)
+    notes = tuple(_resting_drives(job.dynamics, times))
+    return solution_at_rest(job, times, q, u, f"{len(times)} equilibria after {moves} moves", notes, solver)
+
+
+def _resting_drives(dynamics: Dynamics, times: np.ndarray) -> Iterator[str]:
+    """Yield a note if constraints prescribe velocities, which have no effect on equilibria."""
+    system, state = dynamics.system, dynamics.state
+    state.u[:], moving = 0.0, np.zeros(system.n_c, dtype=bool)
+    for t in times:
+        state.evaluate("motion", float(t))
+        moving |= state.vector("motion", "V") != 0.0
+    rows = np.flatnonzero(moving & system.active & ~system.holonomic)
+    if names := [*dict.fromkeys(system.equations[row][0] for row in rows)]:
+        yield f"equilibria are at rest: the velocities of {listed(names)} have no effect, and move nothing from one time to another"
 
 
 def equilibria_over_time(job: Job, times: np.ndarray) -> Iterator[Equilibrium]:
@@ -245,8 +261,9 @@ def equilibria_over_time(job: Job, times: np.ndarray) -> Iterator[Equilibrium]:
 
 def _next(dynamics: Dynamics, t: float) -> Equilibrium:
     """Find the equilibrium at a given time from the current pose, and move the state to it."""
+    before = dynamics.state.q.copy()
     status = dynamics.assemble(t)
     if status < 0:
         raise AssemblyError(f"t = {t:g} s: the constraints do not meet: {failure(dynamics, status, t)}")
     with prefixed(f"t = {t:g} s: ", SolverError, SolverError):
-        return find_equilibrium(dynamics, t)
+        return find_equilibrium(dynamics, t, since=before)

@@ -12,8 +12,8 @@ from ..reading.files.text_file import STANDARD_INPUT, file_text, source_name
 if TYPE_CHECKING:
     from ..model.scene import Scene
 
-DATASET = ".adm"
-"""File suffix of Adams/Solver datasets."""
+DATASET, COMMANDS = ".adm", ".acf"
+"""File suffixes of Adams/Solver datasets and command files."""
 ROBOTS = (".urdf", ".xml", ".mjcf")
 """File suffixes of robots."""
 
@@ -51,6 +51,11 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
         from ..adams.load import load_adams
 
         return load_adams(path, changes)
+    if suffix == COMMANDS:
+        raise InputError(
+            f"{source_name(path)}: found a command file, expected its dataset {Path(path).stem}{DATASET}, which is run with the "
+            "command file of the same name"
+        )
     if str(path) == STANDARD_INPUT:
         from ..model.read_scene import read_scene
 

@@ -11,6 +11,7 @@ from ..compile.system import System
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
+from ..elements.joints.drive import Drive
 from ..equilibria.equilibrium import Equilibrium, find_equilibrium
 from ..equilibria.force_balance import balance_at, forces_by_velocity
 from ..equilibria.steady_motion import at_rest
@@ -133,9 +134,13 @@ def _settled(
 
 
 def _family(system: System) -> Iterator[str]:
-    """Yield a note if constraints of velocities alone carry forces, so that equilibria are not isolated."""
+    """Yield a note if constraints of velocities alone carry forces, so that equilibria are not isolated.
+
+    A drive that prescribes a velocity keeps its coordinate at the described value.
+    """
+    drives = {name for group in system.groups if issubclass(group.kind.element, Drive) for name in group.names}
     rows = np.flatnonzero(system.active & ~system.holonomic)
-    names = list(dict.fromkeys(system.equations[row][0] for row in rows))
+    names = [name for name in dict.fromkeys(system.equations[row][0] for row in rows) if name not in drives]
     if names:
         yield (
             f"{listed(names)} constrain{'s' * (len(names) == 1)} velocities alone and can hold many poses at rest: the equilibrium "
@@ -226,7 +231,7 @@ def _branch(dynamics: Dynamics, found: Equilibrium, direction: np.ndarray, t: fl
     dynamics.state.q[:] = dynamics.system.of_body.moved(found.q, BRANCH * direction)
     dynamics.assemble(t)
     try:
-        return find_equilibrium(dynamics, t)
+        return find_equilibrium(dynamics, t, since=found.q)
     except SolverError:
         return None
 

@@ -95,14 +95,14 @@ def stresses(
 
     Exit status: 0 done, 1 stopped early or not written, 2 the input is wrong.
     """
+    from ..results.files import refuse_path
     from ..results.flexible_motion import FlexibleMotion
     from ..results.solution import Solution
     from ..show.flexible_body import flexible_motion_as_dict, flexible_motion_text
 
     with refusing(scene, as_json, output):
         if output is not None:
-            if output.suffix.lower() != ".xdmf":
-                raise InputError(f"-o {output}: found the type '{output.suffix}', expected .xdmf")
+            refuse_path("-o", output, (".xdmf",))
             refuse_own_input("-o", scene, output)
         loaded = load_scene(scene, changes_of(options))
         FlexibleMotion.check(loaded, body)

@@ -109,7 +109,7 @@ def response(
 
     from ..analyses.linearised.inputs import force_on, parameter_of
     from ..analyses.linearised.transfer import transfer
-    from ..results.files import write_text
+    from ..results.files import refuse_path, write_text
     from ..show.modes import response_as_json, response_csv, response_text
 
     changes = changes_of(options)
@@ -117,6 +117,8 @@ def response(
         if not lowest < highest:
             raise InputError(f"--from {lowest:g} --to {highest:g}: found no range, expected --from below --to")
         refuse_own_input("-o", scene, path)
+        if path is not None:
+            refuse_path("-o", path, (".csv",))
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = {

@@ -73,7 +73,7 @@ def kc(
 
     Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
     """
-    from ..results.files import write_text
+    from ..results.files import refuse_path, write_text
     from ..show.figure import check_figure
     from ..show.style import write_sheet
     from ..show.suspension import kc_csv, kc_figure, kc_text
@@ -85,6 +85,8 @@ def kc(
             check_figure("--figure", figure)
         refuse_own_input("--figure", scene, figure)
         refuse_own_input("-o", scene, output)
+        if output is not None:
+            refuse_path("-o", output, (".csv",))
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = VehicleOptions(**vehicle)

@@ -108,11 +108,14 @@ class AtError:
 
 
 def decades(rows: Sequence[Row], measure: str, resolved: float) -> list[float]:
-    """Return the powers of ten within the measured errors, the largest first; the next above `resolved` if none is."""
+    """Return the powers of ten within the measured errors, the largest first; the next above `resolved` if none is.
+
+    The list is empty if all errors are exactly zero, as for a scene at rest.
+    """
     errors = [row.errors[measure] for row in rows if row.errors and np.isfinite(row.errors[measure])]
     known = [error for error in errors if error > resolved]
     if not known:
-        return [10.0 ** int(np.ceil(np.log10(resolved)))] if errors else []
+        return [10.0 ** int(np.ceil(np.log10(resolved)))] if errors and resolved > 0.0 else []
     least, most = np.log10([min(known), max(known)])
     return [10.0**k for k in range(int(np.ceil(most)), int(np.ceil(least)) - 1, -1)]
 

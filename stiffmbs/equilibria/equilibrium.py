@@ -13,7 +13,7 @@ step of length 1/sqrt(s). The equations of algebraic states are those at rest.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from ..reading.units.quantity import LARGEST
-from .force_balance import Balance, balance_at, displacement, moved
+from .force_balance import Balance, balance_at, displacement, moved, strayed
 from .matrices import diagonal, joined, solution, zeros
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion, at_rest
@@ -48,17 +48,23 @@ class Equilibrium:
 
 
 def find_equilibrium(
-    dynamics: Dynamics, t: float, motion: SteadyMotion | None = None, most: int | None = None
+    dynamics: Dynamics,
+    t: float,
+    motion: SteadyMotion | None = None,
+    most: int | None = None,
+    since: np.ndarray | None = None,
 ) -> Equilibrium:
     """Find the stable equilibrium that a system reaches from its pose in overdamped motion; the state is set to it.
 
     `dynamics`: at an assembled pose. `t`: time at which forces and drives are evaluated, s. `motion`: steady motion of
-    the equilibrium; at rest by default. `most`: largest number of moves. Raises SolverError when none is found; names
-    the body with the largest imbalance.
+    the equilibrium; at rest by default. `most`: largest number of moves. `since`: pose whose values drives of velocities
+    keep; by default the current one. Raises SolverError when none is found; names the body with the largest imbalance.
     """
     state = dynamics.state
     shift, moves = 1.0, 0
     known = balance_at(dynamics, t, motion or at_rest(dynamics.system.of_body.dimensions))
+    if since is not None:
+        known = replace(known, strayed=strayed(dynamics, t, since))
     while moves < (most or EQUILIBRIA.most_moves) and shift < EQUILIBRIA.largest_shift:
         if known.balanced:
             known, more = _polished(dynamics, t, known)
@@ -130,11 +136,13 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
 
 def moved_on(dynamics: Dynamics, t: float, known: Balance, q: np.ndarray, move: np.ndarray) -> Balance | None:
     """Return the balance after a move of pose and unknown speeds, or None if the pose cannot be assembled."""
-    n = len(known.left)
+    n, before = len(known.left), q.copy()
     dynamics.state.q[:] = moved(dynamics.system, q, move[:n])
     if dynamics.assemble(t) < 0:
         return None
-    return balance_at(dynamics, t, known.motion.faster(move[n:]) if known.speeds else known.motion)
+    off = known.strayed + strayed(dynamics, t, before)
+    found = balance_at(dynamics, t, known.motion.faster(move[n:]) if known.speeds else known.motion)
+    return replace(found, strayed=off)
 
 
 def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
@@ -163,7 +171,8 @@ def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndar
                 [known.speeds.held, None, np.zeros((len(whole) - n,) * 2)],
             ]
         )
-    found = solution(dynamics, matrix, np.append(right, np.zeros(rows + len(whole) - n)), n)
+    right = np.concatenate([right, -known.strayed, np.zeros(len(whole) - n)])
+    found = solution(dynamics, matrix, right, n)
     if found is None:  # a larger shift is needed
         return np.full(len(whole), np.inf)
     return np.append(found[:n], found[n + rows :])

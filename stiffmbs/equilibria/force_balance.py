@@ -9,11 +9,15 @@ import numpy as np
 from ..compile.system import System
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics
+from ..dynamics.native.parameters import CONSISTENCY
 from ..errors import SolverError
 from .found_speeds import FoundSpeeds, found_speeds
 from .matrices import Matrix, diagonal, joined, matrix_of, product, scaled, solution, term_matrix, zeros
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion
+
+PATH = np.polynomial.legendre.leggauss(5)
+"""Gauss points and weights along a move, whose rotations are below 0.5 rad."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,7 @@ class Balance:
     - `negligible` of shape (n_u,): forces that count as zero if all forces vanish in equilibrium.
     - `speeds`: speeds of the motion that the forces determine.
     - `at_a_pole`: True if derivatives of forces are so large that rounding exceeds all forces, which stay bounded nearby.
+    - `strayed`, `may_stray` of shape (rows of J,): integrals of velocity constraints along the search, and their bounds.
     """
 
     left: np.ndarray
@@ -44,6 +49,8 @@ class Balance:
     dragged: Matrix
     motion: SteadyMotion
     negligible: np.ndarray | float
+    strayed: np.ndarray
+    may_stray: np.ndarray
     speeds: FoundSpeeds | None = None
     at_a_pole: bool = False
 
@@ -55,8 +62,8 @@ class Balance:
 
     @property
     def balanced(self) -> bool:
-        """True if the residual is within rounding and the tolerance."""
-        return bool(np.all(np.abs(self.left) <= self.allowed))
+        """True if the residual is within rounding and the tolerance, and so are the integrals of velocity constraints."""
+        return bool(np.all(np.abs(self.left) <= self.allowed) and np.all(np.abs(self.strayed) <= self.may_stray))
 
 
 def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
@@ -99,6 +106,8 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
         zeros(system, 0, len(left)),
         motion,
         negligible,
+        np.zeros(jacobian.shape[0]),
+        CONSISTENCY.position_tolerance * (abs(jacobian) @ system.per_velocity(farthest, 1.0)),
         at_a_pole=at_a_pole,
     )
     if system.states:
@@ -193,6 +202,28 @@ def moved(system: System, q: np.ndarray, move: np.ndarray) -> np.ndarray:
     there = system.of_body.moved(q, move[: system.n_u])
     there[system.first_state :] += move[system.n_u :]
     return there
+
+
+def strayed(dynamics: Dynamics, t: float, start: np.ndarray) -> np.ndarray:
+    """Return the integrals of velocity constraints from a pose to the current one, zero for equations with a position form.
+
+    The integral of a drive's equation is the change of its coordinate, which the drive prevents at rest. Assembly after a
+    move closes position equations alone.
+    """
+    system, state = dynamics.system, dynamics.state
+    rows, term = np.flatnonzero(system.active), system.term("motion", "J")
+    if system.holonomic[rows].all():
+        return np.zeros(len(rows))
+    end, total = state.q.copy(), np.zeros(system.n_c)
+    move = system.move(start, end)
+    for place, weight in zip(*PATH, strict=True):
+        state.q[:] = system.of_body.moved(start, 0.5 * (1.0 + place) * move)
+        state.evaluate("motion", t)
+        with np.errstate(invalid="ignore"):  # where an equation has no finite value, no equilibrium is found
+            slopes = state.values["motion"][term.source] * move[term.column]
+        total += 0.5 * weight * np.bincount(term.row, slopes, system.n_c)
+    state.q[:] = end
+    return np.where(system.holonomic, 0.0, total)[rows]
 
 
 def _derivatives(dynamics: Dynamics, t: float, motion: SteadyMotion, lam: np.ndarray) -> tuple[Matrix, Matrix]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import Field, PrivateAttr, model_validator
 
@@ -20,7 +20,7 @@ from ..reading.units.units import Quantity, in_text
 from .beams.division import Beams
 from .files.stages import Stage, WrittenScene
 from .model_data import ModelData
-from .settings import RunSettings, SteadyMotion
+from .settings import RunSettings, StartPose, SteadyMotion
 
 
 class Figure(Described):
@@ -49,7 +49,7 @@ class Scene(ModelData):
     roads: dict[str, AnyRoad] = Field(default_factory=dict, description="roads that tyres name")
     variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
     run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
-    start: Literal["described", "equilibrium", "settled"] | SteadyMotion = Field(
+    start: StartPose | SteadyMotion = Field(
         "described",
         description="where a run starts: as described, at rest in the equilibrium found from there, in its pose with the "
         "described velocities (settled), or in steady motion",

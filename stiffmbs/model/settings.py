@@ -26,6 +26,8 @@ FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 """Smallest number of distinguishable time intervals of a run, and their smallest length relative to the time itself."""
 SHORTEST = 1 / LARGEST
 """Shortest duration, s; products of shorter steps underflow."""
+StartPose = Literal["described", "equilibrium", "settled"]
+"""Poses in which a scene starts."""
 
 
 class Settings(TypedDict, total=False):
@@ -119,6 +121,17 @@ class RunSettings(Described):
                 f"found '{solver}', which is a scheme of the solver 'projected'; expected solver: projected, scheme: {solver}"
             )
         return solver
+
+    @field_validator("start", mode="before")
+    @classmethod
+    def _no_pose(cls, start: object, info: ValidationInfo) -> object:
+        named = start in get_args(StartPose) and start not in (info.context or {}).get("parameters", ())
+        if named or isinstance(start, dict):
+            found, entry = (f"'{start}'", start) if named else ("a mapping", "{...}")
+            raise ValueError(
+                f"found {found}, expected a time in s; 'start: {entry}' belongs to the scene, outside 'run'"
+            )
+        return start
 
     @field_validator("tuning", mode="before")
     @classmethod

@@ -168,3 +168,11 @@ def test_a_command_file_beside_it_says_how_to_run(in_folder, commands, settings,
 def test_a_dataset_that_is_not_there(in_folder):
     result = command("run", "other.adm")
     assert result.exit_code == 2 and "other.adm: found no such file" in result.output
+
+
+@pytest.mark.parametrize("name", ["", ".", "/"])
+def test_a_folder_or_an_empty_name_is_no_dataset(in_folder, name):
+    """The name of the command file was made from it first: a traceback."""
+    result = command("convert", name)
+    assert result.exit_code == 2
+    assert result.output.startswith(f"stiffmbs: {name}: ") and result.output.count("\n") == 1

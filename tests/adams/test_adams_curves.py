@@ -9,7 +9,7 @@ import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.adams.load import read_adams
 
-from .trials.adams_oracle import euler
+from .trials.adams_oracle import euler, rotation
 
 G = 9.80665
 BEAD = """a bead
@@ -109,11 +109,26 @@ def test_a_bead_slides_along_a_wire_that_is_bent_in_space():
     np.testing.assert_allclose(place, np.column_stack([own, wire(own)]), atol=1e-4)
 
 
+@pytest.mark.parametrize("scale", [1.0, 25.4, 1 / 304.8, 7e-3])
+@pytest.mark.parametrize("sort", ["OPEN", "CLOSED"])
+def test_the_axes_of_a_curve_do_not_depend_on_rounding(sort, scale):
+    """Singular vectors gave them: the reported displacements had other signs in other units."""
+    points = scale * (np.column_stack([X, 0 * X, Z]) if sort == "OPEN" else ring(1))
+    scene = read_adams(dataset(points, sort))
+    (place,) = (joint.j.orientation for joint in scene.joints.values() if "curve" in joint.kind)
+    seen = rotation(place)
+    x = points[-1] - points[0] if sort == "OPEN" else points[0]
+    np.testing.assert_allclose(seen[:, 0], TURN @ x / np.linalg.norm(x), atol=1e-12)
+    np.testing.assert_allclose(seen[:, 2], TURN[:, 1], atol=1e-12)
+    assert not any("not used" in note for note in scene.notes)
+
+
 @pytest.mark.parametrize(
     ("points", "sort", "message"),
     [
         (np.column_stack([X[[0, 5, 3, 8, 9]], 0 * X[:5], X[:5]]), "OPEN", "found an open curve that turns back"),
         (ring(1)[:-1], "CLOSED", "found a first and a last point .* m apart in the closed CURVE/7, expected one point"),
+        (np.column_stack([np.sin(2 * X), 0 * X, np.sin(X)])[[8, *range(16), 8]], "CLOSED", "found a closed curve that a ray"),
         (ring(1)[:3], "OPEN", "found MATRIX = 8 of CURVE/7, expected 4 rows or more of x, y and z"),
     ],
 )  # fmt: skip

@@ -156,7 +156,7 @@ def test_a_range_of_nothing_is_refused(tmp_path, given):
     [
         ("LINEAR/EIGENSOL", "LINEAR/EIGENSOL (line 1 of the command file) is left out: 'stiffmbs modes'"),
         ("LIN/EIG, NODAMPIN, COORDS=1,3", "'stiffmbs modes'"),
-        ("LINEAR/STATEMAT, FILE=abc, PINPUT=1, POUTPUT=2", "'stiffmbs transfer'"),
+        ("LINEAR/STATEMAT, FILE=abc, PINPUT=1, POUTPUT=2", "'stiffmbs response'"),
         ("SIM/STAT\nLINEAR/EIGENSOL", "(with --from, of the state in which a run ends)"),
         ("ENVIRONMENT/NAME=A, VALUE=B", "ENVIRONMENT (line 1)"),
         ("FILE/MODEL=abc, OUTPUT_PREFIX=x", ""),
@@ -164,6 +164,12 @@ def test_a_range_of_nothing_is_refused(tmp_path, given):
 )
 def test_commands_without_an_effect_on_the_motion_are_noted(commands, said):
     assert said in "; ".join(read_commands(commands).notes)
+
+
+def test_a_command_file_is_no_scene(tmp_path):
+    (tmp_path / "rig.acf").write_text("SIMULATE/STATICS\n")
+    with pytest.raises(InputError, match=r"found a command file, expected its dataset rig\.adm, which is run with"):
+        load_scene(tmp_path / "rig.acf")
 
 
 FALL = "SIMULATE/DYNAMICS, END=1, STEPS=10\n"

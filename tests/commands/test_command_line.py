@@ -255,6 +255,18 @@ def test_output_that_could_not_be_written_is_refused_before_solving(in_folder):
         assert_one_sentence(result)
 
 
+@pytest.mark.parametrize(
+    "command",
+    ["kc scene.yaml -o", "response scene.yaml --input cart.fx --output cart.x -o", "stresses scene.yaml cart -o"],
+)
+@pytest.mark.parametrize("name", ["nowhere/out.csv", "nowhere/out.xdmf", "out.xls", "out"])
+def test_curves_that_could_not_be_written_are_refused_before_they_are_computed(in_folder, command, name):
+    result = stiffmbs(*command.split(), name)
+    assert result.exit_code == 2
+    assert_one_sentence(result)
+    assert result.output.startswith(f"stiffmbs: -o {name}: ")
+
+
 def test_files_that_are_missing_in_the_end_show_in_the_exit_status(in_folder, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")

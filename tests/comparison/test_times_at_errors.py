@@ -60,6 +60,8 @@ def test_decades_are_those_of_the_errors():
     assert decades(rows("bdf"), "positions", 3e-6) == pytest.approx([1e-3, 1e-4, 1e-5])
     assert decades(rows("bdf"), "positions", 0.05) == pytest.approx([0.1])
     assert decades([], "positions", 1e-12) == []
+    at_rest = [Row("bdf", "rtol 0.1", {"positions": 0.0}, 1.0, 5)]
+    assert decades(at_rest, "positions", 0.0) == []
 
 
 def compared(*measured):

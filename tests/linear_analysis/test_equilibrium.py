@@ -190,16 +190,83 @@ def test_a_line_force_of_zero_length_balances_nothing():
         stiffmbs.equilibrium(stiffmbs.read_scene(scene))
 
 
-@pytest.mark.parametrize(
-    "joint", ['{type: velocity_equation, zero: "b.vx - 0.3*b.y*b.vy"}', "{type: drive, coordinate: b.x, velocity: 0}"]
-)
-def test_constraints_of_velocities_hold_many_poses(joint):
-    scene = f"""
+def test_constraints_of_velocities_hold_many_poses():
+    scene = """
     gravity: [0, 0]
-    bodies: {{b: {{mass: 1, inertia: 1, position: [0.4, 0.3]}}}}
-    joints: {{edge: {joint}}}
-    forces: {{f: {{type: force, i: b, force: ["-b.x", "-b.y"]}}, g: {{type: torque, i: b, torque: "-b.angle"}}}}
+    bodies: {b: {mass: 1, inertia: 1, position: [0.4, 0.3]}}
+    joints: {edge: {type: velocity_equation, zero: "b.vx - 0.3*b.y*b.vy"}}
+    forces: {f: {type: force, i: b, force: ["-b.x", "-b.y"]}, g: {type: torque, i: b, torque: "-b.angle"}}
     """
     found = stiffmbs.equilibrium(stiffmbs.read_scene(scene))
     assert found.channels["edge.fx"] == pytest.approx(found.channels["b.x"])
     assert [note[:52] for note in found.notes] == ["edge constrains velocities alone and can hold many p"]
+
+
+ELBOW = """
+gravity: [0, -9.81]
+bodies:
+  upper: {mass: 1, inertia: 0.1, position: [0.5, 0], markers: {end: {point: [0.5, 0]}}}
+  lower: {mass: 1, inertia: 0.1, position: [1.3, 0.4], angle: "atan2(4, 3)", markers: {end: {point: [-0.5, 0]}}}
+joints:
+  shoulder: {type: revolute, i: {body: upper, point: [-0.5, 0]}, j: ground}
+  elbow: {type: revolute, i: lower.end, j: upper.end}
+  motor: {type: drive, joint: elbow, velocity: 2*t}
+start: equilibrium
+run: {duration: 1 ms}
+"""
+RESTS = "equilibria are at rest: the velocities of motor have no effect, and move nothing from one time to another"
+ARM = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies:
+  upper: {mass: 1, inertia: [0.1, 0.2, 0.15], position: [0.5, 0, 0], markers: {end: {point: [0.5, 0, 0]}}}
+  lower: {mass: 1, inertia: [0.1, 0.2, 0.15], position: [1.3, 0.4, 0.3], markers: {end: {point: [0.5, 0, 0]}}}
+joints:
+  shoulder: {type: spherical, i: {body: upper, point: [-0.5, 0, 0]}, j: ground}
+  motor: {type: drive, coordinate: "dm(upper.end, lower.end)", velocity: 0.3}
+forces:
+  cord: {type: spring_damper, i: lower.end, j: ground, stiffness: 20, damping: 1, free_length: 0.4}
+  joint: {type: bushing, i: lower, j: upper, stiffness: [90, 90, 90, 9, 9, 9]}
+start: equilibrium
+run: {duration: 1 ms}
+"""
+
+
+@pytest.mark.parametrize(
+    ("scene", "driven", "described"),
+    [
+        (ELBOW, lambda at: at["lower.angle"] - at["upper.angle"], np.arctan2(4, 3)),
+        (ARM, lambda at: at["motor_length"], np.hypot(0.8, 0.5)),
+    ],
+)
+def test_a_drive_of_a_velocity_keeps_its_coordinate_in_the_search(scene, driven, described):
+    """Moves of the search are large here: its joints were closed after each without regard to the drive."""
+    scene = stiffmbs.read_scene(scene + "requests: {motor_length: 'dm(upper.end, lower.end)'}\n")
+    found = stiffmbs.equilibrium(scene)
+    assert driven(found.channels) == pytest.approx(described, abs=1e-10)
+    assert not any("velocities alone" in note for note in found.notes)
+    run = stiffmbs.run(scene)
+    assert driven(run.channels)[0] == pytest.approx(described, abs=1e-10)
+
+
+def test_a_drive_of_a_velocity_keeps_its_coordinate_on_a_branch():
+    """From standing upright, the elbow straight: the search leaves the unstable pose by a small move."""
+    upright = ELBOW.replace("[0.5, 0], m", "[0, 0.5], angle: pi/2, m")
+    upright = upright.replace('[1.3, 0.4], angle: "atan2(4, 3)"', "[0, 1.5], angle: pi/2")
+    found = stiffmbs.equilibrium(stiffmbs.read_scene(upright))
+    assert any("is unstable" in note for note in found.notes)
+    assert found.channels["upper.y"] == pytest.approx(-0.5)
+    assert found.channels["lower.angle"] - found.channels["upper.angle"] == pytest.approx(0, abs=1e-10)
+
+
+def test_drives_of_velocities_rest_in_equilibria_over_time():
+    """A growing force lifts the arm; the elbow keeps its angle, and a prescribed velocity is noted."""
+    base = ELBOW + "forces: {lift: {type: force, i: upper, force: [20*t, 0]}}\n"
+    found = stiffmbs.quasi_static(stiffmbs.read_scene(base.replace("2*t", "0")), duration=1.0, points=3)
+    assert np.ptp(found["lower.angle"] - found["upper.angle"]) < 1e-10
+    assert np.ptp(found["upper.angle"]) > 0.1
+    assert not found.notes
+    found = stiffmbs.quasi_static(stiffmbs.read_scene(base), duration=1.0, points=3)
+    assert found.notes == (RESTS,)
+    assert RESTS in stiffmbs.equilibrium(stiffmbs.read_scene(base), start=1.0).notes
+    assert RESTS not in stiffmbs.run(stiffmbs.read_scene(base)).notes

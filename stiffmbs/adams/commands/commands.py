@@ -114,7 +114,7 @@ def _linear_note(command: Statement, later: bool) -> str:
     found = Arguments(with_first_argument(command), "LINEAR", LINEAR)
     does = {
         "EIGENSOL": "'stiffmbs modes' computes eigenvalues and modes",
-        "STATEMAT": "'stiffmbs transfer' computes the state matrices",
+        "STATEMAT": "'stiffmbs response' computes frequency responses, and stiffmbs.transfer in Python the state matrices",
     }
     what = found.one_of(*does) or "EIGENSOL"
     where = " (with --from, of the state in which a run ends)" if later else ""

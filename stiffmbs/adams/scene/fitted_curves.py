@@ -99,18 +99,25 @@ def _points(user: Numbered, number: int, mechanism: Mechanism) -> tuple[np.ndarr
 
 
 def _plane(points: np.ndarray, closed: bool) -> Frame:
-    """Return axes with x and y in the curve's plane, at the centre of a closed curve or at the first point."""
+    """Return axes with x and y in the curve's plane, at the centre of a closed curve or at the first point.
+
+    x is towards the first point of a closed curve, or along the chord. The largest component of z is positive: the sign
+    of a singular vector depends on rounding.
+    """
     own = points[:-1] if closed else points
-    middle = own.mean(axis=0)
+    middle, size = own.mean(axis=0), np.max(np.ptp(points, axis=0))
     _, sizes, directions = np.linalg.svd(own - middle)
-    x = directions[0] if closed else (points[-1] - points[0]) / (np.linalg.norm(points[-1] - points[0]) or 1.0)
-    if np.max(np.abs(own[:, 2] - middle[2])) <= PRECISION * np.max(np.ptp(points, axis=0)):
+    x = points[0] - middle if closed else points[-1] - points[0]
+    if np.linalg.norm(x) <= PRECISION * size:
+        x = directions[0]
+    if np.max(np.abs(own[:, 2] - middle[2])) <= PRECISION * size:
         normal = IDENTITY[2]
     else:
         normal = directions[2] if sizes[1] > PRECISION * sizes[0] else _across(x)
+        normal = normal * np.sign(normal[np.argmax(np.abs(normal))])
     y = np.cross(normal, x)
     y /= np.linalg.norm(y)
-    x = np.cross(y, normal) if closed else x
+    x = np.cross(y, normal) if closed else x / np.linalg.norm(x)
     return Frame(middle if closed else points[0], np.column_stack([x, y, np.cross(x, y)]))
 
 

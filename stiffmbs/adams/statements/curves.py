@@ -18,7 +18,7 @@ UNSUPPORTED = "the velocities of the parts instead"
 def _unread(found: Arguments, _: Units) -> str:
     if "FUNCTION" in found:
         return "found FUNCTION, a user subroutine"
-    if "CONTROL_POINTS" in found:
+    if "CURVE_POINTS" not in found and "CONTROL_POINTS" in found:
         return "found CONTROL_POINTS"
     if "MATRIX" not in found:
         return "found no MATRIX"

@@ -54,7 +54,7 @@ DATASETS: dict[str, tuple[str, str, float, str]] = {
     "an ID and a range": (PUSHES, "DEA/SFORCE, ID=2, RANGE=8,9\n", 2 - G, ""),
     "ENVIRONMENT": (PUSHES, "ENVIRONMENT/NAME=A, VALUE=B\n", 7 - G, "ENVIRONMENT (line 1)"),
     "LINEAR/EIGENSOL": (PUSHES, "LINEAR/EIGENSOL\n", 7 - G, "'stiffmbs modes'"),
-    "LINEAR/STATEMAT": (PUSHES, "LIN/STATEMAT, FILE=abc, PINPUT=1, POUTPUT=2\n", 7 - G, "'stiffmbs transfer'"),
+    "LINEAR/STATEMAT": (PUSHES, "LIN/STATEMAT, FILE=abc, PINPUT=1, POUTPUT=2\n", 7 - G, "'stiffmbs response'"),
 }  # fmt: skip
 """Statements, commands, the acceleration along z at the start, and a note."""
 COMMANDS: dict[str, tuple[dict[str, str], float]] = {
