@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -224,11 +224,11 @@ def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
     The smallest move of all coordinates would deform stiff bodies, and the smallest change of velocities would excite
     their modes. All others are therefore fitted first, positions by Gauss and Newton's method. Errors as for `stiffmbs.dynamics.initial.initial_values`.
     """
-    first: Sequence[int] = ()
+    first: np.ndarray | None = None
     modal = {name for name, body in data.bodies.items() if not getattr(body, "weighs", True)}
     if modal:
         system, state = dynamics.system, dynamics.state
-        first = np.flatnonzero(np.repeat([name not in modal for name in system.bodies], system.of_body.n_u)).tolist()
+        first = np.flatnonzero(np.repeat([name not in modal for name in system.bodies], system.of_body.n_u))
         rows = np.flatnonzero(system.active & system.holonomic)
         start, move = state.q.copy(), np.zeros(system.n_u)
         for _ in range(CONSISTENCY.most_moves):

@@ -85,7 +85,7 @@ def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
     return dynamics.position_rates(start.q, start.u)
 
 
-def initial_values(dynamics: Dynamics, t: float, first: Sequence[int] = ()) -> InitialValues:
+def initial_values(dynamics: Dynamics, t: float, first: np.ndarray | None = None) -> InitialValues:
     """Make the described start consistent.
 
     Positions are corrected by minimum-norm Newton moves, or by damped ones if these do not converge. Velocities get the smallest correction in the mass norm:
@@ -98,7 +98,7 @@ def initial_values(dynamics: Dynamics, t: float, first: Sequence[int] = ()) -> I
     return consistent_values(dynamics, t, first)
 
 
-def consistent_values(dynamics: Dynamics, t: float, first: Sequence[int] = ()) -> InitialValues:
+def consistent_values(dynamics: Dynamics, t: float, first: np.ndarray | None = None) -> InitialValues:
     """Make the start consistent as `initial_values` does, without angle unwrapping."""
     system, state = dynamics.system, dynamics.state
     q0, u0 = system.q.copy(), system.u.copy()
@@ -109,8 +109,9 @@ def consistent_values(dynamics: Dynamics, t: float, first: Sequence[int] = ()) -
         status = 0 if damped_assembly(dynamics, t, q0) else status
     if status < 0:
         raise AssemblyError(_sentence(dynamics, NO_CONVERGENCE if status == SINGULAR else status, t))
-    for rates in (np.flatnonzero(system.open_rates).tolist(), first):
-        _fit_rates(dynamics, t, rates)
+    _fit_rates(dynamics, t, np.flatnonzero(system.open_rates))
+    if first is not None:
+        _fit_rates(dynamics, t, first)
     status = dynamics.correct_velocities(t)
     if status < 0:
         raise AssemblyError(_sentence(dynamics, status, t))
@@ -129,7 +130,7 @@ def consistent_values(dynamics: Dynamics, t: float, first: Sequence[int] = ()) -
     )
 
 
-def _fit_rates(dynamics: Dynamics, t: float, rates: Sequence[int]) -> None:
+def _fit_rates(dynamics: Dynamics, t: float, rates: np.ndarray) -> None:
     """Fit some velocities to J u + C_t = 0 by the smallest change in the mass norm."""
     system, state = dynamics.system, dynamics.state
     if not len(rates):
