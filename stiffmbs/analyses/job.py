@@ -221,28 +221,29 @@ def prepare(
 def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
     """Make the described start consistent; flexible bodies are moved, and deformed only if no move satisfies the joints.
 
-    The smallest move of all coordinates would deform stiff bodies. All others are therefore fitted first, by Gauss and
-    Newton's method. Errors as for `stiffmbs.dynamics.initial.initial_values`.
+    The smallest move of all coordinates would deform stiff bodies, and the smallest change of velocities would excite
+    their modes. All others are therefore fitted first, positions by Gauss and Newton's method. Errors as for `stiffmbs.dynamics.initial.initial_values`.
     """
+    first: np.ndarray | None = None
     modal = {name for name, body in data.bodies.items() if not getattr(body, "weighs", True)}
     if modal:
         system, state = dynamics.system, dynamics.state
-        others = np.flatnonzero(np.repeat([name not in modal for name in system.bodies], system.of_body.n_u))
+        first = np.flatnonzero(np.repeat([name not in modal for name in system.bodies], system.of_body.n_u))
         rows = np.flatnonzero(system.active & system.holonomic)
         start, move = state.q.copy(), np.zeros(system.n_u)
         for _ in range(CONSISTENCY.most_moves):
             state.evaluate("position", t)
             gaps = state.vector("position", "C")[rows].copy()
             state.evaluate("motion", t)
-            slopes = state.matrix("motion", "J")[np.ix_(rows, others)]
-            move[others] = np.linalg.lstsq(slopes, -gaps, rcond=DEPENDENT)[0]
+            slopes = state.matrix("motion", "J")[np.ix_(rows, first)]
+            move[first] = np.linalg.lstsq(slopes, -gaps, rcond=DEPENDENT)[0]
             state.q[:] = system.of_body.moved(state.q, move)
             if not np.isfinite(state.q).all():
                 state.q[:] = start
                 break
             if np.abs(move).max() <= CONSISTENCY.position_tolerance * system.size:
                 break
-    found = initial_values(dynamics, t)
+    found = initial_values(dynamics, t, first)
     node = next(
         (move.body for move in found.moved_far if GROUND_AXES in getattr(data.bodies[move.body], "markers", ())), None
     )

@@ -85,20 +85,20 @@ def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
     return dynamics.position_rates(start.q, start.u)
 
 
-def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
+def initial_values(dynamics: Dynamics, t: float, first: np.ndarray | None = None) -> InitialValues:
     """Make the described start consistent.
 
-    Positions are corrected by minimum-norm Newton moves, or by damped ones if these do not converge. Velocities get the smallest correction in the mass norm,
-    those that are not given first. Accelerations and multipliers follow from [M J^T; J 0][u'; lam] = [f; gamma].
+    Positions are corrected by minimum-norm Newton moves, or by damped ones if these do not converge. Velocities get the smallest correction in the mass norm:
+    those that are not given, then those numbered in `first`, then all. Accelerations and multipliers follow from [M J^T; J 0][u'; lam] = [f; gamma].
     Raises AssemblyError when no assembled position is found (names the joint with the largest gap), the equations are
     dependent, or friction and reactions have no balance.
     """
     if dynamics.system.n_counters:
         take_nearest_turns(dynamics, t)
-    return consistent_values(dynamics, t)
+    return consistent_values(dynamics, t, first)
 
 
-def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
+def consistent_values(dynamics: Dynamics, t: float, first: np.ndarray | None = None) -> InitialValues:
     """Make the start consistent as `initial_values` does, without angle unwrapping."""
     system, state = dynamics.system, dynamics.state
     q0, u0 = system.q.copy(), system.u.copy()
@@ -109,7 +109,9 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
         status = 0 if damped_assembly(dynamics, t, q0) else status
     if status < 0:
         raise AssemblyError(_sentence(dynamics, NO_CONVERGENCE if status == SINGULAR else status, t))
-    _close_open_rates(dynamics, t)
+    _fit_rates(dynamics, t, np.flatnonzero(system.open_rates))
+    if first is not None:
+        _fit_rates(dynamics, t, first)
     status = dynamics.correct_velocities(t)
     if status < 0:
         raise AssemblyError(_sentence(dynamics, status, t))
@@ -128,17 +130,16 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
     )
 
 
-def _close_open_rates(dynamics: Dynamics, t: float) -> None:
-    """Fit velocities that are not given to J u + C_t = 0 by the smallest change in the mass norm."""
+def _fit_rates(dynamics: Dynamics, t: float, rates: np.ndarray) -> None:
+    """Fit some velocities to J u + C_t = 0 by the smallest change in the mass norm."""
     system, state = dynamics.system, dynamics.state
-    free_rates = np.flatnonzero(system.open_rates)
-    if not len(free_rates):
+    if not len(rates):
         return
     state.evaluate("motion", t)
     rows = np.flatnonzero(system.active)
-    by_energy = state.matrix("motion", "J")[np.ix_(rows, free_rates)] / np.sqrt(system.mass[free_rates])
+    by_energy = state.matrix("motion", "J")[np.ix_(rows, rates)] / np.sqrt(system.mass[rates])
     follow, *_ = np.linalg.lstsq(by_energy, -state.vector("motion", "V")[rows], rcond=None)
-    state.u[free_rates] += follow / np.sqrt(system.mass[free_rates])
+    state.u[rates] += follow / np.sqrt(system.mass[rates])
 
 
 def _sentence(dynamics: Dynamics, status: int, t: float) -> str:

@@ -14,7 +14,7 @@ from scipy.sparse import csr_array
 
 from ..errors import InputError, needs
 from .finite_elements import PRECISION, FiniteElements
-from .mesh_files import refuse_ignored, sets_of_sets
+from .mesh_files import for_reader, refuse_ignored, sets_of_sets
 from .solid import Solid
 
 LOGGER = logging.getLogger(__name__)
@@ -84,11 +84,12 @@ def _read(path: Path) -> Any:
     with needs("meshio", "flexible"):
         import meshio
     refuse_ignored(path)
+    said = io.StringIO()
     try:
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-            return meshio.read(path)
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            return meshio.read(*for_reader(path))
     except SystemExit:
-        reason = "unknown format"
+        reason = said.getvalue().partition("\n")[0] or "unknown format"
     except Exception as error:  # readers raise many types
         reason = (
             "reference to the unknown number " * isinstance(error, KeyError)

@@ -1,7 +1,8 @@
-"""Statements of Nastran and Abaqus files that the reader of meshes ignores although they move nodes or name them."""
+"""Statements of Nastran and Abaqus files that the reader of meshes ignores or refuses."""
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,6 +12,8 @@ from ..errors import InputError
 NASTRAN, ABAQUS = {".bdf", ".fem", ".nas"}, ".inp"
 """Suffixes of Nastran and Abaqus files."""
 MASSES = {"CONM1", "CONM2", "CMASS1", "CMASS2", "CMASS3", "CMASS4"}
+BULK = "BEGIN BULK"
+GMSH_TRIANGLES = re.compile(r"^(\*ELEMENT\s*,\s*TYPE\s*=\s*)CPS6\b", re.IGNORECASE | re.MULTILINE)
 NOT_ZERO = re.compile(r"[^EeDd]*[1-9]")
 
 
@@ -21,6 +24,24 @@ def refuse_ignored(path: Path) -> None:
         _check_nastran(path.read_text(encoding="utf-8", errors="replace"))
     elif suffix == ABAQUS:
         _check_abaqus(path)
+
+
+def for_reader(path: Path) -> tuple[Path | io.StringIO, str | None]:
+    """Return a mesh file, or what Gmsh writes with the words that meshio expects, and the format of that.
+
+    These are bulk data of Nastran without the line before them, and plane triangles of Abaqus, which form groups only.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in {*NASTRAN, ABAQUS}:
+        return path, None
+    text = path.read_text(encoding="utf-8", errors="replace")
+    if suffix in NASTRAN and BULK not in text:
+        return io.StringIO(f"{BULK}\n{text}"), "nastran"
+    if suffix == ABAQUS and (changed := GMSH_TRIANGLES.sub(r"\1CPE6", text)) != text:
+        found = io.StringIO(changed)
+        found.name = str(path)  # from which INCLUDE finds other files
+        return found, "abaqus"
+    return path, None
 
 
 def sets_of_sets(path: Path) -> dict[str, list[str]]:
@@ -35,7 +56,7 @@ def sets_of_sets(path: Path) -> dict[str, list[str]]:
 
 
 def _check_nastran(text: str) -> None:
-    _, begin, bulk = text.partition("BEGIN BULK")
+    _, begin, bulk = text.partition(BULK)
     if begin and not any(line.startswith("ENDDATA") for line in bulk.splitlines()):
         raise InputError("found no line ENDDATA after BEGIN BULK, expected a complete Nastran file")
     for line in text.splitlines():

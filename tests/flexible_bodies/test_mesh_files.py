@@ -7,6 +7,7 @@ import pytest
 
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.mesh import from_mesh
+from stiffmbs.flexible_bodies.mesh_files import for_reader
 from tests.flexible_bodies.bars import mesh_of_bar
 
 POINTS = [(x, y, z) for x in (0, 1, 2) for y in (0, 1) for z in (0, 1)]
@@ -42,6 +43,23 @@ def test_sets_of_nodes_elements_and_sets(tmp_path):
     groups = read(tmp_path / "a.inp", text + "*Elset, elset=first\n1\n").groups
     wanted = {"start": range(4), "end": range(8, 12), "ends": [*range(4), *range(8, 12)], "first": range(8)}
     assert {name: groups[name].tolist() for name in wanted} == {name: list(nodes) for name, nodes in wanted.items()}
+
+
+def test_files_of_gmsh(tmp_path):
+    """Bulk data of Nastran alone; elements of a surface that meshio does not know, which form a group."""
+    _, _, bulk = nastran().partition("BEGIN BULK\n")
+    assert len(read(tmp_path / "a.bdf", bulk).nodes) == 12
+    nodes = "".join(f"{k}, {k}., 5., 0.\n" for k in (13, 14))
+    surface = "*ELEMENT, type=CPS6, ELSET=side\n9, 1, 2, 3, 4, 13, 14\n"
+    found = read(tmp_path / "a.inp", ABAQUS.replace("*Element", nodes + "*Element", 1) + surface)
+    assert found.groups["side"].tolist() == [0, 1, 2, 3]
+    assert len(found.nodes) == 12
+    assert for_reader(tmp_path / "a.inp")[0].name == str(tmp_path / "a.inp")  # the folder of included files
+
+
+def test_the_type_of_an_unknown_element_is_named(tmp_path):
+    with pytest.raises(InputError, match="Element type not available: CAX8"):
+        read(tmp_path / "a.inp", ABAQUS + "*ELEMENT, type=CAX8\n9, 1, 2, 3, 4, 5, 6, 7, 8\n")
 
 
 @pytest.mark.parametrize(("name", "text", "message"), [
