@@ -39,7 +39,7 @@ class ConsistencyParameters:
     step_parts: float = 10.0
     """Step of the solver relative to that of the matrix of a stiff projection. Unstable soft forces are small there
     compared with inertia."""
-    restored: float = 0.5
+    restored: float = 0.7
     """Change of forces by a stiff projection, relative to that before the last move, up to which it goes on."""
     most_iterations: int = 40
     """Largest number of iterations for forces that depend on multipliers, and for algebraic states."""
