@@ -48,10 +48,12 @@ def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.nd
 
 
 def projected(dynamics: Dynamics, t: float, states: States, step: float) -> States:
-    """Return q and u at the end of a long implicit step, s, projected without a change of stiff forces, if possible.
+    """Return q and u at the end of an implicit step, s, projected without a change of stiff forces, if possible.
 
-    The state of `dynamics` is changed.
+    The state of `dynamics` is changed. `step`: 0 for an explicit one, whose end stays as it is.
     """
+    if not (step and dynamics.system.n_c):
+        return states
     q, u = (array.copy() for array in states)
     return (q, u) if _projection(dynamics).project(t, step, q, u) else states
 
