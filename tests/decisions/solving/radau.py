@@ -165,7 +165,7 @@ def most_moved(within):
     def closed(x, t, most):
         return found.append(most) or between_steps.AGREED
 
-    with interpreted(between_steps, closed=closed, _corrected=nothing, polynomial_rates=nothing):
+    with interpreted(between_steps, closed=closed, _corrected=nothing):
         if within:
             between_steps._closed_at(collocating(), METHOD, 0.0, 0.5)
         else:

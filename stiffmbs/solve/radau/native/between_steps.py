@@ -127,7 +127,8 @@ def _closed_at(x, c, t, place):
     """Close the state at a place; the matrix of the step may be too old for it. States that stay open are counted."""
     for new in range(2):
         _corrected(x, c, place, 0)
-        polynomial_rates(x, place, x.yp_stage)
+        if new or x.n_tested < x.n:
+            polynomial_rates(x, place, x.yp_stage)
         if new and not factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True):
             break
         if closed(x, t, MOST_MOVED_WITHIN) != OPEN:
