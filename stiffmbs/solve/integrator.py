@@ -22,7 +22,7 @@ from .events.restart import just_after, restarted_past, straight_on
 from .ida.choice import driven_natively
 from .ida.native.parameters import LOOP
 from .ida.native_engine import NativeEngine, Reached
-from .stiff_rows import projected
+from .stiff_rows import States, projected
 from .trajectory import Grid
 
 Driver = Callable[[Dynamics, RunSettings, ErrorControl], tuple[Equations, NativeEngine, float]]
@@ -64,9 +64,11 @@ class Integrator:
     def on_constraints(self, reached: Reached) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u that were reached; those after a long step are projected without a change of stiff forces."""
         state, last = self.split(reached.y), self.engine.last_step()
-        if not last or last[0] <= self.engine.long_step or not self.dynamics.system.n_c:
-            return state
-        return projected(self.dynamics, reached.t, state, last[0])
+        return self.closed(reached.t, state, last[0]) if last else state
+
+    def closed(self, t: float, state: States, step: float) -> States:
+        """Return q and u at the end of a step, s, projected without a change of stiff forces if it is long for them."""
+        return projected(self.dynamics, t, state, step) if step > self.engine.long_step else state
 
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
         """Yield the progress at the times of the grid, or after each step; a failure comes last.

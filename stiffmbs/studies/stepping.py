@@ -19,7 +19,7 @@ from ..solve.ida.native_engine import Reached
 from ..solve.integrator import Integrator
 from ..solve.radau.radau import radau_integrator
 from ..solve.settings import changed
-from ..solve.stiff_rows import lengths_of_steps
+from ..solve.stiff_rows import lengths_of_steps, projected
 from ..solve.trajectory import Grid, Outcome
 
 PART, FINEST = 0.01, 1e-12
@@ -145,6 +145,7 @@ class ImplicitSteps:
         """See `Stepper`."""
         if self._jumped or self._ended:
             self._look_through(self._t)
+            self.q[:], self.u[:] = self._integrator.closed(self._t, (self.q, self.u), self.length)
             if self._jumped and t <= self._end:
                 if t > just_after(self._t):
                     self._started.advance(self._t, t, self._features)
@@ -157,11 +158,15 @@ class ImplicitSteps:
             if reached is None:  # end of the interval with known input features, up to rounding
                 self._end = self._t
                 self._look_through(self._t)
-                self._begin(restarted(self._dynamics, self._t, *self._at(self._t)), self._t)
+                state = self._integrator.closed(self._t, self._at(self._t), self._last_step())
+                self._begin(restarted(self._dynamics, self._t, *state), self._t)
             else:
                 self._t = sound(self._integrator, reached).t
         self.q[:], self.u[:] = self._at(t)
-        self._present, self.length = t, float(self._engine.ida.cells["size"])
+        self._present, self.length = t, self._last_step()
+
+    def _last_step(self) -> float:
+        return float(self._engine.ida.cells["size"])
 
     def _at(self, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u at a time within the last step."""
@@ -175,7 +180,7 @@ class ImplicitSteps:
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """See `Stepper`."""
         self._t, self._present, self._jumped = t, t, True
-        self.q[:], self.u[:] = q, u
+        self.q[:], self.u[:], self.length = q, u, 0.0
 
 
 class ShortRuns:
@@ -199,8 +204,8 @@ class ShortRuns:
                 raise KeyboardInterrupt
             if found.outcome is not Outcome.DONE:
                 raise SolverError(found.message)
-            self.restart(t, found.q[-1], found.u[-1])
             self.length = float(lengths_of_steps(found)[-1])
+            self.restart(t, *projected(self._job.dynamics, t, (found.q[-1], found.u[-1]), self.length))
 
     def jump(self) -> None:
         """See `Stepper`."""

@@ -107,6 +107,19 @@ def test_reactions_after_breakpoints_and_events(push):
     assert found.solver["steps"] < 400
 
 
+def coarse(run, push="0, 0"):
+    """Return the notes on steps of order 1 that are long for a bushing of 1e12 N/m."""
+    found = stiffmbs.run(pendulum(run, 1e12, push))
+    return [note for note in found.notes if "order 1" in note]
+
+
+def test_forces_in_long_steps_of_order_1_are_told():
+    """At kinks of the push, reactions are wrong by up to 0.27 times the largest at a loose tolerance."""
+    (note,) = coarse("solver: bdf, rtol: 1e-3", KINKS)
+    assert "tens of percent" in note and "solver: radau" in note
+    assert not coarse("solver: bdf, rtol: 1e-4") and not coarse("solver: radau, rtol: 1e-3", KINKS)
+
+
 LOOP_ENDS = ((0.0, 0.0), (0.2, 0.0), (0.35, 0.5), (0.8, 0.0))
 """Hinges of a four-bar, m."""
 
@@ -158,9 +171,47 @@ def test_restarts_in_a_loop_keep_stiff_forces(rigid_four_bar, solver, rtol):
     assert error(found, rigid_four_bar) < 0.1
 
 
+def simulated(scene):
+    """Return reactions of a simulation past the duration of its scene, with a push that jumps twice, N."""
+    push = "forces.push.force.0"
+    simulation = stiffmbs.simulation(scene, inputs={push: -2.0})
+    found = {name: [simulation[name]] for name in REACTIONS}
+    for t in np.arange(505) * 1e-3:
+        simulation.step(1e-3, {push: -2.0 if t < 0.2 else 3.0 if t < 0.35 else 0.5})
+        for name in REACTIONS:
+            found[name].append(simulation[name])
+    return {name: np.array(values) for name, values in found.items()}
+
+
+def test_simulations_restart_without_a_change_of_stiff_forces():
+    """At jumps, and after the duration of the scene, the smallest move made reactions wrong by 1.4 times the largest."""
+    exact = simulated(four_bar("solver: radau, rtol: 1e-10"))
+    assert error(simulated(four_bar("solver: bdf, rtol: 1e-4", 1e14)), exact) < 0.05
+
+
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 @pytest.mark.parametrize("damping", [1e9, 1e11])
 def test_corrections_of_velocities_keep_the_forces_of_strong_dampers(rigid_four_bar, solver, damping):
     """The smallest corrections of velocities made reactions wrong by 1.7 and 253 times the largest."""
     found = stiffmbs.run(four_bar(f"solver: {solver}, rtol: 1e-4", 1e8, damping))
     assert error(found, rigid_four_bar) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "damping"), [(1e10, 7e8), (1e12, 7e9)], ids=["old matrix", "stiffness and damping equal"]
+)
+def test_radau_closes_every_state_within_a_step(rigid_four_bar, stiffness, damping):
+    """One reaction was wrong by 19 times the largest: the matrix was too old at its place in the step.
+
+    Other reactions were wrong by 0.05: the projection onto the constraints had changed forces, and ended too early.
+    """
+    found = stiffmbs.run(four_bar("solver: radau, rtol: 1e-4", stiffness, damping))
+    assert error(found, rigid_four_bar) < 0.01
+    assert not found.notes
+
+
+def test_states_of_radau_that_stay_open_are_told():
+    """One correction, in place of eight, does not suffice."""
+    run = "solver: radau, rtol: 1e-4, tuning: {polishing: {most_corrections: 1}}"
+    note, _ = stiffmbs.run(four_bar(run, 1e10, 7e8)).notes
+    assert "stiff forces do not balance" in note and "radau" not in note

@@ -39,8 +39,9 @@ class ConsistencyParameters:
     step_parts: float = 10.0
     """Step of the solver relative to that of the matrix of a stiff projection. Unstable soft forces are small there
     compared with inertia."""
-    restored: float = 0.5
-    """Change of forces by a stiff projection, relative to that before the last move, up to which it goes on."""
+    restored: float = 0.7
+    """Move of a stiff projection, relative to the last one, up to which it goes on. Where stiffness and damping are equal in a
+    step, the moves of either level restore half of the forces."""
     most_iterations: int = 40
     """Largest number of iterations for forces that depend on multipliers, and for algebraic states."""
     converged: float = 1e-13

@@ -27,14 +27,15 @@ def _moved(s, t, factors, equations, before, cj):
     closed = False
     for move in range(CONSISTENCY.most_moves):
         values = evaluate(s, MOTION, t)
-        change = _right_side(s, factors, equations, values, before, 1.0 / cj if cj > 0.0 else 1.0)
+        _right_side(s, factors, equations, values, before, 1.0 / cj if cj > 0.0 else 1.0)
         closed = largest_open(s, values) <= max(CONSISTENCY.position_tolerance, ROUNDING * largest_of(s.q, s.n_pose))
-        if closed and not change < CONSISTENCY.restored * last:
-            return True
         f = factors_view(factors)
         solve(f, f.b)
+        size = largest_of(f.b, s.n_u)
+        if closed and not size < CONSISTENCY.restored * last:
+            return True
         if closed and move > 0:
-            last = change
+            last = size
         if cj > 0.0:
             add_rates(s, f.b, 1.0, s.q)
             take_unit_length(s)

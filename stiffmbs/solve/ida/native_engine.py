@@ -82,7 +82,7 @@ class NativeEngine:
         """Discard what earlier runs have left, so that results do not depend on them."""
         self.ida.forget()
         self._order.forget()
-        self._newton = 0.0
+        self._newton, self._stiffness = 0.0, Stiffness(0.0, 0.0)
         self._counted = {"steps": 0, "convergence_failures": 0}
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:

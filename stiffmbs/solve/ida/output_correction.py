@@ -83,7 +83,7 @@ class OutputCorrection:
         count, first = int(self._cells["failed"]), float(self._cells["first_failed"])
         return (
             f"coordinates are interpolated at {count} output time{'s' * (count > 1)} from t = {first:.6g} s on, where stiff forces "
-            "do not balance: they and reactions may be wrong there; reduce rtol, or use solver: radau"
+            f"do not balance: they and reactions may be wrong there; reduce rtol{', or use solver: radau' * self.ready}"
         ) * (count > 0)
 
     def forget(self) -> None:

@@ -11,7 +11,14 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.error_control.native.parameters import POLISHING
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates
-from stiffmbs.solve.radau.native.newton import add_efforts, residual, size_in_tolerances, solved_real, store_misfit
+from stiffmbs.solve.radau.native.newton import (
+    add_efforts,
+    factored,
+    residual,
+    size_in_tolerances,
+    solved_real,
+    store_misfit,
+)
 
 ROUNDING = 1e-11
 """Relative size of corrections that are rounding."""
@@ -117,11 +124,20 @@ def _corrected(x, c, place, count):
 
 @compiled
 def _closed_at(x, c, t, place):
-    _corrected(x, c, place, 0)
-    if x.n_tested < x.n:
-        polynomial_rates(x, place, x.yp_stage)
-    if closed(x, t, MOST_MOVED_WITHIN) == OPEN:
+    """Close the state at a place; the matrix of the step may be too old for it. States that stay open are counted."""
+    for new in range(2):
         _corrected(x, c, place, 0)
+        if new or x.n_tested < x.n:
+            polynomial_rates(x, place, x.yp_stage)
+        if new and not factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True):
+            break
+        if closed(x, t, MOST_MOVED_WITHIN) != OPEN:
+            return
+    b = output_correction_view(x.output_correction)
+    if b.failed == 0:
+        b.first_failed = t
+    b.failed = b.failed + 1
+    _corrected(x, c, place, 0)
 
 
 @compiled

@@ -155,7 +155,7 @@ def factored(x, c, h, t, y, yp, renewed):
         if not _set_up(x, pair + 1):
             return False
     x.h_factored = h
-    x.method_factored = x.method
+    x.stages_factored = c.stages
     output_correction_view(x.output_correction).current = c.gamma / h
     return True
 

@@ -221,7 +221,7 @@ def _begun(x):
 @compiled
 def _has_matrices(x, c, h):
     """Provide factored matrices for a step of length h; return False if one is singular."""
-    if x.renewed == 0 and h == x.h_factored and x.method == x.method_factored:
+    if x.renewed == 0 and h == x.h_factored and c.stages == x.stages_factored:
         return True
     if not factored(x, c, h, x.t, x.y, x.yp, x.renewed):
         x.renewed = 1
