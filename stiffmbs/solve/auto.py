@@ -70,7 +70,8 @@ class _AutoRun:
 
     def __init__(self, dynamics: Dynamics, grid: Grid, settings: RunSettings, watch: ProgressCallback) -> None:
         self._dynamics, self._grid, self._watch = dynamics, grid, watch
-        self._settings = settings.model_copy(update={"scheme": "dop853", "projection": True})
+        changes = {"scheme": "dop853", "projection": True}
+        self._settings = dynamics.kept("settings of auto", settings, lambda: settings.model_copy(update=changes))
         self._choice = Choice(dynamics, grid, self._settings)
         self._implicit = self._choice.implicit
         self._segments: list[Segment] = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .auto_choice import Choice, Switch
-from .auto_decisions import AUTO, ExplicitSteps, Interval, cost_ahead, loss_of_trial, since, tolerable_loss
+from .auto_decisions import AUTO, ExplicitSteps, Interval, cost_ahead, loss_of_trial, since
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED
 from .ida.native_engine import Reached
@@ -37,7 +37,7 @@ class ExplicitCheck:
 
 
 class ImplicitCheck:
-    """Check of the implicit steps of a segment: they are kept while their loss is tolerable, or if the rest of them costs less.
+    """Check of the implicit steps of a segment: they are kept while they lose less than a start, or if the rest of them costs less.
 
     `rate`: cost of implicit steps per second of the motion in the last interval. `loss`: cost in excess of explicit
     steps, since it was last lower.
@@ -48,7 +48,7 @@ class ImplicitCheck:
         self._counted, self._begun = self._implicit.steps(t), self._implicit.integrator.steps()
         self.rate, self.loss = np.inf, 0.0
         self._first: Interval | None = None
-        self._wait(t)
+        self._wait()
 
     def __call__(self, reached: Reached) -> bool:
         """Add the loss since the last check; return True if the implicit integrator is kept."""
@@ -60,7 +60,7 @@ class ImplicitCheck:
         self.rate = taken.cost / taken.time
         self.loss = loss_of_trial(self.loss, taken.cost, choice.explicit_cost(taken.time, taken.restarts, taken.long))
         gains = self._gains(Interval(t - 0.5 * taken.time, self.rate))
-        return self._wait(t) > 0.0 or gains
+        return self._wait() > 0.0 or gains
 
     def _gains(self, last: Interval) -> bool:
         """Return True if the rest of the implicit steps costs less by the decay of their cost, which two intervals show."""
@@ -69,10 +69,9 @@ class ImplicitCheck:
         self._first = first
         return first is last or cost_ahead(first, last, t, t + remaining) < self._choice.explicit_cost(remaining, 0)
 
-    def _wait(self, t: float) -> float:
+    def _wait(self) -> float:
         """Set the next check, before which average steps do not exceed the tolerable loss; return the remaining loss."""
-        following = self._choice.explicit_cost(self._choice.remaining(t), 0)
-        left = tolerable_loss(self._implicit.start, self._choice.thresholds.loss, following) - self.loss
+        left = self._implicit.start - self.loss
         integrator = self._implicit.integrator
         taken = integrator.steps() - self._begun
         every = max(int(left / self._implicit.cost.step), int(AUTO.check_interval * taken), 1)

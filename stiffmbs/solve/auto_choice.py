@@ -5,6 +5,7 @@ The criteria are in `stiffmbs.solve.auto_decisions`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -45,7 +46,9 @@ class Choice:
         self._dynamics, self._grid, self._settings = dynamics, grid, settings
         self.implicit = Implicit(dynamics, settings)
         self._breakpoints = dynamics.input_features(grid.start, grid.end).breakpoints
-        self.explicit_step, self._evaluation = cost.of_explicit_step(dynamics), cost.of_kernels(dynamics)
+        self.explicit_step, self._evaluation = dynamics.kept(
+            "costs of explicit steps", settings, lambda: (cost.of_explicit_step(dynamics), cost.of_kernels(dynamics))
+        )
         self._explicit_rate = np.inf  # cost per second of the motion
         self._implicit_rate = np.inf  # the same of implicit steps, before they were left
         self.thresholds = Thresholds()
@@ -66,25 +69,23 @@ class Choice:
         rate = self._stable_rate(rates)
         pieces = 1 + self._breakpoints_after(t)
         explicit_cost = self.remaining(t) * rate + (pieces - 1) * cost.COSTS.restart_steps * self.explicit_step
-        if not explicit_cost > self._least_cost(pieces):
-            return None
         self.implicit.choose(rates, self.remaining(t) * rate / self.explicit_step, pieces)
-        decay = steps_of_decay(AUTO, self._excitation(start, rates.fastest), rates.decay_ratio)
-        saving = explicit_cost - self._least_cost(pieces, decay)
-        if saving > self.implicit.growth:  # what a failed trial loses; by lower bounds of the costs
-            self.implicit.create()
-            saving = explicit_cost - self._least_cost(pieces, decay)
-        if not saving > self.implicit.growth:
-            return None
-        reason = f"{self.implicit.name} (fastest rate {rates.fastest:.3g} 1/s)"
-        return Switch(reason, rate, self.thresholds.of_trial(saving / explicit_cost))
+        decay = self._decay(rates, t, start.u)
+        if not self._confirmed(lambda: self._least_cost(pieces, decay) < explicit_cost - self.implicit.growth):
+            return None  # the growth is what a failed trial loses
+        return Switch(f"{self.implicit.name} (fastest rate {rates.fastest:.3g} 1/s)", rate, self.thresholds)
+
+    def _confirmed(self, pays: Callable[[], bool]) -> bool:
+        """Return True if implicit steps pay, first by lower bounds of their cost, then by that of the created integrator."""
+        if not pays():
+            return False
+        self.implicit.create()
+        return pays()
 
     def _least_cost(self, pieces: int, decay: float = 0.0) -> float:
         """Return a lower bound of the cost of implicit steps from the start: small steps and a decay, at least a failed trial."""
-        of_decay = (
-            self.implicit.cost.work(self.implicit.cost.step_residuals, 0) if decay else 0.0
-        )  # it keeps its matrices
-        return max(pieces * self.implicit.growth + decay * of_decay, self.implicit.start)
+        of_decay = decay * self.implicit.cost.work(self.implicit.cost.step_residuals, 0)  # it keeps its matrices
+        return max(pieces * self.implicit.growth + of_decay, self.implicit.start)
 
     def later_trial(self, steps: ExplicitSteps, segment: ExplicitSteps, work: Integration) -> Switch | None:
         """Return the decision to try the implicit integrator, because stability limits explicit steps; None to continue with these.
@@ -93,24 +94,20 @@ class Choice:
         """
         if not steps.limited or segment.cost < self.thresholds.penalty:
             return None
-        share = steps.limited / steps.accepted
-        saving = share * steps.cost * self.remaining(work.t) / steps.time
-        if not saving > self._justifying(work.t):
+        t, share = work.t, steps.limited / steps.accepted
+        saving = share * steps.cost * self.remaining(t) / steps.time
+        if not saving > self._justifying(t):
             return None
-        pieces = 1 + self._breakpoints_after(work.t)
-        rates = rates_at(self._dynamics, work.t, work.q.copy(), work.u.copy())
+        rates = rates_at(self._dynamics, t, work.q.copy(), work.u.copy())
         rate = self._stable_rate(rates)
-        self.implicit.choose(rates, saving / self.explicit_step, pieces)
-        if not saving > self._justifying(work.t):
-            return None
-        self.implicit.create()
-        if not min(saving, self.remaining(work.t) * rate) > self._justifying(work.t):
+        self.implicit.choose(rates, saving / self.explicit_step, 1 + self._breakpoints_after(t))
+        if not self._confirmed(lambda: min(saving, self.remaining(t) * rate) > self._justifying(t)):
             return None
         reason = (
-            f"{self.implicit.name} from t = {work.t:.4g} s on (stability limited {100 * share:.0f} % of the "
+            f"{self.implicit.name} from t = {t:.4g} s on (stability limited {100 * share:.0f} % of the "
             f"explicit steps, fastest rate {rates.fastest:.3g} 1/s)"
         )
-        return Switch(reason, rate, self.thresholds.of_trial(share))
+        return Switch(reason, rate, self.thresholds)
 
     def returned(self, steps: ExplicitSteps, t: float) -> Switch | None:
         """Return the decision to resume the implicit integrator, because explicit steps cost more; None to continue with these."""
@@ -125,14 +122,14 @@ class Choice:
         """Return the cost of explicit steps per second if stability limits them."""
         return self.explicit_step * rates.fastest / DOP853.stability
 
-    def _excitation(self, start: InitialValues, fastest: float) -> float:
-        """Return the largest change of a velocity in a step limited by stability, in tolerances."""
-        if not fastest:
+    def _decay(self, rates: Rates, t: float, u: np.ndarray) -> float:
+        """Return the implicit steps of the vibration that accelerations excite, up to its decay."""
+        if not rates.fastest:
             return np.inf
         system, settings = self._dynamics.system, self._settings
         tolerances = self._dynamics.kept("tolerances", settings, lambda: absolute_tolerances(system, settings))
-        change = np.abs(start.acceleration) * (DOP853.stability / fastest)
-        return float((change / (tolerances[system.n_q :] + settings.rtol * np.abs(start.u))).max(initial=0.0))
+        excitation = float((rates.velocity / (tolerances[system.n_q :] + settings.rtol * np.abs(u))).max(initial=0.0))
+        return steps_of_decay(AUTO, excitation, rates.decay_ratio, rates.excited * self.remaining(t))
 
     def _breakpoints_after(self, t: float) -> int:
         """Return the number of input breakpoints after a time."""

@@ -78,17 +78,11 @@ class Thresholds:
     """Thresholds of a run, which rise with each switch to bound the number of switches.
 
     - `return_ratio`: ratio of explicit to implicit cost at which implicit steps are resumed.
-    - `loss`: fraction of the remaining explicit cost that a trial of implicit steps may lose in addition to a start.
     - `penalty`: explicit cost of a segment before the next trial of implicit steps.
     """
 
     return_ratio: float = 1.0
-    loss: float = 1.0
     penalty: float = 0.0
-
-    def of_trial(self, share: float) -> Thresholds:
-        """Return the thresholds in a trial that can save a share of the explicit cost."""
-        return replace(self, loss=min(self.loss, share))
 
     def after_return(self) -> Thresholds:
         """Return the thresholds after implicit steps were resumed because explicit steps cost more."""
@@ -96,7 +90,7 @@ class Thresholds:
 
     def after_failed_trial(self, cost: float) -> Thresholds:
         """Return the thresholds after a trial of implicit steps that cost `cost` in excess of explicit steps."""
-        return replace(self, loss=0.0, penalty=max(cost, 2.0 * self.penalty))
+        return replace(self, penalty=max(cost, 2.0 * self.penalty))
 
 
 def implicit_solver(parameters: AutoParameters, damping_ratio: float, rtol: float, run_length: float) -> str:
@@ -110,14 +104,15 @@ def implicit_solver(parameters: AutoParameters, damping_ratio: float, rtol: floa
     return "radau" if damping_ratio < 1.0 or pays else "bdf"
 
 
-def steps_of_decay(parameters: AutoParameters, excitation: float, damping_ratio: float) -> float:
-    """Return the implicit steps in which a vibration decays to the tolerances; infinite without damping.
+def steps_of_decay(parameters: AutoParameters, excitation: float, damping_ratio: float, radians: float) -> float:
+    """Return the implicit steps of a vibration up to its decay to the tolerances, or in all its `radians` to the end of the run.
 
-    `excitation`: largest change of a velocity in an explicit step, in tolerances.
+    `excitation`: change of a velocity by it, in tolerances.
     """
     if excitation <= 1.0:
         return 0.0
-    return parameters.steps_per_radian * math.log(excitation) / damping_ratio if damping_ratio > 0.0 else math.inf
+    decaying = math.log(excitation) / damping_ratio if damping_ratio > 0.0 else math.inf
+    return parameters.steps_per_radian * min(decaying, radians)
 
 
 def saving_by_return(explicit_rate: float, implicit_rate: float, ratio: float, remaining: float) -> float:
@@ -152,8 +147,3 @@ def cost_ahead(first: Interval, last: Interval, begin: float, end: float) -> flo
     constant = (last.middle - first.middle) / math.log(first.rate / last.rate)
     at_begin = last.rate * math.exp((last.middle - begin) / constant)
     return -at_begin * constant * math.expm1((begin - end) / constant)
-
-
-def tolerable_loss(start: float, allowed: float, remaining_cost: float) -> float:
-    """Return the loss up to which a trial of implicit steps continues: a start and a fraction of the remaining explicit cost."""
-    return start + allowed * remaining_cost

@@ -3,15 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, NamedTuple
 
 from ..dynamics.dynamics import Dynamics
 from ..model.settings import RunSettings
-from . import bdf, cost
+from . import bdf
 from .auto_decisions import AUTO, ImplicitSteps, implicit_solver
+from .cost import ImplicitCost
 from .explicit.stable_step import Rates
-from .integrator import Integrator
+from .integrator import Integrator, driven
 from .radau import radau
 from .solver import Traits
+
+OF_STEPS = {"bdf": ImplicitCost.of, "radau": radau.of_radau}
+DRIVERS: dict[str, Callable[[], dict[str, Any]]] = {"bdf": dict, "radau": radau.driver}
+
+
+class Estimates(NamedTuple):
+    """Costs of an implicit integrator, described in `Implicit`."""
+
+    cost: ImplicitCost
+    growth: float
+    start: float
 
 
 class Implicit:
@@ -26,8 +41,7 @@ class Implicit:
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
         self._dynamics, self._settings = dynamics, settings
-        self.name, self._created = "", False
-        self._estimate(None)
+        self._become("", False)
 
     def choose(self, rates: Rates, explicit_steps: float, pieces: int) -> None:
         """Choose the integrator by the rates of the motion about a state, unless one exists.
@@ -35,29 +49,33 @@ class Implicit:
         `explicit_steps`: explicit steps in place of implicit ones. `pieces`: number of starts and restarts.
         """
         if not self._created:
-            of_bdf = cost.ImplicitCost.of(self._dynamics)
-            self._be("radau")
-            run_length = explicit_steps * of_bdf.step / (pieces * self.growth)
-            self._be(implicit_solver(AUTO, rates.damping_ratio, self._settings.rtol, run_length))
-
-    def _be(self, name: str) -> None:
-        if name != self.name:
-            self.name = name
-            self._estimate(None)
+            run_length = explicit_steps * self._estimated("bdf").cost.step / (pieces * self._estimated("radau").growth)
+            self._become(implicit_solver(AUTO, rates.damping_ratio, self._settings.rtol, run_length), False)
 
     def create(self) -> None:
-        """Create the chosen integrator, `bdf` if none is chosen, unless it exists, and estimate its cost."""
+        """Create the engine of the chosen integrator, `bdf` if none is chosen, unless it exists, and estimate its cost."""
         if not self._created:
-            self._be(self.name or "bdf")
-            create = radau.radau_integrator if self.name == "radau" else Integrator
-            self.integrator, self._created = create(self._dynamics, self._settings), True
-            self._estimate(self.integrator.factors)
+            self._become(self.name or "bdf", True)
 
-    def _estimate(self, factors: float | None) -> None:
-        of_steps = radau.of_radau if self.name == "radau" else cost.ImplicitCost.of
-        self.cost = of_steps(self._dynamics, factors)
-        self.growth = -math.log10(self._settings.rtol) * self.cost.start_steps * self.cost.step
-        self.start = self.cost.memory + self.growth
+    def _become(self, name: str, created: bool) -> None:
+        self.name, self._created = name, created
+        self.cost, self.growth, self.start = self._estimated(name or "bdf", created)
+
+    def _estimated(self, name: str, created: bool = False) -> Estimates:
+        """Return the costs of an integrator, which the dynamics keep: of its linear solver, or lower bounds before it is created."""
+
+        def estimated() -> Estimates:
+            factors = 1e-3 * driven(self._dynamics, self._settings, **DRIVERS[name]())[2] if created else None
+            found = OF_STEPS[name](self._dynamics, factors)
+            growth = -math.log10(self._settings.rtol) * found.start_steps * found.step
+            return Estimates(found, growth, found.memory + growth)
+
+        return self._dynamics.kept(f"costs of {name}, {created}", self._settings, estimated)
+
+    @cached_property
+    def integrator(self) -> Integrator:
+        """The integrator, without steps at first."""
+        return Integrator(self._dynamics, self._settings, **DRIVERS[self.name]())
 
     def traits(self) -> Traits:
         """Return the traits of the solver."""

@@ -28,6 +28,15 @@ from .trajectory import Grid
 Driver = Callable[[Dynamics, RunSettings, ErrorControl], tuple[Equations, NativeEngine, float]]
 
 
+def driven(
+    dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf",
+    driver: Driver = driven_natively,
+) -> tuple[Equations, NativeEngine, float]:  # fmt: skip
+    """Return the equations, their engine and the cost of its linear solver, ns, which the dynamics keep under the name `memory`."""
+    chosen = control or CHOSEN[dynamics.system.of_body.dimensions]
+    return dynamics.kept(memory, (settings, chosen), lambda: driver(dynamics, settings, chosen))
+
+
 class Integrator:
     """IDA over the pieces of a run, from breakpoint to breakpoint and from event to event.
 
@@ -40,12 +49,10 @@ class Integrator:
         self, dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf",
         driver: Driver = driven_natively,
     ) -> None:  # fmt: skip
-        control = control or CHOSEN[dynamics.system.of_body.dimensions]
-        self.dynamics, self.settings, self.control = dynamics, settings, control
+        self.control = control or CHOSEN[dynamics.system.of_body.dimensions]
+        self.dynamics, self.settings = dynamics, settings
         self.reached: Reached | None = None
-        self.equations, self.engine, cost = dynamics.kept(
-            memory, (settings, control), lambda: driver(dynamics, settings, control)
-        )
+        self.equations, self.engine, cost = driven(dynamics, settings, control, memory, driver)
         self.engine.forget()
         self.factors = 1e-3 * cost
         self._jumps = VelocityJumps(dynamics)

@@ -7,7 +7,7 @@ import stiffmbs
 from stiffmbs import AppliedForce, Body, Bushing, Distance, Model, Prismatic
 from stiffmbs.analyses.job import prepare
 from stiffmbs.solve import auto_checks, auto_choice
-from stiffmbs.solve.auto_decisions import AUTO, Interval, Thresholds, cost_ahead, implicit_solver, steps_of_decay
+from stiffmbs.solve.auto_decisions import AUTO, Interval, cost_ahead, implicit_solver, steps_of_decay
 from stiffmbs.solve.explicit.stable_step import rates_at
 from tests.bench.drives import CARS
 from tests.stress.mechanisms.parallelogram import parallelogram, swing_error
@@ -40,16 +40,14 @@ def test_a_scene_that_is_stiff_from_the_first_is_left_to_radau(examples):
 
 
 @pytest.mark.long
-def test_radau_is_kept_in_a_vibration_that_it_resolves_at_less_cost():
+def test_radau_is_taken_for_a_vibration_that_it_resolves_at_less_cost():
     """At rtol 1e-8 radau takes a third of the time of explicit steps, also before a damper stops the vibration."""
     model = Model()
     model.add("a", Body(mass=1, inertia=1, position=(0.01, 0)))
     model.add("rail", Prismatic(i="a", j="ground"))
     model.add("spring", AppliedForce(i="a", force=("-1e6*a.x - 2000*step5(t, 12, 0, 13, 1)*a.vx + 1e4*sin(t)", 0)))
     chosen = stiffmbs.run(model, solver="auto", duration=30.0, points=301, rtol=1e-8)
-    assert chosen.solver["name"] == "projected, radau"
-    (note,) = (note for note in chosen.notes if note.startswith("auto chose"))
-    assert "again" not in note and "stability limited" in note
+    assert chosen.solver["name"] == "radau"
     exact = stiffmbs.run(model, solver="projected", scheme="dop853", duration=30.0, points=301, rtol=1e-12)
     np.testing.assert_array_equal(chosen.time, exact.time)
     np.testing.assert_allclose(chosen["a.x"], exact["a.x"], atol=1e-6)
@@ -197,8 +195,18 @@ def test_a_later_trial_must_save_more_than_its_start(duration, name):
     assert stiffmbs.run(let_fall(1e-3, 0), solver="auto", duration=duration, rtol=1e-4).solver["name"] == name
 
 
-def test_a_first_trial_loses_no_more_than_it_can_save():
-    assert Thresholds().of_trial(0.3).of_trial(0.5).loss == 0.3
+@pytest.mark.long
+def test_a_trial_that_costs_more_than_explicit_steps_is_left_early():
+    """The bushings do not carry the weight: all vibrate for longer than the one that is excited most.
+
+    Radau would take twice the cost of explicit steps to the end.
+    """
+    car = CARS[0]
+    solution = stiffmbs.run(
+        car.model("sweep", **{car.stiffness: "1e8", "zeta": "0.01"}), solver="auto", duration=1.0, rtol=1e-5
+    )
+    (note,) = (note for note in solution.notes if note.startswith("auto chose"))
+    assert "projected again" in note
 
 
 def test_the_cost_ahead_follows_the_decay_of_a_vibration():
@@ -220,10 +228,10 @@ def test_radau_is_kept_if_the_rest_of_its_steps_costs_less(examples, stiffness, 
 
 
 def test_steps_up_to_the_decay_of_a_vibration():
-    """Nothing is seen of a vibration within a tolerance; e tolerances decay in 40 radians."""
-    assert steps_of_decay(AUTO, 1.0, 0.0) == 0.0
-    assert steps_of_decay(AUTO, 2.0, 0.0) == np.inf
-    assert steps_of_decay(AUTO, np.e, 0.025) == pytest.approx(40.0 * AUTO.steps_per_radian)
+    """Nothing is seen of a vibration within a tolerance; e tolerances decay in 40 radians, if the run has as many."""
+    assert steps_of_decay(AUTO, 1.0, 0.0, 100.0) == 0.0
+    assert steps_of_decay(AUTO, 2.0, 0.0, 100.0) == pytest.approx(100.0 * AUTO.steps_per_radian)
+    assert steps_of_decay(AUTO, np.e, 0.025, 100.0) == pytest.approx(40.0 * AUTO.steps_per_radian)
 
 
 def test_explicit_steps_are_not_taken_to_be_longer_than_those_of_radau(examples):
@@ -233,11 +241,11 @@ def test_explicit_steps_are_not_taken_to_be_longer_than_those_of_radau(examples)
 
 
 def test_checks_of_implicit_steps_are_spaced_in_proportion_to_the_steps_taken(examples, monkeypatch):
-    """Each returns from compiled code and costs as much as several steps; 2000 steps have 10, and 7 or 15 at half or twice their density."""
+    """Each returns from compiled code and costs as much as several steps; 2000 steps have 15, and 10 or 24 at half or twice their density."""
     checks, wait = [], auto_checks.ImplicitCheck._wait
-    monkeypatch.setattr(auto_checks.ImplicitCheck, "_wait", lambda check, t: checks.append(t) or wait(check, t))
+    monkeypatch.setattr(auto_checks.ImplicitCheck, "_wait", lambda check: checks.append(1) or wait(check))
     stiffmbs.run(examples / "vehicles" / "quarter_car.yaml", solver="auto", rtol=1e-4)
-    assert 9 <= len(checks) <= 12
+    assert 13 <= len(checks) <= 18
 
 
 @pytest.mark.long
@@ -305,9 +313,10 @@ def test_output_points_of_the_last_explicit_step_are_kept_where_hands_change():
 
 
 @pytest.mark.long
-def test_a_car_over_a_bump_stays_with_bdf(examples):
-    """Corners of the road shorten explicit steps, too: 275 of their 975 trials are rejected, and bdf takes a fifth of their time."""
+def test_a_car_leaves_bdf_for_the_bump_and_takes_it_again(examples):
+    """Corners of the road shorten the steps of bdf and of dop853: bdf alone takes 1496 steps, dop853 takes 696 and 1.3 times as long."""
     scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.compliance", "rigid"), ("choose.manoeuvre", "bump")])
     solution = stiffmbs.run(scene, solver="auto", rtol=1e-6)
     assert solution.solver["events"] > 10
-    assert solution.solver["name"] == "bdf"
+    assert solution.solver["name"] == "bdf, projected"
+    assert solution.solver["steps"] < 1000

@@ -120,24 +120,28 @@ class StableStep:
 
 
 class Rates(NamedTuple):
-    """Fastest rates of the motion about a state, 1/s; bounds from below, which are close for separate rates.
+    """Rates of the motion about a state, 1/s; the fastest are bounds from below, which are close for separate rates.
 
     Attributes
     ----------
     vibration : float
         Circular frequency of the fastest vibration without damping.
-    decay : float
-        Damping of that vibration: twice the rate of its decay.
     damping : float
         Largest damping of any motion: its rate of decay without stiffness.
+    excited, decay : float
+        Circular frequency and damping of the vibration that accelerations excite, by Rayleigh quotients.
     states : float
         Rate of the user-defined states at a fixed motion.
+    velocity : ndarray of shape (n_u,)
+        Amplitude of the velocities in that vibration, m/s and rad/s.
     """
 
     vibration: float
-    decay: float
     damping: float
+    excited: float
+    decay: float
     states: float
+    velocity: np.ndarray
 
     @property
     def fastest(self) -> float:
@@ -151,8 +155,8 @@ class Rates(NamedTuple):
 
     @property
     def decay_ratio(self) -> float:
-        """Return the decay of the fastest motion in a radian of it: the damping ratio of a vibration, 1/2 of damping alone."""
-        return 0.5 * (self.decay / self.vibration if self.vibration > self.damping else 1.0)
+        """Return the decay of the excited motion in a radian of it: its damping ratio, 1/2 of damping alone."""
+        return 0.5 * min(self.decay / self.excited, 1.0) if self.excited > 0.0 else 0.5
 
 
 def rates_at(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> Rates:
@@ -162,12 +166,15 @@ def rates_at(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> Rate
     """
     state = dynamics.state
     state.q[:], state.u[:] = q, u
-    found, work = np.zeros(3), np.empty(3 * dynamics.system.n_u + dynamics.system.n_q)
+    n_u = dynamics.system.n_u
+    found, work = np.zeros(4), np.zeros(3 * n_u + dynamics.system.n_q)
     arrays = dynamics.system.mass, found, work, dynamics.table
     FASTEST_RATES.call(t, *addresses(*arrays), ACCELERATE.address)
     dynamics.forget_pivots()
-    vibration, decay, damping = found.tolist()
-    return Rates(vibration, decay, damping, _of_states(dynamics, t, q, u))
+    # its accelerations are this change over the square of the frequency
+    velocity = np.abs(work[n_u : 2 * n_u]) / found[2] ** 3 if found[2] > 0.0 else np.zeros(n_u)
+    vibration, damping, excited, decay = found.tolist()
+    return Rates(vibration, damping, excited, decay, _of_states(dynamics, t, q, u), velocity)
 
 
 def _of_states(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:

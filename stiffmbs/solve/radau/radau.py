@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
@@ -63,7 +64,12 @@ def solve(
 
 def radau_integrator(dynamics: Dynamics, settings: RunSettings) -> Integrator:
     """Return the integrator of a system, which may be reused."""
-    return Integrator(dynamics, settings, CONTROL, memory="radau", driver=driven_by_radau)
+    return Integrator(dynamics, settings, **driver())
+
+
+def driver() -> dict[str, Any]:
+    """Return how an integrator is driven: arguments of `stiffmbs.solve.integrator.driven`."""
+    return {"control": CONTROL, "memory": "radau", "driver": driven_by_radau}
 
 
 def of_radau(dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:

@@ -22,13 +22,12 @@ def check_after_steps():
     integrator = Record(steps=lambda: counts.pop(0) if len(counts) > 1 else counts[0], engine=engine)
     implicit = Record(integrator=integrator, steps=nothing, start=0.0, cost=Record(step=1.0))
     choice = Record(
-        implicit=implicit, parameters=parameters("auto"), thresholds=Record(loss=0.0), explicit_cost=lambda *_: 0.0,
-        remaining=lambda t: 0.0,
+        implicit=implicit, parameters=parameters("auto"), explicit_cost=lambda *_: 0.0, remaining=lambda t: 0.0,
     )  # fmt: skip
     check = auto_checks.ImplicitCheck(choice, 0.0)
     check._begun = 0
     counts[:] = [1000]
-    check._wait(0.0)
+    check._wait()
     return waits[-1]
 
 
@@ -83,7 +82,7 @@ def slowest_mechanism_with_a_fast_one(implicit):
 
 
 DECISIONS = {
-    "auto.steps_per_radian": lambda: auto_decisions.steps_of_decay(parameters("auto"), np.e, 1.0),
+    "auto.steps_per_radian": lambda: auto_decisions.steps_of_decay(parameters("auto"), np.e, 1.0, np.inf),
     "auto.loose": lambda: count_while(lambda rtol: auto_decisions.implicit_solver(parameters("auto"), 2.0, rtol, 10.0) == "bdf", HALVES),
     "auto.trial_margin": lambda: count_while(
         lambda k: auto_decisions.implicit_solver(parameters("auto"), 2.0, 1e-9, 0.1 * k) == "bdf", range(100)

@@ -18,9 +18,9 @@ def rate_of(model, **settings):
     return rates_of(model, **settings).fastest
 
 
-def on_bushing(stiffness, damping):
+def on_bushing(stiffness, damping, position=(0, 0)):
     model = Model(gravity=(0, -9.81))
-    model.add("a", Body(mass=2, inertia=0.5))
+    model.add("a", Body(mass=2, inertia=0.5, position=position))
     model.add("bush", Bushing(i="a", j=Marker(body="ground"), stiffness=stiffness, damping=damping))
     return model
 
@@ -34,12 +34,22 @@ def test_strong_damping_is_faster_than_a_soft_spring():
     np.testing.assert_allclose(rate_of(on_bushing((1e2, 1e2, 1e2), (0, 0, 4e4))), 4e4 / 0.5, rtol=0.02)
 
 
-def test_the_damping_of_the_fastest_vibration_is_not_that_of_another_motion():
-    """A bushing that is stiff along x is damped along y, 40 times as much; the rates are those of separate oscillators."""
-    found = rates_of(on_bushing((3e8, 1e2, 1e2), (1e2, 4e3, 0)))
-    np.testing.assert_allclose(found.vibration, np.sqrt(3e8 / 2), rtol=0.02)
+def test_the_damping_of_the_excited_vibration_is_not_that_of_another_motion():
+    """A bushing that is stiff along x is damped along y, 40 times as much; displaced by 1 mm, it starts to vibrate along x."""
+    found = rates_of(on_bushing((3e8, 1e2, 1e2), (1e2, 4e3, 0), (1e-3, 0)))
+    frequency = np.sqrt(3e8 / 2)
+    np.testing.assert_allclose((found.vibration, found.excited), frequency, rtol=0.02)
     np.testing.assert_allclose((found.decay, found.damping), (1e2 / 2, 4e3 / 2), rtol=0.02)
-    np.testing.assert_allclose(found.decay_ratio, 0.25 * 1e2 / np.sqrt(3e8 / 2), rtol=0.03)
+    np.testing.assert_allclose(found.decay_ratio, 0.25 * 1e2 / frequency, rtol=0.03)
+    np.testing.assert_allclose(found.velocity, (1e-3 * frequency, 0, 0), atol=0.02 * 1e-3 * frequency)
+
+
+def test_a_stiff_vibration_at_rest_is_not_excited():
+    """Gravity lets the body fall along y, where the bushing is soft and its damping large."""
+    found = rates_of(on_bushing((3e8, 1e2, 1e2), (1e2, 4e3, 0)))
+    np.testing.assert_allclose((found.excited, found.decay), (np.sqrt(1e2 / 2), 4e3 / 2), rtol=0.02)
+    assert found.decay_ratio == 0.5
+    np.testing.assert_allclose(found.velocity, (0, 9.81 / np.sqrt(1e2 / 2), 0), rtol=0.02, atol=1e-9)
 
 
 def test_a_joint_takes_damping_along_it_out_of_the_motion():

@@ -74,24 +74,38 @@ def _growth(t, of_pose, mass, work, s, dynamics, accelerate):
 
 
 @compiled
-def _damping(t, mass, work, s, dynamics, accelerate):
-    """Return the damping of the motion v by its Rayleigh quotient, twice its rate of decay."""
+def _quotient(t, of_pose, mass, work, s, dynamics, accelerate):
+    """Return the Rayleigh quotient of stiffness, or of damping, for the motion v; 0 where accelerations fail."""
     n = s.n_u
     v, w = shifted(work, n), shifted(work, 2 * n)
-    if _answered(t, 0, work, s, dynamics, accelerate) < 0:
+    if _answered(t, of_pose, work, s, dynamics, accelerate) < 0:
         return 0.0
-    return -_product(mass, v, w, n) / _product(mass, v, v, n)
+    return max(-_product(mass, v, w, n) / _product(mass, v, v, n), 0.0)
+
+
+@compiled
+def _excite(t, mass, work, s, dynamics, accelerate):
+    """Compute v, the change of accelerations by a displacement along them: that of stiff forces; return False if there is none."""
+    n = s.n_u
+    v = shifted(work, n)
+    copied(v, work, n)
+    if not _product(mass, v, v, n) > 0.0 or _answered(t, 1, work, s, dynamics, accelerate) < 0:
+        return False
+    copied(v, shifted(work, 2 * n), n)
+    return _product(mass, v, v, n) > 0.0
 
 
 def fastest_rates(t, mass, found, work, dynamics, accelerate):
-    """Find the rates of the motion at the current state, 1/s: its fastest vibration, the damping of that, the largest damping.
+    """Find the rates of the motion at the current state, 1/s: its fastest vibration, its largest damping, both of the excited motion.
 
-    They stay zero without accelerations. `accelerate`: address of `stiffmbs.dynamics.native.dynamics.accelerate`.
+    They stay zero without accelerations. The excited motion is the second part of `work`. `accelerate`: address of
+    `stiffmbs.dynamics.native.dynamics.accelerate`.
     """
     s = state_view(dynamics_view(dynamics).state)
     if _accelerated(t, work, dynamics, accelerate) < 0:
         return
     found[0] = sqrt(_growth(t, 1, mass, work, s, dynamics, accelerate))
-    if found[0] > 0.0:
-        found[1] = _damping(t, mass, work, s, dynamics, accelerate)
-    found[2] = _growth(t, 0, mass, work, s, dynamics, accelerate)
+    found[1] = _growth(t, 0, mass, work, s, dynamics, accelerate)
+    if _excite(t, mass, work, s, dynamics, accelerate):
+        found[2] = sqrt(_quotient(t, 1, mass, work, s, dynamics, accelerate))
+        found[3] = _quotient(t, 0, mass, work, s, dynamics, accelerate)
