@@ -21,7 +21,7 @@ from .own_elements import REGISTRY, check_class, dimensions_of
 from .read_by import Context, JsonSchema, ReadBy
 
 
-class Kinds(Mapping[str, type[Any]]):
+class Kinds(Mapping[str, type[Element]]):
     """Planar or spatial joints or forces by kind; files of the package are imported on demand.
 
     `package`: package that contains the shipped kinds. `base`: `Joint` or `Force`. `dimensions`: 2 or 3.
@@ -31,19 +31,19 @@ class Kinds(Mapping[str, type[Any]]):
         self.base, self.dimensions, self._package = base, dimensions, package.__name__
         self._folder = Path(package.__path__[0])
         self._files = [module.name for module in pkgutil.iter_modules(package.__path__)]
-        self._loaded: dict[str, dict[str, type[Any]]] = {}
+        self._loaded: dict[str, dict[str, type[Element]]] = {}
 
     @cached_property
-    def shipped(self) -> dict[str, type[Any]]:
+    def shipped(self) -> dict[str, type[Element]]:
         """Kinds of this package. Raises InputError if two classes have the same kind."""
-        found: dict[str, type[Any]] = {}
+        found: dict[str, type[Element]] = {}
         for file in self._files:
             for kind, element in self._in_file(file).items():
                 if found.setdefault(kind, element) is not element:
                     raise InputError(f"two classes of elements have the kind '{kind}'")
         return found
 
-    def _in_file(self, file: str) -> dict[str, type[Any]]:
+    def _in_file(self, file: str) -> dict[str, type[Element]]:
         """Return the element classes in the namespace of a file, by kind."""
         if file not in self._loaded:
             members = vars(importlib.import_module(f"{self._package}.{file}")).values()
@@ -59,11 +59,11 @@ class Kinds(Mapping[str, type[Any]]):
         """Return True for a class that is defined in this package."""
         return element.__module__.startswith(f"{self._package}.")
 
-    def own(self) -> dict[str, type[Any]]:
+    def own(self) -> dict[str, type[Element]]:
         """Return the kinds of users and other packages."""
         return REGISTRY.kinds(self.base, self.dimensions)
 
-    def __getitem__(self, kind: str) -> type[Any]:
+    def __getitem__(self, kind: str) -> type[Element]:
         for file in self._likely_first(kind):
             if kind in self._in_file(file):
                 return self._in_file(file)[kind]
@@ -104,7 +104,7 @@ def _is_generic(element: type[Element]) -> bool:
 def any_of(kinds: Kinds) -> Any:
     """Return the type of a field that takes an element of some kinds, selected by its ``type``."""
 
-    def read(found: object, context: Context) -> Any:
+    def read(found: object, context: Context) -> object:
         """Return the element of a mapping, validated by the class of its ``type``."""
         if isinstance(found, Element):
             if not kinds.is_shipped(type(found)):
