@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Any
 
 
-def elements_of(kinds: str) -> dict[str, type]:
+def elements_of(kinds: str) -> dict[str, type[Any]]:
     """Return the classes of shipped elements by name.
 
     Parameters

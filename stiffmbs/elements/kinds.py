@@ -21,7 +21,7 @@ from .own_elements import REGISTRY, check_class, dimensions_of
 from .read_by import Context, JsonSchema, ReadBy
 
 
-class Kinds(Mapping[str, type[Element]]):
+class Kinds(Mapping[str, type[Any]]):
     """Planar or spatial joints or forces by kind; files of the package are imported on demand.
 
     `package`: package that contains the shipped kinds. `base`: `Joint` or `Force`. `dimensions`: 2 or 3.
@@ -31,19 +31,19 @@ class Kinds(Mapping[str, type[Element]]):
         self.base, self.dimensions, self._package = base, dimensions, package.__name__
         self._folder = Path(package.__path__[0])
         self._files = [module.name for module in pkgutil.iter_modules(package.__path__)]
-        self._loaded: dict[str, dict[str, type[Element]]] = {}
+        self._loaded: dict[str, dict[str, type[Any]]] = {}
 
     @cached_property
-    def shipped(self) -> dict[str, type[Element]]:
+    def shipped(self) -> dict[str, type[Any]]:
         """Kinds of this package. Raises InputError if two classes have the same kind."""
-        found: dict[str, type[Element]] = {}
+        found: dict[str, type[Any]] = {}
         for file in self._files:
             for kind, element in self._in_file(file).items():
                 if found.setdefault(kind, element) is not element:
                     raise InputError(f"two classes of elements have the kind '{kind}'")
         return found
 
-    def _in_file(self, file: str) -> dict[str, type[Element]]:
+    def _in_file(self, file: str) -> dict[str, type[Any]]:
         """Return the element classes in the namespace of a file, by kind."""
         if file not in self._loaded:
             members = vars(importlib.import_module(f"{self._package}.{file}")).values()
@@ -59,11 +59,11 @@ class Kinds(Mapping[str, type[Element]]):
         """Return True for a class that is defined in this package."""
         return element.__module__.startswith(f"{self._package}.")
 
-    def own(self) -> dict[str, type[Element]]:
+    def own(self) -> dict[str, type[Any]]:
         """Return the kinds of users and other packages."""
         return REGISTRY.kinds(self.base, self.dimensions)
 
-    def __getitem__(self, kind: str) -> type[Element]:
+    def __getitem__(self, kind: str) -> type[Any]:
         for file in self._likely_first(kind):
             if kind in self._in_file(file):
                 return self._in_file(file)[kind]
