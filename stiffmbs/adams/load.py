@@ -8,7 +8,6 @@ import re
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from ..errors import InputError, prefixed
 from ..model.read_scene import made_scene
 from ..model.scene import Scene
 from ..reading.files.text_file import STANDARD_INPUT, checked, file_text, source_name
-from ..reading.files.yaml_text import scene_text
+from ..reading.files.yaml_text import Content, scene_text
 from .commands.commands import Segment, read_commands
 from .scene.scene import scene
 from .stages import followed
@@ -70,7 +69,7 @@ def other_commands(commands_file: Path, name: str) -> str:
     return file_text(path if path.suffix else path.with_suffix(COMMANDS), ENCODING)
 
 
-def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, object]:
+def _with_aliases(dataset: Dataset, found: Content) -> dict[str, object]:
     """Return the scene with the Adams/View names of its elements as comments."""
     from ruamel.yaml.comments import CommentedMap
 
@@ -84,7 +83,7 @@ def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, object]:
     return found
 
 
-def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Dataset, dict[str, Any]]:
+def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Dataset, Content]:
     text = checked(text, source, ZERO_BYTE)
     try:
         dataset = read_dataset(text, changes)

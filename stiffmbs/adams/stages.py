@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from ..model.files.stages import merge_patch
+from ..reading.files.yaml_text import Content
 from .commands.commands import Segment
 from .commands.simulations import KINEMATICS, STATICS, one_run, refuse_velocities
 from .scene.requests import conditions
@@ -14,7 +15,7 @@ from .statements.constraints import Motion
 from .statements.dataset import Dataset
 from .statements.units import Units
 
-Described: TypeAlias = tuple[Dataset, dict[str, Any]]
+Described: TypeAlias = tuple[Dataset, Content]
 """Dataset and its scene."""
 NOT_OF_A_STAGE = ("run", "notes", "start", "stages")
 POSES = ("position", "orientation", "velocity", "omega", "open")
@@ -25,7 +26,7 @@ BY_INITIAL_POSE = ("COUPLER", "GEAR", "SCREW", "RACKPIN", "CVCV")
 
 def followed(
     segments: Sequence[Segment], described: Described, read: Callable[[Segment], Described], source: str
-) -> dict[str, Any]:
+) -> Content:
     """Return the scene sections defined by simulations: ``run``, ``start``, ``stages`` and ``notes``.
 
     `segments`: at least one. `described`: the dataset as changed by the commands before the first simulation, and its
@@ -110,7 +111,7 @@ def _changed(before: Described, now: Described, segment: Segment) -> dict[str, o
     return {"change": kept} if kept else {}
 
 
-def _with_all_bodies(patch: Mapping[str, Any]) -> dict[str, object]:
+def _with_all_bodies(patch: Content) -> dict[str, object]:
     """Return a patch that removes no body: an auxiliary body of a deactivated CVCV moves on freely."""
     bodies = {name: part for name, part in (patch.get("bodies") or {}).items() if part is not None}
     others = {name: part for name, part in patch.items() if name != "bodies"}
@@ -121,7 +122,7 @@ def _without(found: dict[str, object]) -> dict[str, object]:
     return {name: value for name, value in found.items() if name not in NOT_OF_A_STAGE}
 
 
-def _refuse_other_frames(bodies: Mapping[str, Any], segment: Segment) -> None:
+def _refuse_other_frames(bodies: Content, segment: Segment) -> None:
     for name, patch in bodies.items():
         if any(key in POSES for key in patch or {}):
             raise segment.simulation.fault(
@@ -129,7 +130,7 @@ def _refuse_other_frames(bodies: Mapping[str, Any], segment: Segment) -> None:
             )
 
 
-def _refuse_other_turns(joints: Mapping[str, Any], dataset: Dataset, segment: Segment) -> None:
+def _refuse_other_turns(joints: Content, dataset: Dataset, segment: Segment) -> None:
     """Refuse constraints that depend on the initial pose but become active later."""
     for kind in dataset.statements.values():
         for found in kind.values():

@@ -73,7 +73,7 @@ def _name(data: ModelData, settings: RunSettings) -> str:
 class _ByContent(ScenePickler):
     """Pickler whose bytes do not depend on the order of sets, which varies between processes."""
 
-    def persistent_id(self, found: object) -> Any:
+    def persistent_id(self, found: object) -> object:
         return tuple(sorted(found, key=repr)) if isinstance(found, set | frozenset) else None
 
 

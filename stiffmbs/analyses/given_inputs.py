@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any, TypeAlias
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import SupportsFloat, TypeAlias
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from ..reading.files.quoted import written
 from ..reading.table import Table
 from ..solve.settings import output_grid
 
-Given: TypeAlias = float | Callable[[float], float] | tuple[Any, Any] | Table
+Given: TypeAlias = float | Callable[[float], float] | tuple[Sequence[float], Sequence[float]] | Table
 """Constant, function of t in s, or times and values with linear interpolation."""
 FEWEST, MOST = 257, 40_000
 """Initial number of points of a spline through a function, and the number at which refinement stops."""
@@ -97,12 +97,12 @@ def _jumps(
             yield from (low, high)
 
 
-def _table(name: str, times: Any, values: list[float]) -> Table:
+def _table(name: str, times: Iterable[float], values: list[float]) -> Table:
     with prefixed(f"inputs: {name}: "):
         return Table(table=[(float(t), value) for t, value in zip(times, values, strict=True)], lines=True)
 
 
-def _number(name: str, found: Any) -> float:
+def _number(name: str, found: SupportsFloat) -> float:
     try:
         value = float(found)
     except (TypeError, ValueError):

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from ..model.settings import RunSettings, SteadyMotion
 from ..reading.did_you_mean import instead_of
 from ..redundancy.redundancy import Redundancy, examine
 from ..results.saved_state import SavedState
+from ..results.solution import Solution
 from ..run_checks.motion import refuse_far_away
 from ..solve import SOLVERS
 from ..solve.events.narrow_inputs import solve_up_to_the_inputs_end
@@ -157,7 +158,7 @@ class Job:
             return solve_up_to_the_inputs_end(self.dynamics, self.grid, over)
 
 
-Runnable: TypeAlias = ModelBuilder[Any, Any, Any] | ModelData | str | Path
+Runnable: TypeAlias = ModelBuilder | ModelData | str | Path
 """Solvable input: a model, a scene, or the file of a scene."""
 
 
@@ -174,7 +175,7 @@ def data_of(model: Runnable) -> ModelData:
     raise InputError(f"found {model!r}, expected a Model, a Scene, or the name of a scene's file")
 
 
-def with_elements(data: ModelData, solve: Callable[[Scene], Any]) -> ModelData:
+def with_elements(data: ModelData, solve: Callable[[Scene], Solution]) -> ModelData:
     """Return a model whose beams have as many elements as their tolerances require; see `beam_elements.divided_by`."""
     if not isinstance(data, Scene) or not data._beams.by_tolerance:
         return data

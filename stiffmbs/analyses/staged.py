@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from ..errors import InputError, StiffmbsError
 from ..model.files.stages import OWN_SETTINGS, Stage, Until
 from ..model.scene import Scene
 from ..model.settings import RunSettings
+from ..reading.files.yaml_text import Content
 from ..results.joined import joined
 from ..results.saved_state import SavedState
 from ..results.solution import Solution
@@ -235,7 +235,7 @@ def _solved(
     watch: ProgressCallback | None,
     state: SavedState | None,
     inputs: Mapping[str, Given] | None,
-    changes: dict[str, Any],
+    changes: Content,
 ) -> Ended:
     if stage.end is not None:
         changes = {

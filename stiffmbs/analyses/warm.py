@@ -7,13 +7,13 @@ import pkgutil
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
-from typing import Any
 
 from ..compile.compile_model import kinds_of
 from ..compile.kind import Kind
 from ..compile.machine.routines import Routine
 from ..compile.record import compile_usual
 from ..elements.body import Body
+from ..elements.element import Joint
 from ..elements.joints.prismatic import Prismatic
 from ..elements.joints.revolute import Revolute
 from ..elements.samples import Samples
@@ -110,7 +110,7 @@ def _bodies_in_space() -> ModelBuilder:
     return model
 
 
-def _add_joints(model: ModelBuilder, revolute: Any, prismatic: Any) -> None:
+def _add_joints(model: ModelBuilder, revolute: type[Joint], prismatic: type[Joint]) -> None:
     """Add joints that other elements refer to."""
     model.add("pin", revolute(i="a", j="ground"))
     model.add("second_pin", revolute(i="b", j="ground"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -87,7 +87,7 @@ def _motion(
     return SteadyMotion(**given) if given else None
 
 
-def _numbers(text: str | None) -> list[Any] | None:
+def _numbers(text: str | None) -> list[object] | None:
     """Return numbers, or texts with units, separated by commas."""
     return None if text is None else [_number(part.strip()) for part in text.split(",")]
 

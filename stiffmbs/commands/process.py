@@ -10,7 +10,7 @@ import sys
 import threading
 import warnings
 from _thread import interrupt_main
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from enum import IntEnum
 from typing import Any
 
@@ -58,7 +58,7 @@ class Process(click.Group):
         sys.exit(status or (0 if written and not closed else Status.FAILED))
 
 
-def _status(command: Any) -> int:
+def _status(command: Callable[[], object]) -> int:
     """Return the exit status of a command; print a message on a failure."""
     try:
         ended = command()
@@ -168,7 +168,7 @@ def _no_interrupt_lost() -> Iterator[None]:
     """Raise an interrupt again if it occurs in a weak reference's callback, where Python would only print it."""
     before = sys.unraisablehook
 
-    def raised_again(unraisable: Any) -> None:
+    def raised_again(unraisable: sys.UnraisableHookArgs) -> None:
         if unraisable.exc_type is KeyboardInterrupt:  # and not one that ends a solution in time
             threading.Timer(AGAIN, _interrupt).start()  # the callback has to end first
         else:

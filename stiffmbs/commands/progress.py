@@ -6,10 +6,14 @@ import logging
 import sys
 import time
 from collections.abc import Callable
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from ..show.escaped import console
 from .subcommands import LOGGER, is_quiet
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
 
 SHOWN_AFTER, BETWEEN_UPDATES = 2.0, 0.1
 """Delay before progress is shown, and least time between updates, s."""
@@ -97,7 +101,7 @@ class ProgressBar(Display):
     def _show(self, **changed: Any) -> None:
         self._started(lambda: self._made(changed.get("description", "solving"))).update(self._task, **changed)
 
-    def _made(self, stage: str) -> Any:
+    def _made(self, stage: str) -> Progress:
         from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
 
         bar = Progress(

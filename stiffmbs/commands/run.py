@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -88,7 +88,7 @@ def run(
     sys.exit(0 if solution.outcome.name == "DONE" and written else Status.FAILED)
 
 
-def _write(scene: str, output: Path | None, as_json: bool, solution: Any) -> tuple[str, bool]:
+def _write(scene: str, output: Path | None, as_json: bool, solution: Solution) -> tuple[str, bool]:
     """Write the results to the requested or default file; return where, and False if a requested file is missing."""
     from ..results.files import write
 

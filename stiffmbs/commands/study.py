@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -16,6 +17,8 @@ from .scene import changes_of, in_file, is_written, output_option, refuse_own_in
 
 if TYPE_CHECKING:
     import xarray
+
+    from ..studies.study import Study
 
 
 @click.command(short_help="Solve a scene for many values of its parameters.")
@@ -70,7 +73,7 @@ def study(
     sys.exit(0 if written and bool((data["status"] == "done").all()) else Status.FAILED)
 
 
-def _solved(ready: Any, workers: int, processes: bool, store: Path | None, watch: CaseBar) -> xarray.Dataset:
+def _solved(ready: Study, workers: int, processes: bool, store: Path | None, watch: CaseBar) -> xarray.Dataset:
     if not processes:
         return ready.solve(workers, None, store, watch)
     from concurrent.futures import ProcessPoolExecutor
@@ -84,7 +87,9 @@ def _solved(ready: Any, workers: int, processes: bool, store: Path | None, watch
             raise
 
 
-def _write(output: Path | None, store: Path | None, data: xarray.Dataset, write: Any) -> bool:
+def _write(
+    output: Path | None, store: Path | None, data: xarray.Dataset, write: Callable[[Path, xarray.Dataset], None]
+) -> bool:
     """Write the table if requested, and then remove the stored rows; return True unless writing fails."""
     if output is None or store is None:
         return True

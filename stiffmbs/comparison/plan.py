@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from numbers import Real
-from typing import Any
 
 import numpy as np
 
@@ -38,7 +37,7 @@ class Entry:
     """
 
     name: str
-    settings: Mapping[str, Any]
+    settings: Mapping[str, object]
     varied: str
     implicit: bool
     explicit: bool

@@ -6,7 +6,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -41,7 +41,7 @@ TIMING = Timing()
 class Timed:
     """Timed solution: a function that solves it again (None for slow ones), and its times so far, s."""
 
-    solve: Callable[[], Any] | None
+    solve: Callable[[], object] | None
     seconds: list[float]
 
     def measure(self) -> None:

@@ -96,7 +96,7 @@ class FormulaShape(ast.NodeVisitor):
         self.formula, self.model, self.data, self._shape_of = formula, model, data, shape_of
         self.numbers: list[float] = []
         self.constants: list[ast.expr] = []
-        self.measures: list[tuple[str, tuple[Any, ...]]] = []
+        self.measures: list[tuple[str, Shape]] = []
         self.tables: list[Table] = []
         self.reactions: list[tuple[str, str]] = []
         self._found: dict[int, ast.AST] = {}

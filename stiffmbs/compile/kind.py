@@ -41,7 +41,7 @@ class Compilable(Protocol):
         """2 for a planar model, 3 for a spatial one."""
 
     @property
-    def joints(self) -> Mapping[str, Any]: ...
+    def joints(self) -> Mapping[str, Joint]: ...
 
     def joint_at_initial_pose(self, name: str) -> Joint:
         """Return a joint with its undefined fields taken from the described poses."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from pydantic import Field, field_validator
 
@@ -18,6 +18,12 @@ from ..reading.handle import Handle
 from ..reading.marker import Marker, Placement
 from ..reading.units import si
 from .shape import PlanarGeometry
+
+if TYPE_CHECKING:
+    from .spatial.body import Body as SpatialBody
+
+AnyBody: TypeAlias = "Body | SpatialBody"
+"""Body of a planar or spatial model."""
 
 FLEXIBLE = "flexible"
 """Type of a flexible body in a scene."""
@@ -71,7 +77,7 @@ class Body(Described):
 class LineBody(Described):
     """Base of bodies that consist of several rigid bodies and the forces between them, such as beams."""
 
-    def add_to(self, model: object, name: str) -> Any:
+    def add_to(self, model: object, name: str) -> object:
         """Add the rigid bodies and forces to a model built in Python, and return a handle."""
         raise NotImplementedError
 
@@ -111,7 +117,7 @@ class BodyNumbers:
     masses: tuple[float, ...]
 
 
-def body_numbers(bodies: Iterable[Any]) -> BodyNumbers:
+def body_numbers(bodies: Iterable[AnyBody]) -> BodyNumbers:
     """Return the concatenated numbers of the given bodies."""
     coordinates: list[float] = []
     rates: list[float] = []

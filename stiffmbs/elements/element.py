@@ -12,9 +12,10 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 from pydantic import GetJsonSchemaHandler, model_validator
+from pydantic_core import CoreSchema
 
 from ..errors import InputError
 from ..reading.fields import Described, typed
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from .forces.friction import Loads
     from .initial_pose import InitialPose
 
+Part = TypeVar("Part")
 Symbolic = Any
 """Element as its equations see it (`stiffmbs.compile.symbolic.element.SymbolicElement`). Markers are frames, numbers
 symbols, and formulas expressions. Formulas and tables of a variable are functions, and referenced joints are symbolic
@@ -115,7 +117,7 @@ class Element(Described):
         Name of the kind in scenes, its `type`.
     dimensions : tuple of int
         Models in which it is available: 2 for the plane, 3 for space; () for the dimension of its markers.
-    forms : tuple of mappings of str to Any
+    forms : tuple of mappings of str to object
         Fields of the most common variants, where fields without a default are not enough; ``...`` for any valid value.
         These variants are compiled in advance (``stiffmbs cache warm``) and tested.
     reflected : mapping of str to str, optional
@@ -137,7 +139,7 @@ class Element(Described):
 
     kind: ClassVar[str] = ""
     dimensions: ClassVar[tuple[int, ...]] = ()
-    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
+    forms: ClassVar[tuple[Mapping[str, object], ...]] = ({},)
     reflected: ClassVar[dict[str, str] | None] = None
     symmetric_with: ClassVar[dict[str, str] | None] = None
     symbol: ClassVar[str] = ""
@@ -160,7 +162,7 @@ class Element(Described):
         return typed(cls.kind, found)
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, object]:
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, object]:
         schema = handler(core_schema)
         handler.resolve_ref_schema(schema)["properties"]["type"] = {
             "const": cls.kind, "default": cls.kind, "title": "Type", "type": "string",
@@ -171,7 +173,7 @@ class Element(Described):
         """Yield notes about the element for the user."""
         yield from ()
 
-    def parts(self, part: builtins.type) -> Iterator[tuple[str, Any]]:
+    def parts(self, part: builtins.type[Part]) -> Iterator[tuple[str, Part]]:
         """Yield the fields of a type, such as markers, formulas or joint names, with field names, in order."""
         fields = vars(self)  # getattr asks pydantic for each
         for name in type(self).__pydantic_fields__:
@@ -345,7 +347,7 @@ class Force(Element):
         return ()
 
     @staticmethod
-    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return pairs of an effort and the coordinate on which it does work."""
         raise NotImplementedError
 
@@ -355,7 +357,7 @@ class Force(Element):
         return [(effort, e.rate(coordinate)) for effort, coordinate in cls.efforts(e)]
 
     @classmethod
-    def condensed_powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def condensed_powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return `powers` of a force that may be very stiff, resolved along its own directions of deformation.
 
         Radau methods iterate on these efforts as unknowns of their own; none by default.

@@ -104,7 +104,7 @@ def _is_generic(element: type[Element]) -> bool:
 def any_of(kinds: Kinds) -> Any:
     """Return the type of a field that takes an element of some kinds, selected by its ``type``."""
 
-    def read(found: object, context: Context) -> Any:
+    def read(found: object, context: Context) -> object:
         """Return the element of a mapping, validated by the class of its ``type``."""
         if isinstance(found, Element):
             if not kinds.is_shipped(type(found)):

@@ -43,7 +43,7 @@ class Registry:
         for key in _keys(element):
             self._classes.pop(key, None)
 
-    def kinds(self, base: type[Element], dimensions: int) -> dict[str, type[Any]]:
+    def kinds(self, base: type[Element], dimensions: int) -> dict[str, type[Element]]:
         """Return the planar or spatial joints or forces by kind."""
         if not self._installed_are_read:
             for element in _installed():
@@ -58,7 +58,7 @@ REGISTRY = Registry()
 """Registry of this process."""
 
 
-def register(element: type[Any]) -> type[Any]:
+def register(element: type[Element]) -> type[Element]:
     """Register a class of joints or forces for scenes under its `kind`; usable as a decorator.
 
     Models built in Python accept elements of unregistered classes, too.

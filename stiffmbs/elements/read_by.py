@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
-from pydantic_core import core_schema
+from pydantic_core import CoreSchema, core_schema
 
 from ..errors import InputError
 from ..reading.files.files_read import file_beside
@@ -26,11 +26,11 @@ class ReadBy:
     of the entries, given a function that returns the schema of a class.
     """
 
-    read: Callable[[Any, Context], Any]
+    read: Callable[[object, Context], object]
     schema: Callable[[Callable[[type[BaseModel]], JsonSchema]], JsonSchema]
 
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
-        def read(found: object, info: ValidationInfo) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        def read(found: object, info: ValidationInfo) -> object:
             return self.read(found, info.context)
 
         return core_schema.with_info_plain_validator_function(read)
@@ -39,10 +39,10 @@ class ReadBy:
         return self.schema(lambda kind: handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, [])))
 
 
-def in_file(kind: type[Any], read: Callable[[Path], object], description: str) -> ReadBy:
+def in_file(kind: type, read: Callable[[Path], object], description: str) -> ReadBy:
     """Return the marker of a field that takes an object, or the name of a file from which it is read."""
 
-    def found_in_file(found: object, context: Context) -> Any:
+    def found_in_file(found: object, context: Context) -> object:
         """Return the object, or that of the named file."""
         if isinstance(found, kind):
             return found

@@ -77,7 +77,7 @@ class Samples:
         raise InputError(f"{kind.__name__}: found no joints that it fits among {', '.join(self.joints)}")
 
 
-def types_in(annotation: object) -> Iterator[Any]:
+def types_in(annotation: object) -> Iterator[object]:
     """Yield a type and all types that it contains."""
     yield annotation
     for inner in get_args(annotation):

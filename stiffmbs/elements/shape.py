@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo, field_validator
-from pydantic_core import core_schema
+from pydantic_core import CoreSchema, core_schema
 
 from ..reading.did_you_mean import did_you_mean
 from ..reading.fields import Described
@@ -15,6 +15,9 @@ from ..reading.files.files_read import digest_of_file, file_beside
 from ..reading.files.quoted import quoted, written
 from ..reading.units import si
 from .read_by import Context, ReadBy
+
+if TYPE_CHECKING:
+    from ..model.parts.frame import Frame
 
 COLOR = r"^#[0-9a-fA-F]{6}$"
 ENDINGS = (".stl", ".obj")
@@ -35,7 +38,7 @@ class Shape(Described):
             raise ValueError(f"found {written(color)}, expected a color such as '#336699'")
         return color
 
-    def placed(self, frame: Any) -> Any:
+    def placed(self, frame: Frame) -> Self:
         """Return the shape of a mirrored part's body; `frame` is the mirror in the body's axes."""
         return frame.placed(self)
 
@@ -47,7 +50,7 @@ class PolylineShape(Shape):
     points: tuple[Any, ...]
     closed: bool = Field(False, description="whether the line is closed; in the plane the inside is then filled")
 
-    def placed(self, frame: Any) -> Any:
+    def placed(self, frame: Frame) -> Self:
         return self.model_copy(update={"points": tuple(frame.to_outside(point) for point in self.points)})
 
 
@@ -57,14 +60,14 @@ class OneFor:
     def __init__(self, times: int | None = None) -> None:
         self.times = times
 
-    def listed(self, found: object) -> Any:
+    def listed(self, found: object) -> object:
         """Return an entry of a scene as a list."""
         return found if isinstance(found, list | tuple) else (found,) * (self.times or 1)
 
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_before_validator_function(self.listed, handler(source))
 
-    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, object]:
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, object]:
         several = handler(schema)
         return {"anyOf": [several, several["items"] if "items" in several else several["prefixItems"][0]]}
 
@@ -92,7 +95,7 @@ class MeshShape(Shape):
         digest_of_file(path)  # records it
         return str(path)
 
-    def placed(self, frame: Any) -> Any:
+    def placed(self, frame: Frame) -> Self:
         signs = (*frame.signs, 1.0)[:3]
         scale = tuple(a * b for a, b in zip(self.scale, signs, strict=True))
         return frame.placed(self).model_copy(update={"scale": scale})
@@ -105,7 +108,7 @@ def one_of(expected: str, *kinds: type[Described]) -> ReadBy:
     """
     by_name = {kind.model_fields["type"].default: kind for kind in kinds}
 
-    def read(found: object, context: Context) -> Any:
+    def read(found: object, context: Context) -> object:
         """Return the entry validated by the class that its type selects."""
         if isinstance(found, kinds):
             return found

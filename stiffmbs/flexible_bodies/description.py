@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
@@ -128,7 +128,7 @@ class InterfaceOfNodes(Described):
         mean = model.nodes[nodes].mean(axis=0) if len(nodes) else np.zeros(3)
         return Interface(name, self.type, nodes, mean if self.point is None else np.array(self.point))
 
-    def _selected(self, name: str, model: FiniteElements) -> Any:
+    def _selected(self, name: str, model: FiniteElements) -> object:
         if self.group is not None:
             if self.group not in model.groups:
                 listed = ", ".join(model.groups) or "none"

@@ -7,7 +7,7 @@ import io
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -16,6 +16,10 @@ from ..errors import InputError, needs
 from .finite_elements import PRECISION, FiniteElements
 from .mesh_files import for_reader, refuse_ignored, sets_of_sets
 from .solid import Solid
+
+if TYPE_CHECKING:
+    import meshio
+    import skfem
 
 LOGGER = logging.getLogger(__name__)
 SOLIDS = {
@@ -80,7 +84,7 @@ def from_mesh(
     return FiniteElements(nodes, stiffness, mass, _groups(mesh, numbers, sets_of_sets(path)), {kind: cells}, shapes)
 
 
-def _read(path: Path) -> Any:
+def _read(path: Path) -> meshio.Mesh:
     with needs("meshio", "flexible"):
         import meshio
     refuse_ignored(path)
@@ -128,7 +132,7 @@ def _check_repeated(cells: np.ndarray, kind: str) -> None:
         )
 
 
-def _check_jacobians(mesh: Any, element: Any, order: int, cells: np.ndarray) -> None:
+def _check_jacobians(mesh: skfem.Mesh, element: skfem.Element, order: int, cells: np.ndarray) -> None:
     """Refuse elements with curved edges that are inverted in parts: at a node or a point of the quadrature."""
     from skfem.quadrature import get_quadrature
 
@@ -207,7 +211,7 @@ def _check_edges(of_dofs: np.ndarray, of_shapes: np.ndarray) -> None:
         )
 
 
-def _groups(mesh: Any, numbers: np.ndarray, within: Mapping[str, Sequence[str]]) -> dict[str, np.ndarray]:
+def _groups(mesh: skfem.Mesh, numbers: np.ndarray, within: Mapping[str, Sequence[str]]) -> dict[str, np.ndarray]:
     """Return the named groups of nodes: sets of points, and nodes of sets or physical groups of elements."""
     found: dict[str, list[np.ndarray]] = {}
     for name, points in mesh.point_sets.items():

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import bsr_array, csr_array, eye_array, kron
 
 from ..errors import needs
+
+if TYPE_CHECKING:
+    import skfem
 
 LARGEST_PART = 10_000_000
 """Numbers in the element matrices that are computed together; they take 80 MB."""
@@ -20,8 +23,8 @@ LARGEST_PART = 10_000_000
 class Solid:
     """Isoparametric elements of an isotropic, linearly elastic material."""
 
-    mesh: Any
-    element: Any
+    mesh: skfem.Mesh
+    element: skfem.Element
     order: int  # order of quadrature
     # of int, shape (nodes of an element, elements): nodes of the body in the order of the shape functions
     nodes: np.ndarray
@@ -88,7 +91,7 @@ class Solid:
         basis = self._basis(at_nodes)
         return np.array([basis.basis[k][0].grad for k in range(len(self.nodes))]), basis.dx
 
-    def _basis(self, at_nodes: bool = False) -> Any:
+    def _basis(self, at_nodes: bool = False) -> skfem.CellBasis:
         with needs("skfem", "flexible"):
             import skfem
         rule: dict[str, object] = {"intorder": self.order}

@@ -11,7 +11,7 @@ from html import escape
 from pathlib import Path
 from typing import Any, Final
 
-from ..analyses.job import data_of
+from ..analyses.job import Runnable, data_of
 from ..cache.entries import code_of
 from ..errors import InputError, refuse_missing
 from ..model.model_data import ModelData
@@ -62,7 +62,7 @@ class LivePage:
         return f'<iframe src="{escape(self.url)}" width="100%" height="{FRAME_HEIGHT}" style="border: 0"></iframe>'
 
 
-def open(model: Any, port: int = 0, browser: bool = True, **changes: object) -> LivePage:  # the public name
+def open(model: Runnable, port: int = 0, browser: bool = True, **changes: object) -> LivePage:  # the public name
     """Open a page in the browser that solves a scene again after every change.
 
     Parameters

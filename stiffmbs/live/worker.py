@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, TextIO, TypeAlias
 
 from ..errors import StiffmbsError
 from ..model.model_data import ModelData
@@ -27,6 +27,8 @@ from .solver import LiveSolver, NeedsConsent, error_of, preview, timed
 BETWEEN = 0.2
 """Least time between two messages on progress, s."""
 STOP = "stop"
+Message: TypeAlias = dict[str, Any]
+"""Request of a page, as read from JSON."""
 Send = Callable[[dict[str, object]], None]
 
 
@@ -44,12 +46,12 @@ class Worker:
     def __init__(self, solver: LiveSolver, send: Send) -> None:
         self._solver, self._send = solver, send
         self._newest = Newest()
-        self._requests: queue.Queue[dict[str, Any] | None] = queue.Queue()
+        self._requests: queue.Queue[Message | None] = queue.Queue()
         self._previewed: dict[str, dict[str, str]] = {}
-        self._waiting: dict[str, Any] | None = None
+        self._waiting: Message | None = None
         self._lock = threading.Lock()
 
-    def take(self, message: dict[str, Any] | None) -> None:
+    def take(self, message: Message | None) -> None:
         """Accept a request from another thread; None ends the loop."""
         if message is None:
             self._newest.number = sys.maxsize

@@ -10,9 +10,12 @@ import sys
 import threading
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ..model.model_data import ModelData
+
+if TYPE_CHECKING:
+    from .worker import Message
 
 MOST_PAGES = 6
 """Largest number of pages with a worker; the one that was used least recently loses its worker."""
@@ -33,7 +36,7 @@ class Channel:
         """Accept an answer, from any thread."""
         self._loop.call_soon_threadsafe(self._deliver, message)
 
-    def _deliver(self, message: dict[str, Any]) -> None:
+    def _deliver(self, message: Message) -> None:
         if message.get("status") == "ended":
             self.ended = True
             for waiting in self._waiting.values():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeVar
 
 import numpy as np
 from pydantic import Field, ValidationError
@@ -26,8 +26,13 @@ from ..flexible_bodies.description import FlexibleBody
 from ..flexible_bodies.reduced import reduced_body
 from ..flexible_bodies.reduction import ReducedBody
 from ..reading.fields import Described, Measured, sentence
-from ..reading.files.files_read import FOLDER
+from ..reading.files.files_read import FOLDER, Context
+from ..reading.files.yaml_text import Content
 from ..reading.units import si
+
+if TYPE_CHECKING:
+    from .model_data import ModelData
+
 
 FRAME, MODES = "frame", "modes"
 SHARE = 1e-3
@@ -71,7 +76,7 @@ class SceneFlexibleBody(FlexibleBody):
     )
 
 
-def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, object]:
+def with_flexible_bodies(raw: Content, context: Context) -> dict[str, object]:
     """Return a scene whose flexible bodies are replaced by their frames, modal coordinates and interfaces.
 
     Raises InputError.
@@ -108,7 +113,10 @@ def described_bodies(bodies: Mapping[str, object]) -> dict[str, SceneFlexibleBod
     return {name.removesuffix(f".{FRAME}"): frame.source[0] for name, frame in frames}
 
 
-def with_same_modes(scenes: Sequence[Any], reference: Any) -> list[Any]:
+AnyScene = TypeVar("AnyScene", bound="ModelData")
+
+
+def with_same_modes(scenes: Sequence[AnyScene], reference: ModelData) -> list[AnyScene]:
     """Return scenes in which each flexible body that differs in one of them has the modes nearest to those of the reference.
 
     Modes are determined up to their signs, and those of equal frequencies up to a rotation. Numbers of both scenes can

@@ -118,7 +118,7 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
     def _handle(self, name: str) -> BodyHandle | None:
         return self.handle_type(name, self) if name in self.bodies else None
 
-    def mark(self, name: str, marker: Any) -> None:
+    def mark(self, name: str, marker: MarkerReference) -> None:
         """Name a marker on ground, for references and formulas: ``ground.name``.
 
         Parameters

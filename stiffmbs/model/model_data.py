@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
-from ..elements.body import check_names
+from ..elements.body import AnyBody, check_names
 from ..elements.element import Element, Force, Joint
 from ..elements.initial_pose import InitialPose
 from ..elements.requests.check import by_channel, check_output
@@ -208,7 +208,7 @@ class ModelData(NotebookMethods, Described):
         """Return the position of a marker in ground axes at the start, m."""
         return tuple(float(x) for x in self.initial_marker(marker).point)
 
-    def place(self, marker: Any) -> Any:
+    def place(self, marker: MarkerReference) -> Any:
         """Return the placement of a marker in the axes of its body."""
         if marker.marker is None:
             return marker.placement() or self.origin
@@ -234,7 +234,7 @@ def contents(model: Any) -> str:
 def check_element(
     where: str,
     element: Element,
-    bodies: Mapping[str, object],
+    bodies: Mapping[str, AnyBody],
     joints: Mapping[str, Joint],
     on_ground: Mapping[str, object],
     names: FormulaNames,

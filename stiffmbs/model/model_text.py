@@ -45,7 +45,9 @@ def model_text(data: ModelData) -> str:
 
 
 def written(
-    value: object, marker: Callable[[Any], object] | None = None, formula: Callable[[object], object] | None = None
+    value: object,
+    marker: Callable[[MarkerReference], object] | None = None,
+    formula: Callable[[object], object] | None = None,
 ) -> Any:
     """Return a value in the form of a scene file.
 

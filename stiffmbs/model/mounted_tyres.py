@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..elements.spatial.orientation import matrix, rotated
 from ..elements.spatial.tyre import Tyre
+
+if TYPE_CHECKING:
+    from ..elements.spatial.body import Body
 
 ALONG = 0.1
 """Limit for two wheels on one axle: offset of one from the axis of the other, relative to the distance along it. The cosine
@@ -33,7 +36,7 @@ class _Wheel:
         return along if self.axis @ other.axis > 1 - ALONG and aside < ALONG * abs(along) else 0.0
 
 
-def mounted_alike(bodies: Mapping[str, object], forces: Mapping[str, object]) -> Iterator[str]:
+def mounted_alike(bodies: Mapping[str, Body], forces: Mapping[str, object]) -> Iterator[str]:
     """Yield notes on axles whose outer tyres have the same hand, although left and right tyres differ."""
     wheels = [_wheel(bodies, name, tyre) for name, tyre in forces.items() if isinstance(tyre, Tyre)]
     for right in wheels:
@@ -50,7 +53,7 @@ def mounted_alike(bodies: Mapping[str, object], forces: Mapping[str, object]) ->
             )
 
 
-def _wheel(bodies: Mapping[str, Any], name: str, tyre: Tyre) -> _Wheel:
+def _wheel(bodies: Mapping[str, Body], name: str, tyre: Tyre) -> _Wheel:
     reference = tyre.i
     body = bodies[reference.body]
     placed = body.markers[reference.marker] if reference.marker else reference.placement()

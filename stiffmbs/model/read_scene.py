@@ -6,7 +6,6 @@ import copy
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 from pydantic import ValidationError as PydanticError
 
@@ -21,7 +20,7 @@ from ..reading.files.own_sources import own_sources
 from ..reading.files.quoted import written
 from ..reading.files.unchanged import Unchanged
 from ..reading.files.variables import read_variables
-from ..reading.files.yaml_text import read_yaml
+from ..reading.files.yaml_text import Content, read_yaml
 from ..reading.units.units import Quantity
 from .beams.division import beams_read
 from .beams.entries import with_beams
@@ -41,7 +40,7 @@ from .parts.placed import with_parts
 from .parts.placing import as_written, placed_in_use, set_in_instances
 from .scene import Scene, scene_class
 
-LineOf = Callable[[tuple[Any, ...]], int | str | None]
+LineOf = Callable[[tuple[object, ...]], int | str | None]
 """Function that returns the line in the source of a path of keys."""
 NO_FILES: Mapping[str, str] = MappingProxyType({})
 SECTIONS = ("variables", "states", "bodies", "joints", "forces")
@@ -153,7 +152,7 @@ def _made_scene(
 
 def chosen_options(
     found: dict[str, object], changes: Sequence[tuple[str, object]], source: str
-) -> tuple[dict[str, object], dict[str, Any], Sequence[tuple[str, Any]]]:
+) -> tuple[dict[str, object], Content, Sequence[tuple[str, object]]]:
     """Return a scene with its chosen options merged, the choices for parts, and the other changes."""
     words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
     for path, word in words.items():

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ..elements.body import Body as PlanarBody
 from ..elements.planar_kinds import FORCES, JOINTS
+from ..reading.fields import Described
 from .parts.definitions import KEYS
 from .parts.options import CHOOSE, OPTIONS
 from .parts.parameters import LIMITS
 from .parts.planar_frame import PlanarUse
 from .planar_scene import PlanarScene
+
+if TYPE_CHECKING:
+    from pydantic.json_schema import JsonSchemaValue
 
 
 def scene_schema() -> dict[str, object]:
@@ -32,16 +36,16 @@ def scene_schema() -> dict[str, object]:
     from .parts.spatial_frame import SpatialUse
     from .spatial_scene import SpatialScene
 
-    planar: list[type[Any]] = [PlanarBody, PlanarBeam, DistributedLoad, *JOINTS.values(), *FORCES.values()]
-    spatial: list[type[Any]] = [
+    planar: list[type[Described]] = [PlanarBody, PlanarBeam, DistributedLoad, *JOINTS.values(), *FORCES.values()]
+    spatial: list[type[Described]] = [
         SpatialBody,
         SpatialBeam,
         DistributedLoad,
         *SPATIAL_JOINTS.values(),
         *SPATIAL_FORCES.values(),
     ]
-    scenes: list[type[Any]] = [PlanarScene, SpatialScene]
-    uses: list[type[Any]] = [PlanarUse, SpatialUse]
+    scenes: list[type[Described]] = [PlanarScene, SpatialScene]
+    uses: list[type[Described]] = [PlanarUse, SpatialUse]
     found, schema = models_json_schema([(part, "validation") for part in (*scenes, *planar, *spatial, *uses)])
     loop = {"type": "string", "description": "repeat this entry: 'k in 1..N'; k and {k} are replaced in it"}
     for part in dict.fromkeys((*planar, *spatial, *uses)):
@@ -59,7 +63,7 @@ def scene_schema() -> dict[str, object]:
 
 
 def _add_beams(
-    properties: dict[str, Any], beam: dict[str, object], load: dict[str, object], contact: dict[str, Any]
+    properties: JsonSchemaValue, beam: dict[str, object], load: dict[str, object], contact: JsonSchemaValue
 ) -> None:
     """Add line bodies, distributed loads and contacts of beams to the sections of a scene."""
     bodies, forces = properties["bodies"], properties["forces"]["additionalProperties"]
@@ -71,7 +75,7 @@ def _add_beams(
     forces["discriminator"]["mapping"]["distributed_load"] = load["$ref"]
 
 
-def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str, Any]) -> None:
+def _add_parts(definitions: JsonSchemaValue, scene: JsonSchemaValue, use: JsonSchemaValue) -> None:
     """Add ``include``, ``parts`` and ``use`` to the schema of a scene, which then does not require bodies."""
     whole = definitions[scene["$ref"].rpartition("/")[2]]
     name = {"type": "string"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from typing import Any, ClassVar, Generic, TypeVar
 
-from ..elements.body import check_names
+from ..elements.body import AnyBody, check_names
 from ..elements.element import Element, Force, Joint
 from ..elements.kinds import Kinds
 from ..elements.own_elements import check_class
@@ -20,7 +20,7 @@ from ..reading.marker import GROUND
 from .model_data import RESERVED, ModelData, check_element, contents
 
 Data = TypeVar("Data", bound=ModelData)
-Body = TypeVar("Body", bound=Described)
+Body = TypeVar("Body", bound="AnyBody")
 BodyHandle = TypeVar("BodyHandle", bound=Handle)
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from pydantic import Field, GetJsonSchemaHandler
-from pydantic_core import core_schema
+from pydantic_core import CoreSchema, core_schema
 
 from ..elements.element import Force
 from ..elements.forces.weight import weights
@@ -29,11 +29,14 @@ from ..reading.units import si
 from .model_builder import ModelBuilder
 from .model_data import ModelData
 
+if TYPE_CHECKING:
+    from pydantic.json_schema import JsonSchemaValue
+
 
 class OrFlexible:
     """Marker of bodies that a scene may describe as flexible, for its schema."""
 
-    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         from .flexible import SceneFlexibleBody
 
         SceneFlexibleBody.model_rebuild()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -145,7 +145,7 @@ def _is_tyre(force: object) -> bool:
     return isinstance(kind, str) and kind in FORCES and issubclass(FORCES[kind], Tyre)
 
 
-def _with_markers(body: object, markers: Mapping[str, object]) -> Any:
+def _with_markers(body: object, markers: Mapping[str, object]) -> object:
     """Return a body, as written or validated, with further markers."""
     found = body.markers if isinstance(body, Body) else body.get("markers") if isinstance(body, dict) else None
     own = found if isinstance(found, Mapping) else {}

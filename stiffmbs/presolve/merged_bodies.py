@@ -38,7 +38,7 @@ class MergedBodies(NamedTuple):
         return self.model.dimensions
 
     @property
-    def joints(self) -> dict[str, Element]:
+    def joints(self) -> dict[str, Joint]:
         """All joints by name."""
         return self.model.joints
 
@@ -71,7 +71,7 @@ class MergedBodies(NamedTuple):
         yield from self.model.state_equations()
         yield from self.model.inertial(self.bodies)
 
-    def carried(self, marker: MarkerReference) -> tuple[str, Any]:
+    def carried(self, marker: MarkerReference) -> tuple[str, object]:
         """Return the merged body that carries a marker, and the marker's placement on it."""
         body, placed = self.model.carried(marker)
         if body == GROUND:

@@ -23,6 +23,7 @@ from ..elements.spatial.marker import Marker
 from ..elements.spatial.orientation import matrix
 from ..model.model_data import ModelData
 from ..reading.formula.formula import Formula
+from ..reading.joint_name import JointName
 from ..reading.marker import GROUND, MarkerReference
 from .relations import PRESOLVE
 
@@ -169,10 +170,12 @@ class _Mirror:
     def _signs_of_axes(self, axes: np.ndarray) -> np.ndarray:
         return np.array([self._sign(axis) for axis in axes.T])
 
-    def _keeps_coordinate(self, name: Any) -> bool:
+    def _keeps_coordinate(self, name: JointName | None) -> bool:
         """Return True if the coordinate of a joint is an angle about the normal or a displacement in the plane."""
-        joint = self._model.joints[name.joint] if name is not None else None
-        if joint is None or joint.symmetric_with is None or not hasattr(joint, "j"):
+        if name is None:
+            return False
+        joint = self._model.joints[name.joint]
+        if joint.symmetric_with is None or not hasattr(joint, "j"):
             return False
         sign = self._sign(self._placed(joint.j)[1][:, 2])
         return bool(sign == (-1.0 if name.coordinate_of(joint) == "angle" else 1.0))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,10 +18,14 @@ from ..compile.compile_model import compile_model
 from ..compile.quaternions import CONJUGATE, rotated, times
 from ..compile.system import System
 from ..model.model_data import ModelData
+from ..reading.marker import Placement
 from .merged_bodies import MergedBodies, merge
 from .relations import PRESOLVE
 from .spinning_bodies import AXES, SpinningBodies, name_of_angle, spinning
 from .subsystems import mechanisms, part_of, trailing_coordinates
+
+if TYPE_CHECKING:
+    from ..elements.spatial.marker import Placement as SpatialPlacement
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
@@ -38,7 +42,7 @@ class PlanarPoses(NamedTuple):
         return cls(np.zeros((count, 2)), np.zeros(count))
 
     @classmethod
-    def of(cls, placements: Sequence[Any]) -> PlanarPoses:
+    def of(cls, placements: Sequence[Placement]) -> PlanarPoses:
         """Return the poses of planar placements."""
         return cls(np.array([place.point for place in placements]), np.array([place.angle for place in placements]))
 
@@ -78,7 +82,7 @@ class SpatialPoses(NamedTuple):
         return cls(np.zeros((count, 3)), np.tile(IDENTITY, (count, 1)))
 
     @classmethod
-    def of(cls, placements: Sequence[Any]) -> SpatialPoses:
+    def of(cls, placements: Sequence[SpatialPlacement]) -> SpatialPoses:
         """Return the poses of placements in space."""
         return cls(
             np.array([place.point for place in placements]), np.array([place.orientation for place in placements])

@@ -48,7 +48,7 @@ class SpinningBodies(NamedTuple):
         return self.model.bodies
 
     @property
-    def joints(self) -> Mapping[str, object]:
+    def joints(self) -> Mapping[str, Joint]:
         """All joints by name."""
         return self.model.joints
 
@@ -68,7 +68,7 @@ class SpinningBodies(NamedTuple):
         """Return the size of the model, m."""
         return self.model.size()
 
-    def carried(self, marker: object) -> tuple[str, Any]:
+    def carried(self, marker: object) -> tuple[str, object]:
         """Return the body that carries a marker, and the marker's placement on it."""
         return self.model.carried(marker)
 

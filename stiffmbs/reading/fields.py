@@ -24,7 +24,7 @@ from pydantic import (
     model_validator,
 )
 from pydantic import ValidationError as PydanticError
-from pydantic_core import core_schema
+from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 from ..errors import InputError
 from .did_you_mean import did_you_mean, instead_of
@@ -111,7 +111,7 @@ class Described(_Base):
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
 
-    def __repr_args__(self) -> Iterator[tuple[str, Any]]:
+    def __repr_args__(self) -> Iterator[tuple[str, object]]:
         """Yield the fields that differ from their defaults, for ``repr``."""
         for name, field in type(self).model_fields.items():
             value = getattr(self, name)
@@ -182,7 +182,7 @@ class Measured:
                 raise FormulaError(f"found {quoted(found)}, expected {one(self.dimension)} {words.format(limit)}")
         return value
 
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(
             self.read, serialization=core_schema.plain_serializer_function_ser_schema(lambda value: value)
         )
@@ -196,7 +196,7 @@ class Measured:
         return {"anyOf": [{"type": "number", **number, **excluded}, text], "description": f"{self.dimension}, {unit}"}
 
 
-def named_entries(section: str, found: object, values: str) -> Iterator[tuple[str, Any]]:
+def named_entries(section: str, found: object, values: str) -> Iterator[tuple[str, object]]:
     """Yield the entries of a section of a scene.
 
     `found`: the section as written. `values`: kind of the entries, for messages. Raises InputError if the section is
@@ -241,7 +241,7 @@ def location(parts: tuple[object, ...]) -> str:
     return ".".join(named)
 
 
-def _reason(fault: Any) -> str:
+def _reason(fault: ErrorDetails) -> str:
     found, context = fault.get("input"), fault.get("ctx", {})
     match fault["type"]:
         case "value_error":
@@ -264,7 +264,7 @@ def _reason(fault: Any) -> str:
             return f"found {written(found)}, expected {fault['msg'].removeprefix('Input should be ')}"
 
 
-def typed(kind: str, found: object) -> Any:
+def typed(kind: str, found: object) -> object:
     """Return an entry with its type filled in; raise a ValueError if it has another type than this kind."""
     if not isinstance(found, dict):
         return found

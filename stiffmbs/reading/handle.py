@@ -30,7 +30,7 @@ class Handle:
     fields: ClassVar[Mapping[str, Any]]
     name: str
 
-    def __init__(self, name: str, model: ModelBuilder[Any, Any, Any]) -> None:
+    def __init__(self, name: str, model: ModelBuilder) -> None:
         vars(self).update(name=name, _model=model)
 
     @property

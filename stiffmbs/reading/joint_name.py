@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import WithJsonSchema
+from pydantic_core import CoreSchema
 
 from .names import names_of
 
@@ -46,7 +47,7 @@ class JointName(str):
         return joint.coordinates[0] if len(joint.coordinates) == 1 else None
 
     @classmethod
-    def __get_pydantic_core_schema__(cls, source: object, handler: object) -> Any:
+    def __get_pydantic_core_schema__(cls, source: object, handler: object) -> CoreSchema:
         from pydantic_core import core_schema
 
         return core_schema.with_info_after_validator_function(

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, TypeVar
 
 from pydantic import Field, GetJsonSchemaHandler, ValidationInfo, model_validator
+from pydantic_core import CoreSchema
 
 from .did_you_mean import did_you_mean
 from .fields import DOTTED_PATTERN, Described
@@ -20,6 +21,7 @@ from .names import names_of
 from .units import si
 
 if TYPE_CHECKING:
+    from ..elements.body import AnyBody
     from ..elements.element import Element
 
 _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a body ('bar.end'), or 'ground'"}
@@ -76,7 +78,7 @@ class MarkerReference(Described):
         return found
 
     @classmethod
-    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, object]:
+    def __get_pydantic_json_schema__(cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, object]:
         return {"anyOf": [_REFERENCE, handler(core_schema)]}
 
     def placement(self) -> Any:
@@ -111,7 +113,7 @@ class Marker(MarkerReference):
 
 
 def check_marker(
-    where: str, marker: MarkerReference, bodies: Mapping[str, Any], on_ground: Mapping[str, object]
+    where: str, marker: MarkerReference, bodies: Mapping[str, AnyBody], on_ground: Mapping[str, object]
 ) -> None:
     """Refuse a marker on an unknown body, or a marker name that its body does not have."""
     if marker.body != GROUND and marker.body not in bodies:

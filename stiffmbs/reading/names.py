@@ -6,9 +6,11 @@ import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from pydantic import ValidationInfo
+
     from .formula.dimension import Known
 
 GROUND = "ground"
@@ -61,7 +63,7 @@ def beginnings(text: str) -> Iterator[tuple[str, str]]:
         place = text.rfind(".", 0, place)
 
 
-def names_of(info: Any) -> Names:
+def names_of(info: ValidationInfo) -> Names:
     """Return the names in a validation context; none by default."""
     found = (info.context or {}).get("names")
     return found if isinstance(found, Names) else Names()

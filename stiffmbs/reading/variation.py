@@ -185,7 +185,7 @@ def _listed(place: str, name: str, given: str) -> Variation:
     return Variation(name, tuple(_asnumber(value) for value in found))
 
 
-def _asnumber(value: object) -> Any:
+def _asnumber(value: object) -> object:
     """Convert text such as ``1e5``, which YAML does not read as a number."""
     if isinstance(value, list):
         return [_asnumber(part) for part in value]

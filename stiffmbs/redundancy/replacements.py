@@ -135,7 +135,8 @@ def transmitted() -> dict[str, tuple[str, ...]]:
     Kinds that transmit only forces come first, those with most components leading, as point guides are easier to make
     than orientation guides.
     """
+    from ..elements.element import Joint
     from ..elements.spatial.spatial_kinds import JOINTS
 
-    found = [(kind, joint.transmits) for kind, joint in JOINTS.items() if joint.transmits]
+    found = [(kind, joint.transmits) for kind, joint in JOINTS.items() if issubclass(joint, Joint) and joint.transmits]
     return dict(sorted(found, key=lambda item: (any(name[0] == "t" for name in item[1]), -len(item[1]))))

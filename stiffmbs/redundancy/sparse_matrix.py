@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..sparse.parameters import MATRICES
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+    from scipy.sparse.linalg import SuperLU
 
 
 @dataclass(frozen=True)
@@ -110,19 +114,19 @@ class SparseMatrix:
         gram[np.diag_indices_from(gram)] += shift
         return gram
 
-    def _sparse(self) -> Any:
+    def _sparse(self) -> csr_array:
         from scipy.sparse import csr_matrix
 
         return csr_matrix((self.value, (self.row, self.column)), shape=self.shape)
 
-    def _sparse_gram(self, shift: float) -> Any:
+    def _sparse_gram(self, shift: float) -> csr_array:
         from scipy.sparse import identity
 
         A = self._sparse()
         return (A @ A.T + shift * identity(self.shape[0])).tocsc()
 
 
-def _factors(gram: object) -> Any:
+def _factors(gram: object) -> SuperLU:
     from scipy.sparse.linalg import splu
 
     return splu(gram, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,10 @@ from ..flexible_bodies.reduction import ReducedBody, static_solver
 from ..flexible_bodies.second_order import displacement_of_second_order
 from ..flexible_bodies.stress import nodal_stresses, principal_stresses, von_mises
 from ..reading.did_you_mean import did_you_mean
+
+if TYPE_CHECKING:
+    from ..model.scene import Scene
+    from .solution import Solution
 
 AT_ONCE = 50_000_000
 """Numbers of stresses computed at once."""
@@ -57,7 +61,7 @@ class FlexibleMotion:
         If there is no such body.
     """
 
-    def __init__(self, scene: Any, solution: Any, body: str) -> None:
+    def __init__(self, scene: Scene, solution: Solution, body: str) -> None:
         self.check(scene, body)
         frame = scene.bodies[f"{body}.frame"]
         self.name, self.t = body, np.asarray(solution.t)
@@ -74,7 +78,7 @@ class FlexibleMotion:
         )
 
     @staticmethod
-    def check(scene: Any, body: str) -> None:
+    def check(scene: Scene, body: str) -> None:
         """Refuse the name of another body.
 
         Raises
@@ -109,7 +113,7 @@ class FlexibleMotion:
         solver, _ = static_solver(model, interfaces, model.rigid_modes(self.reduced.centre))
         return partial(displacement_of_second_order, model, interfaces, solver)
 
-    def displacement(self, nodes: Sequence[int] | None = None, at: object = slice(None)) -> np.ndarray:
+    def displacement(self, nodes: Sequence[int] | None = None, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the displacements of nodes in the floating frame, m, in the axes of the mesh.
 
         Parameters
@@ -132,7 +136,7 @@ class FlexibleMotion:
                 own += self._second_order(self.reduced.modes @ coordinates)[entries]
         return found.reshape(len(modal), len(chosen), 3)
 
-    def position(self, nodes: Sequence[int] | None = None, at: Any = slice(None)) -> np.ndarray:
+    def position(self, nodes: Sequence[int] | None = None, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the positions of nodes in ground axes, m; parameters and shape as `displacement`."""
         chosen = np.arange(len(self.reduced.modes) // 3) if nodes is None else self._checked(nodes)
         own = self.displacement(nodes, at) + self.model.nodes[chosen] - self.reduced.centre
@@ -148,7 +152,7 @@ class FlexibleMotion:
         """Stresses xx yy zz xy yz zx at the nodes by mode, shape (modes, nodes, 6)."""
         return nodal_stresses(self.model, self.reduced.modes)
 
-    def stress(self, at: object = slice(None)) -> np.ndarray:
+    def stress(self, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the stresses at the nodes, N/m^2, in the axes of the mesh.
 
         They are linear in the modal coordinates, and the mean of the elements at a node.
@@ -170,11 +174,11 @@ class FlexibleMotion:
         """
         return np.tensordot(self.modal[at], self._stress_modes, 1)
 
-    def von_mises(self, at: object = slice(None)) -> np.ndarray:
+    def von_mises(self, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the von Mises stresses at the nodes, N/m^2, shape (times, nodes); see `stress`."""
         return von_mises(self.stress(at))
 
-    def principal(self, at: object = slice(None)) -> np.ndarray:
+    def principal(self, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the principal stresses at the nodes, N/m^2, the largest first, shape (times, nodes, 3); see `stress`."""
         return principal_stresses(self.stress(at))
 
@@ -202,7 +206,7 @@ class FlexibleMotion:
             return None
         return float(von_mises(self._stress_modes[:, node]) @ self._modal_errors)
 
-    def write(self, path: Path, at: Any = slice(None), scale: float = 1.0) -> None:
+    def write(self, path: Path, at: slice | np.ndarray = slice(None), scale: float = 1.0) -> None:
         """Write the moving and deformed mesh over time for ParaView, with displacement and stresses.
 
         Parameters

@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..compile.quaternions import CONJUGATE, rotated, times
 from ..elements.requests.output import Term
 from ..reading.marker import GROUND, MarkerReference
+
+if TYPE_CHECKING:
+    from ..model.model_data import ModelData
 
 Channels = Mapping[str, np.ndarray]
 """Channels by name, shape (n,)."""
@@ -58,7 +61,7 @@ class MarkerMotion:
         )
 
 
-def place(model: Any, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
+def place(model: ModelData, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
     """Return the position of a marker relative to the centre of mass, and the quaternion of its axes in the body's."""
     placed = model.place(marker)
     if model.dimensions == 2:
@@ -76,7 +79,7 @@ class Motions:
     `channels`: channels of a run of the model. `count`: number of instants.
     """
 
-    def __init__(self, model: Any, channels: Channels, count: int) -> None:
+    def __init__(self, model: ModelData, channels: Channels, count: int) -> None:
         self._model, self._channels, self._zero = model, channels, np.zeros(count)
         self._planar = model.dimensions == 2
         self._bodies: dict[str, MarkerMotion] = {}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -116,7 +115,7 @@ def _functions_of(output: Output) -> Functions:
 def _value(output: Output, time: np.ndarray, channels: Channels, terms: _Terms, functions: Functions) -> np.ndarray:
     of_terms = {placeholder(k): term for k, term in enumerate(output.terms)}
 
-    def names(name: str) -> Any:
+    def names(name: str) -> object:
         """Return the values over time of a name."""
         if name == TIME:
             return time

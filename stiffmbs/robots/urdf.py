@@ -18,7 +18,7 @@ OF_ONE_COORDINATE = ("revolute", "continuous", "prismatic")
 FIXED, PLANAR = "fixed", "planar"
 OF_MOTION = ("axis", "limit", "dynamics", "mimic", "safety_controller", "calibration")
 """Children of a joint that have no effect on a fixed joint."""
-DEFAULTS: Mapping[str, Mapping[str, Any]] = {
+DEFAULTS: Mapping[str, Mapping[str, object]] = {
     "robot": {"version": "1.0"},
     "joint/limit": {"velocity": 0.0, "lower": 0.0, "upper": 0.0},
 }

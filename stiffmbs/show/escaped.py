@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -42,7 +42,7 @@ def _escape(found: re.Match[str]) -> str:
 class EscapingStream:
     """Text stream that escapes its text and gives no access to its bytes. `stream`: text stream."""
 
-    def __init__(self, stream: Any) -> None:
+    def __init__(self, stream: TextIO) -> None:
         self.rich_proxied_file = stream
         """Underlying stream for consoles of rich, which write terminal codes themselves: see `console`."""
 

@@ -61,7 +61,7 @@ def _notes(body: ReducedBody) -> list[str]:
 
 def flexible_body_as_dict(
     name: str, body: ReducedBody, interfaces: Sequence[str], held: Mapping[str, np.ndarray]
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Return the report for JSON; parameters as `flexible_body_text`."""
     return {
         "body": name,

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from ..analyses.check import Report
 from ..errors import StiffmbsError
+from ..model.model_builder import ModelBuilder
+from ..model.model_data import ModelData
 from ..results.solution import Solution, channel_ranges
 from .escaped import escaped
 from .style import data_url
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
-
 
 MOST_ROWS = 40
 """Number of rows of a table; further ones are counted."""
@@ -42,7 +43,7 @@ def html(shown: Any) -> str:
     return _of_model(shown)
 
 
-def _of_model(model: Any) -> str:
+def _of_model(model: ModelBuilder | ModelData) -> str:
     """Return a model's content by sections, with its drawing as described."""
     sections = {name: getattr(model, name) for name in ("bodies", "joints", "forces")}
     rows = [
@@ -96,7 +97,7 @@ def _page(title: str, above: str, table: str) -> str:
     return f"<div><b>{escape(title)}</b>{above}{table}</div>"
 
 
-def _table(heads: Sequence[str], rows: Sequence[Iterable[Any]]) -> str:
+def _table(heads: Sequence[str], rows: Sequence[Iterable[object]]) -> str:
     lines = ["".join(f"<td>{escape(str(cell))}</td>" for cell in row) for row in rows[:MOST_ROWS]]
     if len(rows) > MOST_ROWS:
         lines.append(f'<td colspan="{len(heads)}">and {len(rows) - MOST_ROWS} more</td>')
@@ -104,7 +105,7 @@ def _table(heads: Sequence[str], rows: Sequence[Iterable[Any]]) -> str:
     return f"<table><tr>{head}</tr>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
 
 
-def _drawing(model: Any, count: int) -> str:
+def _drawing(model: ModelBuilder | ModelData, count: int) -> str:
     """Return a picture of the described model, or an empty string if it cannot be drawn."""
     if find_spec("matplotlib") is None or count > MOST_DRAWN:
         return ""

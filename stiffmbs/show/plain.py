@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any, TextIO
+from typing import TextIO
 
 from .escaped import escaped
 
@@ -14,7 +14,7 @@ class PlainConsole:
     def __init__(self, file: TextIO, width: int) -> None:
         self.file, self.width = file, width
 
-    def print(self, text: str, **_: Any) -> None:
+    def print(self, text: str, **_: object) -> None:
         """Print a text, escaped."""
         self.file.write(escaped(text) + "\n")
 

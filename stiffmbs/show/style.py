@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..results.files import written_whole
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Sheet
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
 """Colors of Okabe and Ito, Color Universal Design (2008)."""
-STROKES: tuple[Any, ...] = ("-", "--", "-.", ":", (0, (8, 2)), (0, (5, 1, 1, 1, 1, 1)))
+STROKES: tuple[object, ...] = ("-", "--", "-.", ":", (0, (8, 2)), (0, (5, 1, 1, 1, 1, 1)))
 
 
 def new_sheet(size: tuple[float, float], on_screen: bool = False) -> Sheet:
@@ -42,18 +44,18 @@ def data_url(sheet: Sheet, form: str, dpi: int) -> str:
     return f"data:{kind};base64,{base64.b64encode(content.getvalue()).decode('ascii')}"
 
 
-def stroke(k: int) -> dict[str, Any]:
+def stroke(k: int) -> dict[str, object]:
     """Return color and stroke of the k-th line of a plot; they repeat together after 42 lines."""
     return {"color": COLORS[k % len(COLORS)], "linestyle": STROKES[k % len(STROKES)], "linewidth": 1.4}
 
 
-def dress(axes: Any) -> None:
+def dress(axes: Axes) -> None:
     """Add a light grid, and remove the frame above and to the right."""
     axes.grid(alpha=0.3)
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def legend_below(sheet: Any, axes: Any) -> None:
+def legend_below(sheet: Sheet, axes: Iterable[Axes]) -> None:
     """Add the legend of all lines below the plots, where it hides nothing."""
     handles, labels = [], []
     for one in axes:

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from ..adams.listing import ListedStatement
     from ..analyses.check import Report
 
-
 WORK = {
     "residuals": "residuals", "newton_iterations": "Newton iterations", "jacobians": "Jacobians",
     "factorizations": "factorizations", "accelerations": "accelerations", "moves": "moves",
@@ -60,7 +59,7 @@ def solver_lines(solver: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "cost", ", ".join([*_work(solver), *seconds])
 
 
-def _steps(solver: Mapping[str, Any]) -> Iterator[str]:
+def _steps(solver: Mapping[str, object]) -> Iterator[str]:
     repeated = [f"{solver[counter]} {why}" for counter, why in REPEATED.items() if solver.get(counter)]
     if solver.get("rejected") and not repeated:
         repeated = [f"{solver['rejected']} rejected"]
@@ -69,7 +68,7 @@ def _steps(solver: Mapping[str, Any]) -> Iterator[str]:
         yield f"order {solver['order']} at the end"
 
 
-def _work(solver: Mapping[str, Any]) -> Iterator[str]:
+def _work(solver: Mapping[str, object]) -> Iterator[str]:
     for counter, word in WORK.items():
         if counter in solver and solver[counter] != solver.get(AS_MANY_AS.get(counter, "")):
             yield f"{solver[counter]} {word}{_slow_convergence(solver) if counter == 'jacobians' else ''}"
@@ -135,12 +134,12 @@ def error_as_json(scene: str, message: str, status: str = "error") -> str:
     return json_line({"scene": scene, "status": status, "message": message})
 
 
-def json_line(content: Any) -> str:
+def json_line(content: object) -> str:
     """Return one line of JSON; NaN and infinity become null."""
     return json.dumps(_finite(content), allow_nan=False)
 
 
-def _finite(content: Any) -> Any:
+def _finite(content: object) -> object:
     """Replace NaN and infinity, which JSON does not have, by None."""
     match content:
         case dict():

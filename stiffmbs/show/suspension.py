@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from ..studies.suspension.road_loads import COMPONENTS, RoadLoads
 from .sections import Section, Table
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Sheet
-
 
 SHOWN = {
     "bump": ("toe", "camber", "lateral", "longitudinal", "load", "wheel_rate"),
@@ -190,7 +190,7 @@ def _curves(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, str
     return curves
 
 
-def _draw(axes: Any, found: KinematicsAndCompliance, panel: Panel) -> None:
+def _draw(axes: Axes, found: KinematicsAndCompliance, panel: Panel) -> None:
     """Draw one panel."""
     sweep = found.sweeps[panel.case]
     for name, style, x, y in _curves(found, panel):

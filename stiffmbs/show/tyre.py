@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..studies.tyre_curves import CONSTANTS, TyreCurve
 from .style import dress, legend_below, new_sheet, stroke
@@ -20,7 +20,7 @@ def tyre_figure(title: str, curves: Sequence[TyreCurve]) -> Sheet:
     sheet = new_sheet(SIZE)
     (along, across), (aligning, ellipse) = axes = sheet.subplots(2, 2)
     for k, curve in enumerate(curves):
-        style: dict[str, Any] = {**stroke(k), "label": _label(curve)}
+        style: dict[str, object] = {**stroke(k), "label": _label(curve)}
         degrees = curve.alpha * 180 / math.pi
         along.plot(curve.kappa, curve.fx / 1e3, **style)
         style.pop("label")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -94,7 +94,7 @@ def order_by_blocks(system: System) -> EliminationOrder:
     return EliminationOrder(np.concatenate(order), fill, updates)
 
 
-def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, Any]:
+def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, object]:
     """Return the contents of the layout `stiffmbs.compile.machine.native.tables.FACTORS`.
 
     `n`: number of unknowns. `rows`, `columns`: entries, by columns. `order`: elimination order of the columns, with its

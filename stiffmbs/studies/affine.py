@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Collection, Iterator, Mapping
-from typing import Any
 
 from ..reading.files.unchanged import names_in
+from ..reading.files.yaml_text import Content
 from ..reading.formula.nodes import TIME, is_named
 from ..reading.formula.text import UNIT, FormulaError, parse
 
@@ -17,7 +17,7 @@ ELSEWHERE = ("use", "parts", "path", "stages", "options", "choose")
 """Sections whose formulas are not all in the scene, or that change others."""
 
 
-def is_affine(content: Mapping[str, Any], path: str) -> bool:
+def is_affine(content: Content, path: str) -> bool:
     """Return True if the formulas of a scene show that its numbers are affine functions of the value at a path.
 
     A part of a formula without time, coordinates, states and inputs becomes one number, which a function, a power or a

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
-from ..analyses.job import Job, prepare
+from ..analyses.job import Job, Runnable, prepare
 from ..analyses.renumber import renumbered
 from ..analyses.run import Finished, finished, solved
 from ..errors import InputError, StiffmbsError
@@ -45,7 +44,7 @@ class Task:
 
     scene: WrittenScene
     names: tuple[str, ...]
-    settings: Mapping[str, Any]
+    settings: Mapping[str, object]
     outputs: tuple[Output, ...]
 
 
@@ -178,7 +177,7 @@ def _kept(output: Output, solution: Finished, done: bool) -> float | np.ndarray:
     return output.value(solution)
 
 
-def written_scene(model: Any) -> WrittenScene:
+def written_scene(model: Runnable) -> WrittenScene:
     """Return the source from which the cases of a model are read.
 
     Raises InputError if the file cannot be read, the scene is a changed copy, or the model cannot be written as a

@@ -7,7 +7,6 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -22,7 +21,7 @@ class Cases:
     """Cases of a study."""
 
     variations: tuple[Variation, ...]
-    drawn: tuple[tuple[Any, ...], ...] = ()  # values of each variation of a sample, case by case; empty for a grid
+    drawn: tuple[tuple[object, ...], ...] = ()  # values of each variation of a sample, case by case; empty for a grid
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -37,7 +36,7 @@ class Cases:
     def __len__(self) -> int:
         return math.prod(self.shape)
 
-    def __iter__(self) -> Iterator[tuple[Any, ...]]:
+    def __iter__(self) -> Iterator[tuple[object, ...]]:
         """Iterate over the values of the cases, in the order of `names`; in a grid the last varies fastest."""
         if self.drawn:
             return zip(*self.drawn, strict=True)
@@ -70,7 +69,7 @@ def cases_of(variations: Sequence[Variation], sample: str | None = None, seed: i
     return cases
 
 
-def _drawn(variations: Sequence[Variation], sample: str, seed: int) -> tuple[tuple[Any, ...], ...]:
+def _drawn(variations: Sequence[Variation], sample: str, seed: int) -> tuple[tuple[object, ...], ...]:
     match = re.fullmatch(r"(random|lhs|sobol):(\d+)", sample)
     if match is None or not 1 <= int(match[2]) <= MOST_CASES:
         raise InputError(f"sample: found '{sample}', expected one of random:N, lhs:N, sobol:N")

@@ -12,6 +12,7 @@ import numpy as np
 from ..analyses.job import Runnable
 from ..analyses.run import solved
 from ..errors import InputError, SolverError, StiffmbsError
+from ..model.files.stages import WrittenScene
 from ..reading.files.quoted import written as as_written
 from ..results.solution import Solution
 from ..solve.settings import changed
@@ -152,7 +153,9 @@ def _weights(found: Measured, sigma: Mapping[str, float] | None) -> dict[str, fl
 class _Model:
     """Model at points of the unit cube, compared with the data."""
 
-    def __init__(self, scene: Any, ranges: ParameterRanges, data: Measured, settings: Mapping[str, object]) -> None:
+    def __init__(
+        self, scene: WrittenScene, ranges: ParameterRanges, data: Measured, settings: Mapping[str, object]
+    ) -> None:
         self._outputs: tuple[Output, ...] = outputs_of({name: name for name in data.channels})
         self._solver = CaseSolver(Task(scene, ranges.names, {}, self._outputs))
         self._ranges, self._data = ranges, data

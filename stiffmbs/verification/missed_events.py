@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -189,7 +188,7 @@ def _parted(job: Job, rows: OutputRows, first: int, last: int, width: float, all
 
 
 def _solved_again(
-    job: Job, rows: OutputRows, first: int, last: int, how: dict[str, Any], allowed: float
+    job: Job, rows: OutputRows, first: int, last: int, how: dict[str, object], allowed: float
 ) -> np.ndarray | None:
     """Return the velocities at the end of an interval solved with other settings, or None if it stops early."""
     begin, end = float(rows.t[first]), float(rows.t[last])

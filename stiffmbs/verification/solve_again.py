@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -18,9 +17,9 @@ from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Grid, Outcome
 from .parameters import VERIFICATION
 
-EXPLICIT: dict[str, Any] = {"solver": "projected", "scheme": "dop853", "projection": True}
-BDF: dict[str, Any] = {"solver": "bdf", "formulation": "SI2"}
-RADAU: dict[str, Any] = {"solver": "radau", "formulation": "SI2"}
+EXPLICIT: dict[str, object] = {"solver": "projected", "scheme": "dop853", "projection": True}
+BDF: dict[str, object] = {"solver": "bdf", "formulation": "SI2"}
+RADAU: dict[str, object] = {"solver": "radau", "formulation": "SI2"}
 """Integrators for the comparison with another formula."""
 
 
@@ -77,7 +76,7 @@ class Again:
 
 
 def solve_again(
-    job: Job, name: str, changes: dict[str, Any], times: np.ndarray, at: np.ndarray, allowed: float
+    job: Job, name: str, changes: dict[str, object], times: np.ndarray, at: np.ndarray, allowed: float
 ) -> Again:
     """Solve with changed settings.
 
@@ -111,7 +110,7 @@ def levels_of(rtol: float) -> tuple[int, ...]:
     )
 
 
-def tolerances(settings: RunSettings, level: int) -> dict[str, Any]:
+def tolerances(settings: RunSettings, level: int) -> dict[str, object]:
     """Return tolerances tighter by powers of ten, down to the tightest; looser ones if that is hardly tighter."""
     rtol = max(settings.rtol / 10**level, VERIFICATION.tightest_rtol)
     if settings.rtol < VERIFICATION.clearly_tighter * rtol:
@@ -132,7 +131,7 @@ def shorter_step(first: Solution) -> float:
     return float(f"{many:.2g}")
 
 
-def other_integrators(first: Solution, settings: RunSettings) -> tuple[dict[str, Any], ...]:
+def other_integrators(first: Solution, settings: RunSettings) -> tuple[dict[str, object], ...]:
     """Return the settings of integrators whose errors are independent of those of a run, the preferred one first.
 
     After implicit steps, these are explicit ones, and for scenes that are too stiff for them the other implicit formula.

@@ -22,7 +22,7 @@ counted in evaluations of the equations, independent of the load of the machine.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 
@@ -114,7 +114,7 @@ class _Verification:
         self._dense: DenseSamples | None = None
         self._tighter: dict[int, Again] = {}
         self._other: Again | None = None
-        self._other_settings: dict[str, Any] = {}
+        self._other_settings: dict[str, object] = {}
         self._along = Along(None)
         self._shorter: Again | None = None
         self._narrow: tuple[SteppedOver, ...] = ()
@@ -173,7 +173,7 @@ class _Verification:
         if self._dense is not None and any(run.blind for run in self._tighter.values()):
             self._dense = None
 
-    def _looked_along(self, run: Again, changes: dict[str, Any], allowed: float) -> Again:
+    def _looked_along(self, run: Again, changes: dict[str, object], allowed: float) -> Again:
         """Return a run with a note on an event that its steps missed."""
         if run.solution is None or run.obstacle:
             return run
@@ -224,7 +224,7 @@ class _Verification:
             return (1,)
         return (1, 2) if self._traits.fixed_steps else levels_of(settings.rtol)
 
-    def _tighter_settings(self, level: int) -> tuple[str, dict[str, Any]]:
+    def _tighter_settings(self, level: int) -> tuple[str, dict[str, object]]:
         settings = self._job.settings
         if self._exact:
             return "kinematic between the output times", {}

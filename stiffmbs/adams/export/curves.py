@@ -120,7 +120,7 @@ def _points(joint: Curve[Any]) -> np.ndarray:
     return points
 
 
-def _columns(law: Any, ends: str) -> np.ndarray:
+def _columns(law: object, ends: str) -> np.ndarray:
     """Return arguments and values of a spline table with the given end conditions."""
     if not isinstance(law, Table) or law.ends != ends:
         raise Refusal(f"found a curve by another law, expected a table with 'ends: {ends}'")

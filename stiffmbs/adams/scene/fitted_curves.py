@@ -7,11 +7,11 @@ two curves differ between the points.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ...elements.spatial.number_format import plain, quaternion, vector
+from ...reading.files.yaml_text import Content
 from ..statements.declared import Numbered
 from ..statements.geometry import IDENTITY, PRECISION, Frame
 from ..statements.outputs import FEWEST_POINTS
@@ -52,7 +52,7 @@ class FittedCurve:
         return "periodic" if self.closed else "not-a-knot"
 
     @property
-    def law(self) -> dict[str, Any]:
+    def law(self) -> Content:
         """Joint fields that define the curve."""
         value, off = ("radius", "height") if self.closed else ("y", "z")
         found = {value: self._table(self.values)}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-from typing import Any
 
 import numpy as np
 
@@ -61,7 +60,7 @@ def held(mechanism: Mechanism) -> dict[str, object]:
     }  # fmt: skip
 
 
-def _on_ground(frame: Frame) -> Any:
+def _on_ground(frame: Frame) -> object:
     if np.array_equal(frame.axes, np.eye(3)):
         return "ground"
     return {"body": "ground", "orientation": quaternion(frame.axes)}

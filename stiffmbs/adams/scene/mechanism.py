@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from ...elements.spatial.massless import MASSLESS
 from ...elements.spatial.number_format import plain
+from ...reading.files.yaml_text import Content
 from ...reading.marker import GROUND
 from ..functions.function import Function
 from ..statements.bodies import Marker, Part
@@ -60,7 +60,7 @@ class Mechanism:
         self.tables: dict[str, dict[str, object]] = {}
         self.variables: dict[str, str] = {}
         self.inputs: dict[str, float] = {}
-        self.states: dict[str, dict[str, Any]] = {}
+        self.states: dict[str, Content] = {}
         # Smallest non-zero mass of the parts, kg.
         self.least = min((part.mass for part in dataset.parts if part.mass > 0), default=0.0)
         self.parts = {(part.keyword, part.ident): self._weighed(part) for part in dataset.parts}

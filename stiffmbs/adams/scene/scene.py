@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from ...elements.spatial.number_format import vector
+from ...reading.files.yaml_text import Content
 from ..functions.inputs import input_values
 from ..functions.motion_law import Law
 from ..functions.states import states
@@ -48,7 +48,7 @@ def scene(dataset: Dataset) -> dict[str, object]:
     mechanism.inputs |= input_values(dataset)
     translation = Translation(mechanism)
     requests = Requests(mechanism)
-    makers: list[tuple[str, Callable[[], dict[str, Any]]]] = [
+    makers: list[tuple[str, Callable[[], Content]]] = [
         ("joints", partial(joints, mechanism, translation)),
         ("joints", partial(held, mechanism)),
         ("joints", partial(relations, mechanism)),

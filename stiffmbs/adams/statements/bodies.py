@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from ...reading.marker import GROUND
 from .arguments import Arguments
@@ -15,7 +14,7 @@ Vector = tuple[float, float, float]
 ASSEMBLY = {"EXACT": "assembly may move any part"}
 
 
-def _frame(origin: str, x_point: str, z_point: str, *words: str) -> Any:
+def _frame(origin: str, x_point: str, z_point: str, *words: str) -> Frame:
     names = (origin, "REULER", x_point, z_point, *words)
     return read_by(lambda found, units: read_frame(found, origin, x_point, z_point, units.length), *names)
 
@@ -26,7 +25,7 @@ def _moments(found: Arguments, units: Units) -> tuple[float, ...]:
     return tuple(moment * unit for moment in (*moments, *(0.0,) * (6 - len(moments))))
 
 
-def _rates(letter: str, **powers: float) -> Any:
+def _rates(letter: str, **powers: float) -> Vector | None:
     """Declare three components of a velocity; None if none is given."""
     names = tuple(f"{letter}{axis}" for axis in "XYZ")
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from ..functions.function import Function
 from .arguments import Arguments
 from .arguments import number as plain_number
-from .declared import Numbered, expression, ident, ident_or_none, one_of, read_by
+from .declared import Numbered, expression, ident, ident_or_none, one_of, one_of_or_none, read_by
 from .units import Units
 
 JOINT_KINDS = (
@@ -35,7 +34,7 @@ Start = tuple[str, float | None, float | None]
 """Initial condition of a joint: sort, displacement, velocity."""
 
 
-def _length_of(kind: str, name: str) -> Any:
+def _length_of(kind: str, name: str) -> float:
     """Declare a length that one kind of joint needs; 0 for the others."""
 
     def read(found: Arguments, units: Units) -> float:
@@ -131,8 +130,8 @@ class Motion(Numbered):
     joint: int | None = ident_or_none("JOINT")
     i: int | None = ident_or_none("I")
     j: int | None = ident_or_none("J")
-    component: str | None = one_of(*COMPONENTS)
-    sort: str | None = one_of(ROTATIONAL, TRANSLATIONAL)
+    component: str | None = one_of_or_none(*COMPONENTS)
+    sort: str | None = one_of_or_none(ROTATIONAL, TRANSLATIONAL)
     order: int = read_by(lambda found, _: ORDERS.index(found.one_of(*ORDERS) or ORDERS[0]), *ORDERS)
     start: tuple[float | None, float | None] = read_by(
         lambda found, _: (found.number("ICDISP"), found.number("ICVEL")), "ICDISP", "ICVEL"
@@ -181,11 +180,11 @@ class Coupler(Numbered):
             raise found.fault("found FUNCTION, a user subroutine, expected SCALES", "FUNCTION")
 
 
-def _geared(found: Arguments, _: Units) -> tuple[int, ...]:
+def _geared(found: Arguments, _: Units) -> tuple[int, int]:
     joints = found.idents("JOINTS", 2) or (*found.idents("J1", 1), *found.idents("J2", 1))
     if len(joints) != 2:
         raise found.fault("found no JOINTS, expected the two joints that the gear ties")
-    return joints
+    return joints[0], joints[1]
 
 
 @dataclass(frozen=True)

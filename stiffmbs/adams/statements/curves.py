@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Self
 
 from .arguments import Arguments
 from .declared import Numbered, ident, read_by
@@ -36,7 +36,7 @@ class SpaceCurve(Numbered):
     ignored = dict.fromkeys(("MINPAR", "MAXPAR"), "of a subroutine")
 
     @classmethod
-    def read(cls, keyword: str, statement: Statement, units: Units) -> Any:
+    def read(cls, keyword: str, statement: Statement, units: Units) -> Self:
         """Read a curve; unsupported properties are an error only if a constraint uses it."""
         try:
             return super().read(keyword, statement, units)
@@ -75,10 +75,10 @@ class PointOnCurve(Numbered):
     refused = dict.fromkeys(VELOCITIES, UNSUPPORTED)
 
 
-def _of_sides(name: str) -> Any:
+def _of_sides(name: str) -> tuple[int, int]:
     """Declare the numbers of statements of sides I and J."""
     names = f"I{name}", f"J{name}"
-    return read_by(lambda found, _: tuple(found.required(each) for each in names), *names)
+    return read_by(lambda found, _: (found.required(names[0]), found.required(names[1])), *names)
 
 
 @dataclass(frozen=True)

@@ -51,6 +51,10 @@ class _Section(Generic[Found]):
         return dataset.statements.get(self._keyword, {})
 
 
+Kind = TypeVar("Kind")
+"""Class of statements."""
+
+
 @dataclass(frozen=True)
 class Dataset:
     """Content of a dataset."""
@@ -63,7 +67,7 @@ class Dataset:
     inactive: frozenset[Key]  # names and numbers of deactivated statements, which `statements` omits
     graphics: Mapping[int, Statement]  # GRAPHICS, which contacts may use
 
-    def _all(self, kind: type[Any]) -> tuple[Any, ...]:
+    def _all(self, kind: type[Kind]) -> tuple[Kind, ...]:
         return tuple(x for numbered in self.statements.values() for x in numbered.values() if isinstance(x, kind))
 
     @property

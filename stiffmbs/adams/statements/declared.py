@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar
+from typing import ClassVar, Self, TypeVar
 
-from ..functions.function import read_function, required_function
+from ..functions.function import Function, read_function, required_function
 from .arguments import Arguments
 from .text import DatasetFault, Statement
 from .units import Units
+
+Read = TypeVar("Read")
+"""Value of a field that is read from the arguments of a statement."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,7 @@ class Numbered:
         return DatasetFault(self.line, self.label, reason)
 
     @classmethod
-    def read(cls, keyword: str, statement: Statement, units: Units) -> Any:
+    def read(cls, keyword: str, statement: Statement, units: Units) -> Self:
         """Read a statement of this class. Raises DatasetFault."""
         declared = {each.name: each.metadata for each in fields(cls) if "read" in each.metadata}
         names = [name for one in declared.values() for name in one["names"]]
@@ -59,59 +62,64 @@ class Numbered:
         """Raise DatasetFault for inconsistent arguments."""
 
 
-def read_by(read: Callable[[Arguments, Units], object], *names: str, expressions: bool = False) -> Any:
+def read_by(read: Callable[[Arguments, Units], Read], *names: str, expressions: bool = False) -> Read:
     """Declare a field that a function reads from the named arguments. `expressions`: they are function expressions."""
     return field(metadata={"read": read, "names": names, "expressions": expressions})
 
 
-def constant(value: object) -> Any:
+def constant(value: Read) -> Read:
     """Declare a field with one value, which no argument sets."""
     return read_by(lambda *_: value)
 
 
-def ident(name: str) -> Any:
+def ident(name: str) -> int:
     """Declare a required number of a statement."""
     return read_by(lambda found, _: found.required(name), name)
 
 
-def ident_or_none(name: str) -> Any:
+def ident_or_none(name: str) -> int | None:
     """Declare a number of a statement; None if it is missing."""
     return read_by(lambda found, _: found.reference(name), name)
 
 
-def number(name: str, **powers: float) -> Any:
+def number(name: str, **powers: float) -> float:
     """Declare a number with the powers of its unit, as `Units.of`; 0 if it is missing."""
     return read_by(lambda found, units: (found.number(name) or 0.0) * units.of(**powers), name)
 
 
-def above_zero(name: str, **powers: float) -> Any:
+def above_zero(name: str, **powers: float) -> float:
     """Declare a required number above zero with the powers of its unit."""
     return read_by(lambda found, units: found.needed(name) * units.of(**powers), name)
 
 
-def given(name: str) -> Any:
+def given(name: str) -> bool:
     """Declare a field that is true if an argument is present."""
     return read_by(lambda found, _: name in found, name)
 
 
-def one_of(*words: str, missing: str = "") -> Any:
-    """Declare a field that is the one of several words in the statement; without any, None or the fault `missing`."""
+def one_of(*words: str, missing: str) -> str:
+    """Declare a field that is the one of several words in the statement; without any, the fault `missing`."""
 
-    def read(found: Arguments, _: Units) -> str | None:
+    def read(found: Arguments, _: Units) -> str:
         word = found.one_of(*words)
-        if word is None and missing:
+        if word is None:
             raise found.fault(missing)
         return word
 
     return read_by(read, *words)
 
 
-def expression(name: str) -> Any:
+def one_of_or_none(*words: str) -> str | None:
+    """Declare a field that is the one of several words in the statement; None without any."""
+    return read_by(lambda found, _: found.one_of(*words), *words)
+
+
+def expression(name: str) -> Function:
     """Declare a required function expression."""
     return read_by(lambda found, _: required_function(found, name), name, expressions=True)
 
 
-def expressions(*names: str) -> Any:
+def expressions(*names: str) -> tuple[Function | None, ...]:
     """Declare a tuple of function expressions; None for those that are missing."""
     return read_by(lambda found, _: tuple(read_function(found, name) for name in names), *names, expressions=True)
 

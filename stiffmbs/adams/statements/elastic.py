@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,7 @@ Matrix = tuple[Six, ...]
 LINEAR, TURNING = ("K", "C", "LENGTH", "FORCE"), ("KT", "CT", "ANGLE", "TORQUE")
 
 
-def _of_sort(k: int, force: int, length: int, time: int = 0) -> Any:
+def _of_sort(k: int, force: int, length: int, time: int = 0) -> float:
     """Declare a number of a linear spring, or its counterpart for rotation: one arm for each force and length."""
 
     def read(found: Arguments, units: Units) -> float:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TypeVar
 
 from .arguments import Arguments
 from .declared import Numbered, ident, named_words, read_by
 from .units import Units
 
+Meaning = TypeVar("Meaning")
 INPUTS = ("PRELOAD", "REACTION_FORCE", "BENDING_MOMENT", "TORSIONAL_MOMENT")
 YOKES = {"BOTH": "IJ", "I_YOKE": "I", "J_YOKE": "J"}
 OVERLAP = {"CONSTANT": 0, "INCREASE": 1, "DECREASE": -1}
@@ -25,11 +26,11 @@ def _from_zero(found: Arguments, name: str) -> float:
     return value or 0.0
 
 
-def _zero_or_more(name: str) -> Any:
+def _zero_or_more(name: str) -> float:
     return read_by(lambda found, _: _from_zero(found, name), name)
 
 
-def _size(name: str, usual: float) -> Any:
+def _size(name: str, usual: float) -> float:
     """Declare a positive number with Adams' default."""
     return read_by(lambda found, _: found.positive(name) or usual, name)
 
@@ -43,7 +44,7 @@ def _one_word(found: Arguments, name: str, words: tuple[str, ...]) -> str:
     raise found.fault(f"found {name} = {found.text(name)}, expected {' or '.join(words)}", name)
 
 
-def _word_of(name: str, meanings: dict[str, Any]) -> Any:
+def _word_of(name: str, meanings: dict[str, Meaning]) -> Meaning:
     return read_by(lambda found, _: meanings[_one_word(found, name, tuple(meanings))], name)
 
 

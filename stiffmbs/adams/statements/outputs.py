@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 from ..functions.expression import parse
 from ..functions.function import Function, is_subroutine, read_any_function, read_function, required_function
 from .arguments import Arguments
-from .declared import Numbered, given, number, one_of, read_by
+from .declared import Numbered, given, number, one_of_or_none, read_by
 from .units import Units
 
 FEWEST_POINTS: Final = 4
@@ -19,7 +19,7 @@ COLUMNS = tuple(f"F{k}" for k in range(1, 9))
 FUNCTIONS = (*COLUMNS, "FUNCTION")
 
 
-def _marker(name: str) -> Any:
+def _marker(name: str) -> int | None:
     """Declare a marker; None for ground."""
     return read_by(lambda found, _: found.reference(name) or None, name)
 
@@ -44,7 +44,7 @@ class Request(Numbered):
     """Quantities to report."""
 
     # one of `SORTS`, between markers `i` and `j` (None is ground), in the axes of marker `axes` (None is ground)
-    sort: str | None = one_of(*SORTS)
+    sort: str | None = one_of_or_none(*SORTS)
     i: int | None = _marker("I")
     j: int | None = _marker("J")
     axes: int | None = _marker("RM")

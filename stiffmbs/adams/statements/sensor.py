@@ -34,7 +34,7 @@ class Sensor(Numbered):
 
     function: Function = expression("FUNCTION")
     # value, error: value to compare with, and tolerance
-    value: float = read_by(lambda found, _: found.number("VALUE"), "VALUE")
+    value: float = read_by(lambda found, _: found.number("VALUE") or 0.0, "VALUE")
     error: float = read_by(_error, "ERROR", "ANGULAR")
     # ``equals``, ``at_least`` or ``at_most``
     relation: str = read_by(lambda found, _: RELATIONS[found.one_of(*RELATIONS) or "EQ"], *RELATIONS)

@@ -13,6 +13,11 @@ Rows = tuple[tuple[float, ...], ...]
 NO_STATICS = {"STATIC_HOLD": "in statics states find their own equilibrium"}
 
 
+def _starts(found: Arguments, _: Units) -> tuple[float, float]:
+    start, rate = (*(found.numbers("IC", 1, 2) or (0.0,)), 0.0)[:2]
+    return start, rate
+
+
 @dataclass(frozen=True)
 class Differential(Numbered):
     """State with an explicit or implicit differential equation.
@@ -21,7 +26,7 @@ class Differential(Numbered):
     `starts`: initial values of the state, and guess of the rate of an implicit equation.
     """
 
-    starts: tuple[float, float] = read_by(lambda found, _: (*(found.numbers("IC", 1, 2) or (0.0,)), 0.0)[:2], "IC")
+    starts: tuple[float, float] = read_by(_starts, "IC")
     function: Function = expression("FUNCTION")
     implicit: bool = given("IMPLICIT")
     others = ("ROUTINE",)
@@ -93,8 +98,8 @@ class TransferFunction(Numbered):
     x: int = ident("X")
     u: int = ident("U")
     y: int = ident("Y")
-    numerator: tuple[float, ...] = read_by(lambda found, _: found.numbers("NUMERATOR"), "NUMERATOR")
-    denominator: tuple[float, ...] = read_by(lambda found, _: found.numbers("DENOMINATOR"), "DENOMINATOR")
+    numerator: tuple[float, ...] = read_by(lambda found, _: found.numbers("NUMERATOR") or (), "NUMERATOR")
+    denominator: tuple[float, ...] = read_by(lambda found, _: found.numbers("DENOMINATOR") or (), "DENOMINATOR")
     ignored = NO_STATICS
 
     @classmethod

@@ -10,12 +10,15 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...errors import InputError
 from ...reading.files.quoted import MOST_LISTED
 from ...reading.files.requested import Fields
 from ...reading.files.text_file import lines
+
+if TYPE_CHECKING:
+    from ...reading.files.yaml_text import Content
 
 Thing = TypeVar("Thing")
 
@@ -32,7 +35,7 @@ class CommandFault(DatasetFault):
     """Error in a command, with its line in the command file."""
 
 
-def of_each(things: Iterable[Thing], make: Callable[[Thing], dict[str, object]]) -> dict[str, Any]:
+def of_each(things: Iterable[Thing], make: Callable[[Thing], dict[str, object]]) -> Content:
     """Merge the results of a function for each item; the faults of all items are raised as one."""
     found: dict[str, object] = {}
     faults = []

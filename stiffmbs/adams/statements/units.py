@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TypeVar
 
 from ...reading.units.quantity import quantity
 from .arguments import Arguments
 from .text import Statement
+
+Meaning = TypeVar("Meaning")
 
 _KINDS = {
     "FORCE": {
@@ -74,7 +76,7 @@ def _factor(text: str) -> float:
     return quantity(text if text[0].isdigit() else f"1 {text}").value
 
 
-def _named(found: Arguments, kind: str, known: Mapping[str, object]) -> Any:
+def _named(found: Arguments, kind: str, known: Mapping[str, Meaning]) -> Meaning:
     """Return the value of a possibly abbreviated name."""
     word = (found.text(kind) or "").upper()
     for name, unit in known.items():

@@ -18,13 +18,13 @@ from ...reading.names import Names
 from ...reading.table import Table
 from ..load_scene import load_scene
 
-Parameterised = Callable[[float], ModelBuilder[Any, Any, Any] | ModelData]
+Parameterised = Callable[[float], ModelBuilder | ModelData]
 """Model as a function of an input, which is zero at the state."""
 FORCE = "input_"
 """Name of the force that represents an input."""
 
 
-def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Parameterised:
+def force_on(model: ModelBuilder | ModelData, name: str) -> Parameterised:
     """Return a model as a function of an added force or torque.
 
     The name is an input of the model, or ``BODY.COMPONENT`` at the centre of mass, or ``BODY.MARKER.COMPONENT`` at a marker:

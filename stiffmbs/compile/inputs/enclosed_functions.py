@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache, partial
 from math import factorial
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ...reading.formula.text import evaluate, parse
 from .enclosure import (  # noqa: F401 (the table of functions names them)
     EVERYWHERE,
     Enclosure,
+    Operand,
     Range,
     absolute,
     atan2,
@@ -111,8 +111,14 @@ def asin(x: Enclosure) -> Enclosure:
 
 
 def _step(
-    x: Any, x0: Any, h0: Any, x1: Any, h1: Any, value: Callable[..., object], ramp: Callable[..., Enclosure]
-) -> Any:
+    x: Operand,
+    x0: Operand,
+    h0: Operand,
+    x1: Operand,
+    h1: Operand,
+    value: Callable[..., float],
+    ramp: Callable[..., Enclosure],
+) -> Operand:
     z = (x - x0) / (x1 - x0)
     return h0 + (h1 - h0) * (ramp(z) if isinstance(z, Enclosure) else value(z, 0.0, 0.0, 1.0, 1.0))
 
@@ -159,7 +165,7 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
     return z.composed(outer)
 
 
-def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+def step(x: Operand, x0: Operand, h0: Operand, x1: Operand, h1: Operand) -> Operand:
     """Return Adams' STEP: a cubic from h0 at x0 to h1 at x1 with zero end slopes.
 
     Returns a number if all arguments are numbers.
@@ -167,7 +173,7 @@ def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     return _step(x, x0, h0, x1, h1, step_value, _cubic_ramp)
 
 
-def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
+def step5(x: Operand, x0: Operand, h0: Operand, x1: Operand, h1: Operand) -> Operand:
     """Return Adams' STEP5: a quintic with zero end slopes and curvatures, otherwise as `step`."""
     return _step(x, x0, h0, x1, h1, step5_value, _quintic_ramp)
 

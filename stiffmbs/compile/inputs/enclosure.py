@@ -10,10 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import reduce
 from math import factorial
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 
+Operand: TypeAlias = "Enclosure | float"
+"""Enclosure, or a number."""
 Range = np.ndarray
 """Lower and upper bounds, shape (2, n); NaN if undefined, infinite if unbounded."""
 EVERYWHERE = np.array([[-np.inf], [np.inf]])
@@ -125,7 +127,7 @@ class Enclosure:
         """Return the range of the k-th coefficient, zero if omitted."""
         return self.coefficients[k] if k < len(self.coefficients) else np.zeros_like(self.value)
 
-    def constant(self, value: Any) -> Enclosure:
+    def constant(self, value: Operand) -> Enclosure:
         """Return a number as an enclosure like this one; an enclosure unchanged."""
         if isinstance(value, Enclosure):
             return value
@@ -137,17 +139,17 @@ class Enclosure:
     def __pos__(self) -> Enclosure:
         return self
 
-    def __add__(self, other: Any) -> Enclosure:
+    def __add__(self, other: Operand) -> Enclosure:
         if not isinstance(other, Enclosure):
             return Enclosure((self.value + float(other), *self.coefficients[1:]), self.order)
         long, short = sorted((self.coefficients, other.coefficients), key=len, reverse=True)
         added = tuple(total(a, b) for a, b in zip(long, short, strict=False))
         return Enclosure((*added, *long[len(short) :]), self.order)
 
-    def __sub__(self, other: Any) -> Enclosure:
+    def __sub__(self, other: Operand) -> Enclosure:
         return self + -other
 
-    def __mul__(self, other: Any) -> Enclosure:
+    def __mul__(self, other: Operand) -> Enclosure:
         if not isinstance(other, Enclosure):
             factor = float(other)
             ordered = slice(None, None, 1 if factor >= 0 else -1)
@@ -160,10 +162,10 @@ class Enclosure:
             found.append(total(*(product(x, y) for x, y in pairs)))
         return Enclosure(tuple(found), self.order)
 
-    def __truediv__(self, other: Any) -> Enclosure:
+    def __truediv__(self, other: Operand) -> Enclosure:
         return self * (other**-1.0 if isinstance(other, Enclosure) else np.float64(1.0) / other)
 
-    def __pow__(self, power: Any) -> Enclosure:
+    def __pow__(self, power: Operand) -> Enclosure:
         if isinstance(power, Enclosure):
             if len(power.coefficients) > 1 or np.any(power.value != power.value[0, 0]):
                 return exp(log(self) * power)
@@ -171,19 +173,19 @@ class Enclosure:
         range_of = power_range if power == int(power) else real_power_range
         return self.composed(lambda k: scaled(real_binomial(power, k), range_of(self.value, power - k)))
 
-    def __radd__(self, other: object) -> Enclosure:
+    def __radd__(self, other: Operand) -> Enclosure:
         return self + other
 
-    def __rsub__(self, other: object) -> Enclosure:
+    def __rsub__(self, other: Operand) -> Enclosure:
         return -self + other
 
-    def __rmul__(self, other: object) -> Enclosure:
+    def __rmul__(self, other: Operand) -> Enclosure:
         return self * other
 
-    def __rtruediv__(self, other: object) -> Enclosure:
+    def __rtruediv__(self, other: Operand) -> Enclosure:
         return self**-1.0 * other
 
-    def __rpow__(self, other: Any) -> Enclosure:
+    def __rpow__(self, other: float) -> Enclosure:
         return exp(self * np.log(other)) if other > 0 else self.constant(other) ** self
 
     def composed(self, outer: Outer) -> Enclosure:
@@ -275,7 +277,7 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
         settled = b.where(low.value[1] <= high.value[0], a)
         return settled.where((a.value[1] <= b.value[0]) | (b.value[1] <= a.value[0]), open_one)
 
-    def of(*parts: Any) -> Enclosure:
+    def of(*parts: Operand) -> Enclosure:
         """Return the extremum of enclosures and numbers, at least one of them an enclosure."""
         known = next(part for part in parts if isinstance(part, Enclosure))
         chosen, *others = (known.constant(part) for part in parts)
@@ -289,7 +291,7 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
 minimum, maximum = _choice(False), _choice(True)
 
 
-def branch(x: Any, below: Any, at: Any, above: Any) -> Enclosure:
+def branch(x: Operand, below: Operand, at: Operand, above: Operand) -> Enclosure:
     """Return one of three values by the sign of the first; it jumps where that may be zero."""
     known = next(part for part in (x, below, at, above) if isinstance(part, Enclosure))
     sign_of, *values = (known.constant(part) for part in (x, below, at, above))
@@ -298,9 +300,9 @@ def branch(x: Any, below: Any, at: Any, above: Any) -> Enclosure:
     return jumping.where(around_zero(sign_of.value), settled)
 
 
-def atan2(y: Any, x: Any) -> Enclosure:
+def atan2(y: Operand, x: Operand) -> Enclosure:
     """Return atan2 from the corners of the box of x and y; it jumps where the box meets the negative x axis."""
-    known = y if isinstance(y, Enclosure) else x
+    known = next(part for part in (y, x) if isinstance(part, Enclosure))
     y, x = known.constant(y), known.constant(x)
     jumps = (x.value[0] <= 0) & (y.value[0] <= 0) & (y.value[1] >= 0)
     breakpoints = np.array([np.arctan2(y.value[i], x.value[j]) for i in (0, 1) for j in (0, 1)])

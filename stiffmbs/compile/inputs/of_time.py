@@ -321,7 +321,7 @@ def _largest_parts(node: ast.expr, of_state: Set[str]) -> tuple[bool, bool, list
     return time, state, [node] if time and not state else found
 
 
-def _by_argument(of_numbers: Callable[..., object], of_enclosures: Callable[..., object]) -> Callable[..., Any]:
+def _by_argument(of_numbers: Callable[..., object], of_enclosures: Callable[..., object]) -> Callable[..., object]:
     """Return a function that also accepts constants of formulas."""
     return lambda *x: (of_enclosures if any(isinstance(part, Enclosure) for part in x) else of_numbers)(*x)
 

@@ -11,14 +11,17 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from threading import RLock
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
 from . import cache as store
 
+if TYPE_CHECKING:
+    from llvmlite import binding as llvm
+
 LOGGER = logging.getLogger(__name__)
-_CTYPES: dict[str, object] = {
+_CTYPES: dict[str, type | None] = {
     "int32": ctypes.c_int32,
     "int64": ctypes.c_int64,
     "float64": ctypes.c_double,
@@ -180,7 +183,7 @@ def _symbol(entry: str, name: str) -> str:
     return f"stiffmbs_{entry}_{name}"
 
 
-def _new_target(level: int) -> Any:
+def _new_target(level: int) -> llvm.TargetMachine:
     import llvmlite.binding as llvm
 
     llvm.initialize_native_target()
@@ -195,7 +198,7 @@ def _new_target(level: int) -> Any:
 
 
 @cache
-def _engine() -> Any:
+def _engine() -> llvm.ExecutionEngine:
     """Return the engine that holds all compiled code of this process (it owns its target machine)."""
     import llvmlite.binding as llvm
 
@@ -206,7 +209,7 @@ def _engine() -> Any:
 
 
 @cache
-def _emitter(level: int) -> Any:
+def _emitter(level: int) -> llvm.TargetMachine:
     return _new_target(level)
 
 

@@ -7,11 +7,14 @@ angle's rate, which is integrated with the others. Its own integration error doe
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from .nonsmooth import Inside, Less
+
+if TYPE_CHECKING:
+    from .element import SymbolicElement
 
 POLE = sp.Float(1e-4)
 """Sine squared plus cosine squared below which an angle has no direction (an axis within 0.6 deg of the rotation axis);
@@ -34,7 +37,7 @@ def counter(k: int) -> sp.Symbol:
     return sp.Symbol(f"counted{k}", real=True)
 
 
-def away_from_pole(angle: ContinuousAngle, e: Any) -> Callable[[sp.Expr], sp.Expr]:
+def away_from_pole(angle: ContinuousAngle, e: SymbolicElement) -> Callable[[sp.Expr], sp.Expr]:
     """Return a function that bounds the rate of an angle, and its derivatives, for use as a counter's rate.
 
     The rate is unchanged except near the pole, where sine and cosine both vanish. There the derivatives are

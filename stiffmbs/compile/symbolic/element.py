@@ -19,7 +19,9 @@ from .relative_rotation import RelativeRotation, ShortestRotation, product
 from .spline import common_normal, integral
 
 if TYPE_CHECKING:
+    from .planar_frames import BodyFrame
     from .referred import ReferredJoint
+    from .spatial_frames import SpatialBodyFrame, SpatialFrame
 
 COINCIDENT = sp.Float("1e-200")
 """Added under the root of a distance, so that a spring without free length is defined at coincident points."""
@@ -204,13 +206,13 @@ class SymbolicElement:
     def _state(self) -> list[sp.Symbol]:
         return [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities, *self.states, self.t]
 
-    def relative_rotation(self, i: object, j: object) -> RelativeRotation:
+    def relative_rotation(self, i: SpatialFrame, j: SpatialFrame) -> RelativeRotation:
         """Return the rotation of a spatial marker relative to one of another body."""
         if (i, j) not in self._rotations:
             self._rotations[i, j] = self._new_rotation(i, j)
         return self._rotations[i, j]
 
-    def _new_rotation(self, i: Any, j: Any) -> RelativeRotation:
+    def _new_rotation(self, i: SpatialFrame, j: SpatialFrame) -> RelativeRotation:
         """Define symbols for a relative rotation, with the derivatives stated by `RelativeRotation`."""
         back = sp.diag(1, -1, -1, -1) * self.named(j.quaternion)
         inverse_length = sp.sqrt(i.body.inverse_square * j.body.inverse_square) / 2
@@ -224,7 +226,7 @@ class SymbolicElement:
             self.derivatives.define(part, by | against, stands_for)
         return turn
 
-    def shortest_rotation(self, i: Any, j: Any, axis: int) -> ShortestRotation:
+    def shortest_rotation(self, i: SpatialFrame, j: SpatialFrame, axis: int) -> ShortestRotation:
         """Return the tilt of an axis (0, 1, 2 for x, y, z) of a spatial marker relative to another one."""
         own = self.named([i.x, i.y, i.z][axis])
         return ShortestRotation(axis, sp.Matrix(self.named([own.dot(self.named(other)) for other in (j.x, j.y, j.z)])))
@@ -251,7 +253,7 @@ class SymbolicElement:
         """Velocities of the bodies."""
         return Variables(self, [of_row for frame in self.frames for of_row in frame.by_velocity])
 
-    def reaction(self, joint: ReferredJoint, on: Any) -> dict[str, sp.Expr]:
+    def reaction(self, joint: ReferredJoint, on: BodyFrame | SpatialBodyFrame) -> dict[str, sp.Expr]:
         """Return the reaction of a joint on one of its bodies about the joint's point, by component: -J^T lam."""
         force = -self.by_u.work(zip(joint.lam, joint.velocity_level, strict=True))
         first = sum(len(frame.u) for frame in self.frames[: self.frames.index(on)])

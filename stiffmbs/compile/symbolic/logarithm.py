@@ -9,11 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from .relative_rotation import COSINE, RelativeRotation, RotationVector
+
+if TYPE_CHECKING:
+    from .element import SymbolicElement
+    from .spatial_frames import SpatialFrame
 
 
 @dataclass(frozen=True)
@@ -29,7 +33,7 @@ class SpatialLogarithm:
     turn: RelativeRotation
     velocity: sp.Matrix
     omega: sp.Matrix
-    e: Any
+    e: SymbolicElement
 
     @cached_property
     def vector(self) -> list[sp.Expr]:
@@ -94,7 +98,7 @@ class PlanarLogarithm:
 
     d: list[sp.Expr]
     angle: sp.Expr
-    e: Any
+    e: SymbolicElement
 
     @cached_property
     def vector(self) -> list[sp.Expr]:
@@ -155,7 +159,7 @@ def logarithm(e: Any, i: Any, j: Any) -> SpatialLogarithm | PlanarLogarithm:
     return SpatialLogarithm(sp.Matrix(d), e.relative_rotation(i, j), v, w, e)
 
 
-def relative_motion(e: Any, i: Any, j: Any) -> tuple[sp.Matrix, sp.Matrix]:
+def relative_motion(e: SymbolicElement, i: SpatialFrame, j: SpatialFrame) -> tuple[sp.Matrix, sp.Matrix]:
     """Return the velocity of i's point relative to j's body, and the relative angular velocity, in ground axes."""
     carried = e.rate(j.body.origin) + j.omega.cross(i.point - j.body.origin)
     return e.rate(i.point) - carried, i.omega - j.omega

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from functools import cached_property, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from ...elements.element import Joint
 from .element import SymbolicElement
+
+if TYPE_CHECKING:
+    from ...elements.forces.friction import Loads
+    from .spatial_frames import SpatialFrame
 
 
 class SymbolicComponent:
@@ -29,7 +34,7 @@ class ReferredJoint(SymbolicElement):
     """
 
     def __init__(
-        self, of: SymbolicElement, joint: Any, fields: dict[str, object], coordinate: str | None, slot: int
+        self, of: SymbolicElement, joint: Joint, fields: dict[str, object], coordinate: str | None, slot: int
     ) -> None:
         super().__init__(of.frames, fields, of.derivatives, of.states)
         self.kind, self._joint, self._coordinate, self._slot = joint.kind, joint, coordinate, slot
@@ -44,7 +49,7 @@ class ReferredJoint(SymbolicElement):
         return [*position, *map(self.read, self._joint.velocity(self))]
 
     @property
-    def point(self) -> Any:
+    def point(self) -> sp.Matrix:
         """Reference point of its torque."""
         return self._joint.point(self)
 
@@ -54,7 +59,7 @@ class ReferredJoint(SymbolicElement):
         return tuple(self._joint.coordinates)
 
     @cached_property
-    def loads(self) -> Any:
+    def loads(self) -> Loads:
         """Normal loads on its surfaces."""
         return self._joint.loads(self)
 
@@ -65,11 +70,11 @@ class ReferredJoint(SymbolicElement):
         return self.read(x) if name == coordinate else self.rate(x)
 
     @cached_property
-    def coordinate(self) -> Any:
+    def coordinate(self) -> sp.Expr | None:
         """Referenced coordinate, or None; an angle gets a turn counter only if it is used."""
         return None if self._coordinate is None else self._free(self._coordinate)
 
-    def _free(self, coordinate: str) -> Any:
+    def _free(self, coordinate: str) -> sp.Expr:
         first = len(self.angles)
         x = getattr(self._joint, coordinate)(self)
         self.joint_angles.update(dict.fromkeys(range(first, len(self.angles)), (self._slot, coordinate)))
@@ -104,7 +109,7 @@ def measure(name: str, e: SymbolicElement, markers: list[Any]) -> sp.Expr:
     return (a.omega - b.omega).dot(axes["xyz".index(name[1])]) if len(d) == 3 else e.rate(a.angle_about("z", b, e))
 
 
-def own_coordinate(name: str, marker: Any) -> sp.Expr:
+def own_coordinate(name: str, marker: SpatialFrame) -> sp.Expr:
     """Return a component of a body's quaternion or angular velocity in the body's own axes, those of `marker`."""
     if name[0] == "w":
         return marker.own_omega["xyz".index(name[1])]

@@ -13,13 +13,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from ..bodies import SPACE
 from .differentiate import Derivatives, Slope
 from .relative_rotation import product
+
+if TYPE_CHECKING:
+    from .element import SymbolicElement
 
 
 @dataclass(frozen=True)
@@ -250,7 +253,7 @@ class SpatialFrame:
         """The three axes in ground axes."""
         return [self.x, self.y, self.z]
 
-    def angle_about(self, axis: str, other: SpatialFrame, e: Any) -> sp.Expr:
+    def angle_about(self, axis: str, other: SpatialFrame, e: SymbolicElement) -> sp.Expr:
         """Return the continuous angle relative to another marker about that marker's axis, rad."""
         match axis:
             case "x":

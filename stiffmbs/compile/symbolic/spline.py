@@ -94,7 +94,7 @@ class PythonCall(sp.Function):  # type: ignore[misc]
         return PythonCall(address, count, output, sp.Integer(argindex - 5), *arguments)
 
 
-def python_law(address: sp.Symbol, read: Callable[[object], sp.Expr]) -> Callable[..., Any]:
+def python_law(address: sp.Symbol, read: Callable[[object], sp.Expr]) -> Callable[..., sp.Expr]:
     """Return the function called by equations: ``e.law(x, y)`` for one value, ``e.law(x, y, count=3)`` for a list."""
 
     def law(*arguments: object, count: int | None = None) -> Any:

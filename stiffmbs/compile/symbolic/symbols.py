@@ -11,6 +11,7 @@ from typing import Any
 
 import sympy as sp
 
+from ...elements.element import Joint
 from ...reading.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...reading.formula.names import REACTIONS
 from ...reading.formula.nodes import TIME
@@ -176,7 +177,7 @@ class _Builder:
         return spatial_frames.SpatialFrame(self.frames[slot], numbers)
 
     def joint(
-        self, name: str, element: object, fields: tuple[tuple[str, Shape], ...], slot: int, coordinate: str | None
+        self, name: str, element: Joint, fields: tuple[tuple[str, Shape], ...], slot: int, coordinate: str | None
     ) -> ReferredJoint:
         """Return a joint that is referred to."""
         own = {field_name: self.made(f"{name}_{field_name}", shape) for field_name, shape in fields}
@@ -185,12 +186,7 @@ class _Builder:
         return joint
 
     def formula(
-        self,
-        name: str,
-        text: str,
-        counts: tuple[int, int, int],
-        measures: tuple[Any, ...],
-        reactions: tuple[Any, ...] = (),
+        self, name: str, text: str, counts: tuple[int, int, int], measures: Shape, reactions: Shape = ()
     ) -> Any:
         """Return a formula's expression, or a function of its variables; `counts`: variables, numbers, tables."""
         n_variables, n_numbers, n_tables = counts
@@ -273,7 +269,7 @@ class _Builder:
 
         return {name: noting(name, function) for name, function in IN_FORMULAS.items()}
 
-    def measure(self, name: str, markers: list[object]) -> sp.Expr:
+    def measure(self, name: str, markers: list[Any]) -> sp.Expr:
         """Return a measure between markers, or a coordinate of a spatial body in its own axes."""
         if name.startswith(OWN):
             return own_coordinate(name.removeprefix(OWN), markers[0])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
@@ -10,8 +10,11 @@ from ...reading.formula.field import ForceOfMotion, TorqueOfMotion
 from ...reading.marker import Marker
 from ..element import Expr, Force, Symbolic
 
+if TYPE_CHECKING:
+    from ...compile.symbolic.planar_frames import Frame
 
-def force_at(fx: Expr, fy: Expr, i: Any, j: Any = None) -> list[tuple[Expr, Expr]]:
+
+def force_at(fx: Expr, fy: Expr, i: Frame, j: Frame | None = None) -> list[tuple[Expr, Expr]]:
     """Return the efforts of a force at i's point on i's body, and of the opposite force on j's body at that point."""
     if j is None:
         return [(fx, i.point[0]), (fy, i.point[1])]

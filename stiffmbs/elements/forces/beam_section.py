@@ -34,7 +34,7 @@ class BeamSectionLaw(Force):
     beyond: ClassVar[str] = BEYOND
     doubtful: ClassVar[float] = math.sqrt(0.5)
     doubt: ClassVar[str] = DOUBT
-    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ()
+    forms: ClassVar[tuple[Mapping[str, object], ...]] = ()
     reflected: ClassVar[dict[str, str] | None] = {"stiffness": "matrix", "unloaded": "components"}
 
     nodes: tuple[MarkerReference, ...]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import Field, WithJsonSchema, field_validator
 
@@ -95,5 +95,5 @@ class Bushing(Force):
         return stored_with_laws(e, Bushing.deformation(e), _laws(e))
 
 
-def _laws(e: Symbolic) -> tuple[Any, Any, Any]:
+def _laws(e: Symbolic) -> tuple[Expr, Expr, Expr]:
     return e.law_x, e.law_y, e.law_angle

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from pydantic import Field, WithJsonSchema, field_validator
 
@@ -50,7 +50,7 @@ class ExactBeam(BeamStrain):
 
     kind: ClassVar[str] = "exact_beam"
     channels: ClassVar[tuple[str, ...]] = ("n1", "n2", "m3")
-    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+    forms: ClassVar[tuple[Mapping[str, object], ...]] = (
         {"stiffness": (1, 1, 1)},
         {"stiffness": (1, 1, 1), "bowing": (1.2,)},
     )

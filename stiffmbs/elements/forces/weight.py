@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ...reading.marker import MarkerReference
 from ...reading.units import si
 from ..element import Expr, Force, Symbolic
+
+if TYPE_CHECKING:
+    from ..body import AnyBody
 
 
 class Weight(Force):
@@ -34,7 +37,7 @@ class Weight(Force):
         return -e.mass * sum(g * x for g, x in zip(e.gravity, e.i.body.origin, strict=True))
 
 
-def weights(bodies: Mapping[str, Any], gravity: tuple[float, ...]) -> Iterator[tuple[str, Weight]]:
+def weights(bodies: Mapping[str, AnyBody], gravity: tuple[float, ...]) -> Iterator[tuple[str, Weight]]:
     """Yield the weights of planar or spatial bodies with the bodies' names; none without gravity."""
     for name, body in bodies.items() if any(gravity) else ():
         marker = MarkerReference.model_construct(body=name)

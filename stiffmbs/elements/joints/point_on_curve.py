@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Generic, Self
+from typing import Annotated, ClassVar, Generic, Self
 
 import numpy as np
 from pydantic import Field, field_validator, model_validator
@@ -34,7 +34,7 @@ class Curve(Joint, Generic[M]):
     kind = "point_on_curve"
     equations: ClassVar[tuple[str, ...]] = ("normal",)
     further_coordinates: ClassVar[tuple[str, ...]] = ("displacement_x", "displacement_y")
-    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"y": SLOT}, {"radius": CAM})
+    forms: ClassVar[tuple[Mapping[str, object], ...]] = ({"y": SLOT}, {"radius": CAM})
 
     i: M = Field(description="marker of the body with the point, on which the reaction is reported")
     j: M = Field(description="marker in whose axes the curve is given")

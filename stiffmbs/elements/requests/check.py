@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import ChainMap
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.quoted import quoted
@@ -14,6 +14,9 @@ from ...reading.marker import check_marker
 from ...reading.units.units import CONSTANTS, UNITS
 from .names import OF_RUN, OutputNames
 from .output import Output, channel
+
+if TYPE_CHECKING:
+    from ...model.model_data import ModelData
 
 
 def by_channel(requests: Mapping[str, Output | Mapping[str, Output]]) -> Iterator[tuple[str, Output]]:
@@ -47,7 +50,7 @@ class ByChannel(Mapping[str, Output]):
         return sum(1 for _ in self)
 
 
-def ends(element: str, model: Any) -> tuple[Any, Any]:
+def ends(element: str, model: ModelData) -> tuple[Any, Any]:
     """Return the markers i and j of a joint or force, or None; for a drive those of its joint."""
     acting: Any = ChainMap(model.joints, model.forces)[element]
     _, joint = next(acting.parts(JointName), ("", None))
@@ -94,7 +97,7 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
     _check_meanings(where, output, others)
 
 
-def channels_of_states(model: Any) -> set[str]:
+def channels_of_states(model: ModelData) -> set[str]:
     """Return the channels of the model's states: values, outputs and rates."""
     values = {full: value for name, state in model.states.items() for full, value in state.values(name)}
     outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
@@ -102,7 +105,7 @@ def channels_of_states(model: Any) -> set[str]:
     return set(values) | outputs | rates
 
 
-def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
+def _of(owner: str, model: ModelData, names: OutputNames) -> tuple[str, ...]:
     """Return the channels of a body, of a joint or force, or of the whole model."""
     if owner in model.bodies:
         return names.of_bodies

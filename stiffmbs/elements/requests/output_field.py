@@ -80,7 +80,7 @@ def _owner_and_name(node: ast.expr) -> tuple[str, str]:
 _NAMES = FormulaOf(coordinates=True, velocities=True)
 
 
-def read_output(family: OutputNames, found: object, context: Context) -> Any:
+def read_output(family: OutputNames, found: object, context: Context) -> object:
     """Return the checked formula of an entry, with its parameters and tables. Raises FormulaError."""
     if isinstance(found, Output):
         return found

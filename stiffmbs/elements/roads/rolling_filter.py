@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal
 
 from ...errors import InputError
 from ...reading.formula.formula import Formula
@@ -132,7 +132,7 @@ def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
     return np.asarray(found(inside) + found(inside, 1) * (x - inside))
 
 
-def of_arrays(value: object) -> Any:
+def of_arrays(value: object) -> object:
     """Return a field of a road with functions of arrays for tables and formulas."""
     match value:
         case Table():
@@ -144,7 +144,7 @@ def of_arrays(value: object) -> Any:
     return value
 
 
-def _formula_of_arrays(formula: Formula, *arguments: np.ndarray) -> Any:
+def _formula_of_arrays(formula: Formula, *arguments: np.ndarray) -> object:
     from ...reading.formula.functions import IN_FORMULAS
     from ...reading.formula.text import evaluate
 
@@ -164,6 +164,8 @@ def _disc(s: np.ndarray, shape: Shape) -> np.ndarray:
     return np.sqrt(np.maximum(shape**2 - s**2, 0.0))
 
 
-def table_of(x: np.ndarray, values: np.ndarray, ends: Any = None) -> Table:
+def table_of(
+    x: np.ndarray, values: np.ndarray, ends: Literal["natural", "clamped", "periodic", "not-a-knot"] | None = None
+) -> Table:
     """Return the table of arrays, which are not checked again."""
     return Table.model_construct(table=tuple(zip(x.tolist(), values.tolist(), strict=True)), ends=ends)

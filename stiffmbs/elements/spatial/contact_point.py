@@ -7,7 +7,6 @@ to the spin axis and to the wheel's heading (Pacejka, Tire and Vehicle Dynamics,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from ..element import Expr, Matrix, Symbolic
 from ..roads.envelope import enveloped
@@ -77,7 +76,7 @@ def _effective_surface(e: Symbolic, centre: Matrix, axis: Matrix) -> tuple[Expr,
     return along, across, *_plane(e, local[2] - height, slopes)
 
 
-def _plane(e: Symbolic, above: Expr, slopes: list[Expr]) -> tuple[Any, Any]:
+def _plane(e: Symbolic, above: Expr, slopes: list[Expr]) -> tuple[Expr, Matrix]:
     """Return the distance of a point from a plane, given its height above it, and the plane's normal."""
     from sympy import Matrix, sqrt
 
@@ -96,7 +95,7 @@ def _heading(e: Symbolic, axis: Matrix, n: Matrix) -> tuple[Matrix, Matrix]:
     return forward, e.named(forward.cross(axis))
 
 
-def _motion(e: Symbolic, centre: Matrix, axis: Matrix, arm: Matrix) -> tuple[Any, Any]:
+def _motion(e: Symbolic, centre: Matrix, axis: Matrix, arm: Matrix) -> tuple[Expr, Matrix]:
     """Return the spin, and the velocity of the contact point, both relative to the road."""
     omega, v = e.named(e.i.omega), e.rate(e.i.point)
     if e.j is not None:

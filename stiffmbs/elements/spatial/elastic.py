@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import Field, WithJsonSchema, field_validator
@@ -11,14 +12,13 @@ from ...reading.files.quoted import written
 from ...reading.marker import GROUND
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic
-from ..forces.elastic_matrix import C, Cc, Ct, K, Kc, Kt, check_symmetric, from_diagonal, times
+from ..forces.elastic_matrix import C, Cc, Ct, K, Kc, Kt, Rows, check_symmetric, from_diagonal, times
 from .marker import Marker
 from .orientation import Quaternion, product
 from .wrench import Pairs, along_axes, velocity
 
 if TYPE_CHECKING:
     from ...model.model_data import ModelData
-
 
 _Forces = tuple[K, K, K, Kc, Kc, Kc]
 _Torques = tuple[Kc, Kc, Kc, Kt, Kt, Kt]
@@ -56,7 +56,7 @@ def six_rows(found: object) -> Any:
     return rows
 
 
-def without_zeros(found: object) -> Any:
+def without_zeros(found: object) -> object:
     """Replace zeros by None: a direction without stiffness requires no computation, and its rotation is unlimited."""
     if isinstance(found, tuple):
         return tuple(without_zeros(part) for part in found)
@@ -130,7 +130,7 @@ class Elastic(Force):
         raise NotImplementedError
 
     @classmethod
-    def viscosity(cls, e: Symbolic) -> Any:
+    def viscosity(cls, e: Symbolic) -> Rows:
         """Return C, six rows."""
         return e.damping
 
@@ -183,12 +183,12 @@ class Connection(Elastic):
         return has_moments(e.stiffness, e.preload)
 
 
-def pull_back(stiffness: Any, s: list[Expr], preload: Any) -> list[Expr]:
+def pull_back(stiffness: Rows, s: list[Expr], preload: Sequence[Expr | None]) -> list[Expr]:
     """Return preload - K s."""
     return [(p or 0) - resisting for p, resisting in zip(preload, times(stiffness, s), strict=True)]
 
 
-def has_moments(stiffness: Any, preload: Any) -> list[bool]:
+def has_moments(stiffness: Rows, preload: Sequence[Expr | None]) -> list[bool]:
     """Return True for each axis x, y, z about which stiffness or preload has a moment."""
     return [any(part is not None for part in (*stiffness[k], preload[k])) for k in (3, 4, 5)]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
@@ -40,7 +40,7 @@ class Impact(Force):
     MSC Adams/Solver, CONTACT statement and IMPACT function.
     """
 
-    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"friction": 0.2, "static_friction": 0.3})
+    forms: ClassVar[tuple[Mapping[str, object], ...]] = ({}, {"friction": 0.2, "static_friction": 0.3})
 
     i: Marker
     j: Marker

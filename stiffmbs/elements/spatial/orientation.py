@@ -13,7 +13,7 @@ from typing import Annotated, Any, Final
 
 import numpy as np
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
-from pydantic_core import core_schema
+from pydantic_core import CoreSchema, core_schema
 
 from ...reading.files.quoted import written
 from ...reading.formula.text import FormulaError
@@ -107,7 +107,7 @@ class OrientationField:
             "such as {z: [..], x: [..]}"
         )
 
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(
             self.read, serialization=core_schema.plain_serializer_function_ser_schema(lambda value: value)
         )
@@ -161,7 +161,7 @@ def _from_rows(rows: list[list[float]]) -> Quaternion:
     return from_matrix(A)
 
 
-def _from_euler(sequence: Any, angles: list[float]) -> Quaternion:
+def _from_euler(sequence: str, angles: list[float]) -> Quaternion:
     """Return the orientation of consecutive rotations about rotated axes (body-fixed, intrinsic)."""
     fits = isinstance(sequence, str) and len(sequence) == 3 and set(sequence) <= set(AXES)
     if not fits or sequence[0] == sequence[1] or sequence[1] == sequence[2]:

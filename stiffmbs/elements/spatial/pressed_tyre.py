@@ -7,7 +7,7 @@ which need the formula of Fx and Fy alone, and differentiated by the implicit fu
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..element import Expr, Symbolic
 from ..roads.road import above_zero
@@ -49,7 +49,7 @@ class _Pressed:
         """Camber angle in the axes of the property file, rad."""
         return self.e.named(self.hand * self.contact.camber)
 
-    def slip(self, load: Expr) -> tuple[Any, Any, Any, tuple[Any, ...]]:
+    def slip(self, load: Expr) -> tuple[Expr, Expr, Expr, tuple[Expr, ...]]:
         """Return the slip, the tangent of the slip angle, the reference speed, and the rates of own states."""
         from ..tyres.deflection_6 import effective_radius
         from ..tyres.magic_formula_6 import relaxation_lengths
@@ -64,7 +64,7 @@ class _Pressed:
         slip, tangent, rates = lagged(e, contact, sliding, lengths)
         return slip, tangent, speed, rates
 
-    def turn(self, angle: Expr, speed: Expr) -> tuple[Any, ...]:
+    def turn(self, angle: Expr, speed: Expr) -> tuple[Expr, ...]:
         """Return phi_t and Omega/V, 1/m, of a tyre with turn slip."""
         from sympy import cos
 

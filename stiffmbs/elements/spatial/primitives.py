@@ -7,7 +7,7 @@ Dynamics of Mechanical Systems (1989), section 9.4; Nikravesh (1988), section 7.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from ..element import Expr, Matrix, Symbolic
 from ..initial_pose import InitialPose
@@ -15,8 +15,8 @@ from ..joints.pair import Pair
 from .marker import Marker
 
 if TYPE_CHECKING:
+    from ...compile.symbolic.spatial_frames import SpatialFrame
     from ...model.model_data import ModelData
-
 
 COINCIDE = ("x", "y", "z")
 """Rows of `coincide`, along the ground axes."""
@@ -32,7 +32,7 @@ ON_AXIS = ("along_x", "along_y")
 """Rows of `on_axis`, along the x and y axes of marker j."""
 
 
-def coincide(i: Any, j: Any) -> list[Expr]:
+def coincide(i: SpatialFrame, j: SpatialFrame) -> list[Expr]:
     """Return the residuals of coincident points."""
     return list(i.point - j.point)
 
@@ -42,22 +42,22 @@ def perpendicular(a: Matrix, b: Matrix) -> Expr:
     return a.dot(b)
 
 
-def along(i: Any, j: Any, axis: Matrix) -> Expr:
+def along(i: SpatialFrame, j: SpatialFrame, axis: Matrix) -> Expr:
     """Return the displacement of i's point from j's along a unit vector."""
     return (i.point - j.point).dot(axis)
 
 
-def align(i: Any, j: Any) -> list[Expr]:
+def align(i: SpatialFrame, j: SpatialFrame) -> list[Expr]:
     """Return the residuals of parallel z axes, with the same or opposite direction as at the start."""
     return [perpendicular(i.x, j.z), perpendicular(i.y, j.z)]
 
 
-def orient(i: Any, j: Any) -> list[Expr]:
+def orient(i: SpatialFrame, j: SpatialFrame) -> list[Expr]:
     """Return the residuals of parallel axes, which also vanish for half turns about an axis and cyclic permutations."""
     return [perpendicular(i.x, j.y), perpendicular(i.y, j.z), perpendicular(i.z, j.x)]
 
 
-def on_axis(i: object, j: Any) -> list[Expr]:
+def on_axis(i: SpatialFrame, j: SpatialFrame) -> list[Expr]:
     """Return the residuals of i's point on the z axis of j."""
     return [along(i, j, j.x), along(i, j, j.y)]
 

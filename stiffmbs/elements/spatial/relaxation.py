@@ -8,8 +8,6 @@ Dynamics (2006), sec. 8.5 and 8.6.
 
 from __future__ import annotations
 
-from typing import Any
-
 from ..element import Expr, Symbolic
 from ..roads.road import above_zero, magnitude
 from .contact_point import ContactPoint
@@ -27,7 +25,7 @@ DAMPING = 0.02
 
 def lagged(
     e: Symbolic, contact: ContactPoint, sliding: Expr, lengths: tuple[Expr, Expr]
-) -> tuple[Any, Any, tuple[Any, Any]]:
+) -> tuple[Expr, Expr, tuple[Expr, Expr]]:
     """Return slip, tangent of the slip angle, and state rates of a tyre whose own states are the deflections.
 
     `sliding`: vsx, m/s. `lengths`: longitudinal and lateral relaxation length, m.

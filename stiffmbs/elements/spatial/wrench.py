@@ -7,25 +7,28 @@ angular momentum of two bodies are conserved.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ..element import Expr, Matrix, Symbolic
+
+if TYPE_CHECKING:
+    from ...compile.symbolic.spatial_frames import SpatialFrame
 
 Pairs = list[tuple[Expr, Expr]]
 
 
-def velocity(e: Symbolic, marker: Any, point: Matrix) -> Matrix:
+def velocity(e: Symbolic, marker: SpatialFrame, point: Matrix) -> Matrix:
     """Return the velocity of the point of a marker's body that coincides with a point of space."""
     return e.rate(marker.body.origin) + marker.omega.cross(point - marker.body.origin)
 
 
-def force_at(e: Symbolic, force: Matrix, i: Any, j: Any = None) -> Pairs:
+def force_at(e: Symbolic, force: Matrix, i: SpatialFrame, j: SpatialFrame | None = None) -> Pairs:
     """Return a force at i's point on i's body; with j the opposite on j's body at the same point of space."""
     rates = e.rate(i.point)
     return list(zip(force, rates if j is None else rates - velocity(e, j, i.point), strict=True))
 
 
-def torque_on(torque: Matrix, i: Any, j: Any = None) -> Pairs:
+def torque_on(torque: Matrix, i: SpatialFrame, j: SpatialFrame | None = None) -> Pairs:
     """Return a torque on i's body; with j the opposite on j's body."""
     return list(zip(torque, i.omega if j is None else i.omega - j.omega, strict=True))
 
@@ -36,7 +39,7 @@ def along_axes(components: Sequence[Expr], axes: Sequence[Matrix]) -> Matrix:
     return x * along_x + y * along_y + z * along_z
 
 
-def seen_from(point: Matrix, marker: Any) -> Matrix:
+def seen_from(point: Matrix, marker: SpatialFrame) -> Matrix:
     """Return the components of a point relative to a marker, along its axes."""
     from sympy import Matrix
 

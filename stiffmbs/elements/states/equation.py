@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from ...reading.formula.field import OfMotion, OfPosition
 from ...reading.marker import MarkerReference
 from ...reading.names import Names
 from ..element import Element, Expr, Symbolic
+
+if TYPE_CHECKING:
+    from pydantic_core import CoreSchema
 
 
 def own_state(element: str, state: str) -> str:
@@ -20,7 +23,7 @@ class StateName(str):
     """Full name of a state."""
 
     @classmethod
-    def __get_pydantic_core_schema__(cls, source: object, handler: object) -> Any:
+    def __get_pydantic_core_schema__(cls, source: object, handler: object) -> CoreSchema:
         from pydantic_core import core_schema
 
         return core_schema.no_info_after_validator_function(cls, core_schema.str_schema())
@@ -34,7 +37,7 @@ class StateEquation(Element):
     state: StateName
 
     @staticmethod
-    def rate(e: Symbolic) -> Any:
+    def rate(e: Symbolic) -> Expr:
         """Return x' of the state x, or the residual of an algebraic state."""
         raise NotImplementedError
 
@@ -72,7 +75,7 @@ class SpinAngle(StateEquation):
     axis: Literal["x", "y", "z"]
 
     @staticmethod
-    def rate(e: Symbolic) -> Any:
+    def rate(e: Symbolic) -> Expr:
         return e.i.body.u[3 + "xyz".index(e.axis)]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from graphlib import CycleError, TopologicalSorter
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
@@ -18,6 +18,10 @@ from ...reading.units.units import CONSTANTS, UNITS
 from ..read_by import Context, JsonSchema, ReadBy
 from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
 from .state import AlgebraicState, SampledState, State, dimension_of_state
+
+if TYPE_CHECKING:
+    from ..body import AnyBody
+    from ..element import Joint
 
 KINDS: dict[str, type[StateEntry]] = {
     "rate": State, "zero": AlgebraicState, "update": SampledState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
@@ -42,7 +46,7 @@ def _read(found: object, context: Context) -> StateEntry:
     return kind.model_validate(found, context=context)
 
 
-def _schema(schema_of: Callable[[type[Any]], JsonSchema]) -> JsonSchema:
+def _schema(schema_of: Callable[[type[object]], JsonSchema]) -> JsonSchema:
     *schemas, pid = (schema_of(kind) for kind in dict.fromkeys(KINDS.values()))
     within = {"type": "object", "additionalProperties": False, "properties": {"pid": pid}, "required": ["pid"]}
     return {"anyOf": [*schemas, within]}
@@ -90,9 +94,9 @@ def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str,
 
 def check_states(
     states: Mapping[str, Any],
-    bodies: Mapping[str, object],
+    bodies: Mapping[str, AnyBody],
     on_ground: Mapping[str, object],
-    joints: Mapping[str, object],
+    joints: Mapping[str, Joint],
     names: FormulaNames,
     known: Collection[str] | None,
 ) -> None:
@@ -114,8 +118,8 @@ def check_states(
 def check_formula(
     where: str,
     formula: Formula,
-    bodies: Mapping[str, object],
-    joints: Mapping[str, Any],
+    bodies: Mapping[str, AnyBody],
+    joints: Mapping[str, Joint],
     names: FormulaNames,
     states: Collection[str] | None,
 ) -> None:
@@ -136,7 +140,7 @@ def check_formula(
         raise ValueError(f"{where}: {reason}")
 
 
-def _check_reactions(where: str, formula: Formula, joints: Mapping[str, Any]) -> None:
+def _check_reactions(where: str, formula: Formula, joints: Mapping[str, Joint]) -> None:
     """Refuse a formula of reactions of unknown joints, or of joints that are not between two markers."""
     for name, joint in formula.reactions():
         if joint not in joints:

@@ -31,10 +31,12 @@ UNCARRIED = 1e-9
 """Largest error of the load that a loaded radius carries, relative; beyond it there is no such radius."""
 BEYOND = 1.2
 """Upper end of the search for the loaded radius, in free radii: a cambered tyre touches the road with its edge."""
+Numbers = Mapping[str, Any]
+"""Numbers of a tyre by the symbols of the Magic Formula, with its version, ellipse of friction and load curve."""
 
 
 def steady_state(
-    numbers: Mapping[str, Any],
+    numbers: Numbers,
     Fz: ArrayLike,
     kappa: ArrayLike = 0.0,
     alpha: ArrayLike = 0.0,
@@ -74,16 +76,16 @@ def _check(load: np.ndarray, pressure: np.ndarray) -> None:
         raise InputError(f"found a pressure of {pressure[~(pressure > 0)].flat[0]:g} Pa, expected a number above zero")
 
 
-def _names(numbers: Mapping[str, object]) -> tuple[str, ...]:
+def _names(numbers: Numbers) -> tuple[str, ...]:
     return tuple(name for name, value in numbers.items() if isinstance(value, float))
 
 
-def _values(numbers: Mapping[str, Any]) -> list[float]:
+def _values(numbers: Numbers) -> list[float]:
     return [numbers[name] for name in _names(numbers)]
 
 
 def _rolling(
-    numbers: Mapping[str, Any], Fz: np.ndarray, kappa: np.ndarray, speed: np.ndarray, dpi: np.ndarray
+    numbers: Numbers, Fz: np.ndarray, kappa: np.ndarray, speed: np.ndarray, dpi: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Return the effective radius, the spin and the free radius, by iteration to rest.
 
@@ -104,7 +106,7 @@ def _rolling(
 
 
 def _deflected(
-    numbers: Mapping[str, Any],
+    numbers: Numbers,
     Fz: np.ndarray,
     gamma: np.ndarray,
     dpi: np.ndarray,
@@ -129,7 +131,7 @@ def _deflected(
     return {"rho": carried["rho"] + 0 * Rl, "Rl": Rl}
 
 
-def _deflection_at(numbers: Mapping[str, Any], Fz: np.ndarray, dpi: np.ndarray) -> np.ndarray:
+def _deflection_at(numbers: Numbers, Fz: np.ndarray, dpi: np.ndarray) -> np.ndarray:
     """Return the deflection at a load and pressure by the linear stiffness or by [DEFLECTION_LOAD_CURVE]."""
     curve = numbers["deflection_load"]
     Fz = Fz / (1 + numbers.get("QPFZ1", 0.0) * dpi)
@@ -170,18 +172,18 @@ def falling_root(
     return np.asarray(x)
 
 
-def _key(numbers: Mapping[str, object]) -> tuple[Any, ...]:
+def _key(numbers: Numbers) -> tuple[tuple[str, ...], str, str, bool]:
     return _names(numbers), numbers["formula"], numbers["ellipse"], False
 
 
-def _forces(numbers: Mapping[str, object], turns: bool) -> Callable[..., dict[str, Any]]:
+def _forces(numbers: Numbers, turns: bool) -> Callable[..., dict[str, np.ndarray]]:
     return _compiled("forces", *_key(numbers)[:-1], turns)
 
 
 @lru_cache(maxsize=16)
 def _compiled(
     of: str, names: tuple[str, ...], formula: str, ellipse: str, turns: bool
-) -> Callable[..., dict[str, Any]]:
+) -> Callable[..., dict[str, np.ndarray]]:
     """Return the equations of forces, of the load, or of the rolling radius as a function of numbers and state."""
     import sympy as sp
 
@@ -195,7 +197,7 @@ def _compiled(
     return lambda *values: dict(zip(outputs, function(*values), strict=True))
 
 
-def _force_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, object]:
+def _force_outputs(p: SimpleNamespace, symbols: list[Expr], turns: bool) -> dict[str, object]:
     from . import magic_formula, magic_formula_6
 
     (*basic, turn, rolling), load, gamma, dpi = symbols, symbols[0], symbols[3], symbols[7]
@@ -228,7 +230,7 @@ def _load_outputs(p: object, symbols: list[Expr], turns: bool) -> dict[str, obje
     return {"load": load, "slope": load.diff(loaded), "rho": deflection(p, loaded, free, gamma)}
 
 
-def _radius_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, object]:
+def _radius_outputs(p: SimpleNamespace, symbols: list[Expr], turns: bool) -> dict[str, object]:
     equations = VERSIONS[p.formula].equations
     if equations.rolling_radius is not None:
         return {"Re": equations.rolling_radius(p, symbols[0], _same)}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -149,5 +149,5 @@ class Beam(LineBody):
         with prefixed(f"{where}: ", ValueError, ValueError):
             return [arc_through(*axis)] if through is not None else pieces_through(axis)
 
-    def _in_space(self, point: Any) -> np.ndarray:
+    def _in_space(self, point: Sequence[float]) -> np.ndarray:
         return np.array([*point, 0.0][:3], dtype=float)

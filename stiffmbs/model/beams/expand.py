@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from pydantic import ValidationError as PydanticError
 
@@ -12,6 +11,7 @@ from ...errors import InputError, prefixed
 from ...reading.did_you_mean import did_you_mean
 from ...reading.fields import sentence
 from ...reading.files.quoted import quoted
+from ...reading.files.yaml_text import Content
 from ..model_data import RESERVED
 from .beam import Beam
 from .discretise import Line
@@ -32,15 +32,15 @@ def expand_beams(
     dimensions: object,
     where: str,
     instance: str,
-) -> tuple[Any, Any]:
+) -> tuple[Content, object]:
     """Return the bodies and forces of a scene or part with beams replaced by their nodes and elements.
 
     The entries are as written, with repeated ones expanded. `where` is the path of the bodies for messages, `instance`
     the name of the part followed by a dot, for the record of all beams. InputError if a beam cannot be read, or one of
     its names is taken.
     """
-    found: dict[Any, object] = {}
-    added: dict[Any, object] = {}
+    found: Content = {}
+    added: Content = {}
     lines: dict[str, Line] = {}
     of_beams: set[str] = set()
     for name, entry in bodies.items():
@@ -78,9 +78,11 @@ def _check_name(name: object, where: str) -> None:
         raise InputError(f"{where}: found the name '{name}', which is reserved, expected another")
 
 
-def _loads(name: str, entry: Any, lines: Mapping[str, Line], where: str, dimensions: object) -> dict[str, object]:
+def _loads(name: str, entry: object, lines: Mapping[str, Line], where: str, dimensions: object) -> dict[str, object]:
     """Return the forces of a distributed load or a contact of a beam; other forces as they are."""
-    kind = entry.get("type") if isinstance(entry, dict) else None
+    if not isinstance(entry, dict):
+        return {name: entry}
+    kind = entry.get("type")
     if kind == CONTACT:
         return node_contacts(name, entry, lines, where, "sphere_contact" if dimensions == 3 else "contact")
     if kind != LOAD:

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from ...elements.spatial.orientation import IDENTITY, from_matrix
+from ...reading.files.yaml_text import Content
 from .discretise import Element, Line, Node, discretise
 from .entries import GROUND_AXES
+
+if TYPE_CHECKING:
+    from .beam import Beam
+    from .planar import BeamBody as PlanarBeam
+    from .spatial import BeamBody as SpatialBeam
 
 IN_PLANE: Final = [0, 1, 5]
 """Components of strain in the plane."""
@@ -20,8 +27,8 @@ IN_PLANE: Final = [0, 1, 5]
 class Expanded:
     """Bodies and forces of a beam, as entries of a scene, and its nodes and elements."""
 
-    bodies: dict[str, Any]
-    forces: dict[str, Any]
+    bodies: Content
+    forces: Content
     line: Line
 
 
@@ -50,11 +57,11 @@ def _neighbours(line: Line) -> list[list[np.ndarray]]:
     ]
 
 
-def _numbers(vector: Any) -> list[float]:
+def _numbers(vector: Iterable[float]) -> list[float]:
     return [float(part) for part in vector]
 
 
-def _planar_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) -> dict[str, object]:
+def _planar_body(node: Node, beam: PlanarBeam, start: Node, shape: list[np.ndarray]) -> dict[str, object]:
     arm = node.point - start.point
     return {
         "mass": node.mass, "inertia": float(node.inertia[2, 2]), "position": _numbers(node.point[:2]),
@@ -64,13 +71,13 @@ def _planar_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) ->
     }  # fmt: skip
 
 
-def _unwrap(bodies: list[dict[str, Any]]) -> None:
+def _unwrap(bodies: list[Content]) -> None:
     """Add whole turns to the angles of nodes, so that neighbours differ by less than half a turn."""
     for body, angle in zip(bodies, np.unwrap([body["angle"] for body in bodies]), strict=True):
         body["angle"] = float(angle)
 
 
-def _spatial_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) -> dict[str, object]:
+def _spatial_body(node: Node, beam: SpatialBeam, start: Node, shape: list[np.ndarray]) -> dict[str, object]:
     omega = np.array(beam.omega)
     velocity = np.array(beam.velocity) + np.cross(omega, node.point - start.point)
     return {
@@ -100,7 +107,7 @@ def _of_torsion(element: Element) -> dict[str, object]:
     return {name: [0.0, *_numbers(np.array(getattr(element, name)))] for name in ("shear_centre", "wagner")}
 
 
-def _force(name: str, element: Element, beam: Any) -> dict[str, Any]:
+def _force(name: str, element: Element, beam: Beam) -> Content:
     """Return the entry of an element."""
     marker, components = (_planar_marker, IN_PLANE) if beam.dimensions == 2 else (_spatial_marker, list(range(6)))
     first, *others = (f"{name}.{node.name}" for node in element.nodes)

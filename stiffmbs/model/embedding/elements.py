@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from functools import singledispatch
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...elements.element import Element, Joint
 from ...elements.forces.applied import AppliedForce, AppliedTorque
@@ -24,6 +25,9 @@ from ...reading.joint_name import JointName
 from ...reading.python_function import PythonFunction
 from .fields import oriented, plain, same
 from .formulas import QUARTER, TURN, Angles, Written, across, along, turned
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @singledispatch
@@ -45,19 +49,19 @@ SURFACES = {"circle": "sphere", "hole": "hollow"}
 
 
 @element_in_space.register(AppliedForce)
-def force(element: Any, angles: Angles) -> Written:
+def force(element: AppliedForce, angles: Angles) -> Written:
     """Return a force without a component along the normal."""
     return same(element, angles, force=[*plain(element.force, angles), 0])
 
 
 @element_in_space.register(AppliedTorque)
-def torque(element: Any, angles: Angles) -> Written:
+def torque(element: AppliedTorque, angles: Angles) -> Written:
     """Return a torque about the normal."""
     return same(element, angles, torque=[0, 0, plain(element.torque, angles)])
 
 
 @element_in_space.register(TorsionSpring)
-def torsion_spring(element: Any, angles: Angles) -> Written:
+def torsion_spring(element: TorsionSpring, angles: Angles) -> Written:
     """Return a torsion spring, with a large initial angle subtracted from its marker and free angle."""
     initial = angles.initial(element.i, element.j)
     if abs(initial) <= QUARTER:
@@ -67,7 +71,7 @@ def torsion_spring(element: Any, angles: Angles) -> Written:
 
 
 @element_in_space.register(Bushing)
-def bushing(element: Any, angles: Angles) -> Written:
+def bushing(element: Bushing, angles: Angles) -> Written:
     """Return a bushing of six components, three of them without stiffness and damping."""
     initial = angles.initial(element.i, element.j)
     if (element.stiffness[2][2] or element.law_angle is not None) and abs(initial) >= math.pi:
@@ -86,13 +90,13 @@ def bushing(element: Any, angles: Angles) -> Written:
     )
 
 
-def _six(three: Any, nothing: Any) -> list[Any]:
+def _six(three: Any, nothing: object) -> list[object]:
     """Return six components with the given ones along x, along y and about z."""
     x, y, angle = three
     return [x, y, nothing, nothing, nothing, angle]
 
 
-def _six_by_six(three: Any) -> list[Any] | None:
+def _six_by_six(three: Iterable[Iterable[float | None]]) -> list[object] | None:
     """Return a matrix, by its diagonal if it is diagonal; None if it is zero."""
     rows = [[part or None for part in row] for row in three]
     if not any(part for row in rows for part in row):
@@ -104,7 +108,7 @@ def _six_by_six(three: Any) -> list[Any] | None:
 
 
 @element_in_space.register(ExactBeam)
-def exact_beam(element: Any, angles: Angles) -> Written:
+def exact_beam(element: ExactBeam, angles: Angles) -> Written:
     """Return a beam element without stiffness across the plane."""
     gains = None if element.bowing is None else [*element.bowing, 0]
     K = _six_by_six(element.stiffness)
@@ -112,14 +116,14 @@ def exact_beam(element: Any, angles: Angles) -> Written:
 
 
 @element_in_space.register(BeamSection)
-def beam_section(element: Any, angles: Angles) -> Written:
+def beam_section(element: BeamSection, angles: Angles) -> Written:
     """Return a section of a beam without stiffness across the plane."""
     rows = _six([_six(row, 0.0) for row in element.stiffness], [0.0] * 6)
     return same(element, angles, stiffness=rows, unloaded=_six(element.unloaded, 0))
 
 
 @element_in_space.register(Contact)
-def contact(element: Any, angles: Angles) -> Written:
+def contact(element: Contact, angles: Angles) -> Written:
     """Return a sphere in place of a circle; their contacts in the plane are equivalent."""
     if element.surface == "line":
         plane = oriented(element.j, angles, across)
@@ -130,18 +134,18 @@ def contact(element: Any, angles: Angles) -> Written:
 
 
 @element_in_space.register(PythonForce)
-def python_force(element: Any, angles: Angles) -> Written:
+def python_force(element: PythonForce, angles: Angles) -> Written:
     """Return a force whose function returns six components."""
     planar = element.function
 
-    def function(x: Any) -> list[Any]:
+    def function(x: np.ndarray) -> list[object]:
         return _six(planar.function(x), 0.0)
 
     return same(element, angles, function=PythonFunction(function, planar.derivatives))
 
 
 @element_in_space.register(Prismatic)
-def prismatic(joint: Any, angles: Angles) -> Written:
+def prismatic(joint: Prismatic, angles: Angles) -> Written:
     """Return a joint along z of rotated markers, which would keep a half turn between the markers if drawn so."""
     apart = math.degrees(abs(math.remainder(angles.initial(joint.i, joint.j), TURN)))
     if apart >= FARTHEST:
@@ -150,7 +154,7 @@ def prismatic(joint: Any, angles: Angles) -> Written:
 
 
 @element_in_space.register(PointOnLine)
-def point_on_line(joint: Any, angles: Angles) -> Written:
+def point_on_line(joint: PointOnLine | Prismatic, angles: Angles) -> Written:
     """Return a joint along z of rotated markers."""
     return same(joint, angles, i=oriented(joint.i, angles, along), j=oriented(joint.j, angles, along))
 

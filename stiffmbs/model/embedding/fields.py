@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -32,7 +33,7 @@ def marker(found: MarkerReference) -> str | Written:
     return {"body": found.body, **at} if at else found.label
 
 
-def oriented(found: Marker, angles: Angles, orientation: Any) -> Written:
+def oriented(found: Marker, angles: Angles, orientation: Callable[[float], Written]) -> Written:
     """Return a marker with an orientation that is a function of its planar angle."""
     placed = angles.data.place(found)
     return {"body": found.body, **point(placed.point), **orientation(placed.angle)}

@@ -17,16 +17,17 @@ from typing import Any
 
 from ...elements.requests.names import OF_PLANE
 from ...elements.requests.output import Output
+from ...reading.files.yaml_text import Content
 from ...reading.formula.formula import Formula
 from ...reading.formula.full_names import with_full_names
 from ...reading.formula.nodes import measured_markers
 from ...reading.formula.text import UNIT, as_written
 from ...reading.joint_name import JOINT_CHANNELS
-from ...reading.marker import GROUND, MarkerReference
+from ...reading.marker import GROUND, MarkerReference, Placement
 from ...reading.names import Names
 from ..model import PlanarData
 
-Written = dict[str, Any]
+Written = Content
 """Part of a scene as in its file."""
 
 
@@ -45,7 +46,7 @@ def across(angle: float) -> Written:
     return {"orientation": {"z": [-math.sin(angle), math.cos(angle), 0], "x": [math.cos(angle), math.sin(angle), 0]}}
 
 
-def placement(placed: Any) -> Written:
+def placement(placed: Placement) -> Written:
     """Return a named marker of a body or of ground."""
     return {**point(placed.point), **turned(placed.angle)}
 
@@ -94,7 +95,7 @@ def formula(found: Formula, angles: Angles) -> str | float:
     return _written(found.text, found.tree, angles)
 
 
-def request(found: Output | Mapping[str, Output], angles: Angles) -> Any:
+def request(found: Output | Mapping[str, Output], angles: Angles) -> str | float | Written:
     """Return a request of a spatial scene, with formulas by component."""
     if isinstance(found, Output):
         names = Names(frozenset(angles.data.bodies))

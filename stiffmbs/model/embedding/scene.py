@@ -9,7 +9,7 @@ from ...elements.body import Body
 from ...elements.element import Element
 from ...elements.shape import Shape
 from ...errors import prefixed
-from ...reading.marker import GROUND, MarkerReference
+from ...reading.marker import GROUND, MarkerReference, Placement
 from ..model import PlanarData
 from ..model_data import ModelData
 from ..scene import Scene
@@ -83,7 +83,7 @@ def _body(name: str, body: Body, angles: Angles) -> Written:
     return {name: part for name, part in parts.items() if part}
 
 
-def _markers(owner: str, own: Mapping[str, object], angles: Angles) -> Written:
+def _markers(owner: str, own: Mapping[str, Placement], angles: Angles) -> Written:
     return {name: placement(placed) for name, placed in own.items()} | angles.added.get(owner, {})
 
 

@@ -16,6 +16,7 @@ from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
 from ...reading.fields import located, named_entries, sentence
 from ...reading.files.quoted import written
+from ...reading.files.yaml_text import Content
 from ...reading.formula.functions import IN_FORMULAS, IN_NUMBERS
 from ...reading.formula.names import MEASURES, REACTIONS
 from ...reading.formula.nodes import TIME
@@ -30,7 +31,7 @@ _LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
 _BRACES = re.compile(r"\{([^{}]*)\}")
 
 
-def set_value(scene: dict[str, Any], path: str, value: object) -> None:
+def set_value(scene: Content, path: str, value: object) -> None:
     """Set the value at a path such as ``bodies.cart.mass``, ``run.rtol`` or the bare name of a parameter.
 
     Raises InputError if the path passes through a value that has no keys.
@@ -77,9 +78,7 @@ def _keys(place: object, path: str) -> list[str]:
     return keys
 
 
-def refuse_unused_parameters(
-    scene: dict[str, Any], changes: Sequence[tuple[str, Any]], sections: Collection[str]
-) -> None:
+def refuse_unused_parameters(scene: Content, changes: Sequence[tuple[str, object]], sections: Collection[str]) -> None:
     """Refuse a change that adds a parameter which no other change uses; a misspelt name would have no effect.
 
     `sections`: sections that a scene may have. Raises InputError if there is no such parameter; lists the parameters of
@@ -162,7 +161,7 @@ def repeat_entries(section: str, entries: object, parameters: Mapping[str, Quant
     """
     if not isinstance(entries, dict):
         return entries
-    expanded: dict[Any, object] = {}
+    expanded: dict[object, object] = {}
     for name, entry in entries.items():
         where = f"{section}.{name}"
         if not (isinstance(entry, dict) and "for" in entry):
@@ -197,7 +196,7 @@ def _loop(where: str, text: object, parameters: Mapping[str, Quantity]) -> tuple
     return variable, round(first), round(last)
 
 
-def _filled(where: str, value: object, names: Mapping[str, Quantity], variable: str = "") -> Any:
+def _filled(where: str, value: object, names: Mapping[str, Quantity], variable: str = "") -> object:
     """Return a value with ``{...}`` and the loop variable replaced by numbers."""
     if isinstance(value, dict):
         return {key: _filled(where, item, names, variable) for key, item in value.items()}

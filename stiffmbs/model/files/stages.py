@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from ...errors import InputError
 from ...reading.fields import Described, Measured
 from ...reading.files.quoted import quoted
-from ...reading.files.yaml_text import read_yaml
+from ...reading.files.yaml_text import Content, read_yaml
 from ...reading.units import si
 
 
@@ -21,8 +21,8 @@ from ...reading.units import si
 class WrittenScene:
     """Content of a scene file, and its changes; comparisons of scenes ignore it."""
 
-    content: Mapping[str, Any] = field(compare=False)  # content of the file, with included files; read-only
-    changes: tuple[tuple[str, Any], ...] = field(compare=False)  # values that replace those of the file
+    content: Content = field(compare=False)  # content of the file, with included files; read-only
+    changes: tuple[tuple[str, object], ...] = field(compare=False)  # values that replace those of the file
     source: str = field(compare=False)  # name of the scene in messages
     folder: Path | None = field(compare=False)  # folder of meshes
     # digests of all other files that were read for it, and of the code of user-defined elements
@@ -141,9 +141,9 @@ def merged(old: object, change: object) -> Any:
     return found
 
 
-def merge_patch(old: Mapping[str, object], new: Mapping[str, object]) -> dict[str, Any]:
+def merge_patch(old: Mapping[str, object], new: Mapping[str, object]) -> Content:
     """Return the patch that converts one mapping to another; see `merged`."""
-    patch: dict[str, Any] = {name: None for name in old if name not in new}
+    patch: dict[str, object] = {name: None for name in old if name not in new}
     for name, value in new.items():
         before = old.get(name)
         if isinstance(value, Mapping) and isinstance(before, Mapping):
@@ -154,7 +154,7 @@ def merge_patch(old: Mapping[str, object], new: Mapping[str, object]) -> dict[st
     return patch
 
 
-def _of_stage(changes: Sequence[tuple[str, object]], content: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
+def _of_stage(changes: Sequence[tuple[str, object]], content: Content) -> tuple[tuple[str, object], ...]:
     """Return the changes from outside, without those of joints, forces and requests that a stage does not have."""
 
     def is_there(path: str) -> bool:

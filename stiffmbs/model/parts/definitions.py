@@ -14,7 +14,7 @@ from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.fields import located
 from ...reading.files.include import read_including
 from ...reading.files.quoted import written
-from ...reading.files.yaml_text import read_yaml
+from ...reading.files.yaml_text import Content, read_yaml
 from ...reading.units.units import Quantity
 from .frame import Use
 from .options import OPTIONS, choices_of
@@ -83,12 +83,12 @@ class Definitions:
         own = self.parts if isinstance(self.parts, dict) else {}
         return own[part] if part in own else shipped_part(part)
 
-    def choices(self, part: str) -> dict[str, dict[str, Any]]:
+    def choices(self, part: str) -> dict[str, Content]:
         """Return the options of a definition."""
         found = self.written(part)
         return choices_of(found, f"parts.{part}.{OPTIONS}") if isinstance(found, dict) else {}
 
-    def use(self, where: str, entry: object, parameters: Mapping[str, Quantity]) -> tuple[Use, dict[str, Any]]:
+    def use(self, where: str, entry: object, parameters: Mapping[str, Quantity]) -> tuple[Use, Content]:
         """Return an entry of ``use``, and its chosen words."""
         if not isinstance(entry, dict):
             raise InputError(f"{where}: found {written(entry)}, expected a mapping with 'part'")

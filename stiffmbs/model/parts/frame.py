@@ -6,12 +6,15 @@ import math
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from pydantic import Field
 
 from ...reading.fields import Described
+
+if TYPE_CHECKING:
+    from ...elements.body import AnyBody
 
 STRAIGHT = 1e-6
 """Largest off-diagonal entry of the mirror in ground axes that is parallel to them, for angles written with six digits."""
@@ -77,7 +80,7 @@ class Frame:
         """Transform a point of the part to the outer axes."""
         return tuple(p + d for p, d in zip(self.point, self.turned(x), strict=True))
 
-    def placed_body(self, body: Any) -> Any:
+    def placed_body(self, body: AnyBody) -> AnyBody:
         """Return a body of the part in ground axes."""
         own = self.mirror()
         changed = {

@@ -10,6 +10,7 @@ from ...elements.body import check_names
 from ...errors import InputError
 from ...reading.fields import located
 from ...reading.files.quoted import written
+from ...reading.files.yaml_text import Content
 from ...reading.names import MOUNT, beginnings
 from ...reading.units.units import Quantity
 from ..beams.entries import with_beams
@@ -37,7 +38,7 @@ class Instance:
     part: str  # name of its definition
     use: Use
     # markers, bodies, joints, forces and requests as written, with repeated entries expanded
-    sections: Mapping[str, Any]
+    sections: Content
     parameters: Mapping[str, Quantity]  # parameters of the scene and of the part
     outer: Instance | None = None  # enclosing instance
     inner: tuple[str, ...] = ()  # local names of nested instances
@@ -69,7 +70,7 @@ class Instances:
     """
 
     definitions: Definitions
-    changes: list[tuple[str, Any]]
+    changes: list[tuple[str, object]]
     words: Mapping[str, str]
     dimensions: int
     values: int = 0
@@ -104,7 +105,7 @@ class Instances:
         refuse_unknown_choices(self.words, of_parts | set(known))
 
     def _add(
-        self, name: str, use: Use, words: Mapping[str, Any], where: str, parameters: Mapping[str, Quantity],
+        self, name: str, use: Use, words: Content, where: str, parameters: Mapping[str, Quantity],
         outer: Instance | None, depth: int,
     ) -> None:  # fmt: skip
         if len(self.found) >= MOST_INSTANCES:
@@ -173,7 +174,7 @@ def _check_name(where: str, name: Any) -> None:
         raise InputError(f"{where}.{name}: found the name of what a part is placed on, expected another")
 
 
-def _check_sections(part: str, sections: Mapping[str, Any], inner: Sequence[str], vectors: Vectors) -> None:
+def _check_sections(part: str, sections: Mapping[str, object], inner: Sequence[str], vectors: Vectors) -> None:
     seen = {**dict.fromkeys(inner, "use"), **dict.fromkeys(vectors, "parameters")}
     for section, entries in sections.items():
         where = f"parts.{part}.{section}"

@@ -9,11 +9,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...elements.element import Element, Joint
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
+from ...reading.fields import Described
 from ...reading.formula.formula import Formula
 from ...reading.formula.text import FormulaError
 from ...reading.joint_name import JointName
@@ -22,6 +23,12 @@ from ...reading.names import MOUNT
 from ...reading.table import Table
 from .mirrored_formula import MirroredNames, mirrored_law
 
+if TYPE_CHECKING:
+    from ...elements.body import AnyBody
+    from .planar_frame import PlanarFrame
+    from .spatial_frame import SpatialFrame
+
+AnyState = TypeVar("AnyState", bound=Described)
 ALONG_AXES = ("angle", "x", "y", "z", "about x", "about y", "about z")
 """Entries of `Element.reflected` that apply to laws."""
 
@@ -31,7 +38,7 @@ class Mirror:
     """Mirror image of the elements of one instance of a part."""
 
     name: str  # name of the instance
-    frame: Any  # frame of the part in ground axes
+    frame: PlanarFrame | SpatialFrame  # frame of the part in ground axes
     part: Any  # its validated sections, with local names, without mirroring
     mounts: Collection[str]  # local names of the bodies that it is mounted on
 
@@ -58,7 +65,7 @@ class Mirror:
                 raise InputError(f"{where}.{alias}: {error} (in {self.name})") from None
         return element.model_copy(update=changed)
 
-    def mirrored_state(self, state: Any, where: str) -> Any:
+    def mirrored_state(self, state: AnyState, where: str) -> AnyState:
         """Return a state or a system of states with mirrored coordinates in its formulas; its value is the same.
 
         InputError if the mirror image of a formula is not defined.
@@ -71,7 +78,7 @@ class Mirror:
                 raise InputError(f"{where}.{name}: {error} (in {self.name})") from None
         return state.model_copy(update=changed)
 
-    def _field(self, element: Element, name: str, where: str) -> Any:
+    def _field(self, element: Element, name: str, where: str) -> object:
         value, rule = getattr(element, name), (element.reflected or {}).get(name, "same")
         match value:
             case MarkerReference():
@@ -82,7 +89,7 @@ class Mirror:
                 return value
         return self._image(value, self._signs(element, rule), rule in ALONG_AXES)
 
-    def _signs(self, element: Element, rule: str) -> Any:
+    def _signs(self, element: Element, rule: str) -> float | tuple[float, ...]:
         """Return the sign of a field, or the signs of its components."""
         if rule == "same":
             return 1.0
@@ -171,7 +178,7 @@ class Mirror:
                 return value if signs == 1.0 else signs * value or 0.0
         return value
 
-    def _marker(self, marker: MarkerReference, rule: str) -> Any:
+    def _marker(self, marker: MarkerReference, rule: str) -> MarkerReference:
         """Return the mirror image of a marker on the part; `rule` is the axis whose direction matters, if any."""
         if rule in ("x", "y", "z") and self._own(marker) and self.frame.signs["xyz".index(rule)] < 0:
             marker = self.frame.half_turned(self._placed(marker), rule)
@@ -194,7 +201,7 @@ class Mirror:
             update={"marker": None, **{name: getattr(where, name) for name in type(where).model_fields}}
         )
 
-    def _body(self, marker: MarkerReference) -> Any:
+    def _body(self, marker: MarkerReference) -> AnyBody:
         name = marker.body.removeprefix(f"{self.name}.")
         if name not in self.part.bodies:
             raise FormulaError(f"found '{marker.label}' of a part within the part, expected a marker on the spot")

@@ -6,13 +6,17 @@ import ast
 import copy
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ...reading.formula.formula import Formula
 from ...reading.formula.nodes import is_measure, measured_markers
 from ...reading.formula.text import UNIT, FormulaError, as_written
 from ...reading.marker import GROUND, MarkerReference
 from ...reading.table import Table
+
+if TYPE_CHECKING:
+    from .planar_frame import PlanarFrame
+    from .spatial_frame import SpatialFrame
 
 SCALARS = ("dm", "vm", "vr", "wm")
 ANGLES = ("ax", "ay", "az")
@@ -28,7 +32,10 @@ class MirroredNames(ast.NodeTransformer):
     """
 
     def __init__(
-        self, frame: Any, inside: Callable[[MarkerReference], bool], along_joint: Callable[[str, str], float | None]
+        self,
+        frame: PlanarFrame | SpatialFrame,
+        inside: Callable[[MarkerReference], bool],
+        along_joint: Callable[[str, str], float | None],
     ) -> None:
         self.frame, self.inside, self.along_joint = frame, inside, along_joint
 

@@ -7,16 +7,20 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.files.quoted import written
 
+if TYPE_CHECKING:
+    from ...reading.files.yaml_text import Content
+
+
 OPTIONS, CHOOSE = "options", "choose"
 
 
-def choices_of(found: Mapping[str, object], where: str) -> dict[str, dict[str, Any]]:
+def choices_of(found: Mapping[str, object], where: str) -> dict[str, Content]:
     """Return the options of a part or scene: for each choice its words with their sections.
 
     Raises InputError if they are not a mapping of choices to words to sections.
@@ -35,7 +39,7 @@ def choices_of(found: Mapping[str, object], where: str) -> dict[str, dict[str, A
     return options
 
 
-def with_chosen(found: dict[str, object], words: Any, where: str) -> dict[str, Any]:
+def with_chosen(found: dict[str, object], words: Any, where: str) -> Content:
     """Return a part or scene with the chosen sections merged, without its options.
 
     `words`: word by choice; unknown choices are ignored. `where`: path of its options. Raises InputError if a word is

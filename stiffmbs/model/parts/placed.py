@@ -6,18 +6,21 @@ import ast
 import functools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError as PydanticError
 from pydantic import create_model
 
+from ...elements.body import AnyBody
 from ...elements.element import Element
 from ...elements.states.amount import stated_dimension
 from ...elements.states.section import dimensions_of_entry, refuse_other_meanings
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
 from ...reading.fields import Described, sentence
+from ...reading.files.files_read import Context
 from ...reading.files.quoted import written
+from ...reading.files.yaml_text import Content
 from ...reading.formula.dimension import Known
 from ...reading.formula.full_names import with_full_names
 from ...reading.formula.nodes import TAKERS
@@ -27,15 +30,19 @@ from ...reading.marker import MarkerReference
 from ...reading.names import GROUND, MOUNT, Names
 from ...reading.units.units import Quantity, in_text
 from .definitions import NAMED, Definitions, shipped_parts
+from .frame import Use
 from .hard_points import check_left_and_right, check_sides
 from .instances import Instance, Instances
 from .mirrored import Mirror
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 SECTIONS = ("markers", *NAMED)
 
 
 def with_parts(
-    raw: dict[str, object], scene: type[Any], context: dict[str, Any], changes: Sequence[tuple[str, object]]
+    raw: dict[str, object], scene: type[Scene], context: Context, changes: Sequence[tuple[str, object]]
 ) -> tuple[dict[str, object], dict[str, object]]:
     """Return a scene with its ``use`` expanded, and its validation context.
 
@@ -87,7 +94,7 @@ def _keys(found: object) -> list[str]:
     return [name for name in found if isinstance(name, str)] if isinstance(found, dict) else []
 
 
-def _frame_kind(scene: type[Any]) -> tuple[type[Any], type[Any]]:
+def _frame_kind(scene: type[Scene]) -> tuple[type[Use], type[Any]]:
     """Return the classes of a use and of a part's frame for planar or spatial scenes."""
     if scene.model_fields["dimensions"].default == 3:
         from .spatial_frame import SpatialFrame, SpatialUse
@@ -99,7 +106,7 @@ def _frame_kind(scene: type[Any]) -> tuple[type[Any], type[Any]]:
 
 
 @functools.cache
-def _sections(scene: Any) -> Any:
+def _sections(scene: type[Scene]) -> Any:
     """Return the class that validates the sections of a part like those of a scene."""
     fields: dict[str, Any] = {name: (scene.model_fields[name].annotation, {}) for name in SECTIONS}
     return create_model("Part", __base__=Described, **fields)
@@ -123,9 +130,9 @@ class _Values(Mapping[str, ast.expr]):
 
 @dataclass
 class _Placed:
-    raw: dict[str, Any]
-    scene: Any
-    context: dict[str, Any]
+    raw: Content
+    scene: type[Scene]
+    context: Context
     mounts: dict[str, tuple[str, Any]] = field(default_factory=dict)
     """Body that each instance is mounted on, and its frame in that body's axes."""
 
@@ -225,7 +232,7 @@ class _Placed:
         frame = _frame_kind(self.scene)[1]
         return frame() if on == GROUND else frame.of_body(self._body(on))
 
-    def _body(self, name: str) -> Any:
+    def _body(self, name: str) -> AnyBody:
         try:
             found = _sections(self.scene).model_validate(
                 {"bodies": {name: self.raw["bodies"][name]}}, context=self.context

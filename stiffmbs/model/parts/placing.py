@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import Any
 
 from ...errors import InputError
+from ...reading.files.yaml_text import Content
 from .definitions import NAMED
 
 
 def placed_in_use(
-    found: dict[str, Any], changes: Sequence[tuple[str, object]]
-) -> tuple[dict[str, object], Sequence[tuple[str, Any]]]:
+    found: Content, changes: Sequence[tuple[str, object]]
+) -> tuple[dict[str, object], Sequence[tuple[str, object]]]:
     """Return a scene and its changes, with the entries of ``parts`` that place a part moved to ``use``.
 
     ``parts: {front: {use: axle}}`` is equivalent to ``use: {front: {part: axle}}``. Raises InputError if a name occurs

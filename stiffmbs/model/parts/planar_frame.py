@@ -43,7 +43,7 @@ class PlanarFrame(Frame):
         return cls(use.position, tuple(-1.0 if use.mirror == axis else 1.0 for axis in "xy"), use.angle)
 
     @classmethod
-    def of_body(cls, body: Any) -> Self:
+    def of_body(cls, body: Body) -> Self:
         """Return the frame of a body in ground axes."""
         return cls(body.position, angle=body.angle)
 

@@ -54,7 +54,7 @@ class SpatialFrame(Frame):
         return cls(use.position, tuple(-1.0 if use.mirror == axis else 1.0 for axis in AXES), use.orientation)
 
     @classmethod
-    def of_body(cls, body: Any) -> Self:
+    def of_body(cls, body: Body) -> Self:
         """Return the frame of a body in ground axes."""
         return cls(body.position, orientation=body.orientation)
 
@@ -86,7 +86,7 @@ class SpatialFrame(Frame):
         """Transform an orientation in the part to the outer axes."""
         return product(self.orientation, (p[0], *self._as_rotation(p[1:])))
 
-    def _as_rotation(self, v: tuple[float, ...]) -> Any:
+    def _as_rotation(self, v: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(sign * part for sign, part in zip(self.rotation_signs, v, strict=True))
 
     def placed(self, marker: Any) -> Any:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from ...errors import InputError
 from ...reading.fields import Described, Measured, located
+from ...reading.files.yaml_text import Content
 from ...reading.units import si
 from .curves import Curve, circle, curve_through
 from .lanes import STANDARDS, path_through
@@ -92,7 +93,7 @@ def with_path(raw: dict[str, object], parameters: Mapping[str, object]) -> dict[
     return {**raw, PATH: path, "tables": {**tables, **own} if isinstance(tables, dict) else tables}
 
 
-def tables_of(curve: Curve) -> dict[str, Any]:
+def tables_of(curve: Curve) -> Content:
     """Return position, direction and curvature over the arc length, by the names of their tables."""
     ends = {"x": "not-a-knot", "y": "not-a-knot"}
     return {

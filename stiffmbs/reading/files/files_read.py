@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 FOLDER = "folder"
 """Key in the validation context: the folder of relative file names."""
@@ -27,6 +27,9 @@ _SORTS = (
     (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"),
     (stat.S_ISSOCK, "a socket"),
 )  # fmt: skip
+
+Context: TypeAlias = Mapping[str, Any]
+"""Context of a validation: what readers of fields need of the scene, such as its parameters, names and folder."""
 
 
 @contextmanager
@@ -46,7 +49,7 @@ def record(digests: Mapping[str, str]) -> None:
         each.update(digests)
 
 
-def file_beside(context: Mapping[str, Any], name: str | Path) -> Path:
+def file_beside(context: Context, name: str | Path) -> Path:
     """Return the path of a file that a scene names, relative to the folder of the scene."""
     return Path(context.get(FOLDER) or "") / name
 

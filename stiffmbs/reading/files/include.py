@@ -11,7 +11,7 @@ from ...errors import InputError
 from .quoted import quoted, written
 from .read_before import read_yaml_file
 from .text_file import STANDARD_INPUT, file_text
-from .yaml_text import line_and_depth, line_of
+from .yaml_text import Content, line_and_depth, line_of
 
 INCLUDE, PARTS = "include", "parts"
 MOST_FILES = 100
@@ -39,7 +39,7 @@ class Sources:
         return line
 
 
-def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Callable[[tuple[Any, ...]], str | None]]:
+def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Callable[[tuple[object, ...]], str | None]]:
     """Read a YAML text and the files that it includes; return the content, and `Sources.line` as a function of a path.
 
     `source`: name of the text in messages. `file`: file of the text; included files are relative to its folder, or to
@@ -123,7 +123,7 @@ def _listed(found: Any, where: str) -> list[str]:
 
 
 def _add(
-    merged: dict[str, Any], found: dict[str, object], source: str, owners: dict[tuple[object, ...], str], where: str
+    merged: Content, found: dict[str, object], source: str, owners: dict[tuple[object, ...], str], where: str
 ) -> None:
     """Merge the sections of a file; a name may occur in one file only."""
     for section, value in found.items():
@@ -136,7 +136,7 @@ def _add(
 
 
 def _own(
-    path: tuple[object, ...], place: dict[str, object], name: Any, value: object, source: str,
+    path: tuple[str, ...], place: dict[str, object], name: Any, value: object, source: str,
     owners: dict[tuple[object, ...], str], where: str,
 ) -> None:  # fmt: skip
     if name in place and not (len(path) == 1 and place[name] == value):  # equal values may be repeated

@@ -15,7 +15,7 @@ import sysconfig
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
+from types import BuiltinFunctionType, CellType, CodeType, FunctionType, MethodType, ModuleType
 from typing import TYPE_CHECKING, Any
 
 from .files_read import digest_of_file
@@ -134,7 +134,7 @@ def _file_of(found: Any) -> str:
         return f"module {_module_of(found)}"
 
 
-def _is_filled(cell: Any) -> bool:
+def _is_filled(cell: CellType) -> bool:
     try:
         return cell.cell_contents is not None
     except ValueError:

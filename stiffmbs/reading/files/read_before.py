@@ -9,7 +9,6 @@ import json
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from ...cache.entries import Folder, digest, tag_of
 from ...cache.installed import installed_version
@@ -37,7 +36,7 @@ def keep(name: str, content: bytes) -> None:
     folder_of_files().keep_newest(MOST_FILES, MOST_BYTES)
 
 
-def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
+def read_yaml_file(text: str, source: str, file: Path | None) -> object:
     """Read the text of a YAML file as `read_yaml`, or its content from the cache; without a file, nothing is cached."""
     if file is None:
         return read_yaml(text, source)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ...model.scene import Scene
+    from .files_read import Context
 
 REUSED = ("bodies", "joints", "forces")
 """Sections whose validated entries can be reused."""
@@ -26,7 +27,7 @@ class Unchanged:
 
     def __init__(self) -> None:
         self.scene: Scene | None = None
-        self.context: Mapping[str, Any] = {}
+        self.context: Context = {}
         self._raw: Mapping[str, Any] = {}
 
     def __eq__(self, other: object) -> bool:
@@ -39,7 +40,7 @@ class Unchanged:
         """Copy as an empty record, because the scene of a copy is another object."""
         return Unchanged, ()
 
-    def keep(self, raw: Mapping[str, object], context: Mapping[str, object], scene: Scene) -> None:
+    def keep(self, raw: Mapping[str, object], context: Context, scene: Scene) -> None:
         """Record a scene with its entries before validation; only the first call has an effect."""
         if self.scene is not None:
             return
@@ -53,7 +54,7 @@ class Unchanged:
             for name, entry in (self._raw.get(section) or {}).items()
         }
 
-    def put_into(self, raw: Mapping[str, Any], context: Mapping[str, object]) -> dict[str, object]:
+    def put_into(self, raw: Mapping[str, Any], context: Context) -> dict[str, object]:
         """Return the entries of another reading, with unchanged ones in validated form."""
         scene = self.scene
         if scene is None or context["names"] != self.context["names"] or raw.get("dimensions") != self._raw.get("dimensions"):  # fmt: skip
@@ -75,7 +76,7 @@ class Unchanged:
         before = self._raw[section][name]
         return isinstance(entry, dict) and bool(entry == before)
 
-    def _changed_names(self, raw: Mapping[str, Any], context: Mapping[str, Any]) -> set[str]:
+    def _changed_names(self, raw: Mapping[str, Any], context: Context) -> set[str]:
         """Return the changed parameters, tables, roads and variables, and the variables that depend on them."""
         changed: set[str] = set()
         for kind in ("parameters", "tables", "roads"):

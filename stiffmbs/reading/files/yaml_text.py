@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from io import StringIO
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ...errors import InputError, prefixed
 from .quoted import quoted
+
+if TYPE_CHECKING:
+    from ruamel.yaml.error import MarkedYAMLError
 
 _DECIMAL = re.compile(r"-?(0|[1-9][0-9]{0,14})(\.[0-9]{1,15})?")
 """Numbers that YAML and Python read in the same way."""
 _PART_OF_FORMULA = re.compile(r"^[-+.]?\d|\)$")
 _OTHER_ENDS = re.compile("[\x85\u2028\u2029]")
 """Line ends of YAML 1.1 that YAML 1.2 does not have; it has only LF and CR."""
+
+Content: TypeAlias = dict[str, Any]
+"""Content of a scene or of an entry of one by key, as read or as to be written: numbers, texts, lists and such mappings."""
 
 
 def read_yaml(text: str, source: str) -> Any:
@@ -66,7 +73,7 @@ def quotes_hint(key: object) -> str:
     return ": a formula with commas needs quotes between braces" if _PART_OF_FORMULA.search(str(key)) else ""
 
 
-def _reason(error: Any) -> str:
+def _reason(error: MarkedYAMLError) -> str:
     problem = _first_line(Exception(error.problem or ""))
     if "duplicate key" in problem:
         key = problem.split('"')[1]
@@ -79,7 +86,7 @@ def line_of(text: str, path: tuple[object, ...]) -> int | None:
     return line_and_depth(text, path)[0]
 
 
-def line_and_depth(text: str, path: tuple[Any, ...]) -> tuple[int | None, int]:
+def line_and_depth(text: str, path: tuple[object, ...]) -> tuple[int | None, int]:
     """Return the line of the deepest key of `path` in a text, and the number of keys found."""
     from ruamel.yaml import YAML
 
@@ -93,7 +100,7 @@ def line_and_depth(text: str, path: tuple[Any, ...]) -> tuple[int | None, int]:
         if isinstance(place, dict) and key in place and marks:
             line = _line_in(marks, key)
             place = place[key]
-        elif isinstance(place, list) and key.isdigit() and int(key) < len(place) and marks:
+        elif isinstance(place, list) and isinstance(key, str) and key.isdigit() and int(key) < len(place) and marks:
             line = marks.item(int(key))[0] + 1
             place = place[int(key)]
         else:
@@ -151,7 +158,7 @@ class _Walk:
             raise _Refused(f"found values nested {level + known.depth} deep or more, expected at most {MOST_NESTED}")
         return known
 
-    def _opened(self, found: Any, level: int) -> _Extent:
+    def _opened(self, found: Collection[object], level: int) -> _Extent:
         if level > MOST_NESTED:
             raise _Refused(f"found values nested {level} deep or more, expected at most {MOST_NESTED}")
         self.extents[id(found)] = None

@@ -6,10 +6,10 @@ import ast
 from collections.abc import Collection, Container, Iterator, Mapping
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
-from pydantic_core import core_schema
+from pydantic_core import CoreSchema, core_schema
 
 from ..did_you_mean import did_you_mean
 from ..files.quoted import quoted, written
@@ -211,7 +211,7 @@ class FormulaOf:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
         check_dimension(f"'{quoted(formula.text)}', which is", formula.dimension, self.dimension)
 
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema: object, handler: GetJsonSchemaHandler) -> dict[str, object]:

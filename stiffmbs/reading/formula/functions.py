@@ -103,7 +103,7 @@ def _least(*values: Any) -> Any:
     return reduce(np.minimum, values)
 
 
-def _sign(x: Any) -> Any:
+def _sign(x: object) -> object:
     return np.where(np.asarray(x) >= 0, 1.0, -1.0)
 
 

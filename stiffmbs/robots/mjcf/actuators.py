@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from ...reading.files.requested import Fields
+from ...reading.files.yaml_text import Content
 from ..robot import RobotFault, Segment, Transmission
-from .fields import name_of
+from .fields import RequestedModel, name_of
 
 OF_PASSIVE = ("SPRING", "DAMPER")
 """Flags that older versions of MuJoCo combine as PASSIVE."""
@@ -18,7 +18,7 @@ OF_PASSIVE = ("SPRING", "DAMPER")
 class Disabled:
     """Disable flags of a compiled model by name, with a record of the requested ones."""
 
-    def __init__(self, m: Any) -> None:
+    def __init__(self, m: RequestedModel) -> None:
         import mujoco
 
         off, on = (_bits(kind) for kind in (mujoco.mjtDisableBit, mujoco.mjtEnableBit))
@@ -45,7 +45,7 @@ def _bits(kind: object) -> dict[str, int]:
     return {name[7:]: int(getattr(kind, name)) for name in dir(kind) if name.startswith(("mjDSBL_", "mjENBL_"))}
 
 
-def transmissions(m: Any, disabled: Disabled) -> Iterator[Transmission]:
+def transmissions(m: RequestedModel, disabled: Disabled) -> Iterator[Transmission]:
     """Yield the transmissions of joints: actuators with inputs, and springs and dampers of tendons."""
     for k in () if disabled("ACTUATION") else range(m.nactuator if hasattr(m, "nactuator") else m.nu):
         if not _in_disabled_group(m, k):
@@ -54,7 +54,7 @@ def transmissions(m: Any, disabled: Disabled) -> Iterator[Transmission]:
         yield from _tendon(m, k, disabled)
 
 
-def disabled_actuators(m: Any, disabled: Disabled) -> Iterator[str]:
+def disabled_actuators(m: RequestedModel, disabled: Disabled) -> Iterator[str]:
     """Yield a note on actuators that the file disables."""
     count = m.nactuator if hasattr(m, "nactuator") else m.nu
     off = [k for k in range(count) if disabled("ACTUATION") or _in_disabled_group(m, k)]
@@ -62,12 +62,12 @@ def disabled_actuators(m: Any, disabled: Disabled) -> Iterator[str]:
         yield f"disabled actuators are ignored: {', '.join(name_of(m, 'actuator', k) for k in off)}"
 
 
-def _in_disabled_group(m: Any, k: int) -> bool:
+def _in_disabled_group(m: RequestedModel, k: int) -> bool:
     group = int(m.actuator_group[k])
     return group >= 0 and bool(int(m.opt.disableactuator) >> group & 1)
 
 
-def _actuator(m: Any, k: int, disabled: Disabled) -> Transmission:
+def _actuator(m: RequestedModel, k: int, disabled: Disabled) -> Transmission:
     import mujoco
 
     name = name_of(m, "actuator", k)
@@ -111,7 +111,7 @@ def _actuator(m: Any, k: int, disabled: Disabled) -> Transmission:
     )
 
 
-def _tendon_of(m: Any, k: int) -> dict[str, Any]:
+def _tendon_of(m: RequestedModel, k: int) -> Content:
     """Return the tendon of an actuator, and the bounds of the total force of all actuators on it."""
     import mujoco
 
@@ -122,12 +122,12 @@ def _tendon_of(m: Any, k: int) -> dict[str, Any]:
     return {"tendon": name_of(m, "tendon", tendon), "total": total} if total else {}
 
 
-def bounds(limited: object, ends: Any) -> tuple[float, float] | None:
+def bounds(limited: object, ends: Sequence[float]) -> tuple[float, float] | None:
     """Return the bounds of a limited range, else None."""
     return (float(ends[0]), float(ends[1])) if limited else None
 
 
-def _geared(m: Any, k: int, name: str) -> dict[str, Any]:
+def _geared(m: RequestedModel, k: int, name: str) -> Content:
     """Return the length of an actuator: gears of joint coordinates, or segments of a tendon."""
     import mujoco
 
@@ -142,7 +142,7 @@ def _geared(m: Any, k: int, name: str) -> dict[str, Any]:
     )
 
 
-def _tendon(m: Any, k: int, disabled: Disabled) -> Iterator[Transmission]:
+def _tendon(m: RequestedModel, k: int, disabled: Disabled) -> Iterator[Transmission]:
     """Yield the linear spring and damper of a tendon; a nonlinear one or a dead band raises `RobotFault`."""
     name = name_of(m, "tendon", k)
     stiffness = 0.0 if disabled("SPRING") else float(m.tendon_stiffness[k])
@@ -160,7 +160,7 @@ def _tendon(m: Any, k: int, disabled: Disabled) -> Iterator[Transmission]:
     yield Transmission(name, **along, gain=None, bias=(stiffness * low, -stiffness, -damping))
 
 
-def _along(m: Any, tendon: int, where: str, gear: float) -> dict[str, Any]:
+def _along(m: RequestedModel, tendon: int, where: str, gear: float) -> Content:
     """Return the joints of a fixed tendon with their gears, or the segments between the sites of one through space."""
     import mujoco
 
@@ -185,13 +185,13 @@ def _along(m: Any, tendon: int, where: str, gear: float) -> dict[str, Any]:
     return {"gears": gears, "segments": tuple(segments)}
 
 
-def _site(m: Any, site: int) -> tuple[str | None, tuple[float, ...]]:
+def _site(m: RequestedModel, site: int) -> tuple[str | None, tuple[float, ...]]:
     """Return the link of a site (None: the world) and its position in the link's frame."""
     body = int(m.site_bodyid[site])
     return (name_of(m, "body", body) if body else None), tuple(map(float, m.site_pos[site]))
 
 
-def _of_one_coordinate(m: Any, joint: int, where: str) -> str:
+def _of_one_coordinate(m: RequestedModel, joint: int, where: str) -> str:
     import mujoco
 
     name = name_of(m, "joint", joint)

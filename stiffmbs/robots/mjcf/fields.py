@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...reading.files.requested import Fields
+
+if TYPE_CHECKING:
+    import mujoco
 
 LISTS = {
     "joint": "joints", "body": "bodies", "geom": "geoms", "site": "sites", "actuator": "actuators", "tendon": "tendons",
@@ -94,12 +97,12 @@ class RequestedModel:
         return _Entries(value, name, self.requested) if isinstance(value, np.ndarray) else value
 
     @property
-    def plain(self) -> Any:
+    def plain(self) -> object:
         """MuJoCo's own object."""
         return self._model
 
 
-def name_of(m: Any, kind: str, k: int) -> str:
+def name_of(m: RequestedModel, kind: str, k: int) -> str:
     """Return the name of a body, joint or other element of a model, or a generated one."""
     return getattr(m, kind)(k).name or f"{kind}_{k}"
 
@@ -107,7 +110,7 @@ def name_of(m: Any, kind: str, k: int) -> str:
 class _Options:
     """Options of a model, with a record of those that are read."""
 
-    def __init__(self, options: Any, requested: set[tuple[str, int | None]]) -> None:
+    def __init__(self, options: object, requested: set[tuple[str, int | None]]) -> None:
         self._options, self._requested = options, requested
 
     def __getattr__(self, name: str) -> Any:
@@ -133,7 +136,7 @@ class _Entries:
         return len(self._array)
 
 
-def model_fields(spec: Any, model: RequestedModel) -> Iterator[Fields[Any]]:
+def model_fields(spec: mujoco.MjSpec, model: RequestedModel) -> Iterator[Fields[Any]]:
     """Yield the fields of the elements of a compiled specification, with a record of the requested ones.
 
     `model`: the compiled model, after reading.
@@ -152,7 +155,7 @@ def model_fields(spec: Any, model: RequestedModel) -> Iterator[Fields[Any]]:
     yield options
 
 
-def _is_inactive(element: Any) -> bool:
+def _is_inactive(element: object) -> bool:
     return not getattr(element, "active", True)
 
 
@@ -161,7 +164,7 @@ def _label(kind: str, element: Any) -> str:
     return name or f"{kind}_{element.id}"
 
 
-def _request(fields: Fields[Any], kind: str, ident: int, model: RequestedModel) -> None:
+def _request(fields: Fields[object], kind: str, ident: int, model: RequestedModel) -> None:
     """Record the fields whose entries in the compiled model were requested."""
     fields.request(*COMPILED.get(kind, ()))
     for name in fields:
@@ -170,14 +173,14 @@ def _request(fields: Fields[Any], kind: str, ident: int, model: RequestedModel) 
             fields.request(name)
 
 
-def _at(array: str, ident: int, model: Any) -> int:
+def _at(array: str, ident: int, model: mujoco.MjModel) -> int:
     """Return the index of an element in an array; joints have arrays over joints, degrees of freedom or coordinates."""
     if array.startswith("dof_"):
         return int(model.jnt_dofadr[ident])
     return int(model.jnt_qposadr[ident]) if array.startswith("qpos") else ident
 
 
-def _defaults() -> dict[str, dict[str, Any]]:
+def _defaults() -> dict[str, dict[str, object]]:
     """Return the default fields of each kind."""
     import mujoco
 
@@ -190,7 +193,7 @@ def _defaults() -> dict[str, dict[str, Any]]:
     return {kind: _values(element) for kind, element in new.items()}
 
 
-def _values(element: Any) -> dict[str, Any]:
+def _values(element: object) -> dict[str, object]:
     """Return the fields of an element that are numbers, words or sequences of them."""
     found = {}
     for name in dir(element):

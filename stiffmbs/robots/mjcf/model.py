@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -20,8 +20,11 @@ from ..robot import Connection, JointKind, Link, LinkJoint, Relation, Robot, Rob
 from .actuators import Disabled, bounds, disabled_actuators, transmissions
 from .fields import REASONS, RequestedModel, model_fields, name_of
 
+if TYPE_CHECKING:
+    import mujoco
 
-def relations(m: Any) -> Iterator[Relation]:
+
+def relations(m: RequestedModel) -> Iterator[Relation]:
     """Yield the couplings of joints, and joints held by a constraint."""
     import mujoco
 
@@ -36,7 +39,7 @@ def relations(m: Any) -> Iterator[Relation]:
             )
 
 
-def connections(m: Any) -> Iterator[Connection]:
+def connections(m: RequestedModel) -> Iterator[Connection]:
     """Yield the loops closed by a point or rigidly."""
     import mujoco
 
@@ -51,17 +54,17 @@ def connections(m: Any) -> Iterator[Connection]:
         yield _of_sites(m, k) if mujoco.mjtObj(m.eq_objtype[k]) == mujoco.mjtObj.mjOBJ_SITE else _of_bodies(m, k)
 
 
-def _active(m: Any) -> Iterator[int]:
+def _active(m: RequestedModel) -> Iterator[int]:
     return (k for k in range(m.neq) if m.eq_active0[k])
 
 
-def _is_weld(m: Any, k: int) -> bool:
+def _is_weld(m: RequestedModel, k: int) -> bool:
     import mujoco
 
     return bool(mujoco.mjtEq(m.eq_type[k]) == mujoco.mjtEq.mjEQ_WELD)
 
 
-def _of_bodies(m: Any, k: int) -> Connection:
+def _of_bodies(m: RequestedModel, k: int) -> Connection:
     """Return a connection: two points coincide, for a weld the anchor in body 2 with its place in body 1."""
     first, second = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
     data = [tuple(map(float, m.eq_data[k, a:b])) for a, b in ((0, 3), (3, 6), (6, 10))]
@@ -70,7 +73,7 @@ def _of_bodies(m: Any, k: int) -> Connection:
     return Connection(name_of(m, "equality", k), _body(m, first), _body(m, second), data[0], data[1], None)
 
 
-def _of_sites(m: Any, k: int) -> Connection:
+def _of_sites(m: RequestedModel, k: int) -> Connection:
     """Return a connection of the frames of two sites, or of their points."""
     a, b = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
     point, other_point = (tuple(map(float, m.site_pos[site])) for site in (a, b))
@@ -82,7 +85,7 @@ def _of_sites(m: Any, k: int) -> Connection:
     return Connection(name_of(m, "equality", k), link, other, origin, ORIGIN, turned)
 
 
-def _body(m: Any, body: int) -> str | None:
+def _body(m: RequestedModel, body: int) -> str | None:
     return name_of(m, "body", body) if body else None  # body 0 is the world
 
 
@@ -115,7 +118,7 @@ def read_mjcf(path: str | Path) -> Robot:
     )
 
 
-def _compiled(path: str | Path) -> tuple[Any, Any]:
+def _compiled(path: str | Path) -> tuple[mujoco.MjSpec, mujoco.MjModel]:
     try:
         import mujoco
     except ImportError:
@@ -130,7 +133,7 @@ def _compiled(path: str | Path) -> tuple[Any, Any]:
         raise RobotFault(f"MuJoCo refuses the file: {' '.join(str(error).split())}") from None
 
 
-def _link(m: Any, body: int, disabled: Disabled) -> Link:
+def _link(m: RequestedModel, body: int, disabled: Disabled) -> Link:
     parent = int(m.body_parentid[body])
     turned = matrix(m.body_iquat[body])
     tensor = turned @ np.diag(m.body_inertia[body]) @ turned.T
@@ -148,7 +151,7 @@ def _link(m: Any, body: int, disabled: Disabled) -> Link:
     )
 
 
-def _joint(m: Any, joint: int, disabled: Disabled) -> LinkJoint:
+def _joint(m: RequestedModel, joint: int, disabled: Disabled) -> LinkJoint:
     name, kind = name_of(m, "joint", joint), KINDS[m.jnt_type[joint]]
     dof, coordinate = m.jnt_dofadr[joint], m.jnt_qposadr[joint]
     for what, values in (
@@ -177,7 +180,7 @@ def _joint(m: Any, joint: int, disabled: Disabled) -> LinkJoint:
     )
 
 
-def _loose(m: Any, joint: int, kind: JointKind, disabled: Disabled) -> LinkJoint:
+def _loose(m: RequestedModel, joint: int, kind: JointKind, disabled: Disabled) -> LinkJoint:
     """Return a ball joint, or that of a free body."""
     name, dof = name_of(m, "joint", joint), m.jnt_dofadr[joint]
     count = 6 if kind == "free" else 3
@@ -196,7 +199,7 @@ def _loose(m: Any, joint: int, kind: JointKind, disabled: Disabled) -> LinkJoint
     return LinkJoint(name, kind, tuple(map(float, m.jnt_pos[joint])), stiffness=spring, damping=damping)
 
 
-def _notes(m: Any, disabled: Disabled) -> Iterator[str]:
+def _notes(m: RequestedModel, disabled: Disabled) -> Iterator[str]:
     if not disabled("CONTACT", "CONSTRAINT") and (
         np.any(m.geom_contype[: m.ngeom] | m.geom_conaffinity[: m.ngeom]) or m.npair
     ):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
 
 from ...elements.spatial.number_format import plain
+from ...reading.files.yaml_text import Content
 from ..robot import Robot, RobotFault, Segment, Transmission
 from .joints import along_axis
 from .mechanism import Hold, Mechanism
@@ -16,10 +16,10 @@ from .mechanism import Hold, Mechanism
 class Actuators:
     """Scene sections of actuators: inputs, filter states, named formulas, and forces."""
 
-    inputs: dict[str, Any] = field(default_factory=dict)
-    states: dict[str, Any] = field(default_factory=dict)
-    variables: dict[str, Any] = field(default_factory=dict)
-    forces: dict[str, Any] = field(default_factory=dict)
+    inputs: Content = field(default_factory=dict)
+    states: Content = field(default_factory=dict)
+    variables: Content = field(default_factory=dict)
+    forces: Content = field(default_factory=dict)
 
 
 def actuators(robot: Robot, mechanism: Mechanism) -> Actuators:
@@ -72,7 +72,7 @@ def _line(mechanism: Mechanism, transmission: Transmission, k: int, segment: Seg
 
 def _pulls(
     mechanism: Mechanism, transmission: Transmission, lines: list[Line], force: str
-) -> Iterator[tuple[str, Any]]:
+) -> Iterator[tuple[str, object]]:
     """Yield the forces along the segments of a tendon that connect two bodies."""
     for i, j, factor in lines:
         if i.partition(".")[0] != j.partition(".")[0]:

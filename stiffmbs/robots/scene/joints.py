@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from ...elements.spatial.marker import ORIGIN
 from ...elements.spatial.massless import MASSLESS, breaks_triangle, filled, lacks_inertia, massless_moment
 from ...elements.spatial.number_format import plain, vector
 from ...elements.spatial.orientation import IDENTITY, conjugate, rotated
+from ...reading.files.yaml_text import Content
 from ..pose import Placed
 from ..robot import Connection, Link, LinkJoint, Relation, Robot, RobotFault
 from .mechanism import Hold, Mechanism
@@ -29,7 +29,7 @@ class Masses:
         self.moment = massless_moment(least, [frame.position for _, frame in mechanism.bodies.values()])
 
 
-def bodies(mechanism: Mechanism, masses: Masses) -> dict[str, Any]:
+def bodies(mechanism: Mechanism, masses: Masses) -> Content:
     """Return the bodies by name, with their markers."""
     found = {}
     for name, (link, frame) in mechanism.bodies.items():
@@ -50,14 +50,14 @@ def notes(mechanism: Mechanism) -> list[str]:
     )
 
 
-def _between(link: Link, masses: Masses) -> dict[str, Any]:
+def _between(link: Link, masses: Masses) -> dict[str, object]:
     """Return a massless body between joints of a link: small fractions of the link's mass and inertia, if any."""
     c = np.array(link.center_of_mass)
     moment = float(np.linalg.eigvalsh(link.inertia)[-1] + link.mass * (c @ c)) * MASSLESS
     return {"mass": link.mass * MASSLESS or masses.mass, "inertia": [moment or masses.moment] * 3}
 
 
-def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
+def _heavy(link: Link, masses: Masses) -> dict[str, object]:
     tensor = link.inertia
     if not np.all(np.isfinite(tensor)):
         raise RobotFault(f"link {link.name}: found moments of inertia above 1e308 kg m^2, expected finite values")
@@ -66,7 +66,7 @@ def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
         raise RobotFault(
             f"link {link.name}: found the principal moments of inertia {', '.join(f'{x:g}' for x in moments)} kg m^2, expected none below 0"
         )
-    body: dict[str, Any] = {"mass": plain(link.mass or masses.mass)}
+    body: dict[str, object] = {"mass": plain(link.mass or masses.mass)}
     if moments[0] < 0:  # rounding error
         axes = np.linalg.eigh(tensor)[1]
         tensor = (axes * np.maximum(moments, 0.0)) @ axes.T
@@ -83,8 +83,8 @@ def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
     return body
 
 
-def _motion(frame: Placed, center_of_mass: tuple[float, ...]) -> dict[str, Any]:
-    found: dict[str, Any] = {"position": vector(frame.position)}
+def _motion(frame: Placed, center_of_mass: tuple[float, ...]) -> Content:
+    found: dict[str, object] = {"position": vector(frame.position)}
     if frame.orientation != (1.0, 0.0, 0.0, 0.0):
         found["orientation"] = vector(frame.orientation)
     velocity, omega = (
@@ -99,7 +99,7 @@ CREEP = {"hinge": 1e-3, "slide": 1e-4}
 """Transition rate of smoothed dry friction, rad/s or m/s."""
 
 
-def joints(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
+def joints(robot: Robot, mechanism: Mechanism) -> Content:
     """Return the scene's joints by name."""
     found = {hold.name: {"type": KINDS[hold.joint.kind], "i": hold.i, "j": hold.j} for hold in mechanism.holds.values()}
     found |= {name: {"type": "fixed", "i": i, "j": j} for name, (i, j) in mechanism.fixed.items()}
@@ -108,14 +108,14 @@ def joints(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
     return found
 
 
-def passive(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
+def passive(robot: Robot, mechanism: Mechanism) -> Content:
     """Return springs, dampers and dry friction of the joints, and dampers of free links."""
     found = {name: entry for hold in mechanism.holds.values() for name, entry in _passive(mechanism, hold)}
     free = [(link, joint) for link in robot.links for joint in link.joints if joint.kind == "free" and joint.damping]
     return found | {name: entry for link, joint in free for name, entry in _damped(mechanism, link, joint)}
 
 
-def _damped(mechanism: Mechanism, link: Link, joint: LinkJoint) -> Iterator[tuple[str, dict[str, Any]]]:
+def _damped(mechanism: Mechanism, link: Link, joint: LinkJoint) -> Iterator[tuple[str, dict[str, object]]]:
     """Yield a damping force at the origin of a free link, and a damping torque."""
     names = [mechanism.names.take(f"{joint.name}_{what}") for what in ("damper", "rotary_damper")]
     marker = mechanism.mark(link.name, names[0], ORIGIN)
@@ -124,12 +124,12 @@ def _damped(mechanism: Mechanism, link: Link, joint: LinkJoint) -> Iterator[tupl
         yield name, {"type": kind, "i": marker, kind: formulas}
 
 
-def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, Any]]]:
+def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, object]]]:
     joint, ends = hold.joint, {"i": hold.i, "j": hold.j}
     rest = plain(joint.rest - hold.zero)
     k, d = plain(joint.stiffness), plain(joint.damping)
     if (k or d) and joint.kind == "hinge":
-        spring: dict[str, Any] = {"type": "torsion_spring", **ends}
+        spring: dict[str, object] = {"type": "torsion_spring", **ends}
         spring |= {"stiffness": k, "free_angle": rest} if k else {}
         yield mechanism.names.take(f"{hold.name}_spring"), spring | ({"damping": d} if d else {})
     elif k or d:
@@ -143,13 +143,13 @@ def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, 
         yield mechanism.names.take(f"{hold.name}_friction"), along_axis(hold, formula)
 
 
-def along_axis(hold: Hold, formula: str) -> dict[str, Any]:
+def along_axis(hold: Hold, formula: str) -> dict[str, object]:
     """Return a torque about a hinge axis, or a force along a slide axis, on marker i with its reaction on j."""
     kind = "torque" if hold.joint.kind == "hinge" else "force"
     return {"type": kind, "i": hold.i, "j": hold.j, "frame": hold.j, kind: [0, 0, formula]}
 
 
-def _relation(mechanism: Mechanism, relation: Relation) -> Iterator[tuple[str, dict[str, Any]]]:
+def _relation(mechanism: Mechanism, relation: Relation) -> Iterator[tuple[str, Content]]:
     hold = mechanism.holds.get(relation.joint)
     other = None if relation.other is None else mechanism.holds.get(relation.other)
     if hold is None or (relation.other is not None and other is None):
@@ -165,7 +165,7 @@ def _relation(mechanism: Mechanism, relation: Relation) -> Iterator[tuple[str, d
     yield name, {"type": "equation", "zero": f"{hold.coordinate} - {hold.joint.zero!r} - ({' + '.join(terms)})"}
 
 
-def _connection(mechanism: Mechanism, connection: Connection) -> Iterator[tuple[str, dict[str, Any]]]:
+def _connection(mechanism: Mechanism, connection: Connection) -> Iterator[tuple[str, Content]]:
     name = mechanism.names.take(connection.name)
     i = mechanism.mark(connection.link, name, connection.point, connection.orientation or IDENTITY)
     j = mechanism.mark(connection.other, f"{name}_j", connection.other_point)

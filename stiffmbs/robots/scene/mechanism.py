@@ -6,13 +6,13 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from ...elements.spatial.marker import ORIGIN
 from ...elements.spatial.number_format import vector
 from ...elements.spatial.orientation import IDENTITY, from_matrix, product, rotated
+from ...reading.files.yaml_text import Content
 from ...reading.formula.functions import FUNCTIONS
 from ...reading.marker import GROUND
 from ...reading.units.units import UNITS
@@ -100,7 +100,7 @@ class Mechanism:
         self.bodies: dict[str, tuple[Link, Placed]] = {}
         self.between: set[str] = set()  # names of the bodies between joints
         self.seats: dict[str | None, Seat] = {None: Seat(GROUND)}  # by link
-        self.markers: dict[str, dict[str, Any]] = {}  # placements by name, for each body
+        self.markers: dict[str, Content] = {}  # placements by name, for each body
         self.holds: dict[str, Hold] = {}  # by joint
         self.fixed: dict[str, tuple[str, str]] = {}  # markers i and j of each fixed joint
         self.unmoved: tuple[str, ...] = ()  # omitted joints, which move no mass
@@ -152,7 +152,7 @@ class Mechanism:
 
     def _mark(self, seat: Seat, name: str) -> str:
         """Add a marker; return its reference in the scene."""
-        placement: dict[str, Any] = {}
+        placement: dict[str, object] = {}
         if any(seat.position):
             placement["point"] = vector(seat.position)
         if seat.orientation != IDENTITY:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import numpy as np
 
 from ...elements.spatial.number_format import plain, vector
+from ...reading.files.yaml_text import Content
 from ...reading.marker import GROUND
 from ..robot import LinkJoint, Robot, RobotFault
 from .actuators import actuators
@@ -19,7 +19,7 @@ RUN = {"duration": 1, "output": 0.01}
 """Default run settings, which robot files lack."""
 
 
-def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, Any]:
+def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> Content:
     """Return the scene of a robot for `stiffmbs.model.read_scene.read_scene`.
 
     `coordinates`, `rates`: initial coordinates of hinges and slides, rad or m, and their rates; others are as drawn,
@@ -29,7 +29,7 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
     mechanism = Mechanism(robot, coordinates, rates)
     masses = Masses(robot, mechanism)
     acting = actuators(robot, mechanism)
-    found: dict[str, Any] = {
+    found: Content = {
         "name": robot.name,
         "dimensions": 3,
         "gravity": vector(robot.gravity),
@@ -58,7 +58,7 @@ def _check_joints(robot: Robot, given: Mapping[str, float]) -> None:
             )
 
 
-def _lifted(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
+def _lifted(robot: Robot, mechanism: Mechanism) -> Content:
     """Return the forces that balance the weight of links, at their centres of mass."""
     found = {}
     for link in robot.links:
@@ -89,7 +89,7 @@ def _notes(mechanism: Mechanism) -> Iterator[str]:
 
 
 def add_rotors(
-    found: dict[str, dict[str, Any]], robot: Robot, mechanism: Mechanism, masses: Masses, rates: Mapping[str, float]
+    found: dict[str, dict[str, object]], robot: Robot, mechanism: Mechanism, masses: Masses, rates: Mapping[str, float]
 ) -> None:
     """Add a rotor for each joint with an armature to the bodies and joints of a scene."""
     across = along_z(_across(robot.gravity))
@@ -109,13 +109,13 @@ def add_rotors(
         found["joints"][tie] = {"type": "coupler", "joint_1": hold.name, "joint_2": shaft, "scale": 1}
 
 
-def _inertia(joint: LinkJoint, masses: Masses) -> dict[str, Any]:
+def _inertia(joint: LinkJoint, masses: Masses) -> dict[str, object]:
     if joint.kind == "hinge":
         return {"mass": plain(masses.lightest), "inertia": [plain(joint.armature)] * 3}
     return {"mass": plain(joint.armature), "inertia": [masses.moment] * 3}
 
 
-def _rate(joint: LinkJoint, rate: float, robot: Robot) -> dict[str, Any]:
+def _rate(joint: LinkJoint, rate: float, robot: Robot) -> dict[str, object]:
     if not rate:
         return {}
     if joint.kind == "hinge":

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...analyses.job import data_of
+from ...analyses.job import Runnable, data_of
 from ...analyses.run import run
 from ...errors import InputError, refuse_missing, refuse_text
 from ...model.model_data import ModelData
@@ -86,7 +86,7 @@ def write_animation(
 
 
 def animate(
-    model: Any, path: str | Path, runs: Solution | Mapping[str, Solution] | None = None, view: str = "", speed: float = 1.0,
+    model: Runnable, path: str | Path, runs: Solution | Mapping[str, Solution] | None = None, view: str = "", speed: float = 1.0,
     rate: float = 25.0, names: bool = False, forces: bool | None = None, traces: Sequence[str] = (), **changes: Any,
 ) -> None:  # fmt: skip
     """Write an animation of a model, as a film or a page.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from .solids import triangles
 DIGITS = 6
 
 
-def drawing_json(drawing: Drawing) -> dict[str, Any]:
+def drawing_json(drawing: Drawing) -> dict[str, object]:
     """Return the drawables: vertices and triangles, lines, stretched profiles, names, colors.
 
     The result: lengths in metres, in the axes of bodies relative to their centres of mass; ready for `json.dumps`.
@@ -37,7 +36,7 @@ def drawing_json(drawing: Drawing) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def poses_json(poses: Poses) -> dict[str, Any]:
+def poses_json(poses: Poses) -> dict[str, object]:
     """Return time, s; x, y, z (m) and quaternion of each body; force (N) of each element; one list per instant."""
     return {
         "time": poses.time.tolist(),
@@ -48,16 +47,16 @@ def poses_json(poses: Poses) -> dict[str, Any]:
     }
 
 
-def _numbers(values: np.ndarray, size: float) -> list[Any]:
+def _numbers(values: np.ndarray, size: float) -> list[object]:
     """Round numbers to six digits of the mechanism's size."""
     return np.round(values, DIGITS - int(np.floor(np.log10(size)))).tolist()  # type: ignore[no-any-return]
 
 
-def _by_body(shapes: Mapping[str, np.ndarray]) -> dict[str, Any]:
+def _by_body(shapes: Mapping[str, np.ndarray]) -> dict[str, object]:
     return {body: [_numbers(shape, np.abs(own).max() or 1.0) for shape in own] for body, own in shapes.items()}
 
 
-def _part(part: Part, drawing: Drawing) -> dict[str, Any]:
+def _part(part: Part, drawing: Drawing) -> dict[str, object]:
     return {
         "owner": part.owner, "role": part.role, "body": part.body, "color": face_color(drawing, part),
         "edge": edge_color(drawing, part.owner, part.role),
@@ -72,7 +71,7 @@ def _part(part: Part, drawing: Drawing) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _link(link: Link, drawing: Drawing) -> dict[str, Any]:
+def _link(link: Link, drawing: Drawing) -> dict[str, object]:
     return {
         "owner": link.owner, "role": link.role, "edge": edge_color(drawing, link.owner, link.role), "width": link.width,
         "dashed": link.dashed, "i": {"body": link.i.body, "point": _numbers(link.i.point, drawing.size)},

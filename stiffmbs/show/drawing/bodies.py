@@ -132,7 +132,7 @@ def _with_edges(solid: Solid) -> Shapes:
 
 
 def derived_shape(
-    name: str, body: Any, dimensions: int, points: Sequence[np.ndarray], size: float, thick: float
+    name: str, body: object, dimensions: int, points: Sequence[np.ndarray], size: float, thick: float
 ) -> Part:
     """Return a shape through a body's points: a bar, a plate or a hull; a block for a single point."""
     found = _distinct(points, SAME_POINT * size)

@@ -190,7 +190,7 @@ def _drawn(
     return draft
 
 
-def _ends(element: Any, data: ModelData, sites: _Sites) -> tuple[Site | None, Site | None]:
+def _ends(element: Element, data: ModelData, sites: _Sites) -> tuple[Site | None, Site | None]:
     found = (getattr(element, end, None) for end in ("i", "j"))
     i, j = (sites.of(marker) if isinstance(marker, MarkerReference) else None for marker in found)
     return i, j

@@ -72,7 +72,9 @@ class Draft:
         lines = tuple(solids.moved_line(s, site.point, site.axes) for s in shapes if isinstance(s, Line))
         self.parts.append(Part(self.owner, role, site.body, found, lines, color))
 
-    def stretch(self, i: Site, j: Site, role: Role, *profiles: Any, width: float = 1.0, dashed: bool = False) -> None:
+    def stretch(
+        self, i: Site, j: Site, role: Role, *profiles: object, width: float = 1.0, dashed: bool = False
+    ) -> None:
         """Draw profiles from one site to another."""
         shapes = tuple(np.array(profile, dtype=float) for profile in profiles)
         self.links.append(Link(self.owner, role, i.anchor, j.anchor, shapes, width, dashed))

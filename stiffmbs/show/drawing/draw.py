@@ -79,8 +79,8 @@ def write_drawing(path: Path, drawing: Drawing, poses: Poses, view: str, names: 
 
 
 def draw(
-    model: Any, path: str | Path | None = None, at: float | None = None, described: bool = False,
-    checked: bool = False, view: str = "", names: bool = True, forces: bool | None = None, **changes: Any,
+    model: object, path: str | Path | None = None, at: float | None = None, described: bool = False,
+    checked: bool = False, view: str = "", names: bool = True, forces: bool | None = None, **changes: object,
 ) -> Sheet | None:  # fmt: skip
     """Draw a model at an instant: bodies by their geometry, joints and forces by the symbols of the field.
 
@@ -129,7 +129,7 @@ def draw(
     return None
 
 
-def summary(drawing: Drawing, poses: Poses) -> dict[str, Any]:
+def summary(drawing: Drawing, poses: Poses) -> dict[str, object]:
     """Return the content of ``stiffmbs draw --json`` in addition to the file."""
     owners = {part.owner for part in drawing.parts} | {link.owner for link in drawing.links}
     return {

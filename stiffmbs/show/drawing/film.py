@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +19,10 @@ from .picture import Shown, empty_sheet, explain, paint, prepare, widened, write
 from .poses import Poses, followed_body, path_of, seen_from
 from .scene_graph import Anchor, Drawing
 from .view import View
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
 
 MOST_FRAMES = 3_000
 FAINT = 0.4
@@ -87,7 +91,7 @@ def pictures(
     margin = 0.05 * float(np.linalg.norm(high - low))
     low, high = widened(low - margin, high + margin)
     sheet, axes = empty_sheet(low, high)
-    canvas: Any = FigureCanvasAgg(sheet)
+    canvas = FigureCanvasAgg(sheet)
     axes.set_title(drawing.name or "mechanism", fontsize=11, parse_math=False)
     clock = axes.text(0.01, 0.01, "", transform=axes.transAxes, fontsize=9, family="monospace")
     sheet.set_dpi(90)
@@ -110,7 +114,7 @@ def pictures(
             artist.remove()
 
 
-def _frame(axes: Any, drawing: Drawing, samples: Sequence[Poses], k: int, view: View, largest: float) -> list[Any]:
+def _frame(axes: Axes, drawing: Drawing, samples: Sequence[Poses], k: int, view: View, largest: float) -> list[Artist]:
     """Draw one instant: the other runs faint and in one color each, the first run over them."""
     artists = []
     for number in range(len(samples) - 1, 0, -1):
@@ -123,7 +127,7 @@ def _frame(axes: Any, drawing: Drawing, samples: Sequence[Poses], k: int, view: 
     return artists + over
 
 
-def _name_runs(axes: Any, drawing: Drawing, names: Sequence[str], largest: float) -> None:
+def _name_runs(axes: Axes, drawing: Drawing, names: Sequence[str], largest: float) -> None:
     explain(axes, drawing, largest)
     if len(names) > 1:
         from matplotlib.patches import Patch as Key

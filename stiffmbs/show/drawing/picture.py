@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +15,9 @@ from .scene_graph import EDGES, LOAD, MARKS, PAPER, RAMP, Drawing
 from .view import View
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.collections import Collection
     from matplotlib.figure import Figure as Sheet
 
 WIDTH = 8.0
@@ -59,7 +61,7 @@ def picture(drawing: Drawing, poses: Poses, view: View, shown: Shown, on_screen:
     return sheet
 
 
-def empty_sheet(low: np.ndarray, high: np.ndarray, on_screen: bool = False) -> tuple[Sheet, Any]:
+def empty_sheet(low: np.ndarray, high: np.ndarray, on_screen: bool = False) -> tuple[Sheet, Axes]:
     """Return a sheet with the aspect ratio of the drawing, and its axes without ticks."""
     width, height = high - low
     size = (WIDTH, float(np.clip(WIDTH * height / width, 2.0, 9.0)) + 0.5)
@@ -91,15 +93,15 @@ def prepare(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
     axes.set_axis_off()
 
 
-def paint(axes: Axes, patches: Sequence[Patch], faint: float = 1.0) -> list[Any]:
+def paint(axes: Axes, patches: Sequence[Patch], faint: float = 1.0) -> list[Artist]:
     """Put patches on axes; return the artists, so that a film can remove them."""
     from matplotlib.collections import LineCollection, PolyCollection
 
-    artists: list[Any] = []
+    artists: list[Artist] = []
     for is_face, group in _runs(patches):
         points = [patch.points for patch in group]
         if is_face:
-            made: Any = PolyCollection(
+            made: Collection = PolyCollection(
                 points,
                 facecolors=[_faded(patch.face, faint * patch.opacity) for patch in group],
                 edgecolors="face",
@@ -133,7 +135,7 @@ def _runs(patches: Iterable[Patch]) -> Iterable[tuple[bool, list[Patch]]]:
         yield bool(run[-1].face), run
 
 
-def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) -> list[Any]:
+def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) -> Sequence[Artist]:
     """Write names next to their points, with the least overlap."""
     names = drawing.names if len(drawing.names) <= MOST_NAMES else [n for n in drawing.names if n.role == "body"]
     taken: list[np.ndarray] = []

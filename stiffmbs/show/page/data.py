@@ -8,7 +8,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from zlib import Z_BEST_COMPRESSION
 
 import numpy as np
@@ -22,7 +22,6 @@ from ..escaped import page_text
 
 if TYPE_CHECKING:
     from jinja2 import Environment
-
 
 MOST_POSES = 1200
 POSES_A_SECOND = 60
@@ -80,7 +79,7 @@ def page_data(
     width = sum(7 * len(poses.points) + 3 * len(poses.forces) for poses in runs.values()) or 1
     most = max(50, min(MOST_POSES, POSE_VALUES // width))
     first = next(iter(runs.values()))
-    head: dict[str, Any] = {
+    head: dict[str, object] = {
         "drawing": drawing_json(drawing),
         "longest": {"force": largest_force(drawing, first), "length": LONGEST_ARROW * drawing.size},
         "runs": [{"name": name, **_motion(poses, packed, most)} for name, poses in runs.items()],
@@ -92,7 +91,7 @@ def page_data(
     return {"head": packed_text(json.dumps(head, allow_nan=False).encode(), level), "numbers": packed.text(level)}
 
 
-def _motion(poses: Poses, packed: Packed, most: int) -> dict[str, Any]:
+def _motion(poses: Poses, packed: Packed, most: int) -> dict[str, object]:
     """Return a run at equal time steps, as many as a film needs."""
     start, end = float(poses.time[0]), float(poses.time[-1])
     count = int(np.clip((end - start) * POSES_A_SECOND, min(len(poses.time), most), most))
@@ -113,7 +112,9 @@ def _continuous(p: np.ndarray) -> np.ndarray:
     return p * turns[:, None]
 
 
-def _channels(solution: Solution, packed: Packed, shown: Sequence[str], only: Sequence[str] | None) -> dict[str, Any]:
+def _channels(
+    solution: Solution, packed: Packed, shown: Sequence[str], only: Sequence[str] | None
+) -> dict[str, object]:
     """Return every channel, at few enough output instants to keep the page small."""
     included = solution.channels if only is None else only
     most = max(100, min(MOST_INSTANTS, CHANNEL_VALUES // max(len(included), 1)))

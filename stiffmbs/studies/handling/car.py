@@ -6,7 +6,6 @@ import copy
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from ...model.parts.placing import placed_in_use
 from ...model.read_scene import chosen_options, made_scene
 from ...model.scene import Scene
 from ...reading.did_you_mean import did_you_mean
+from ...reading.files.yaml_text import Content
 
 DRIVER = "handling_driver"
 STEER = "handling_steer"
@@ -156,9 +156,9 @@ class Manoeuvre:
     speed: float  # at the start, m/s
     duration: float  # s
     steer: str = ""  # formula of time for the steering joint; empty if the driver keeps a path
-    driver: Mapping[str, Any] | None = None  # parameters of the driver
-    path: Mapping[str, Any] | None = None  # section ``path``, which the driver keeps
-    road: Mapping[str, Any] | None = None
+    driver: Mapping[str, object] | None = None  # parameters of the driver
+    path: Content | None = None  # section ``path``, which the driver keeps
+    road: Mapping[str, object] | None = None
     output: float = 0.01  # s
 
 
@@ -180,7 +180,7 @@ def with_manoeuvre(scene: Scene, car: Car, manoeuvre: Manoeuvre) -> Scene:
     return made_scene(content, left, kept.source, lambda _: None, kept.folder)
 
 
-def _strip(content: dict[str, Any], car: Car) -> tuple[str, ...]:
+def _strip(content: Content, car: Car) -> tuple[str, ...]:
     """Remove what a manoeuvre replaces; return the beginnings of the paths of changes that concern it."""
     gone = ["run.", "start", "figure", "stages", "at_start", "path", "requests."]
     for section in ("figure", "stages", "at_start", "path", "start", "requests"):
@@ -220,7 +220,7 @@ def _set_roads(content: object) -> None:
 OF_A_PRESSED_PEDAL = ("presses", "pressing", "force")
 
 
-def _brake_by(driver: dict[str, object], use: Mapping[str, object], content: dict[str, Any]) -> None:
+def _brake_by(driver: dict[str, object], use: Mapping[str, object], content: Content) -> None:
     """Let the driver press the pedal of a part `brakes`, if the car has one."""
     for entry in use.values():
         if isinstance(entry, dict) and entry.get("part") == "brakes":
@@ -232,12 +232,12 @@ def _brake_by(driver: dict[str, object], use: Mapping[str, object], content: dic
             content["variables"] = {**(content.get("variables") or {}), "braking": f"{DRIVER}.braking_force"}
 
 
-def _renamed(formula: object, old: str) -> Any:
+def _renamed(formula: object, old: str) -> object:
     """Return a formula that reads channels of the manoeuvre's driver in place of those of the scene's own."""
     return re.sub(rf"(?<![\w.]){re.escape(old)}\.", f"{DRIVER}.", formula) if isinstance(formula, str) else formula
 
 
-def _attach(content: dict[str, Any], car: Car, manoeuvre: Manoeuvre) -> None:
+def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
     own = content.pop("_driver", None) or {}
     if own:
         formulas = content.get("variables") or {}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,7 @@ BEFORE = 30.0
 PART_1, PART_2 = "iso3888-1", "iso3888-2"
 
 
-def in_lanes(standard: str) -> Callable[[Known, Any], list[Manoeuvre]]:
+def in_lanes(standard: str) -> Callable[[Known, LaneChange | ObstacleAvoidance], list[Manoeuvre]]:
     """Return the function that states the manoeuvres on the course of a standard."""
 
     def manoeuvres(known: Known, test: LaneChange | ObstacleAvoidance) -> list[Manoeuvre]:
@@ -31,7 +30,7 @@ def in_lanes(standard: str) -> Callable[[Known, Any], list[Manoeuvre]]:
     return manoeuvres
 
 
-def of_lanes(standard: str) -> Callable[[Known, Any, list[Run]], Metrics]:
+def of_lanes(standard: str) -> Callable[[Known, LaneChange | ObstacleAvoidance, list[Run]], Metrics]:
     """Return the function that evaluates runs on the course of a standard."""
 
     def metrics(known: Known, test: LaneChange | ObstacleAvoidance, runs: list[Run]) -> Metrics:

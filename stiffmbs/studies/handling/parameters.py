@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from ...errors import InputError, prefixed
 from ...reading.did_you_mean import did_you_mean, instead_of
@@ -12,12 +12,13 @@ from ...reading.files.yaml_text import read_yaml
 from ...reading.formula.text import FormulaError
 from ...reading.units.quantity import in_si
 
+Value = TypeVar("Value")
 G: Final = 9.81
 SPEED: Final = 80 / 3.6
 """Test speed of ISO 7401, ISO 4138 (constant speed) and ISO 19365, m/s."""
 
 
-def parameter(default: object, dimension: str, meaning: str, source: str = "") -> Any:
+def parameter(default: Value, dimension: str, meaning: str, source: str = "") -> Value:
     """Return a field of a test: its default in SI units, dimension, meaning and the part of the standard it is from."""
     return field(default=default, metadata={"dimension": dimension, "meaning": meaning, "source": source})
 
@@ -156,7 +157,7 @@ def names_of(parameters: Any) -> list[str]:
     return [each.name for each in fields(parameters)]
 
 
-def _value(path: str, given: object, parameters: Any, name: str) -> Any:
+def _value(path: str, given: object, parameters: Any, name: str) -> object:
     dimension = next(each for each in fields(parameters) if each.name == name).metadata["dimension"]
     if dimension == "class":
         if given not in tuple("ABCDEFGH"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from .braking import braking_in_a_turn, of_braking_in_a_turn, of_straight_braking, straight_braking
 from .car import Manoeuvre
@@ -26,23 +26,26 @@ from .ride import of_ride, ride
 from .steady_state_cornering import constant_radius, constant_speed, of_constant_radius, of_constant_speed
 from .steering_inputs import dwell, frequency, of_dwell, of_frequency, of_step_steer, step_steer
 
+Test = TypeVar("Test")
+"""Parameters of a test."""
+
 
 @dataclass(frozen=True)
-class HandlingTest:
+class HandlingTest(Generic[Test]):
     """Test of a standard."""
 
     title: str
-    parameters: Any  # parameters with their defaults
-    manoeuvres: Callable[[Known, Any], list[Manoeuvre]]  # returns the manoeuvres from `Known` and the parameters
+    parameters: Test  # parameters with their defaults
+    manoeuvres: Callable[[Known, Test], list[Manoeuvre]]  # returns the manoeuvres from `Known` and the parameters
     # returns the metrics from `Known`, the parameters and the runs of the manoeuvres
-    metrics: Callable[[Known, Any, list[Run]], Metrics]
+    metrics: Callable[[Known, Test, list[Run]], Metrics]
     shown: tuple[str, str]  # channels on both axes of the test's figure
     ramped: bool = False  # True if it needs the slow ramp at its own speed
     # returns further metrics from `Known`, the parameters and a function that solves one manoeuvre after another
-    search: Callable[[Known, Any, Callable[[Manoeuvre], Run]], Metrics] | None = None
+    search: Callable[[Known, Test, Callable[[Manoeuvre], Run]], Metrics] | None = None
 
 
-TESTS: dict[str, HandlingTest] = {
+TESTS: dict[str, HandlingTest[Any]] = {
     "constant_speed": HandlingTest("Slow ramp of steering, ISO 4138", ConstantSpeed(), constant_speed, of_constant_speed, ("vehicle.ay", SEEN), ramped=True),
     "constant_radius": HandlingTest("Circle, ISO 4138", ConstantRadius(), constant_radius, of_constant_radius, ("vehicle.ay", SEEN)),
     "step_steer": HandlingTest("Step of steering, ISO 7401", StepSteer(), step_steer, of_step_steer, ("time", "vehicle.yaw_rate"), ramped=True),

@@ -8,6 +8,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, replace
 from multiprocessing import get_context
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -83,7 +84,7 @@ class Handling:
 
 
 def handling(
-    model: Scene | str | Any, tests: Sequence[str] | None = None, *, body: str | None = None, steering: str | None = None,
+    model: Scene | str | Path, tests: Sequence[str] | None = None, *, body: str | None = None, steering: str | None = None,
     width: float | str | None = None, workers: int | None = None, parameters: Mapping[str, float | str | Sequence[float]] | None = None,
 ) -> Handling:  # fmt: skip
     """Run handling and ride tests of the standards on a car.

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from ...analyses.job import data_of
+from ...analyses.job import Runnable, data_of
 from ...errors import InputError
 from ...model.files.other_forces import OtherForces
 from ...model.files.stages import WrittenScene
@@ -37,7 +37,7 @@ class Scenes:
         self.known = as_read if as_read and as_read.written is written else read_changed(written, (), self._unchanged)
 
     @classmethod
-    def of_model(cls, model: Any) -> Scenes:
+    def of_model(cls, model: Runnable) -> Scenes:
         """Return the scenes of a model, a scene or a file; errors as for `written_scene`."""
         data = data_of(model)
         if isinstance(data, Scene) and data.validated.scene is data and not (data.stages or data.at_start):
@@ -82,7 +82,7 @@ class Parameter:
             return any(self.scene(self.value + self.step).gravity)
         return False
 
-    def almost_zero(self) -> tuple[str, Any]:
+    def almost_zero(self) -> tuple[str, object]:
         """Return the change that replaces zero by a negligible value."""
         return self._path, _replaced(self._whole, self._places, ALMOST_ZERO)
 
@@ -135,7 +135,7 @@ def _is_number(found: object) -> bool:
     return isinstance(found, int | float) and not isinstance(found, bool)
 
 
-def _next(at: object, parts: Sequence[str], k: int, name: str) -> tuple[Any, int]:
+def _next(at: object, parts: Sequence[str], k: int, name: str) -> tuple[object, int]:
     """Return the object under the next part of a path, or under several as names may have dots, and the next index."""
     for end in range(len(parts), k, -1):
         key = ".".join(parts[k:end])
@@ -160,5 +160,5 @@ def _replaced(whole: Any, places: Sequence[int], value: float) -> Any:
     return [_replaced(part, rest, value) if k == first else _listed(part) for k, part in enumerate(whole)]
 
 
-def _listed(part: object) -> Any:
+def _listed(part: object) -> object:
     return [_listed(each) for each in part] if isinstance(part, list | tuple) else part

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -21,7 +20,9 @@ from ...compile.inputs.features import input_features
 from ...compile.kind import sorted_out
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
+from ...elements.element import Element
 from ...errors import InputError, SolverError
+from ...model.model_data import ModelData
 from ...model.scene import Scene
 from ...results.scales import ROUNDING
 from ...sensitivity_equations.jumps import BreakpointRates
@@ -130,7 +131,7 @@ class SetUp:
             name for name in before if any(getattr(scene, section)[name] is not before[name] for scene in self.scenes)
         ]
 
-    def _place(self, name: str, scene: Any, element: Any) -> tuple[int, int, np.ndarray]:
+    def _place(self, name: str, scene: Scene, element: Element) -> tuple[int, int, np.ndarray]:
         """Return the group of an element, the index of its first number there, and its numbers."""
         kind, data = sorted_out(name, element.at_initial_pose(scene), scene)
         for g, group in enumerate(self._job.dynamics.system.groups):
@@ -239,7 +240,7 @@ def _counterpart(known: np.ndarray, place: int, other: np.ndarray) -> float | No
     return float(other[nearest])
 
 
-def _same_bodies(before: Any, after: Any) -> bool:
+def _same_bodies(before: ModelData, after: ModelData) -> bool:
     """Return True if all but joints and forces is equal, so that elements can be compared one by one."""
     if any(getattr(before, section, None) != getattr(after, section, None) for section in HELD):
         return False

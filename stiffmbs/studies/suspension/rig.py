@@ -13,6 +13,7 @@ from ...compile.quaternions import CONJUGATE, rotated, times
 from ...elements.element import Force, Joint
 from ...elements.joints.constraint_equation import ConstraintEquation
 from ...elements.joints.drive import Drive
+from ...elements.spatial.body import Body
 from ...elements.spatial.forces.applied import AppliedForce, AppliedTorque
 from ...elements.spatial.joints.fixed import Fixed
 from ...elements.spatial.marker import Marker, Placement
@@ -111,7 +112,7 @@ def on_rig(scene: ModelData, axle: Axle, tables: dict[str, Table]) -> ModelData:
     return data
 
 
-def _markers(body: Any, wheel: Wheel) -> dict[str, Placement]:
+def _markers(body: Body, wheel: Wheel) -> dict[str, Placement]:
     """Return the markers of a wheel on its carrier: centre, a point 1 m along the axis, and contact."""
     axes = np.array(from_matrix(wheel_axes(wheel.axis).T))
     back = np.array(body.orientation) * CONJUGATE

@@ -5,11 +5,14 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, TypeAlias
 
 from .values import ITEMS, LLVM_TYPES, NUMBERS, Operand, Untranslatable, Value
 
-Lines = list[Any]
+if TYPE_CHECKING:
+    from .unit import Unit
+
+Lines: TypeAlias = "list[str | Lines]"
 """Instructions, and lists of instructions that are filled later."""
 
 
@@ -20,7 +23,7 @@ class Code:
     instruction is reachable; otherwise nothing may be written.
     """
 
-    def __init__(self, unit: Any) -> None:
+    def __init__(self, unit: Unit) -> None:
         self.unit = unit
         self.reached = True
         self._entry: Lines = []

@@ -185,7 +185,7 @@ class Expressions:
         called = FUNCTIONS.get(called, called) if callable(called) else called
         if isinstance(called, Builtin):
             return called.lower(self.code, *arguments)
-        if not hasattr(called, "__code__"):
+        if not (callable(called) and hasattr(called, "__code__")):
             raise Untranslatable(f"'{name}' cannot be called")
         return self.code.unit.called(self.code, called, arguments)
 

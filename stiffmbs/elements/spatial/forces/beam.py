@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, field_validator, model_validator
 
 from ....reading.fields import Measured
 from ....reading.units import si
-from ...element import Expr, Symbolic
+from ...element import Expr, Matrix, Symbolic
 from ...forces.elastic_matrix import check_symmetric, stored
 from ..elastic import NO_MATRIX, NO_ROW, Damping, Elastic, pull_back, six_rows, without_zeros
 
@@ -60,7 +60,7 @@ class Beam(Elastic):
         return self
 
     @staticmethod
-    def stiffness(e: Symbolic) -> Any:
+    def stiffness(e: Symbolic) -> Matrix:
         """Return K, six rows."""
         E, G, A, L = e.young, e.shear_modulus, e.area, e.length
         along, twist = E * A / L, G * e.torsion / L
@@ -84,7 +84,7 @@ class Beam(Elastic):
         return pull_back(cls.stiffness(e), cls.strain(e), NO_ROW)
 
     @classmethod
-    def viscosity(cls, e: Symbolic) -> Any:
+    def viscosity(cls, e: Symbolic) -> Matrix:
         """Return C, given directly or by its ratio to K."""
         if e.damping_ratio is None:
             return e.damping

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -92,5 +92,5 @@ class Bushing(Connection):
         return stored_with_laws(e, cls.deformation(e), _laws(e))
 
 
-def _laws(e: Symbolic) -> tuple[Any, ...]:
+def _laws(e: Symbolic) -> tuple[Expr, ...]:
     return e.law_x, e.law_y, e.law_z, e.law_about_x, e.law_about_y, e.law_about_z

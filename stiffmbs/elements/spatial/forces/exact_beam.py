@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Self
 
 from pydantic import Field, field_validator, model_validator
 
@@ -58,7 +58,7 @@ class ExactBeam(BeamStrain):
 
     kind: ClassVar[str] = "exact_beam"
     channels: ClassVar[tuple[str, ...]] = ("n1", "n2", "n3", "m1", "m2", "m3")
-    forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
+    forms: ClassVar[tuple[Mapping[str, object], ...]] = (
         {"stiffness": (1,) * 6},
         {"stiffness": (1,) * 6, "bowing": (1.2, 1.2)},
         {"stiffness": (1,) * 6, "bowing": (1.2, 1.2), "shear_centre": (0, 1, 1), "wagner": (0, 1, 1)},

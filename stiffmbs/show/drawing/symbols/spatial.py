@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -103,14 +102,14 @@ PROFILE = np.array([[0.66, -0.5], [0.95, -0.5], [1.0, -0.3], [1.0, 0.3], [0.95, 
 """Cross section of a tyre: radius in radii, and place in widths."""
 
 
-def radius_of(tyre: Any) -> float:
+def radius_of(tyre: object) -> float:
     """Return the unloaded radius of a tyre, m; zero if its data have none."""
     properties = getattr(tyre, "properties", None)
     found = getattr(tyre, "radius", None) or _coefficient(properties, "UNLOADED_RADIUS")
     return float(found or 0.0)
 
 
-def _coefficient(properties: Any, name: str) -> float | None:
+def _coefficient(properties: object, name: str) -> float | None:
     found = getattr(properties, "coefficients", properties)
     value = found.get(name) if hasattr(found, "get") else getattr(found, name, None)
     return float(value) if isinstance(value, float | int) else None
