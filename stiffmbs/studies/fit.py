@@ -216,7 +216,9 @@ class _Model:
         J = self.jacobian(point, weights)
         step = np.linalg.qr(J)[0].T @ self.residuals(point, weights)
         signal = [w * np.nanstd(self._data.channels[name]) for name, w in weights.items()]
-        if len(J) > len(point) and np.linalg.norm(step) < self._settings.rtol * np.sqrt(len(J) * np.mean(np.square(signal))):
+        if len(J) > len(point) and np.linalg.norm(step) < self._settings.rtol * np.sqrt(
+            len(J) * np.mean(np.square(signal))
+        ):
             raise _Resolved(point)
         return J
 

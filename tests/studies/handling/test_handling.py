@@ -36,7 +36,7 @@ def test_the_metrics_of_the_car_agree_with_each_other():
     assert not any(one.message for one in found.tests.values())
     ramp, circle, step = (found[name] for name in ("constant_speed", "constant_radius", "step_steer"))
     gradient = ramp["understeer gradient"]
-    assert gradient == pytest.approx(circle["understeer gradient"], rel=0.06), "two methods of ISO 4138"
+    assert gradient == pytest.approx(circle["understeer gradient"], rel=0.02), "two methods of ISO 4138"
     assert ramp["characteristic speed"] == pytest.approx(np.sqrt(1e3 * found.car.wheelbase / gradient))
     to_rear = 1e-3 * (ramp["sideslip gradient"] - circle["sideslip gradient"]) * SPEED**2
     assert to_rear == pytest.approx(found.car.rear, rel=0.05), (
