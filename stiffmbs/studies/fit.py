@@ -196,9 +196,9 @@ class _Model:
     def searched(self, point: np.ndarray, weights: Mapping[str, float]) -> Any:
         """Return the result of `scipy.optimize.least_squares` from a point on.
 
-        It ends where the next step changes the model by less than its integration error (relative offset of Bates and
-        Watts, Technometrics 23 (1981) 179-183, with this error in place of the residuals), or is below the run's
-        tolerance.
+        It ends where the next step is below the run's tolerance, or changes the model by less than its integration
+        error. This is the relative offset of Bates and Watts, Technometrics 23 (1981) 179-183, with that error in place
+        of the residuals.
         """
         from scipy.optimize import OptimizeResult, least_squares
 

@@ -19,6 +19,8 @@ BEGUN = 0.3
 """Lateral acceleration from which a ramp is quasi-steady, m/s^2."""
 DROP = 0.9
 """Part of the largest lateral acceleration so far below which the limit is passed."""
+RAMP_BEGIN = 1.0
+"""Begin of the slow ramp, s."""
 
 
 def probe(car: Car) -> Manoeuvre:
@@ -34,13 +36,13 @@ def curvature_of(run: Run) -> float:
 def ramp(car: Car, per_curvature: float, speed: float = SPEED) -> Manoeuvre:
     """Return a slow ramp of steering to the left at a speed, m/s: to about 20 m/s^2, were there no limit of the tyres."""
     most = float(per_curvature * (1 + 1.5e-3 * speed**2) * 20 / speed**2)
-    return Manoeuvre(speed, 46.0, f"({most!r})*max(t - 1, 0)/45", spun=SPUN, output=0.05)
+    return Manoeuvre(speed, 46.0, f"({most!r})*max(t - {RAMP_BEGIN}, 0)/45", spun=SPUN, output=0.05)
 
 
 def quasi_steady(run: Run) -> Run:
     """Return the quasi-steady part of a ramp, up to its largest lateral acceleration before the car slides.
 
-    The response lags behind the ramp by a constant time: the steering at zero lateral acceleration is subtracted from
+    The response follows the ramp after a constant delay: the steering at zero lateral acceleration is subtracted from
     its channel, which is that of steady turns then.
     """
     ay = run["vehicle.ay"]
@@ -50,6 +52,13 @@ def quasi_steady(run: Run) -> Run:
     rows = (np.arange(len(ay)) <= np.argmax(ay[:end])) & (ay > BEGUN)
     kept = {name: values[rows] for name, values in run.items()}
     return {**kept, SEEN: kept[SEEN] - at_zero(kept["vehicle.ay"], kept[SEEN])[0]}
+
+
+def lag_of(slow: Run) -> float:
+    """Return the delay from the steering of a quasi-steady ramp to its lateral acceleration, s."""
+    time, steer = slow["time"], slow[SEEN]
+    rate = (steer[-1] - steer[0]) / (time[-1] - time[0])
+    return max(float(time[0] - RAMP_BEGIN - steer[0] / rate), 0.0)
 
 
 def _steady(run: Run, known: Known, curvature: Any) -> Metrics:

@@ -52,6 +52,20 @@ def test_the_metrics_of_the_car_agree_with_each_other():
     assert found["lane_change"]["passed (1 yes, 0 no)"] == 1
 
 
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("name", "rear"),
+    [("hatchback", "twist_beam"), ("hatchback", "five_link"), ("hatchback", "trailing_arm"), ("formula_student", "")],
+)
+def test_the_driver_keeps_to_the_double_lane_change(name, rear):
+    """Steering that was not ahead by the car's own lag, and a fast correction of its yaw rate, left it by 0.31 m."""
+    changes = [("choose.rear", rear)] if rear else []
+    scene = stiffmbs.load_scene(EXAMPLES / "vehicles" / f"{name}.yaml", changes)
+    found = stiffmbs.handling(scene, ["lane_change"], workers=1)["lane_change"]
+    assert found["largest lateral error"] < 0.15
+    assert found["passed (1 yes, 0 no)"] == 1
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
