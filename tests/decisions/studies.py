@@ -22,6 +22,7 @@ from stiffmbs.studies import (
 )
 from stiffmbs.studies.fmu import build
 from stiffmbs.studies.handling import braking, car, lane_changes, metrics, steady_state_cornering, steering_inputs
+from stiffmbs.studies.handling.known import Known
 from stiffmbs.studies.handling.vibration import Weighting
 from stiffmbs.studies.sensitivities import formulas
 from stiffmbs.studies.suspension import axle, characteristics, kinematics_and_compliance, steering_axis, tangent
@@ -428,6 +429,10 @@ DECISIONS = {
     ),
     "studies.handling.steady_state_cornering:BEGUN": lambda: 1000 - length_of_a_ramp(0.01 * np.arange(1000.0)),
     "studies.handling.steady_state_cornering:FOLLOWS": turns_at_a_gradient,
+    "studies.handling.steady_state_cornering:RAMP_BEGIN": lambda: steady_state_cornering.lag_of(
+        {"time": np.array([5.0, 6.0]), steady_state_cornering.SEEN: np.array([1.0, 2.0])}
+    ),
+    "studies.handling.known:Known.lag": lambda: Known(None, 1.0, 0.0, 1.8, {}).driver()["anticipation"],
     "studies.handling.steady_state_cornering:SETTLED": time_on_a_circle,
     "studies.handling.steering_inputs:STEER_BEGIN": lambda: steering_inputs.dwell_end(Record(frequency=1.0, dwell=0.0)),
     "studies.handling.study:WIDER": width_beyond_the_track,
@@ -481,6 +486,7 @@ EXPECTED = {
     "studies.handling.steady_state_cornering:PROBE": 5.0, "studies.handling.steady_state_cornering:SPUN": 0.25,
     "studies.handling.steady_state_cornering:DROP": 1, "studies.handling.steady_state_cornering:BEGUN": 31,
     "studies.handling.steady_state_cornering:FOLLOWS": 4.01,
+    "studies.handling.steady_state_cornering:RAMP_BEGIN": 3.0, "studies.handling.known:Known.lag": 0.12,
     "studies.handling.steady_state_cornering:SETTLED": 45.0, "studies.handling.steering_inputs:STEER_BEGIN": 2.0,
     "studies.handling.study:WIDER": 0.2, "studies.handling.vibration:Weighting.f1": 0.7071067810960379,
     "studies.handling.vibration:Weighting.f2": 0.7071067810960378, "studies.input_numbers:MOST_KEPT": 1001, "studies.measured:ROUNDS": 4,
