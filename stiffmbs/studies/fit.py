@@ -150,6 +150,14 @@ def _weights(found: Measured, sigma: Mapping[str, float] | None) -> dict[str, fl
     return {name: 1 / sigma[name] for name in found.channels}
 
 
+class _Resolved(Exception):
+    """End of a search."""
+
+    def __init__(self, point: np.ndarray) -> None:
+        super().__init__()
+        self.point = point
+
+
 class _Model:
     """Model at points of the unit cube, compared with the data."""
 
@@ -166,8 +174,10 @@ class _Model:
             raise InputError(f"data: found a time of {data.time[0]:g} s, expected none before the start at {begin:g} s")
         self._settings = changed(known.run, {**settings, "duration": end - begin, "points": 2})
         self._times = np.union1d([begin], data.time)
-        self._gradients = Gradients(scene, ranges, list(data.channels), self._settings, self._times)
+        self._gradients: Gradients | None = Gradients(scene, ranges, list(data.channels), self._settings, self._times)
         self._step = max(1e-4, self._settings.rtol ** (1 / 3))
+        self._known: dict[bytes, list[np.ndarray] | None] = {}
+        self._known_slopes: dict[bytes, list[np.ndarray]] = {}
 
     def solution(self, point: np.ndarray) -> Solution:
         """Return the solution at the times of the data; errors as for `stiffmbs.run`."""
@@ -184,48 +194,87 @@ class _Model:
             raise SolverError(f"at the start of the search: {solution.message}")
         for output in self._outputs:
             output.refuse_unknown(solution)
+        self._known[point.tobytes()] = self._off(solution)
 
     def searched(self, point: np.ndarray, weights: Mapping[str, float]) -> Any:
-        """Return the result of `scipy.optimize.least_squares` from a point on."""
-        from scipy.optimize import least_squares
+        """Return the result of `scipy.optimize.least_squares` from a point on.
 
-        return least_squares(
-            lambda at: self.residuals(at, weights), point, jac=lambda at: self.jacobian(at, weights), bounds=(0, 1)
-        )
+        It ends where the next step is below the run's tolerance, or changes the model by less than its integration
+        error. This is the relative offset of Bates and Watts, Technometrics 23 (1981) 179-183, with that error in place
+        of the residuals.
+        """
+        from scipy.optimize import OptimizeResult, least_squares
 
-    def _differences(self, solution: Solution) -> dict[str, np.ndarray]:
+        try:
+            return least_squares(
+                lambda at: self.residuals(at, weights), point, jac=lambda at: self._unresolved(at, weights),
+                bounds=(0, 1), xtol=self._settings.rtol,
+            )  # fmt: skip
+        except _Resolved as end:
+            message = "the next step changes the model by less than its integration error"
+            return OptimizeResult(x=end.point, success=True, message=message, active_mask=np.zeros(len(point)))
+
+    def _unresolved(self, point: np.ndarray, weights: Mapping[str, float]) -> np.ndarray:
+        """Return the Jacobian; raise `_Resolved` where the next step is below the integration error."""
+        J = self.jacobian(point, weights)
+        step = np.linalg.qr(J)[0].T @ self.residuals(point, weights)
+        signal = [w * np.nanstd(self._data.channels[name]) for name, w in weights.items()]
+        if len(J) > len(point) and np.linalg.norm(step) < self._settings.rtol * np.sqrt(
+            len(J) * np.mean(np.square(signal))
+        ):
+            raise _Resolved(point)
+        return J
+
+    def _off(self, solution: Solution) -> list[np.ndarray]:
+        """Return model - data of each channel, without gaps of the data."""
         rows = np.searchsorted(solution.time, self._data.time)
-        return {
-            one.name: np.broadcast_to(one.value(solution), solution.time.shape)[rows] - self._data.channels[one.name]
-            for one in self._outputs
-        }
+        values = [np.broadcast_to(one.value(solution), solution.time.shape)[rows] for one in self._outputs]
+        return [(a - b)[np.isfinite(b)] for a, b in zip(values, self._data.channels.values(), strict=True)]
+
+    def differences(self, point: np.ndarray) -> list[np.ndarray] | None:
+        """Return model - data of each channel at a point, which is solved once; None if it cannot be solved."""
+        key = point.tobytes()
+        if key not in self._known:
+            try:
+                solution = self.solution(point)
+            except StiffmbsError:
+                self._known[key] = None
+                return None
+            if solution.outcome is Outcome.INTERRUPTED:
+                raise KeyboardInterrupt
+            self._known[key] = self._off(solution) if solution.outcome is Outcome.DONE else None
+        return self._known[key]
 
     def residuals(self, point: np.ndarray, weights: Mapping[str, float]) -> np.ndarray:
         """Return the weighted residuals of all channels."""
-        kept = {name: np.isfinite(values) for name, values in self._data.channels.items()}
-        try:
-            solution: Solution | None = self.solution(point)
-        except StiffmbsError:
-            solution = None
-        if solution is not None and solution.outcome is Outcome.INTERRUPTED:
-            raise KeyboardInterrupt
-        if solution is None or solution.outcome is not Outcome.DONE:
-            return np.full(sum(int(rows.sum()) for rows in kept.values()), FAR)
-        off = self._differences(solution)
-        return np.concatenate([weights[name] * off[name][rows] for name, rows in kept.items()])
+        off = self.differences(point)
+        if off is None:
+            return np.full(sum(int(np.isfinite(values).sum()) for values in self._data.channels.values()), FAR)
+        return np.concatenate([weights[name] * part for name, part in zip(self._data.channels, off, strict=True)])
 
     def jacobian(self, point: np.ndarray, weights: Mapping[str, float]) -> np.ndarray:
         """Return the Jacobian by sensitivities, or by differences if the model has none."""
+        key = point.tobytes()
+        if key not in self._known_slopes:
+            self._known_slopes[key] = self._slopes(point)
+        slopes = self._known_slopes[key]
+        return np.concatenate([weights[name] * part for name, part in zip(self._data.channels, slopes, strict=True)])
+
+    def _slopes(self, point: np.ndarray) -> list[np.ndarray]:
+        """Return the derivatives of the differences of each channel; by differences of runs once sensitivities failed."""
         try:
-            slopes = self._gradients.at(point)
+            slopes = self._gradients.at(point) if self._gradients else None
         except StiffmbsError:
-            return central_differences(lambda at: self.residuals(at, weights), point, self._step)
+            slopes = self._gradients = None
+        if slopes is None:
+            ones = dict.fromkeys(self._data.channels, 1.0)
+            return self.by_channel(central_differences(lambda at: self.residuals(at, ones), point, self._step))
         self.runs += 1
-        rows, parts = np.searchsorted(self._times, self._data.time), []
-        for (name, values), slope in zip(self._data.channels.items(), slopes, strict=True):
-            whole = np.broadcast_to(slope, (len(self._times), len(point)))
-            parts.append(weights[name] * whole[rows][np.isfinite(values)])
-        return np.concatenate(parts)
+        rows, shape = np.searchsorted(self._times, self._data.time), (len(self._times), len(point))
+        return [
+            np.broadcast_to(slope, shape)[rows][np.isfinite(values)]
+            for values, slope in zip(self._data.channels.values(), slopes, strict=True)
+        ]
 
     def by_channel(self, rows: np.ndarray) -> list[np.ndarray]:
         """Split rows of `residuals` or `jacobian` by channel."""
@@ -235,8 +284,8 @@ class _Model:
 
     def residual_rms(self, point: np.ndarray) -> dict[str, float]:
         """Return the root mean square of the residuals by channel."""
-        off = self._differences(self.solution(point))
-        return {name: float(np.sqrt(np.nanmean(values**2))) for name, values in off.items()}
+        off = self.by_channel(self.residuals(point, dict.fromkeys(self._data.channels, 1.0)))
+        return {name: float(np.sqrt(np.mean(part**2))) for name, part in zip(self._data.channels, off, strict=True)}
 
 
 def _concluded(

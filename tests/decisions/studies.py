@@ -22,6 +22,7 @@ from stiffmbs.studies import (
 )
 from stiffmbs.studies.fmu import build
 from stiffmbs.studies.handling import braking, car, lane_changes, metrics, steady_state_cornering, steering_inputs
+from stiffmbs.studies.handling.known import Known
 from stiffmbs.studies.handling.vibration import Weighting
 from stiffmbs.studies.sensitivities import formulas
 from stiffmbs.studies.suspension import axle, characteristics, kinematics_and_compliance, steering_axis, tangent
@@ -107,7 +108,7 @@ def fits_with_other_weights():
 
 
 def residual_without_a_solution():
-    model = Record(_data=Record(channels={"a": np.ones(1)}), solution=raise_error)
+    model = Record(_data=Record(channels={"a": np.ones(1)}), differences=lambda _: None)
     return fit._Model.residuals(model, np.zeros(1), {})[0]
 
 
@@ -162,19 +163,21 @@ def largest_difference_of_steps():
     return count_while(lambda apart: accepts(3e-7 * apart), DOUBLES[:40])
 
 
-def length_of_a_ramp(ay, sideslip):
-    run = {"vehicle.ay": ay, "vehicle.sideslip": sideslip, "vehicle.roll": np.zeros(len(ay))}
-    try:
-        return len(steady_state_cornering.up_to_the_limit(run)["vehicle.ay"])
-    except ValueError:  # the first value is beyond the limit
-        return 0
+def length_of_a_ramp(ay):
+    """Return the number of quasi-steady values of a lateral acceleration."""
+    with patch.object(steady_state_cornering, "at_zero", lambda *_: (0.0, 0.0)):
+        run = {"vehicle.ay": ay, steady_state_cornering.SEEN: ay}
+        try:
+            return len(steady_state_cornering.quasi_steady(run)["vehicle.ay"])
+        except ValueError:  # the first value is beyond the limit
+            return 0
 
 
-def values_of_a_steady_ramp():
-    ramp = {"vehicle.ay": 0.01 * np.arange(1000.0)}
-    known = Record(ramp=ramp, car=Record(wheelbase=1.0))
-    with patch.object(steady_state_cornering, "_steady", lambda ay, *_, **__: reach(1000 - len(ay))):
-        return reached(lambda: steady_state_cornering.of_constant_speed(known, Record(speed=1.0), []))
+def turns_at_a_gradient():
+    """Return the time from which a circle is evaluated, without the way of its entry."""
+    run = {"time": np.arange(0.0, 20, 0.01), "handling_driver.lateral_error": np.zeros(2000)}
+    with patch.multiple(steady_state_cornering, SETTLED=0.0, _steady=lambda run, *_: reach(run["time"][0])):
+        return reached(lambda: steady_state_cornering.of_constant_radius(None, Record(first=1.0, radius=1.0), [run]))
 
 
 def time_on_a_circle():
@@ -417,16 +420,19 @@ DECISIONS = {
     "studies.handling.car:MISPLACED": largest_misplacement,
     "studies.handling.car:Manoeuvre.output": lambda: car.Manoeuvre(1.0, 1.0).output,
     "studies.handling.lane_changes:BEFORE": start_of_lanes,
-    "studies.handling.metrics:LINEAR": lambda: metrics.gradient_at_zero(np.arange(-10, 11), np.arange(-10.0, 11) ** 5),
+    "studies.handling.metrics:LINEAR": lambda: metrics.at_zero(np.arange(-10.0, 11), np.arange(-10.0, 11) ** 7)[1],
     "studies.handling.metrics:UNEQUAL": largest_difference_of_steps,
     "studies.handling.steady_state_cornering:PROBE": lambda: steady_state_cornering.probe(Record(angular=False)).speed,
-    "studies.handling.steady_state_cornering:SPUN": lambda: length_of_a_ramp(
-        np.arange(1.0, 101.0), 0.01 * np.arange(100)
-    ),
+    "studies.handling.steady_state_cornering:SPUN": lambda: steady_state_cornering.ramp(None, 1.0).spun,
     "studies.handling.steady_state_cornering:DROP": lambda: count_while(
-        lambda part: length_of_a_ramp(np.array([2.0, 2.0 * part, 3.0]), np.zeros(3)) == 3, 1.1 * BELOW
+        lambda part: length_of_a_ramp(np.array([2.0, 2.0 * part, 3.0])) == 3, 1.1 * BELOW
     ),
-    "studies.handling.steady_state_cornering:BEGUN": values_of_a_steady_ramp,
+    "studies.handling.steady_state_cornering:BEGUN": lambda: 1000 - length_of_a_ramp(0.01 * np.arange(1000.0)),
+    "studies.handling.steady_state_cornering:FOLLOWS": turns_at_a_gradient,
+    "studies.handling.steady_state_cornering:RAMP_BEGIN": lambda: steady_state_cornering.lag_of(
+        {"time": np.array([5.0, 6.0]), steady_state_cornering.SEEN: np.array([1.0, 2.0])}
+    ),
+    "studies.handling.known:Known.lag": lambda: Known(None, 1.0, 0.0, 1.8, {}).driver()["anticipation"],
     "studies.handling.steady_state_cornering:SETTLED": time_on_a_circle,
     "studies.handling.steering_inputs:STEER_BEGIN": lambda: steering_inputs.dwell_end(Record(frequency=1.0, dwell=0.0)),
     "studies.handling.study:WIDER": width_beyond_the_track,
@@ -476,9 +482,11 @@ EXPECTED = {
     "studies.fit:INSIDE": 1e-06, "studies.fit:FAR": 1000.0, "studies.fmu.build:LONGEST_NAME": 60, "studies.fmu.slave:AT_ONE_TIME": 27,
     "studies.follow:SHARE": 21, "studies.handling.braking:BEFORE_BRAKING": 201.0, "studies.handling.car:MISPLACED": 27,
     "studies.handling.car:Manoeuvre.output": 0.01, "studies.handling.lane_changes:BEFORE": 30.0,
-    "studies.handling.metrics:LINEAR": -79.55555555555564, "studies.handling.metrics:UNEQUAL": 7,
-    "studies.handling.steady_state_cornering:PROBE": 10.0, "studies.handling.steady_state_cornering:SPUN": 26,
+    "studies.handling.metrics:LINEAR": 334.4055944055936, "studies.handling.metrics:UNEQUAL": 7,
+    "studies.handling.steady_state_cornering:PROBE": 5.0, "studies.handling.steady_state_cornering:SPUN": 0.25,
     "studies.handling.steady_state_cornering:DROP": 1, "studies.handling.steady_state_cornering:BEGUN": 31,
+    "studies.handling.steady_state_cornering:FOLLOWS": 4.01,
+    "studies.handling.steady_state_cornering:RAMP_BEGIN": 3.0, "studies.handling.known:Known.lag": 0.12,
     "studies.handling.steady_state_cornering:SETTLED": 45.0, "studies.handling.steering_inputs:STEER_BEGIN": 2.0,
     "studies.handling.study:WIDER": 0.2, "studies.handling.vibration:Weighting.f1": 0.7071067810960379,
     "studies.handling.vibration:Weighting.f2": 0.7071067810960378, "studies.input_numbers:MOST_KEPT": 1001, "studies.measured:ROUNDS": 4,

@@ -5,6 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import InputError, Range, SolverError, fit, optimise
+from stiffmbs.studies.parameters import Gradients
 
 SLED = """
 parameters: {k: 100 N/m, c: 1 N s/m, x0: 0.1 m}
@@ -199,3 +200,29 @@ def test_a_fit_that_ends_at_a_bound_says_so(ranges, sentence):
     found = fit(stiffmbs.read_scene(SLED), noisy(1), ranges)
     assert sentence in found.message
     assert bool(sentence) == ("bound" in found.message)
+
+
+def test_a_fit_ends_where_steps_are_below_the_integration_error():
+    """Further steps follow the integration error alone: the estimates are within a tenth of their standard errors."""
+    data = noisy(3)
+    noise = np.random.default_rng(4).normal(0, 0.05, len(data["time"]))
+    data["sled.vx"] = np.gradient(moved(data["time"], 130.0, 2.5), data["time"]) + noise
+    scene = stiffmbs.read_scene(SLED)
+    precise, found = (fit(scene, data, PARAMETERS, rtol=rtol) for rtol in (1e-9, 1e-4))
+    assert found.success and found.runs <= 15
+    for name, error in precise.standard_errors.items():
+        assert found.values[name] == pytest.approx(precise.values[name], abs=0.1 * error)
+        assert found.standard_errors[name] == pytest.approx(error, rel=0.02)
+
+
+def test_sensitivities_that_fail_are_not_tried_again(monkeypatch):
+    tried = []
+    monkeypatch.setattr(Gradients, "at", lambda _, point: refuse_derivatives(tried, point))
+    found = fit(stiffmbs.read_scene(SLED), noisy(3), PARAMETERS)
+    assert len(tried) == 1
+    assert found.values["k"] == pytest.approx(130.0, rel=0.01)
+
+
+def refuse_derivatives(tried, point):
+    tried.append(point)
+    raise SolverError("found no derivatives")

@@ -21,6 +21,7 @@ from ...reading.files.yaml_text import Content
 DRIVER = "handling_driver"
 STEER = "handling_steer"
 ROAD = "handling_road"
+SPINNING = "handling_spinning"
 OF_A_STEERING_WHEEL = {"per_curvature": "m", "understeer": "s^2/m", "largest": "rad", "fastest": "rad/s"}
 """Units of the driver's parameters that concern a joint with an angle; those of the part are of a rack."""
 STEERING_JOINTS = ("steering_wheel", "guide")
@@ -159,6 +160,7 @@ class Manoeuvre:
     driver: Mapping[str, object] | None = None  # parameters of the driver
     path: Content | None = None  # section ``path``, which the driver keeps
     road: Mapping[str, object] | None = None
+    spun: float | None = None  # sideslip and roll, root of the sum of squares, at which the run ends, rad
     output: float = 0.01  # s
 
 
@@ -267,6 +269,9 @@ def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
     vehicle = {key: value for key, value in (content.get("vehicle") or {}).items() if key != "steering"}
     content["vehicle"] = {"body": car.body, **vehicle}
     content["requests"] = {STEER + "_seen": f"{car.steering}.{'angle' if car.angular else 'displacement'}"}
+    if manoeuvre.spun:
+        content["requests"] |= {SPINNING: "sqrt(vehicle.sideslip^2 + vehicle.roll^2)"}
+        content["stages"] = [{"until": {"spun": {"request": SPINNING, "at_least": manoeuvre.spun}}}]
     if manoeuvre.path:
         content["path"] = dict(manoeuvre.path)
     else:

@@ -28,6 +28,7 @@ class Known:
     understeer: float
     width: float  # width of the vehicle, m
     ramp: Run  # slow ramp at the speed of the test
+    lag: float = 0.12  # delay from steering to lateral acceleration at 80 km/h, s
 
     @property
     def ratio(self) -> float:
@@ -36,7 +37,7 @@ class Known:
 
     def driver(self) -> dict[str, float]:
         """Return the driver's parameters of this car."""
-        return {"per_curvature": self.per_curvature, "understeer": self.understeer}
+        return {"per_curvature": self.per_curvature, "understeer": self.understeer, "anticipation": self.lag}
 
     def steer_for(self, acceleration: float) -> float:
         """Return the steering for a steady lateral acceleration, from the ramp.

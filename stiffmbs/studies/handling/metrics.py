@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +15,10 @@ UNEQUAL = 1e-6
 """Difference of time steps, relative to the longest, above which they are not equal: more than rounding of files."""
 
 
-def gradient_at_zero(x: np.ndarray, y: np.ndarray, limit: float = LINEAR) -> float:
-    """Return dy/dx at x = 0 by a cubic fit over abs(x) <= limit.
+def at_zero(x: np.ndarray, y: np.ndarray, limit: float = LINEAR) -> tuple[float, float]:
+    """Return y and dy/dx at x = 0 by a fit over abs(x) <= limit: a constant, and x, x^3 and x^5.
+
+    Turns to the left and to the right are alike, so that only odd powers belong to a car.
 
     Raises
     ------
@@ -25,11 +28,13 @@ def gradient_at_zero(x: np.ndarray, y: np.ndarray, limit: float = LINEAR) -> flo
     inside = np.abs(x) <= limit
     if np.count_nonzero(inside) < 5:
         raise InputError(f"found {np.count_nonzero(inside)} values within {limit:g}, expected 5 or more")
-    return float(np.polynomial.Polynomial.fit(x[inside], y[inside], 3).deriv()(0.0))
+    powers = (x[inside, None] / limit) ** np.array([0, 1, 3, 5])
+    value, slope = np.linalg.lstsq(powers, y[inside], rcond=None)[0][:2]
+    return float(value), float(slope / limit)
 
 
 def understeer_gradient(
-    lateral_acceleration: np.ndarray, steer: np.ndarray, ratio: float, wheelbase: float = 0.0, speed: float = np.inf
+    lateral_acceleration: np.ndarray, steer: np.ndarray, ratio: float, wheelbase: float = 0.0, curvature: Any = 0.0
 ) -> float:
     """Return the understeer gradient of ISO 4138 at zero lateral acceleration, rad/(m/s^2).
 
@@ -39,10 +44,12 @@ def understeer_gradient(
         Quasi-steady turns, m/s^2, and the steering-wheel angle, rad, or the travel of a rack, m.
     ratio : float
         Steer angle of the wheels per steering-wheel angle or travel.
-    wheelbase, speed : float
-        Of the method at constant speed, m and m/s: L/V^2 is subtracted. With the defaults, the method at constant radius.
+    wheelbase : float
+        m; not needed at constant radius.
+    curvature : float or ndarray, shape (n,)
+        Curvature of the path, yaw rate over speed, 1/m: L times it, the kinematic steer angle, is subtracted.
     """
-    return ratio * gradient_at_zero(lateral_acceleration, steer) - wheelbase / speed**2
+    return at_zero(lateral_acceleration, ratio * steer - wheelbase * curvature)[1]
 
 
 @dataclass(frozen=True)

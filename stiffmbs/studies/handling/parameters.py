@@ -37,7 +37,7 @@ class ConstantRadius:
     radius: float = parameter(100.0, "length", "radius of the circle", "ISO 4138, constant radius")
     first: float = parameter(5.0, "velocity", "speed at the start")
     last: float = parameter(20.0, "velocity", "speed at the end")
-    acceleration: float = parameter(0.3, "acceleration", "rate of the speed, quasi-steady", "ISO 4138, constant radius")
+    acceleration: float = parameter(0.1, "acceleration", "rate of the speed, quasi-steady", "ISO 4138, constant radius")
 
 
 @dataclass(frozen=True)

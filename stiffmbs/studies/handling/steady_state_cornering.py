@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from .car import Car, Manoeuvre
 from .known import SEEN, Known, Metrics, Run
-from .metrics import gradient_at_zero, rollover_threshold, static_stability_factor, understeer_gradient
+from .metrics import at_zero, rollover_threshold, static_stability_factor, understeer_gradient
 from .parameters import SPEED, ConstantRadius, ConstantSpeed, G
 
-PROBE = 10.0
+PROBE = 5.0
 """Speed of the first run, m/s."""
+SPUN = 0.25
+"""Sideslip or roll beyond which a car no longer turns quasi-steadily, rad."""
+BEGUN = 0.3
+"""Lateral acceleration from which a ramp is quasi-steady, m/s^2."""
+DROP = 0.9
+"""Part of the largest lateral acceleration so far below which the limit is passed."""
+RAMP_BEGIN = 1.0
+"""Begin of the slow ramp, s."""
 
 
 def probe(car: Car) -> Manoeuvre:
@@ -24,39 +34,42 @@ def curvature_of(run: Run) -> float:
 
 
 def ramp(car: Car, per_curvature: float, speed: float = SPEED) -> Manoeuvre:
-    """Return a slow ramp of steering to about 10 m/s^2 at a speed, m/s, to the left."""
-    most = float(per_curvature * (1 + 1.5e-3 * speed**2) * 10 / speed**2)
-    return Manoeuvre(speed, 31.0, f"({most!r})*max(t - 1, 0)/30", output=0.05)
+    """Return a slow ramp of steering to the left at a speed, m/s: to about 20 m/s^2, were there no limit of the tyres."""
+    most = float(per_curvature * (1 + 1.5e-3 * speed**2) * 20 / speed**2)
+    return Manoeuvre(speed, 46.0, f"({most!r})*max(t - {RAMP_BEGIN}, 0)/45", spun=SPUN, output=0.05)
 
 
-SPUN = 0.25
-"""Sideslip or roll beyond which a car no longer turns quasi-steadily, rad."""
-DROP = 0.9
-"""Part of the largest lateral acceleration so far below which the limit is passed."""
+def quasi_steady(run: Run) -> Run:
+    """Return the quasi-steady part of a ramp, up to its largest lateral acceleration before the car slides.
 
-
-def up_to_the_limit(run: Run) -> Run:
-    """Return a ramp up to its largest lateral acceleration before the car slides, spins or tips over."""
+    The response follows the ramp after a constant delay: the steering at zero lateral acceleration is subtracted from
+    its channel, which is that of steady turns then.
+    """
     ay = run["vehicle.ay"]
-    lost = (np.abs(run["vehicle.sideslip"]) > SPUN) | (np.abs(run["vehicle.roll"]) > SPUN)
-    lost |= (ay < DROP * np.maximum.accumulate(ay)) & (np.maximum.accumulate(ay) > 1.0)
-    end = int(np.argmax(lost)) if lost.any() else len(ay)
-    last = int(np.argmax(ay[:end])) + 1
-    return {name: values[:last] for name, values in run.items()}
+    largest = np.maximum.accumulate(ay)
+    slides = (ay < DROP * largest) & (largest > 1.0)
+    end = int(np.argmax(slides)) if slides.any() else len(ay)
+    rows = (np.arange(len(ay)) <= np.argmax(ay[:end])) & (ay > BEGUN)
+    kept = {name: values[rows] for name, values in run.items()}
+    return {**kept, SEEN: kept[SEEN] - at_zero(kept["vehicle.ay"], kept[SEEN])[0]}
 
 
-def _steady(ay: np.ndarray, run: Run, known: Known, **speed: float) -> Metrics:
-    gradient = understeer_gradient(ay, run[SEEN], known.ratio, **speed)
+def lag_of(slow: Run) -> float:
+    """Return the delay from the steering of a quasi-steady ramp to its lateral acceleration, s."""
+    time, steer = slow["time"], slow[SEEN]
+    rate = (steer[-1] - steer[0]) / (time[-1] - time[0])
+    return max(float(time[0] - RAMP_BEGIN - steer[0] / rate), 0.0)
+
+
+def _steady(run: Run, known: Known, curvature: Any) -> Metrics:
+    ay = run["vehicle.ay"]
+    gradient = understeer_gradient(ay, run[SEEN], known.ratio, known.car.wheelbase, curvature)
     return {
         "understeer gradient": (1e3 * gradient, "mrad/(m/s^2)"),
         "understeer gradient per g": (np.degrees(gradient) * G, "deg/g"),
-        "sideslip gradient": (1e3 * gradient_at_zero(ay, run["vehicle.sideslip"]), "mrad/(m/s^2)"),
-        "roll gradient": (1e3 * gradient_at_zero(ay, run["vehicle.roll"]), "mrad/(m/s^2)"),
+        "sideslip gradient": (1e3 * at_zero(ay, run["vehicle.sideslip"])[1], "mrad/(m/s^2)"),
+        "roll gradient": (1e3 * at_zero(ay, run["vehicle.roll"])[1], "mrad/(m/s^2)"),
     }
-
-
-BEGUN = 0.3
-"""Lateral acceleration from which a ramp is quasi-steady, m/s^2."""
 
 
 def constant_speed(known: Known, test: ConstantSpeed) -> list[Manoeuvre]:
@@ -68,8 +81,7 @@ def of_constant_speed(known: Known, test: ConstantSpeed, runs: list[Run]) -> Met
     """Return gradients, characteristic speed and rollover threshold from the slow ramp."""
     run = known.ramp
     ay = run["vehicle.ay"]
-    steady = {name: values[ay > BEGUN] for name, values in run.items()}
-    found = _steady(ay[ay > BEGUN], steady, known, wheelbase=known.car.wheelbase, speed=test.speed)
+    found = _steady(run, known, run["vehicle.yaw_rate"] / run["vehicle.speed"])
     gradient = found["understeer gradient"][0] / 1e3
     if gradient > 0:
         found["characteristic speed"] = float(np.sqrt(known.car.wheelbase / gradient)), "m/s"
@@ -83,19 +95,23 @@ def of_constant_speed(known: Known, test: ConstantSpeed, runs: list[Run]) -> Met
 
 SETTLED = 45.0
 """Way after which a car has settled on the circle, m."""
+FOLLOWS = 4.0
+"""Time after which the driver follows the growing speed steadily, s."""
 
 
 def constant_radius(known: Known, test: ConstantRadius) -> list[Manoeuvre]:
     """Return a circle with slowly growing speed."""
     settled = SETTLED / test.first
-    path = {"circle": test.radius, "entry": 10.0, "transition": 30.0}
-    driver = {**known.driver(), "acceleration": test.acceleration, "accelerates": settled}
     duration = settled + 1 + (test.last - test.first) / test.acceleration
+    turns = test.last * duration / (2 * np.pi * abs(test.radius))
+    path = {"circle": test.radius, "entry": 10.0, "transition": 30.0, "turns": float(np.ceil(turns))}
+    driver = {**known.driver(), "acceleration": test.acceleration, "accelerates": settled}
     return [Manoeuvre(test.first, duration, driver=driver, path=path, output=0.05)]
 
 
 def of_constant_radius(known: Known, test: ConstantRadius, runs: list[Run]) -> Metrics:
     """Return the gradients of the method at constant radius."""
-    run = {name: values[runs[0]["time"] > SETTLED / test.first + 1] for name, values in runs[0].items()}
-    found = _steady(run["vehicle.ay"], run, known)
-    return found | {"largest lateral error": (float(np.max(np.abs(run["handling_driver.lateral_error"]))), "m")}
+    follows = runs[0]["time"] > SETTLED / test.first + FOLLOWS
+    run = {name: values[follows] for name, values in runs[0].items()}
+    error = float(np.max(np.abs(run["handling_driver.lateral_error"])))
+    return _steady(run, known, 1 / test.radius) | {"largest lateral error": (error, "m")}

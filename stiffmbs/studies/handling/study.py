@@ -20,10 +20,11 @@ from ...model.scene import Scene
 from ...reading.did_you_mean import instead_of
 from ..executors import refuse_workers
 from .car import Car, Manoeuvre, car_of, with_manoeuvre
-from .known import Known, Metrics, Run
+from .known import SEEN, Known, Metrics, Run
+from .metrics import at_zero
 from .parameters import SPEED, positive, with_changes
 from .standards import TESTS
-from .steady_state_cornering import PROBE, curvature_of, probe, ramp, up_to_the_limit
+from .steady_state_cornering import PROBE, curvature_of, lag_of, probe, quasi_steady, ramp
 
 WIDER = 0.2
 """Width of the body beyond the track, m, unless given: tyres and wings."""
@@ -141,16 +142,13 @@ def handling(
 def _preliminary(scene: Scene, car: Car, width: float) -> Known:
     first = solved(with_manoeuvre(scene, car, probe(car)))
     low = float(first["handling_steer_seen"][-1] / curvature_of(first))
-    slow = up_to_the_limit(solved(with_manoeuvre(scene, car, ramp(car, low))))
-    linear, driven = (_per_curvature(slow, ay) for ay in (1.0, 4.0))
+    slow = quasi_steady(solved(with_manoeuvre(scene, car, ramp(car, low))))
+    ay, curvature = slow["vehicle.ay"], slow["vehicle.yaw_rate"] / slow["vehicle.speed"]
+    linear = at_zero(ay, slow[SEEN])[1] / at_zero(ay, curvature)[1]
+    at = int(np.argmax(ay >= min(4.0, 0.7 * ay[-1])))
     over = SPEED**2 - PROBE**2
-    return Known(car, low - (linear - low) / over * PROBE**2, (driven - low) / over, width, slow)
-
-
-def _per_curvature(slow: Run, acceleration: float) -> float:
-    """Return the steering per curvature of the ramp at a lateral acceleration, or at 70 % of its largest one."""
-    at = int(np.argmax(slow["vehicle.ay"] >= min(acceleration, 0.7 * slow["vehicle.ay"][-1])))
-    return float(slow["handling_steer_seen"][at] * slow["vehicle.speed"][at] / slow["vehicle.yaw_rate"][at])
+    at_no_speed, driven = low - (linear - low) / over * PROBE**2, float(slow[SEEN][at] / curvature[at])
+    return Known(car, at_no_speed, (driven - low) / over, width, slow, lag_of(slow))
 
 
 def _solved(scene: Scene, car: Car, known: Known, tests: Mapping[str, Any], pool: Executor | None) -> dict[str, Tested]:
@@ -189,7 +187,7 @@ def _ramps(scene: Scene, car: Car, known: Known) -> Callable[[float], Known]:
     def at_speed(speed: float) -> Known:
         if speed not in done:
             slow = solved(with_manoeuvre(scene, car, ramp(car, known.per_curvature, speed)))
-            done[speed] = replace(known, ramp=up_to_the_limit(slow))
+            done[speed] = replace(known, ramp=quasi_steady(slow))
         return done[speed]
 
     return at_speed

@@ -8,8 +8,8 @@ from scipy.signal import butter, lsim, sosfilt
 
 import stiffmbs
 from stiffmbs.studies.handling import metrics, steady_state_cornering, steering_inputs, vibration
-from stiffmbs.studies.handling.known import Known
-from stiffmbs.studies.handling.parameters import SineWithDwell
+from stiffmbs.studies.handling.known import SEEN, Known
+from stiffmbs.studies.handling.parameters import ConstantRadius, SineWithDwell
 
 MASS, YAW_INERTIA, TO_FRONT, TO_REAR, FRONT, REAR, SPEED = 1500.0, 2600.0, 1.2, 1.5, 9e4, 1.2e5, 22.0
 WHEELBASE = TO_FRONT + TO_REAR
@@ -45,7 +45,7 @@ def test_the_understeer_gradient_of_both_methods():
     at_constant_speed = ay * WHEELBASE / SPEED**2 + GRADIENT * ay + 2e-5 * ay**3
     at_constant_radius = WHEELBASE / 100 + GRADIENT * ay + 2e-5 * ay**3
     of = metrics.understeer_gradient
-    assert of(ay, at_constant_speed * 16, 1 / 16, WHEELBASE, SPEED) == pytest.approx(GRADIENT, rel=1e-6)
+    assert of(ay, at_constant_speed * 16, 1 / 16, WHEELBASE, ay / SPEED**2) == pytest.approx(GRADIENT, rel=1e-6)
     assert of(ay, at_constant_radius * 16, 1 / 16) == pytest.approx(GRADIENT, rel=1e-6)
     with pytest.raises(stiffmbs.InputError, match="found 0 values within"):
         of(ay + 10, ay, 1.0)
@@ -124,13 +124,33 @@ def test_the_verdict_does_not_depend_on_the_direction_in_which_a_rack_steers(dir
     assert found["stable (1 yes, 0 no)"][0] == 1
 
 
-def test_a_ramp_ends_before_the_car_spins():
+def test_a_ramp_is_quasi_steady_up_to_its_largest_lateral_acceleration():
+    """The response lags by 0.3 s, which is no steering of a steady turn."""
     time = np.arange(0, 30, 0.05)
-    ay = np.where(time < 20, 0.4 * time, 14.0)
-    run = {"time": time, "vehicle.ay": ay, "vehicle.sideslip": np.where(time < 20, 0.0, 1.5), "vehicle.roll": 0.01 * ay}
-    assert steady_state_cornering.up_to_the_limit(run)["vehicle.ay"].max() == pytest.approx(8, abs=0.05)
-    slid = {**run, "vehicle.ay": np.where(time < 20, 0.4 * time, 0.0), "vehicle.sideslip": 0 * time}
-    assert len(steady_state_cornering.up_to_the_limit(slid)["time"]) == 400
+    ay = 0.4 * np.where(time < 20, time, 40 - time)
+    run = {"time": time + 1, "vehicle.ay": ay, SEEN: 0.01 * (ay + 0.3 * 0.4)}
+    found = steady_state_cornering.quasi_steady(run)
+    assert found["time"][[0, -1]] == pytest.approx([1.75, 21], abs=0.051)
+    assert found[SEEN] == pytest.approx(0.01 * found["vehicle.ay"], abs=1e-9)
+    later = steady_state_cornering.quasi_steady({**run, "time": time + 1.3})
+    assert steady_state_cornering.lag_of(later) == pytest.approx(0.3)
+
+
+def test_a_circle_has_turns_for_its_whole_speed():
+    """The path went straight on after three turns: 70 mrad/(m/s^2) of understeer for 2.8."""
+    known = Known(None, 1.0, 0.0, 1.8, {})
+    for acceleration in (0.02, 0.1, 0.5):
+        test = ConstantRadius(acceleration=acceleration)
+        (one,) = steady_state_cornering.constant_radius(known, test)
+        way = test.first * one.driver["accelerates"] + (test.last**2 - test.first**2) / (2 * acceleration) + test.last
+        assert one.path["turns"] * 2 * np.pi * test.radius > way - one.path["entry"]
+
+
+def test_a_slope_at_zero_does_not_depend_on_how_far_a_car_turned():
+    """Tyres saturate: the slope of atanh at zero is 1, by any part of it. A cubic polynomial has 1.03 with the longest."""
+    for limit in (2.0, 3.0, 4.0):
+        x = np.linspace(0.3, limit, 200)
+        assert metrics.at_zero(x, 7 * np.arctanh(x / 7) + 0.2) == pytest.approx((0.2, 1.0), abs=2e-3)
 
 
 def test_braking_at_constant_deceleration():
