@@ -18,8 +18,8 @@ lists the rates of revolution counters and states among the acceleration terms; 
 multipliers.  `algebraic` lists the algebraic states among the coordinates, with their scales and last values, and
 `turned_for_output` the first coordinates of bodies whose orientation only output terms need.  `eliminates` is 1 if
 elimination is tried first (`stiffmbs.dynamics.native.consistent`), `by_elimination` if it gave the last accelerations.
-For output rows follow the number of output terms, memory for `LINES` rows, masses and roots of inertias by coordinate and
-velocity, and the places of energies and power among the output terms."""
+Output rows need the number of output terms, memory for `LINES` rows, and masses. Roots of inertias by coordinate and
+velocity follow, and the places of energies and power among the output terms."""
 
 LINES = CACHE_LINE // 8
 """Output rows that are stored together: one cache line of each column."""
