@@ -114,10 +114,11 @@ class Dynamics:
         moving = ~np.isin(row, algebraic)
         self._trailing = source[moving].astype(np.int64), row[moving].astype(np.int64)
         self._widths = system.n_q, system.n_u, system.n_u, system.n_c, system.n_values("output"), len(JUDGED)
-        judging = {
-            name: np.array(system.term("output", name).source, dtype=np.int64)
-            for name in ("potential", "power", "kinetic")
-        }
+        judging: dict[str, np.ndarray] = {}
+        counts: dict[str, int] = {}
+        for name in ("potential", "power", "kinetic"):
+            judging[name] = np.array(system.term("output", name).source, dtype=np.int64)
+            counts[f"n_{name}"] = len(judging[name])
         self.input_changes = 0
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
@@ -146,7 +147,7 @@ class Dynamics:
                 **self._lists, "n_trailing": len(self._trailing[1]), "n_algebraic": len(algebraic),
                 "n_turned_for_output": len(self._lists["turned_for_output"]),
                 "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
-                "eliminates": eliminates, "n_output": self._widths[4], **{f"n_{name}": len(places) for name, places in judging.items()},
+                "eliminates": eliminates, "n_output": self._widths[4], **counts,
                 "eliminated": self.eliminated.within_reach() if eliminates else np.zeros(1, dtype=np.int64),
             },
         )  # fmt: skip
@@ -280,13 +281,15 @@ class Dynamics:
         done = 0
         for block in blocks(count):
             before = [np.ascontiguousarray(array[block], dtype=float) for array in (t, q, u)]
-            written = (column.reshape(-1)[block.start :] for column in columns)
+            written = [column.reshape(-1)[block.start :] for column in columns]
+            at_t, at_q, at_u, *at_columns = addresses(*before, *written)
             done = block.start + OUTPUT_POINTS.call(
-                len(before[0]), *addresses(*before), project, CONSISTENCY.position_tolerance, count, *addresses(*written), self._at
-            )  # fmt: skip
+                len(before[0]), at_t, at_q, at_u, project, CONSISTENCY.position_tolerance, count, *at_columns, self._at
+            )
             if count > 1:
                 release(*columns, q, u)
             if done < block.stop:
                 break
-        *rows, judged = (column[:, :done] for column in columns)
-        return OutputRows(t[:done], *(column.T for column in rows), *judged, int(self._cells["status"]))
+        q, u, acceleration, lam, values = (column[:, :done].T for column in columns[:5])
+        judged = dict(zip(JUDGED, columns[5][:, :done], strict=True))
+        return OutputRows(t[:done], q, u, acceleration, lam, values, status=int(self._cells["status"]), **judged)
