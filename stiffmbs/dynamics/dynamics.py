@@ -17,7 +17,7 @@ from ..compile.machine.layout import address, addresses, packed
 from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System
-from .native.layouts import DYNAMICS
+from .native.layouts import DYNAMICS, JUDGED, LINES
 from .native.parameters import CONSISTENCY, ELIMINATION
 from .saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
 from .storage import all_finite, allocated, blocks, release
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .elimination.eliminated import Eliminated
 
 T = TypeVar("T")
-ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, CONTRADICTING, OUTPUT_POINTS, ENERGIES = together(
+ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, CONTRADICTING, OUTPUT_POINTS = together(
     "stiffmbs.dynamics.native.dynamics",
     SHORT,
     assemble="int64(float64, float64, int64, int64*)",
@@ -34,14 +34,13 @@ ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, CONTRADICTING, OUTPU
     accelerate="int64(float64, float64*, int64*)",
     factor_and_solve="int64(float64*, int64*)",
     contradicting="int64(int64, float64*, float64*, float64, float64*, float64*, float64*, float64, float64*, float64, float64, float64*, int64*, int64*)",
-    output_points="int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
-    energies="void(int64, int64, float64*, float64*, int64, float64*, int64, int64*, int64, int64*, int64, int64*, float64*, float64*, float64*)",
+    output_points="int64(int64, float64*, float64*, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
 )
 
 
 @dataclass(frozen=True)
 class OutputRows:
-    """Output rows, one per output time.
+    """Output rows, one per output time. Columns are contiguous.
 
     - `values`: output terms (`stiffmbs.compile.terms`).
     - `kinetic`, `potential`, `power` of shape (n,): energies, J, and the power of non-conservative forces, W.
@@ -49,6 +48,8 @@ class OutputRows:
       of J u + C_t, and of C before projection.
     - `log_determinant` of shape (n,): log |det| of [M J^T; J 0], without the logarithms of units: small near singular
       poses.
+    - `changed`, `moved`, `moved_velocity` of shape (n,): largest changes by the projection, of a velocity, m/s or rad/s, and of
+      positions and velocities times roots of inertias.
     - `status`: failure after the last row (`stiffmbs.dynamics.storage`), or 0.
     """
 
@@ -58,13 +59,16 @@ class OutputRows:
     acceleration: np.ndarray
     lam: np.ndarray
     values: np.ndarray
-    kinetic: np.ndarray
-    potential: np.ndarray
-    power: np.ndarray
     position_violation: np.ndarray
     velocity_violation: np.ndarray
     drift: np.ndarray
     log_determinant: np.ndarray
+    changed: np.ndarray
+    moved: np.ndarray
+    moved_velocity: np.ndarray
+    kinetic: np.ndarray
+    potential: np.ndarray
+    power: np.ndarray
     status: int
 
     def at(self, instants: np.ndarray) -> OutputRows:
@@ -96,10 +100,10 @@ class Dynamics:
         self.system = system
         self.coordinates: Coordinates = all_independent(system)
         self.state = State(system)
-        for term_set in ("motion", "output"):
+        for term_set in ("motion", "acceleration", "output"):
             self.state.load(term_set)
         joints = np.array([bool(group.record.n_equations) for group in system.groups], dtype=bool)
-        self._constraining = self.state.restricted({"motion": joints})
+        self._constraining = self.state.restricted({"motion": joints, "acceleration": joints})
         algebraic = system.algebraic_coordinates.astype(np.int64)
         self._positions, self._velocities, self._accelerations = saddle_points(
             self.state, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES if len(algebraic) else ACCELERATIONS
@@ -109,10 +113,12 @@ class Dynamics:
         source, row = np.append(counters.source, states.source), np.append(counters.row, states.row)
         moving = ~np.isin(row, algebraic)
         self._trailing = source[moving].astype(np.int64), row[moving].astype(np.int64)
-        self._n_output = system.n_values("output")
-        self._potential = np.array(system.term("output", "potential").source, dtype=np.int64)
-        self._power = np.array(system.term("output", "power").source, dtype=np.int64)
-        self._kinetic = np.array(system.term("output", "kinetic").source, dtype=np.int64)
+        self._widths = system.n_q, system.n_u, system.n_u, system.n_c, system.n_values("output"), len(JUDGED)
+        judging: dict[str, np.ndarray] = {}
+        counts: dict[str, int] = {}
+        for name in ("potential", "power", "kinetic"):
+            judging[name] = np.array(system.term("output", name).source, dtype=np.int64)
+            counts[f"n_{name}"] = len(judging[name])
         self.input_changes = 0
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
@@ -124,6 +130,11 @@ class Dynamics:
             "trailing_source": self._trailing[0],
             "trailing_row": self._trailing[1],
             "turned_for_output": for_output[~np.isin(for_output, system.turned("acceleration"))].astype(np.int64),
+            "lines": np.empty(LINES * sum(self._widths)),
+            **judging,
+            "mass": np.ascontiguousarray(system.mass, dtype=float),
+            "root_q": np.sqrt(system.mass_by_coordinate),
+            "root_u": np.sqrt(system.mass),
         }
         eliminates = system.of_body.dimensions == 3 and self.is_large and self.eliminated.serves
         self.table = packed(
@@ -136,7 +147,7 @@ class Dynamics:
                 **self._lists, "n_trailing": len(self._trailing[1]), "n_algebraic": len(algebraic),
                 "n_turned_for_output": len(self._lists["turned_for_output"]),
                 "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
-                "eliminates": eliminates,
+                "eliminates": eliminates, "n_output": self._widths[4], **counts,
                 "eliminated": self.eliminated.within_reach() if eliminates else np.zeros(1, dtype=np.int64),
             },
         )  # fmt: skip
@@ -265,30 +276,20 @@ class Dynamics:
 
         `t`, `q`, `u` of shapes (n,), (n, n_q), (n, n_u). `project`: True to project each state onto the constraints first.
         """
-        system, count, n_output = self.system, len(t), self._n_output
-        widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 4)
-        rows = [allocated(count, width) for width in widths]
-        kinetic, potential, power = (allocated(count) for _ in range(3))
+        count = len(t)
+        columns = [allocated(width, count) for width in self._widths]
         done = 0
         for block in blocks(count):
-            rows[0][block], rows[1][block] = q[block], u[block]
-            times = np.array(t[block], dtype=float)
-            at_times, *written = addresses(times, *(array[block] for array in (*rows, kinetic, potential, power)))
+            before = [np.ascontiguousarray(array[block], dtype=float) for array in (t, q, u)]
+            written = [column.reshape(-1)[block.start :] for column in columns]
+            at_t, at_q, at_u, *at_columns = addresses(*before, *written)
             done = block.start + OUTPUT_POINTS.call(
-                len(times), at_times, project, CONSISTENCY.position_tolerance, n_output, *written[:6], self._at
+                len(before[0]), at_t, at_q, at_u, project, CONSISTENCY.position_tolerance, count, *at_columns, self._at
             )
-            mass, potentials, powers, kinetics = addresses(system.mass, self._potential, self._power, self._kinetic)
-            ENERGIES.call(
-                len(times), system.n_u, written[1], mass, n_output, written[4],
-                len(self._potential), potentials, len(self._power), powers, len(self._kinetic), kinetics, *written[6:],
-            )  # fmt: skip
             if count > 1:
-                release(*rows, kinetic, potential, power, q, u)
+                release(*columns, q, u)
             if done < block.stop:
                 break
-        q, u, acceleration, lam, values, judged = (array[:done] for array in rows)
-        position, velocity, drift, log_determinant = judged.T
-        return OutputRows(
-            t[:done], q, u, acceleration, lam, values, kinetic[:done], potential[:done], power[:done],
-            position, velocity, drift, log_determinant, int(self._cells["status"]),
-        )  # fmt: skip
+        q, u, acceleration, lam, values = (column[:, :done].T for column in columns[:5])
+        judged = dict(zip(JUDGED, columns[5][:, :done], strict=True))
+        return OutputRows(t[:done], q, u, acceleration, lam, values, status=int(self._cells["status"]), **judged)

@@ -100,7 +100,7 @@ def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray, le
     of accelerations up to which there is no contradiction.
     """
     found = np.empty(len(rows.t), dtype=np.int64)
-    arrays = rows.t, rows.u, rows.acceleration, mass, least, steps
+    arrays = rows.t, rows.u.T, rows.acceleration.T, mass, least, steps
     t, u, acceleration, mass, least, steps = map(np.ascontiguousarray, arrays)
     *of_rows, at_least, at_steps, at_found = addresses(t, u, acceleration, mass, least, steps, found)
     count = CONTRADICTING_ROWS.call(

@@ -36,15 +36,13 @@ def with_stiff_forces(
 
 def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.ndarray, rtol: float) -> np.ndarray:
     """Return the rows whose projections may have changed a force by more than `rtol` of the largest."""
-    changed = np.abs(rows.u - states[1][: len(rows.t)]).max(axis=1, initial=0.0)
-    moved = np.maximum(rows.drift, changed) > CONSISTENCY.position_tolerance
+    moved = np.maximum(rows.drift, rows.changed) > CONSISTENCY.position_tolerance
     at = np.flatnonzero(moved & (steps[: len(rows.t)] > 0.0))
     if not len(at):
         return at
     allowed = rtol * _largest_force(dynamics, _of(states, at[-1:]), float(rows.t[at[-1]]))
-    for changes in (_bounds, _changes):
-        at = at[changes(dynamics, _of(states, at), rows, at) > allowed] if len(at) else at
-    return at
+    at = at[_bounds(dynamics, rows, at) > allowed]
+    return at[_changes(dynamics, _of(states, at), rows, at) > allowed] if len(at) else at
 
 
 def projected(dynamics: Dynamics, t: float, states: States, step: float) -> States:
@@ -114,14 +112,12 @@ def _largest_force(dynamics: Dynamics, states: States, t: float) -> float:
     return float(np.nanmax(np.abs(np.append(acting, inertia)), initial=0.0))
 
 
-def _bounds(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarray) -> np.ndarray:
+def _bounds(dynamics: Dynamics, rows: OutputRows, at: np.ndarray) -> np.ndarray:
     """Return bounds of the changes of forces by the projections of some rows, divided by roots of inertias."""
-    system, state = dynamics.system, dynamics.state
+    state = dynamics.state
     state.q[:], state.u[:] = rows.q[at[-1]], rows.u[at[-1]]
     stiffness = stiffness_at(dynamics, float(rows.t[at[-1]]))
-    moved = np.abs(rows.q[at] - before[0]) * np.sqrt(system.mass_by_coordinate)
-    changed = np.abs(rows.u[at] - before[1]) * np.sqrt(system.mass)
-    return np.asarray(stiffness.of_positions * moved.max(axis=1) + stiffness.of_velocities * changed.max(axis=1))
+    return np.asarray(stiffness.of_positions * rows.moved[at] + stiffness.of_velocities * rows.moved_velocity[at])
 
 
 def _changes(dynamics: Dynamics, before: States, rows: OutputRows, at: np.ndarray) -> np.ndarray:

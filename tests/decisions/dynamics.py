@@ -108,10 +108,11 @@ def moves_of_other_factors(ratio, most=1e300):
         count.append(1)
         return 0
 
-    s = Record(n_q=0, n_pose=0, n_u=0, n_c=1, q=[], u=[], left_open=[0.0])
+    s = Record(n_q=0, n_pose=0, n_u=0, n_c=1, q=[], u=[], left_open=[0.0], values=[0] * 20)
     m = Record(constraining=None, eliminated=None)
     replaced = {
         "state_view": lambda _: s, "evaluate": lambda *_: [gap[0], 0.0], "add_rates": nothing, "take_unit_length": nothing,
+        "floats": lambda _: [gap[0], 0.0],
     }  # fmt: skip
     with interpreted(consistent, **replaced):
         done = consistent._closed(Record(move=move, a=[]), s, m, 0.0, 1e-300)
@@ -288,11 +289,17 @@ def largest_residual(sizes, first):
     least = eliminated()._arrays["least"]
 
     def satisfies(residual):
-        r = Record(left=[residual], sizes=[sizes], least=least)
-        m = Record(eliminated=r, accelerations=None, acceleration_factors=Record(previous=None, n=1, a=None))
-        names = ("add_entries", "add_products", "add_sizes", "floats")
-        with interpreted(consistent, **dict.fromkeys(names, nothing)):
-            return consistent._satisfy_joints(Record(n_u=0, values=[0] * 20), m)
+        r = Record(
+            left=[0.0], sizes=[0.0], least=least, n_gamma=1, gamma_source=[0], gamma_row=[0], n_j=1, j_source=[1], j_row=[0],
+            j_column=[0],
+        )  # fmt: skip
+        m = Record(eliminated=r, acceleration_factors=Record(b=[1.0]))
+        values = [
+            0.5 * (sizes + residual),
+            0.5 * (sizes - residual),
+        ]  # of gamma and J, with these sizes and this residual
+        with interpreted(consistent, floats=lambda _: values):
+            return consistent._satisfy_joints(Record(n_c=1, values=[0] * 20), m)
 
     return count_while(lambda residual: satisfies(first * residual), DOUBLES)
 

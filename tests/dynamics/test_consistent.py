@@ -1,10 +1,13 @@
 """States near the constraints made consistent by elimination, beside the LU of the whole block system."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 
 import stiffmbs
 from stiffmbs.analyses.job import prepare
+from stiffmbs.dynamics.dynamics import OutputRows
 from stiffmbs.dynamics.native.layouts import DYNAMICS
 from stiffmbs.model.read_scene import read_scene
 from tests.bench.drives import CARS
@@ -77,6 +80,55 @@ def test_a_state_far_off_is_brought_back_by_smallest_moves():
     q, u = beside(dynamics, 0.05)
     eliminated, whole = reported(dynamics, q, u, True), reported(dynamics, q, u, False)
     np.testing.assert_array_equal(eliminated.q, whole.q)
+
+
+def near_by(dynamics):
+    """Eleven states beside the constraints, each close to the one before."""
+    (q, u), n = beside(dynamics, 1e-6), 11
+    along = np.linspace(0.0, 1.0, n)[:, None]
+    return np.linspace(0.0, 1e-2, n), q + 1e-9 * along, u * (1.0 + 1e-9 * along)
+
+
+@pytest.mark.parametrize("make", [chain, car])
+def test_a_row_does_not_depend_on_the_rows_before(make):
+    """Outputs at more times leave the others as they are, to the last digit."""
+    dynamics = make()
+    t, q, u = near_by(dynamics)
+    together = dynamics.report(t, q, u, project=True)
+    for k in (1, 7, 10):
+        alone = dynamics.report(t[k : k + 1], q[k : k + 1], u[k : k + 1], project=True)
+        for name in (field.name for field in fields(OutputRows) if field.name != "status"):
+            np.testing.assert_array_equal(getattr(together, name)[k], getattr(alone, name)[0], err_msg=name)
+
+
+@pytest.mark.parametrize("count", [1, 7, 8, 11])
+def test_rows_are_stored_by_columns_and_judged(count):
+    """Whole and partial cache lines; moves and energies by NumPy."""
+    dynamics = chain()
+    system = dynamics.system
+    t, q, u = (array[:count] for array in near_by(dynamics))
+    rows = dynamics.report(t, q, u, project=True)
+    assert rows.values[:, 0].flags.c_contiguous
+    assert rows.q.shape == q.shape
+    changed, moved = np.abs(rows.u - u), np.abs(rows.q - q) * np.sqrt(system.mass_by_coordinate)
+    np.testing.assert_allclose(rows.changed, changed.max(axis=1), rtol=1e-12)
+    np.testing.assert_allclose(rows.moved, moved.max(axis=1), rtol=1e-12)
+    np.testing.assert_allclose(rows.moved_velocity, (changed * np.sqrt(system.mass)).max(axis=1), rtol=1e-12)
+    np.testing.assert_allclose(rows.kinetic, 0.5 * rows.u**2 @ system.mass, rtol=1e-12)
+    potential = system.term("output", "potential").source
+    np.testing.assert_allclose(rows.potential, rows.values[:, potential].sum(axis=1), rtol=1e-12)
+
+
+def test_rows_end_before_the_first_without_a_solution():
+    """Rows of an incomplete cache line are stored, too."""
+    dynamics = chain()
+    t, q, u = near_by(dynamics)
+    whole = dynamics.report(t, q, u, project=True)
+    q[9] = np.nan
+    rows = dynamics.report(t, q, u, project=True)
+    assert rows.status < 0
+    assert len(rows.t) == 9
+    np.testing.assert_array_equal(rows.values, whole.values[:9])
 
 
 def test_where_pivots_lose_digits_the_lu_takes_over():

@@ -21,10 +21,11 @@ from ..saddle_point import ACCELERATIONS
 from .joint_blocks import Joints, block_lists
 from .native.layouts import BLOCK_ELIMINATION, PIN_ELIMINATION, Pin, PinProduct
 
-ATTEMPT, MOVE = together(
+ATTEMPT, FACTOR, MOVE = together(
     "stiffmbs.dynamics.elimination.native.eliminated",
     SHORT,
     attempt="int32(float64, float64*, int64*)",
+    factor="int32(float64, int64*, int64*)",
     move="int32(float64*, int64*)",
 )
 
@@ -68,16 +69,21 @@ class Eliminated:
             of_pins = pin_lists(joints, system, kept) if system.of_body.dimensions == 2 else None
             layout = PIN_ELIMINATION if of_pins else BLOCK_ELIMINATION
             self._lists = of_pins or block_lists(joints, system, kept)
-            force = system.term("acceleration", "f")
+            force, gamma = (system.term("acceleration", name) for name in ("f", "gamma"))
+            own = np.flatnonzero(solved[gamma.row])
             arrays = {
                 "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u + 3),
                 "q_before": np.zeros(system.n_q), "u_before": np.zeros(system.n_u),
-                "left": np.zeros(system.n_u + system.n_c), "sizes": np.zeros(system.n_u + system.n_c),
+                "left": np.zeros(system.n_c), "sizes": np.zeros(system.n_c),
+                "j_source": jacobian.source[kept], "j_row": jacobian.row[kept], "j_column": jacobian.column[kept],
+                "gamma_source": gamma.source[own], "gamma_row": gamma.row[own],
                 "lists": packed(layout, self._lists),
             }  # fmt: skip
             numbers = {
                 "n_u": system.n_u,
                 "n_f": len(force.source),
+                "n_j": len(kept),
+                "n_gamma": len(own),
                 "by_pins": of_pins is not None,
                 "trees": _are_trees(joints.bodies),
             }
@@ -85,6 +91,7 @@ class Eliminated:
                 **arrays_of(ELIMINATED, arrays),
                 "state": state.table,
                 "kept": 1.0,
+                "log_mass": float(np.log(system.mass).sum()),
                 "least": ELIMINATION.least_residual * min(1.0, system.size),
                 **numbers,
             }
@@ -92,7 +99,8 @@ class Eliminated:
 
     def within_reach(self) -> np.ndarray:
         """Return the table, with the addresses of its routines for compiled code without its own references to them."""
-        self._cells["attempt"], self._cells["move"] = ATTEMPT.address, MOVE.address
+        for name, routine in (("attempt", ATTEMPT), ("factor", FACTOR), ("move", MOVE)):
+            self._cells[name] = routine.address
         return self.table
 
     def forget(self) -> None:

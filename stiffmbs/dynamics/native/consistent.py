@@ -1,19 +1,12 @@
 """Projection of states near the constraints, by elimination of velocities if accurate, otherwise by the whole LU.
 
-The factors of the elimination belong to one pose.  Moves with them converge also nearby, for positions and velocities;
-both violations are checked again.
+The factors of the elimination belong to the pose before the projection.  Moves with them converge also nearby, for
+positions and velocities; both violations are checked again.
 """
 
-from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, floats, shifted, state_view
+from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int
-from stiffmbs.compile.machine.native.evaluate import (
-    ACCELERATION,
-    MOTION,
-    add_entries,
-    add_products,
-    add_sizes,
-    evaluate,
-)
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.dynamics.native.block_systems import (
@@ -43,18 +36,21 @@ def _eliminated(s, m, t):
 @compiled
 def _satisfy_joints(s, m):
     """Return True if accelerations by elimination satisfy J u' = gamma as accurately as those of the LU."""
-    r, e, f = eliminated_view(m.eliminated), equations_view(m.accelerations), factors_view(m.acceleration_factors)
+    r, acceleration = eliminated_view(m.eliminated), factors_view(m.acceleration_factors).b
     values = floats(s.values[ACCELERATION])
-    add_entries(e, values, 0.0, f.a)
-    add_products(e, values, f.previous, f.previous, r.left)
-    add_sizes(e, values, f.previous, f.previous, r.sizes)
-    for column in range(s.n_u):
-        for p in range(f.a_start[column], f.a_start[column + 1]):
-            part = f.a[p] * f.b[column]
-            r.left[f.a_row[p]] -= part
-            r.sizes[f.a_row[p]] += abs(part)
+    for row in range(s.n_c):
+        r.left[row] = 0.0
+        r.sizes[row] = 0.0
+    for k in range(r.n_gamma):
+        part = values[r.gamma_source[k]]
+        r.left[r.gamma_row[k]] += part
+        r.sizes[r.gamma_row[k]] += abs(part)
+    for k in range(r.n_j):
+        part = values[r.j_source[k]] * acceleration[r.j_column[k]]
+        r.left[r.j_row[k]] -= part
+        r.sizes[r.j_row[k]] += abs(part)
     beyond = 0
-    for row in range(s.n_u, f.n):
+    for row in range(s.n_c):
         beyond += 0 if abs(r.left[row]) <= ELIMINATION.residual * r.sizes[row] + r.least else 1  # also for NaN
     return beyond == 0
 
@@ -71,14 +67,29 @@ def consistent_accelerations(s, m, t):
 
 
 @compiled
+def _are_closed(s, violations, tolerance):
+    """Return True if the violations of positions and velocities are within a tolerance, or rounding."""
+    of_positions = max(tolerance, ROUNDING * largest_of(s.q, s.n_pose))
+    of_velocities = max(tolerance, ROUNDING * largest_of(s.u, s.n_u))
+    return largest_open(s, violations) <= of_positions and largest_open(s, shifted(violations, s.n_c)) <= of_velocities
+
+
+@compiled
+def _factored(m, t):
+    """Factor J M^-1 J^T at the current pose; return True if output rows may use the factors."""
+    r = eliminated_view(m.eliminated)
+    return call_int(r.factor, (t, m.constraining, m.eliminated)) != 0 and r.kept >= ELIMINATION.kept
+
+
+@compiled
 def _closed(r, s, m, t, tolerance):
     """Project q and u onto the constraints with the current factors; return True if that converges.
 
-    The constraint terms of the set ``motion`` are then those of the result. Each move must reduce the violation to a part
-    `contraction`, so that moves by the factors of another pose are close to those of smallest norm.
+    The constraint terms of the set ``motion`` must be those of the state, and are then those of the result. Each move must
+    reduce the violation to a part `contraction`, so that moves by the factors of another pose are close to those of smallest norm.
     """
     joints = state_view(m.constraining)
-    violations = evaluate(joints, MOTION, t)
+    violations = floats(s.values[MOTION])
     close = max(tolerance, ROUNDING * largest_of(s.q, s.n_pose))
     for _ in range(CONSISTENCY.most_frozen_moves):
         before = largest_open(s, violations)
@@ -124,21 +135,14 @@ def _by_lu(s, m, t, tolerance, most):
 
 
 @compiled
-def from_row_to_row(s, m, t, tolerance, most, first):
-    """Project as `to_constraints`, after the first row with the factors of the row before if they are close enough.
-
-    Return 1 if the constraint terms of the set ``motion`` are those of the result, 0 if not, or a negative status.
-    """
-    if not first and m.by_elimination and _closed_or_as_before(eliminated_view(m.eliminated), s, m, t, tolerance):
-        return 1
-    if _eliminated(s, m, t) and _closed_or_as_before(eliminated_view(m.eliminated), s, m, t, tolerance):
-        return 1
-    return _by_lu(s, m, t, tolerance, most)
-
-
-@compiled
 def to_constraints(s, m, t, tolerance, most):
-    """Project q and u of a state near the constraints; 0 or a negative status."""
-    if _eliminated(s, m, t) and _closed_or_as_before(eliminated_view(m.eliminated), s, m, t, tolerance):
-        return 0
+    """Project q and u of a state near the constraints, for which the constraint terms of the set ``motion`` were computed.
+
+    Return 1 if these terms are those of the result, 0 if not, or a negative status.
+    """
+    if m.eliminates:
+        if _are_closed(s, floats(s.values[MOTION]), tolerance):
+            return 1
+        if _factored(m, t) and _closed_or_as_before(eliminated_view(m.eliminated), s, m, t, tolerance):
+            return 1
     return _by_lu(s, m, t, tolerance, most)

@@ -3,7 +3,7 @@
 from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted, state_view
-from stiffmbs.compile.machine.native.evaluate import MOTION, OUTPUT, POSITION, call_kernels, evaluate, share_turns
+from stiffmbs.compile.machine.native.evaluate import MOTION, OUTPUT, call_kernels, evaluate, share_turns
 from stiffmbs.compile.machine.native.factors import DONE, equilibrate, factor, log_determinant, scale, solve
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import take_unit_length
@@ -15,9 +15,13 @@ from stiffmbs.dynamics.native.block_systems import (
     to_position_constraints,
     to_velocity_constraints,
 )
-from stiffmbs.dynamics.native.consistent import consistent_accelerations, from_row_to_row
+from stiffmbs.dynamics.native.consistent import consistent_accelerations, to_constraints
+from stiffmbs.dynamics.native.layouts import JUDGED, LINES
 from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view
+
+N_JUDGED = len(JUDGED)
+GAP, GAP_RATE, DRIFT, DETERMINANT, CHANGED, MOVED, MOVED_VELOCITY, KINETIC, POTENTIAL, POWER = range(N_JUDGED)
 
 
 def assemble(t, tolerance, most, dynamics):
@@ -101,26 +105,24 @@ def _led_astray(s, q, violation):
 
 
 @compiled
-def _output_point(s, m, t, q, project, tolerance, largest, first):
+def _output_point(s, m, t, q, project, tolerance, judged):
     """Project the state if requested; compute accelerations, multipliers and output terms; 0 or a negative status."""
-    for k in range(3):
-        largest[k] = 0.0
     take_unit_length(s)
-    for k in range(s.n_q):
-        q[k] = s.q[k]
-    joints = state_view(m.constraining)
-    status = 0
-    if project and s.n_c > 0:
-        largest[2] = _largest_violation(s, evaluate(s, POSITION, t))
-        status = from_row_to_row(s, m, t, tolerance, CONSISTENCY.most_moves, first)
-        if status < 0:
-            return status
-        if _led_astray(s, q, largest[2]):
-            return SINGULAR
+    copied(q, s.q, s.n_q)
     if s.n_c > 0:
-        values = floats(s.values[MOTION]) if status == 1 else evaluate(joints, MOTION, t)
-        largest[0] = _largest_violation(s, values)
-        largest[1] = _largest_violation(s, shifted(values, s.n_c))
+        joints = state_view(m.constraining)
+        violations = evaluate(joints, MOTION, t)
+        if project:
+            judged[DRIFT] = _largest_violation(s, violations)
+            status = to_constraints(s, m, t, tolerance, CONSISTENCY.most_moves)
+            if status < 0:
+                return status
+            if _led_astray(s, q, judged[DRIFT]):
+                return SINGULAR
+            if status == 0:
+                evaluate(joints, MOTION, t)
+        judged[GAP] = _largest_violation(s, violations)
+        judged[GAP_RATE] = _largest_violation(s, shifted(violations, s.n_c))
     status = consistent_accelerations(s, m, t)
     if status < 0:
         return status
@@ -130,65 +132,102 @@ def _output_point(s, m, t, q, project, tolerance, largest, first):
     return 0
 
 
-def output_points(count, times, project, tolerance, n_output, q, u, acceleration, lam, output, judged, dynamics):
+@compiled
+def _judge_moves(s, m, q, u, judged):
+    """Store the largest changes of a projection: of a velocity, and of positions and velocities by roots of inertias."""
+    moved = 0.0
+    for k in range(s.n_q):
+        moved = max(moved, abs(s.q[k] - q[k]) * m.root_q[k])
+    judged[MOVED] = moved
+    changed = 0.0
+    moved = 0.0
+    for k in range(s.n_u):
+        change = abs(s.u[k] - u[k])
+        changed = max(changed, change)
+        moved = max(moved, change * m.root_u[k])
+    judged[CHANGED] = changed
+    judged[MOVED_VELOCITY] = moved
+
+
+@compiled
+def _sum_of(values, places, count):
+    total = 0.0
+    for k in range(count):
+        total += values[places[k]]
+    return total
+
+
+@compiled
+def _judge_energies(s, m, values, judged):
+    """Store kinetic and potential energy, and power."""
+    total = 0.0
+    for k in range(s.n_u):
+        total += m.mass[k] * s.u[k] * s.u[k]
+    judged[KINETIC] = 0.5 * total + _sum_of(values, m.kinetic, m.n_kinetic)
+    judged[POTENTIAL] = _sum_of(values, m.potential, m.n_potential)
+    judged[POWER] = _sum_of(values, m.power, m.n_power)
+
+
+@compiled
+def _store(lines, width, first, n_columns, columns, stride, rows):
+    """Store the numbers from `first` on of some lines in columns of a table; return the next number."""
+    for k in range(n_columns):
+        column = shifted(columns, k * stride)
+        if rows == LINES:
+            for row in range(LINES):
+                column[row] = lines[row * width + first + k]
+        else:
+            for row in range(rows):
+                column[row] = lines[row * width + first + k]
+    return first + n_columns
+
+
+def output_points(
+    count, times, q_before, u_before, project, tolerance, stride, q, u, acceleration, lam, output, judged, dynamics
+):
     """Compute all reported values at `count` times, row by row; return the number of completed rows.
 
-    If `project` is true, q and u (rows of n_q, n_u) are projected onto the constraints.  The output is u', lam, the
-    output terms, and four numbers per row in `judged`: violations of positions and of velocities (largest of a joint),
-    of positions before the projection, and log |det| of the block matrix.  `status` of the dynamics holds errors.
+    If `project` is true, the states before, rows of n_q and n_u numbers, are projected onto the constraints.  The results are
+    columns of tables with `stride` rows: q, u, u', lam, output terms, and `JUDGED`.  `status` of the dynamics holds errors.
     """
     m = dynamics_view(dynamics)
     s = state_view(m.state)
+    width = s.n_q + 2 * s.n_u + s.n_c + m.n_output + N_JUDGED
     for row in range(count):
-        at_row = shifted(q, row * s.n_q)
-        for k in range(s.n_q):
-            s.q[k] = at_row[k]
-        for k in range(s.n_u):
-            s.u[k] = u[row * s.n_u + k]
-        m.status = _output_point(s, m, times[row], at_row, project, tolerance, shifted(judged, 4 * row), row == 0)
-        if m.status < 0:
+        at_q, at_u = shifted(q_before, row * s.n_q), shifted(u_before, row * s.n_u)
+        copied(s.q, at_q, s.n_q)
+        copied(s.u, at_u, s.n_u)
+        line = shifted(m.lines, row % LINES * width)
+        of_judged = shifted(line, width - N_JUDGED)
+        for k in range(N_JUDGED):
+            of_judged[k] = 0.0
+        m.status = _output_point(s, m, times[row], line, project, tolerance, of_judged)
+        failed = m.status < 0
+        if not failed:
+            factors, values = factors_view(m.acceleration_factors), floats(s.values[OUTPUT])
+            if m.by_elimination:
+                of_judged[DETERMINANT] = log_determinant_by_blocks(eliminated_view(m.eliminated))
+            else:
+                of_judged[DETERMINANT] = log_determinant(factors)
+            _judge_moves(s, m, at_q, at_u, of_judged)
+            _judge_energies(s, m, values, of_judged)
+            copied(line, s.q, s.n_q)
+            copied(shifted(line, s.n_q), s.u, s.n_u)
+            copied(shifted(line, s.n_q + s.n_u), factors.b, s.n_u)
+            copied(shifted(line, s.n_q + 2 * s.n_u), s.lam, s.n_c)
+            copied(shifted(line, width - N_JUDGED - m.n_output), values, m.n_output)
+        rows = row % LINES if failed else row % LINES + 1
+        if failed or rows == LINES or row == count - 1:
+            begin = row - row % LINES
+            at = _store(m.lines, width, 0, s.n_q, shifted(q, begin), stride, rows)
+            at = _store(m.lines, width, at, s.n_u, shifted(u, begin), stride, rows)
+            at = _store(m.lines, width, at, s.n_u, shifted(acceleration, begin), stride, rows)
+            at = _store(m.lines, width, at, s.n_c, shifted(lam, begin), stride, rows)
+            at = _store(m.lines, width, at, m.n_output, shifted(output, begin), stride, rows)
+            _store(m.lines, width, at, N_JUDGED, shifted(judged, begin), stride, rows)
+        if failed:
             return row
-        factors = factors_view(m.acceleration_factors)
-        if m.by_elimination:
-            judged[4 * row + 3] = log_determinant_by_blocks(eliminated_view(m.eliminated))
-        else:
-            judged[4 * row + 3] = log_determinant(factors)
-        solution = factors.b
-        values = floats(s.values[OUTPUT])
-        for k in range(s.n_q):
-            at_row[k] = s.q[k]
-        for k in range(s.n_u):
-            u[row * s.n_u + k] = s.u[k]
-            acceleration[row * s.n_u + k] = solution[k]
-        for k in range(s.n_c):
-            lam[row * s.n_c + k] = s.lam[k]
-        for k in range(n_output):
-            output[row * n_output + k] = values[k]
     return count
-
-
-def energies(
-    count, n_u, u, mass, n_values, values, n_potential, potential_at, n_power, power_at, n_kinetic, kinetic_at, kinetic,
-    potential, power,
-):  # fmt: skip
-    """Compute kinetic and potential energy and power in `count` rows of velocities and output terms."""
-    for row in range(count):
-        velocity = shifted(u, row * n_u)
-        term = shifted(values, row * n_values)
-        total = 0.0
-        for k in range(n_u):
-            total += mass[k] * velocity[k] * velocity[k]
-        kinetic[row] = 0.5 * total
-        for k in range(n_kinetic):
-            kinetic[row] += term[kinetic_at[k]]
-        total = 0.0
-        for k in range(n_potential):
-            total += term[potential_at[k]]
-        potential[row] = total
-        total = 0.0
-        for k in range(n_power):
-            total += term[power_at[k]]
-        power[row] = total
 
 
 @compiled

@@ -1,6 +1,6 @@
 """Memory layouts of the dynamics and of elimination."""
 
-from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
+from stiffmbs.compile.machine.layout import CACHE_LINE, FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
 
 DYNAMICS = Layout({
     "state": INTS, "constraining": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
@@ -9,21 +9,35 @@ DYNAMICS = Layout({
     "n_algebraic": INT, "algebraic": INTS, "algebraic_scale": FLOATS, "algebraic_before": FLOATS,
     "n_turned_for_output": INT, "turned_for_output": INTS,
     "eliminates": INT, "eliminated": INTS, "by_elimination": INT_CELL,
+    "n_output": INT, "lines": FLOATS, "mass": FLOATS, "root_q": FLOATS, "root_u": FLOATS,
+    "n_potential": INT, "potential": INTS, "n_power": INT, "power": INTS, "n_kinetic": INT, "kinetic": INTS,
 })  # fmt: skip
-"""Tables of a state and its three block systems.  `constraining` is a table of the same state whose set ``motion`` has the terms of
-joints alone.  `status` receives the reason of a failure in output rows.  `trailing`
+"""Tables of a state and its three block systems.  `constraining` is a table of the same state whose sets ``motion`` and
+``acceleration`` have the terms of joints alone.  `status` receives the reason of a failure in output rows.  `trailing`
 lists the rates of revolution counters and states among the acceleration terms; `by_reactions` is 1 if any depends on
 multipliers.  `algebraic` lists the algebraic states among the coordinates, with their scales and last values, and
 `turned_for_output` the first coordinates of bodies whose orientation only output terms need.  `eliminates` is 1 if
-elimination is tried first (`stiffmbs.dynamics.native.consistent`), `by_elimination` if it gave the last accelerations."""
+elimination is tried first (`stiffmbs.dynamics.native.consistent`), `by_elimination` if it gave the last accelerations.
+Output rows need the number of output terms, memory for `LINES` rows, and masses. Roots of inertias by coordinate and
+velocity follow, and the places of energies and power among the output terms."""
+
+LINES = CACHE_LINE // 8
+"""Output rows that are stored together: one cache line of each column."""
+JUDGED = (
+    "position_violation", "velocity_violation", "drift", "log_determinant", "changed", "moved", "moved_velocity", "kinetic",
+    "potential", "power",
+)  # fmt: skip
+"""Numbers that judge an output row (`stiffmbs.dynamics.dynamics.OutputRows`), in the order of their storage."""
 
 ELIMINATED = Layout({
     "state": INTS, "n_u": INT, "trees": INT, "by_pins": INT, "lists": INTS,
     "ready": INT_CELL, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
     "n_f": INT, "f_source": INDICES, "f_row": INDICES, "scale": FLOATS, "a": FLOATS,
-    "attempt": INT_CELL, "move": INT_CELL, "q_before": FLOATS, "u_before": FLOATS, "left": FLOATS, "sizes": FLOATS, "least": FLOAT_CELL,
+    "attempt": INT_CELL, "factor": INT_CELL, "move": INT_CELL, "q_before": FLOATS, "u_before": FLOATS, "left": FLOATS, "sizes": FLOATS, "least": FLOAT_CELL, "log_mass": FLOAT_CELL,
+    "n_j": INT, "j_source": INDICES, "j_row": INDICES, "j_column": INDICES, "n_gamma": INT, "gamma_source": INDICES, "gamma_row": INDICES,
 })  # fmt: skip
 """Elimination of J M^-1 J^T (`stiffmbs.dynamics.elimination.eliminated`).  `trees` is 1 if no joint closes a loop; `by_pins`
 tells the kind of the table `lists`.  `ready` is 1 if there are factors; `kept` and `most_kept` are the relative
 sizes of their pivots now and at most.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
-state; residuals of the block system, sizes of their terms, and the least allowed residual."""
+state; residuals of J u' = gamma, sizes of their terms, the least allowed residual, and log det M; entries of J and gamma in solved
+equations among the acceleration terms."""

@@ -5,11 +5,11 @@ from stiffmbs.compile.machine.native.evaluate import POSITION, evaluate
 
 
 @compiled
-def _weighted(n_u, acceleration, mass):
-    """Return the square of an acceleration, weighted with masses."""
+def _weighted(count, n_u, acceleration, mass):
+    """Return the square of the first acceleration, weighted with masses."""
     total = 0.0
     for k in range(n_u):
-        total += mass[k] * acceleration[k] * acceleration[k]
+        total += mass[k] * acceleration[k * count] * acceleration[k * count]
     return total
 
 
@@ -36,22 +36,22 @@ def contradicting_rows(count, n_u, t, u, acceleration, mass, part, least, n_step
     """Store the rows that contradict the next one within a step in `found`, and return their number.
 
     In such a row the mean rate of the velocities differs from the mean acceleration by more than `part` of the larger one.
-    The difference in a velocity is also more than its number in `least`.
+    The difference in a velocity is also more than its number in `least`. `u` and `acceleration`: columns of `count` numbers.
     """
     contradicting = 0
-    before = _weighted(n_u, acceleration, mass) if count > 0 else 0.0
+    before = _weighted(count, n_u, acceleration, mass) if count > 0 else 0.0
     for row in range(count - 1):
-        first, second = shifted(acceleration, row * n_u), shifted(acceleration, (row + 1) * n_u)
-        velocity = shifted(u, row * n_u)
+        first, velocity = shifted(acceleration, row), shifted(u, row)
         per_second = 1.0 / (t[row + 1] - t[row])
         total = 0.0
         exceeds = False
         for k in range(n_u):
-            off = (velocity[n_u + k] - velocity[k]) * per_second - 0.5 * (first[k] + second[k])
+            at = k * count
+            off = (velocity[at + 1] - velocity[at]) * per_second - 0.5 * (first[at] + first[at + 1])
             total += mass[k] * off * off
             if abs(off) > least[k]:
                 exceeds = True
-        after = _weighted(n_u, second, mass)
+        after = _weighted(count, n_u, shifted(first, 1), mass)
         if (
             exceeds
             and total > part * part * _larger(after, before)

@@ -264,14 +264,20 @@ def _subtract_reactions(r, b):
 
 
 @compiled
-def accelerate_by_blocks(r, b, s, values):
-    """Compute M^1/2 u' in r.a from M^-1/2 f there, and multipliers in lam; return True if successful."""
+def factor_by_blocks(r, b, values):
+    """Factor S, and eliminate x = j a - gamma with a = M^-1/2 f in r.a; return True if all pivots are accurate."""
     _assemble(r, b, values)
     for k in range(b.n_joints):
         p = joint_panel(b.joint, k)
         for i in range(p.size):
             b.pivot_scale[p.pivot + i] = b.blocks[p.start + i * (p.stride + 1)]
-    if not _eliminate(r, b):
+    return _eliminate(r, b)
+
+
+@compiled
+def accelerate_by_blocks(r, b, s, values):
+    """Compute M^1/2 u' in r.a from M^-1/2 f there, and multipliers in lam; return True if successful."""
+    if not factor_by_blocks(r, b, values):
         return False
     _substitute_back(b)
     _subtract_reactions(r, b)

@@ -8,9 +8,17 @@ from math import log
 from stiffmbs.compile.machine.native.access import compiled, state_view
 from stiffmbs.compile.machine.native.calls import int32
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
-from stiffmbs.dynamics.elimination.native.by_blocks import accelerate_by_blocks, blocks_view, move_by_blocks
+from stiffmbs.dynamics.elimination.native.by_blocks import (
+    accelerate_by_blocks,
+    blocks_view,
+    factor_by_blocks,
+    move_by_blocks,
+)
 from stiffmbs.dynamics.elimination.native.by_pins import accelerate_by_pins, move_by_pins, pins_view
 from stiffmbs.dynamics.native.views import eliminated_view
+
+SMALL_PRODUCT = 1e-100
+"""Product of pivots from which on the next one may not be a number of full precision."""
 
 
 @compiled
@@ -55,12 +63,14 @@ def smallest_move(r, s, violations):
 def log_determinant_by_blocks(r):
     """Return log |det| of the block matrix [M J^T; J 0], as det M det(J M^-1 J^T)."""
     b = blocks_view(r.lists)
-    total = 0.0
+    total = r.log_mass
+    product = 1.0
     for k in range(b.n_pivots):
-        total += log(b.pivot[k])
-    for k in range(r.n_u):
-        total -= 2.0 * log(r.scale[k])
-    return total
+        product *= b.pivot[k]
+        if not SMALL_PRODUCT <= product <= 1.0 / SMALL_PRODUCT:  # logarithms are expensive
+            total += log(product)
+            product = 1.0
+    return total + log(product)
 
 
 def attempt(t, acceleration, eliminated):
@@ -70,6 +80,13 @@ def attempt(t, acceleration, eliminated):
     for k in range(r.n_u):
         acceleration[k] = r.a[k]
     return int32(done)
+
+
+def factor(t, joints, eliminated):
+    """Factor the blocks for moves at the current pose; `joints`: table of the state with their acceleration terms alone."""
+    r = eliminated_view(eliminated)
+    r.ready = factor_by_blocks(r, blocks_view(r.lists), evaluate(state_view(joints), ACCELERATION, t))
+    return int32(r.ready)
 
 
 def move(violations, eliminated):

@@ -198,7 +198,10 @@ def count(n, functions, arguments, value, sums):
 @compiled
 def brought_back(s, m, t):
     """Project the current state onto the constraints; 0 or a negative status."""
-    return to_constraints(s, m, t, CONSISTENCY.position_tolerance, CONSISTENCY.most_moves) if s.n_c > 0 else 0
+    if s.n_c == 0:
+        return 0
+    evaluate(state_view(m.constraining), MOTION, t)
+    return min(to_constraints(s, m, t, CONSISTENCY.position_tolerance, CONSISTENCY.most_moves), 0)
 
 
 @compiled
