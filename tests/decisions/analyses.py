@@ -240,7 +240,7 @@ def move_to_a_branch():
     system = Record(of_body=Record(moved=lambda q, move: q + move))
     dynamics = Record(state=state, system=system, assemble=nothing)
     state.q = np.zeros(1)
-    with patch.object(settled, "find_equilibrium", lambda *_: state.q[0]):
+    with patch.object(settled, "find_equilibrium", lambda *_, **__: state.q[0]):
         return settled._branch(dynamics, Record(q=np.zeros(1)), np.ones(1), 0.0)
 
 
