@@ -9,7 +9,7 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import FAILURES
-from .stiff_rows import coarse_forces, lengths_of_steps, with_stiff_forces
+from .stiff_rows import lengths_of_steps, with_stiff_forces
 from .trajectory import Trajectory
 
 MOST_MISSING = 100
@@ -17,7 +17,7 @@ MOST_MISSING = 100
 
 
 def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: float) -> tuple[OutputRows, list[str]]:
-    """Return the output rows of a trajectory, and notes on rows without a solution and on uncertain forces.
+    """Return the output rows of a trajectory, and a note for each row without a solution.
 
     Projections change forces by less than `rtol` of the largest, if possible. A time without a solution between two that
     have one keeps its integrated coordinates and velocities; all else is NaN. The rows end where two in succession have none.
@@ -35,7 +35,6 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: fl
         parts += [_unknown(parts[0], t[done], pose, u[done]), following]
         notes.append(f"no accelerations and reactions at t = {t[done]:.9g} s (NaN there): {FAILURES[status]}")
         done += 1 + len(following.t)
-    notes += coarse_forces(dynamics, trajectory)
     return with_stiff_forces(dynamics, (q, u), _joined(parts), lengths_of_steps(trajectory), rtol), notes
 
 

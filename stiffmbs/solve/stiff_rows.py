@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import fields, replace
 from itertools import repeat
 from typing import TypeAlias
@@ -71,29 +70,6 @@ def lengths_of_steps(trajectory: Trajectory) -> np.ndarray:
         return np.zeros(len(trajectory.t))
     last = np.clip(np.searchsorted(ends, trajectory.t), 1, len(ends) - 1)
     return np.asarray(ends[last] - ends[last - 1])
-
-
-def coarse_forces(dynamics: Dynamics, trajectory: Trajectory) -> Iterator[str]:
-    """Yield a note on output times in steps of order 1 that are long for stiff forces.
-
-    Such forces follow from second differences of positions, which are no accelerations where steps change (Gear, Hsu,
-    Petzold 1981, Differential-algebraic equations revisited). The state of `dynamics` is changed.
-    """
-    ends, orders = trajectory.history.t, trajectory.history.order
-    if len(orders) != len(ends) or not (orders == 1).any():
-        return
-    state, lengths = dynamics.state, lengths_of_steps(trajectory)
-    last = np.clip(np.searchsorted(ends, trajectory.t), 0, len(ends) - 1)
-    at = np.flatnonzero((orders[last] == 1) & (lengths > 0.0) & (trajectory.t > trajectory.t[0]))
-    if not len(at):
-        return
-    state.q[:], state.u[:] = trajectory.q[at[-1]], trajectory.u[at[-1]]
-    at = at[lengths[at] > stiffness_at(dynamics, float(trajectory.t[at[-1]])).long_step]
-    if len(at):
-        yield (
-            f"stiff forces and reactions may be wrong by up to tens of percent at {len(at)} output time{'s' * (len(at) > 1)} from t = {trajectory.t[at[0]]:.6g} s "
-            "on: steps of BDF of order 1 are long for them there; reduce rtol, or use solver: radau"
-        )
 
 
 def _of(states: States, at: np.ndarray) -> States:

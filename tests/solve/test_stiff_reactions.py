@@ -1,5 +1,7 @@
 """Reactions next to a very stiff bushing, against those of a fixed joint in its place."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -116,7 +118,7 @@ def coarse(run, push="0, 0"):
 def test_forces_in_long_steps_of_order_1_are_told():
     """At kinks of the push, reactions are wrong by up to 0.27 times the largest at a loose tolerance."""
     (note,) = coarse("solver: bdf, rtol: 1e-3", KINKS)
-    assert "tens of percent" in note and "solver: radau" in note
+    assert 10 < float(re.search(r"about (\d+) %", note).group(1)) < 40 and "solver: radau" in note
     assert not coarse("solver: bdf, rtol: 1e-4") and not coarse("solver: radau, rtol: 1e-3", KINKS)
 
 

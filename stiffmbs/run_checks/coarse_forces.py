@@ -1,0 +1,46 @@
+"""Check of stiff forces in long steps of BDF of order 1, as after restarts at loose tolerances."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..dynamics.dynamics import Dynamics, OutputRows
+from ..solve.error_control.newton import stiffness_at
+from ..solve.stiff_rows import lengths_of_steps
+from ..solve.trajectory import Trajectory
+from .parameters import RUN_CHECKS
+
+
+def coarse_forces_sentence(dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows) -> Iterator[str]:
+    """Yield a sentence on stiff forces in long steps of order 1, if they contradict the motion; the state is changed.
+
+    There they follow from second differences of positions, which are no accelerations where the step changes (Gear,
+    Hsu and Petzold 1981, Differential-algebraic equations revisited). Accelerations then differ from the mean rate of
+    velocities since the output before in the same step.
+    """
+    ends, orders = trajectory.history.t, trajectory.history.order
+    if len(orders) != len(ends) or len(rows.t) < 2 or not (orders == 1).any():
+        return
+    lengths = lengths_of_steps(trajectory)[: len(rows.t)]
+    last = np.clip(np.searchsorted(ends, rows.t), 0, len(ends) - 1)
+    at = np.flatnonzero((orders[last] == 1) & (lengths > 0.0) & (lengths >= np.diff(rows.t, prepend=-np.inf)))
+    if not len(at):
+        return
+    mass, rate = dynamics.system.mass, np.diff(rows.u, axis=0)[at - 1] / np.diff(rows.t)[at - 1, None]
+    largest = float(np.nanmax(rows.acceleration**2 @ mass))
+    off = np.sqrt((rows.acceleration[at] - rate) ** 2 @ mass / largest) if largest else np.zeros(len(at))
+    found = off > RUN_CHECKS.contradicted_part
+    at, off = at[found], off[found]
+    if not len(at):
+        return
+    dynamics.state.q[:], dynamics.state.u[:] = rows.q[at[-1]], rows.u[at[-1]]
+    long = lengths[at] > stiffness_at(dynamics, float(rows.t[at[-1]])).long_step
+    if long.any():
+        at, off = at[long], off[long]
+        yield (
+            f"stiff forces and reactions are wrong by up to about {100.0 * off.max():.2g} % of the largest at {len(at)} output "
+            f"time{'s' * (len(at) > 1)} from t = {rows.t[at[0]]:.6g} s on: steps of BDF of order 1 are long for them there; "
+            "reduce rtol, or use solver: radau"
+        )
