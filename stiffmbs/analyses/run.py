@@ -24,10 +24,9 @@ from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
 from ..results.solution import Solution
-from ..run_checks.coarse_forces import coarse_forces_sentence
 from ..run_checks.growth import motion_within_tolerance, senseless
-from ..run_checks.lost_digits import lost_digits_sentence
 from ..run_checks.motion import motion_notes
+from ..run_checks.uncertain_forces import uncertain_forces
 from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.missing_rows import reported
 from ..solve.settings import changed, settings_notes, traits_of
@@ -143,10 +142,7 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
     impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or broken
     uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job)))
-    imprecise: tuple[str, ...] = ()
-    if trajectory.statistics.get("jacobians"):
-        uncertain_forces = coarse_forces_sentence(job.dynamics, trajectory, rows)
-        imprecise = (*lost_digits_sentence(job.dynamics, rows), *uncertain_forces)
+    imprecise = tuple(uncertain_forces(job.dynamics, trajectory, rows))
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     notes = (
         *_notes(job, trajectory, structure),

@@ -11,7 +11,6 @@ import stiffmbs
 from stiffmbs.analyses.job import prepare
 from stiffmbs.errors import InputError
 from stiffmbs.run_checks import (
-    coarse_forces,
     geometric_stiffness,
     growth,
     locked,
@@ -19,6 +18,7 @@ from stiffmbs.run_checks import (
     motion,
     overlooked,
     singular_poses,
+    uncertain_forces,
 )
 from stiffmbs.run_checks.singular_poses import PosesBetween
 from tests.decisions.common import Record, nothing
@@ -69,8 +69,8 @@ def contradiction_in_a_step_of_order_1():
 
     def is_silent(off):
         rows = Record(t=ends, q=zeros, u=zeros, acceleration=np.array([[1.0], [off]]))
-        with patch.object(coarse_forces, "stiffness_at", lambda *_: Record(long_step=0.0)):
-            return silent(coarse_forces.coarse_forces_sentence(dynamics, trajectory, rows))
+        with patch.object(uncertain_forces, "stiffness_at", lambda *_: Record(long_step=0.0)):
+            return silent(uncertain_forces.coarse_forces_sentence(dynamics, trajectory, rows))
 
     return count_while(is_silent, 1e-3 * DOUBLES)
 

@@ -1,4 +1,4 @@
-"""Check of stiff forces in long steps of BDF of order 1, as after restarts at loose tolerances."""
+"""Checks of stiff forces: of their digits, and in long steps of BDF of order 1, as after restarts at loose tolerances."""
 
 from __future__ import annotations
 
@@ -10,7 +10,15 @@ from ..dynamics.dynamics import Dynamics, OutputRows
 from ..solve.error_control.newton import stiffness_at
 from ..solve.stiff_rows import lengths_of_steps
 from ..solve.trajectory import Trajectory
+from .lost_digits import lost_digits_sentence
 from .parameters import RUN_CHECKS
+
+
+def uncertain_forces(dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows) -> Iterator[str]:
+    """Yield sentences on forces of a run with implicit steps that are known to a few digits only; the state is changed."""
+    if trajectory.statistics.get("jacobians"):
+        yield from lost_digits_sentence(dynamics, rows)
+        yield from coarse_forces_sentence(dynamics, trajectory, rows)
 
 
 def coarse_forces_sentence(dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows) -> Iterator[str]:
