@@ -31,20 +31,24 @@ def coarse_forces_sentence(dynamics: Dynamics, trajectory: Trajectory, rows: Out
     ends, orders = trajectory.history.t, trajectory.history.order
     if len(orders) != len(ends) or len(rows.t) < 2 or not (orders == 1).any():
         return
-    lengths = lengths_of_steps(trajectory)[: len(rows.t)]
     last = np.clip(np.searchsorted(ends, rows.t), 0, len(ends) - 1)
-    at = np.flatnonzero((orders[last] == 1) & (lengths > 0.0) & (lengths >= np.diff(rows.t, prepend=-np.inf)))
+    at = 1 + np.flatnonzero(orders[last[1:]] == 1)
+    if not len(at):
+        return
+    lengths = lengths_of_steps(trajectory)[at]
+    within = (lengths > 0.0) & (lengths >= np.diff(rows.t)[at - 1])
+    at, lengths = at[within], lengths[within]
     if not len(at):
         return
     mass, rate = dynamics.system.mass, np.diff(rows.u, axis=0)[at - 1] / np.diff(rows.t)[at - 1, None]
     largest = float(np.nanmax(rows.acceleration**2 @ mass))
     off = np.sqrt((rows.acceleration[at] - rate) ** 2 @ mass / largest) if largest else np.zeros(len(at))
     found = off > RUN_CHECKS.contradicted_part
-    at, off = at[found], off[found]
+    at, off, lengths = at[found], off[found], lengths[found]
     if not len(at):
         return
     dynamics.state.q[:], dynamics.state.u[:] = rows.q[at[-1]], rows.u[at[-1]]
-    long = lengths[at] > stiffness_at(dynamics, float(rows.t[at[-1]])).long_step
+    long = lengths > stiffness_at(dynamics, float(rows.t[at[-1]])).long_step
     if long.any():
         at, off = at[long], off[long]
         yield (
