@@ -219,21 +219,17 @@ DAMAGES = (_flipped, _cut, _garbage, _folder, _pipe, _gone, _unreadable)
 def _run(session: Session) -> tuple[int, bytes, bytes]:
     """Run a session; return exit status, standard output and standard error."""
 
-    def limited() -> None:
-        """Restore the interrupt and limit the size of files in the child process."""
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        if session.limit is not None:
-            import resource
-
-            resource.setrlimit(resource.RLIMIT_FSIZE, (session.limit, session.limit))
-
+    # programs that replace themselves by the command: a function in the child would need a copy of this process's memory
+    limited = ["env", "--default-signal=INT"]
+    if session.limit is not None:
+        limited += ["prlimit", f"--fsize={session.limit}"]
     package = str(Path(__file__).parents[3])
     path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
     with open(os.devnull if not session.full_output else "/dev/full", "wb") as other:
         process = subprocess.Popen(
-            [sys.executable, "-m", "stiffmbs", *session.command], cwd=session.folder, stdin=subprocess.DEVNULL,
+            [*limited, sys.executable, "-m", "stiffmbs", *session.command], cwd=session.folder, stdin=subprocess.DEVNULL,
             stdout=other if session.full_output else subprocess.PIPE, stderr=subprocess.PIPE,
-            env={**os.environ, "PYTHONPATH": path, "COLUMNS": "300", **session.environment}, preexec_fn=limited,
+            env={**os.environ, "PYTHONPATH": path, "COLUMNS": "300", **session.environment},
         )  # fmt: skip
     begun = 0.0
     if session.signals:

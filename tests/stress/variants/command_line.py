@@ -17,14 +17,9 @@ def command(folder: Path, words: list[str]) -> tuple[int, str, str]:
     """Run a command in a folder, and return its exit status, standard output and standard error."""
     package = str(Path(__file__).parents[3])
     path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
+    bounded = ["prlimit", f"--as={MEMORY}"]  # a function in the child would need a copy of this process's memory
     done = subprocess.run(
-        [sys.executable, "-m", "stiffmbs", *words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, check=False,
-        timeout=PATIENCE, env={**os.environ, "PYTHONPATH": path, "COLUMNS": "300"}, preexec_fn=_bounded,
+        [*bounded, sys.executable, "-m", "stiffmbs", *words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, check=False,
+        timeout=PATIENCE, env={**os.environ, "PYTHONPATH": path, "COLUMNS": "300"},
     )  # fmt: skip
     return done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
-
-
-def _bounded() -> None:
-    import resource
-
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
