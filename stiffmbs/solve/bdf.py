@@ -73,8 +73,7 @@ def integrated(
 
     `pays`: called after each return of the engine. The run ends at `integrator.reached` when it returns False.
     """
-    system = integrator.dynamics.system
-    rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
+    rows = Rows.of(integrator.dynamics.system, grid)
     rows.append(grid.start, start.q, start.u)
     with Ending() as ending:
         for reached in integrator.run(start, grid, passing=not is_logged()):

@@ -25,6 +25,7 @@ from ..errors import SolverError
 from ..model.settings import RunSettings
 
 if TYPE_CHECKING:
+    from ..compile.system import System
     from ..dynamics.dynamics import Dynamics
     from ..dynamics.initial import InitialValues
     from .events.long_steps import LongSteps
@@ -176,11 +177,16 @@ def summed(parts: Sequence[Mapping[str, int | float | str]]) -> dict[str, int | 
 
 
 class Rows:
-    """Growing storage for states."""
+    """Storage for states, which doubles when it is full: a run between samples may have a few rows only."""
 
-    def __init__(self, n_q: int, n_u: int, expected: int = 1024) -> None:
+    def __init__(self, n_q: int, n_u: int, expected: int) -> None:
         self._t, self._q, self._u = allocated(expected), allocated(expected, n_q), allocated(expected, n_u)
         self._count = self._released = 0
+
+    @classmethod
+    def of(cls, system: System, grid: Grid) -> Rows:
+        """Return the storage for the output times of a grid, or for steps."""
+        return cls(system.n_q, system.n_u, 1 if grid.times is None else len(grid.times))
 
     def append(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Store one state."""

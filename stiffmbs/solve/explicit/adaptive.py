@@ -58,12 +58,11 @@ class AdaptiveRun:
     def __init__(
         self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
     ) -> None:  # fmt: skip
-        system = dynamics.system
         self.work = work = Integration(scheme, dynamics, start, grid, settings)
         self.left = False
         self._scheme, self._dynamics, self._start, self._grid = scheme, dynamics, start, grid
         self._settings, self._watch = settings, watch
-        self._rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else work.capacity + 1)
+        self._rows = Rows.of(dynamics.system, grid)
         if grid.times is None:
             self._rows.append(grid.start, start.q, start.u)
         features = dynamics.input_features(grid.start, grid.end)

@@ -1,5 +1,7 @@
 """Sampled states against exact discrete solutions, in runs, restarts, simulations and analyses of one instant."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -83,6 +85,19 @@ def test_runs_and_simulations_in_pieces_take_each_sample_once(solver):
         simulation.step(0.1)
         x, _, push, _ = exact([simulation.t], 0.1, 0.1)[:, 0]
         assert [simulation["block.x"], simulation["push"]] == pytest.approx([x, push], abs=1e-8)
+
+
+@pytest.mark.parametrize("settings", [{"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}])
+def test_a_run_with_all_steps_keeps_no_more_memory_for_each_sample_than_its_rows(settings):
+    scene = stiffmbs.read_scene(SCENE.replace("0.037", "1e-3"))
+    stiffmbs.run(scene, duration=0.01, points="steps", **settings)
+    tracemalloc.start()
+    try:
+        found = stiffmbs.run(scene, duration=2.0, points="steps", **settings)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert len(found.time) > 2000 and peak < 80e6
 
 
 def test_a_sampled_velocity_command_turns_a_drive_in_steps():
