@@ -343,7 +343,7 @@ class TyreProperties(Component):
             raise InputError(
                 "found turn slip for a tyre without its coefficients, expected one with PHYP1, PDYP1 or so"
             )
-        return steady_state(self.in_equations(), Fz, kappa, alpha, gamma, p, Vx, phit, friction)
+        return steady_state(self.in_equations(), (Fz, kappa, alpha, gamma, friction), p, Vx, phit)
 
     def to_file(self, path: str | Path, units: dict[str, str] | None = None) -> None:
         """Write a property file with the same evaluation; numbers that the equations do not use are left out.

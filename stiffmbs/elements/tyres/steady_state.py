@@ -5,7 +5,7 @@ The equations are those of the element, evaluated by NumPy.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -36,24 +36,19 @@ Numbers = Mapping[str, Any]
 
 
 def steady_state(
-    numbers: Numbers,
-    Fz: ArrayLike,
-    kappa: ArrayLike = 0.0,
-    alpha: ArrayLike = 0.0,
-    gamma: ArrayLike = 0.0,
-    p: ArrayLike | None = None,
-    Vx: ArrayLike | None = None,
-    phit: ArrayLike | None = None,
-    friction: ArrayLike = 1.0,
+    numbers: Numbers, contact: Sequence[ArrayLike], p: ArrayLike | None, Vx: ArrayLike | None, phit: ArrayLike | None
 ) -> dict[str, np.ndarray]:
-    """Return the steady state of a tyre by the symbols of the Magic Formula; see `TyreProperties.steady_state`."""
+    """Return the steady state of a tyre by the symbols of the Magic Formula; see `TyreProperties.steady_state`.
+
+    `contact`: Fz, kappa, alpha, gamma, and the friction factor of the road.
+    """
     nominal = numbers["NOMPRES"]
     pressure = p if p is not None or nominal is None else numbers["INFLPRES"]
     turn = None if phit is None else np.asarray(phit, dtype=float)
     speed = numbers["LONGVL"] if Vx is None else Vx
-    given = (Fz, kappa, alpha, gamma, 1.0 if pressure is None else pressure, speed, 0.0 if turn is None else turn)
-    Fz, kappa, alpha, gamma, pressure, speed, turned, friction = (
-        np.array(x, dtype=float) for x in np.broadcast_arrays(*given, friction)
+    given = (1.0 if pressure is None else pressure, speed, 0.0 if turn is None else turn)
+    Fz, kappa, alpha, gamma, friction, pressure, speed, turned = (
+        np.array(x, dtype=float) for x in np.broadcast_arrays(*contact, *given)
     )
     _check(Fz, pressure)
     dpi = 0 * Fz if nominal is None else pressure / nominal - 1
