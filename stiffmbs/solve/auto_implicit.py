@@ -65,6 +65,7 @@ class Implicit:
         """Return the costs of an integrator, which the dynamics keep: of its linear solver, or lower bounds before it is created."""
 
         def estimated() -> Estimates:
+            """Return the costs."""
             factors = 1e-3 * driven(self._dynamics, self._settings, **DRIVERS[name]())[2] if created else None
             found = OF_STEPS[name](self._dynamics, factors)
             growth = -math.log10(self._settings.rtol) * found.start_steps * found.step

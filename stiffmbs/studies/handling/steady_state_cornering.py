@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,21 +12,33 @@ from .known import SEEN, Known, Metrics, Run
 from .metrics import at_zero, rollover_threshold, static_stability_factor, understeer_gradient
 from .parameters import SPEED, ConstantRadius, ConstantSpeed, G
 
-PROBE = 5.0
-"""Speed of the first run, m/s."""
-SPUN = 0.25
-"""Sideslip or roll beyond which a car no longer turns quasi-steadily, rad."""
-BEGUN = 0.3
-"""Lateral acceleration from which a ramp is quasi-steady, m/s^2."""
-DROP = 0.9
-"""Part of the largest lateral acceleration so far below which the limit is passed."""
-RAMP_BEGIN = 1.0
-"""Begin of the slow ramp, s."""
+
+@dataclass(frozen=True)
+class TurnParameters:
+    """Parameters of quasi-steady turns. Source: tests/studies/handling, with the ramps of the example cars."""
+
+    probe: float = 5.0
+    """Speed of the first run, m/s."""
+    spun: float = 0.25
+    """Sideslip and roll, root of the sum of squares, beyond which a car no longer turns quasi-steadily, rad."""
+    begun: float = 0.3
+    """Lateral acceleration from which a ramp is quasi-steady, m/s^2."""
+    drop: float = 0.9
+    """Part of the largest lateral acceleration so far below which the limit is passed."""
+    ramp_begin: float = 1.0
+    """Begin of the slow ramp, s."""
+    settled: float = 45.0
+    """Way after which a car has settled on the circle, m."""
+    follows: float = 4.0
+    """Time after which the driver follows the growing speed steadily, s."""
+
+
+TURNS = TurnParameters()
 
 
 def probe(car: Car) -> Manoeuvre:
     """Return a small step at low speed, from which steering per curvature follows."""
-    return Manoeuvre(PROBE, 5.0, f"step5(t, 0.5, 0, 1.5, {0.3 if car.angular else 0.005})", output=0.02)
+    return Manoeuvre(TURNS.probe, 5.0, f"step5(t, 0.5, 0, 1.5, {0.3 if car.angular else 0.005})", output=0.02)
 
 
 def curvature_of(run: Run) -> float:
@@ -36,7 +49,7 @@ def curvature_of(run: Run) -> float:
 def ramp(car: Car, per_curvature: float, speed: float = SPEED) -> Manoeuvre:
     """Return a slow ramp of steering to the left at a speed, m/s: to about 20 m/s^2, were there no limit of the tyres."""
     most = float(per_curvature * (1 + 1.5e-3 * speed**2) * 20 / speed**2)
-    return Manoeuvre(speed, 46.0, f"({most!r})*max(t - {RAMP_BEGIN}, 0)/45", spun=SPUN, output=0.05)
+    return Manoeuvre(speed, 46.0, f"({most!r})*max(t - {TURNS.ramp_begin}, 0)/45", spun=TURNS.spun, output=0.05)
 
 
 def quasi_steady(run: Run) -> Run:
@@ -47,9 +60,9 @@ def quasi_steady(run: Run) -> Run:
     """
     ay = run["vehicle.ay"]
     largest = np.maximum.accumulate(ay)
-    slides = (ay < DROP * largest) & (largest > 1.0)
+    slides = (ay < TURNS.drop * largest) & (largest > 1.0)
     end = int(np.argmax(slides)) if slides.any() else len(ay)
-    rows = (np.arange(len(ay)) <= np.argmax(ay[:end])) & (ay > BEGUN)
+    rows = (np.arange(len(ay)) <= np.argmax(ay[:end])) & (ay > TURNS.begun)
     kept = {name: values[rows] for name, values in run.items()}
     return {**kept, SEEN: kept[SEEN] - at_zero(kept["vehicle.ay"], kept[SEEN])[0]}
 
@@ -58,7 +71,7 @@ def lag_of(slow: Run) -> float:
     """Return the delay from the steering of a quasi-steady ramp to its lateral acceleration, s."""
     time, steer = slow["time"], slow[SEEN]
     rate = (steer[-1] - steer[0]) / (time[-1] - time[0])
-    return max(float(time[0] - RAMP_BEGIN - steer[0] / rate), 0.0)
+    return max(float(time[0] - TURNS.ramp_begin - steer[0] / rate), 0.0)
 
 
 def _steady(run: Run, known: Known, curvature: Any) -> Metrics:
@@ -93,15 +106,9 @@ def of_constant_speed(known: Known, test: ConstantSpeed, runs: list[Run]) -> Met
     }
 
 
-SETTLED = 45.0
-"""Way after which a car has settled on the circle, m."""
-FOLLOWS = 4.0
-"""Time after which the driver follows the growing speed steadily, s."""
-
-
 def constant_radius(known: Known, test: ConstantRadius) -> list[Manoeuvre]:
     """Return a circle with slowly growing speed."""
-    settled = SETTLED / test.first
+    settled = TURNS.settled / test.first
     duration = settled + 1 + (test.last - test.first) / test.acceleration
     turns = test.last * duration / (2 * np.pi * abs(test.radius))
     path = {"circle": test.radius, "entry": 10.0, "transition": 30.0, "turns": float(np.ceil(turns))}
@@ -111,7 +118,7 @@ def constant_radius(known: Known, test: ConstantRadius) -> list[Manoeuvre]:
 
 def of_constant_radius(known: Known, test: ConstantRadius, runs: list[Run]) -> Metrics:
     """Return the gradients of the method at constant radius."""
-    follows = runs[0]["time"] > SETTLED / test.first + FOLLOWS
+    follows = runs[0]["time"] > TURNS.settled / test.first + TURNS.follows
     run = {name: values[follows] for name, values in runs[0].items()}
     error = float(np.max(np.abs(run["handling_driver.lateral_error"])))
     return _steady(run, known, 1 / test.radius) | {"largest lateral error": (error, "m")}

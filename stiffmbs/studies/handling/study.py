@@ -24,7 +24,7 @@ from .known import SEEN, Known, Metrics, Run
 from .metrics import at_zero
 from .parameters import SPEED, positive, with_changes
 from .standards import TESTS
-from .steady_state_cornering import PROBE, curvature_of, lag_of, probe, quasi_steady, ramp
+from .steady_state_cornering import TURNS, curvature_of, lag_of, probe, quasi_steady, ramp
 
 WIDER = 0.2
 """Width of the body beyond the track, m, unless given: tyres and wings."""
@@ -146,8 +146,8 @@ def _preliminary(scene: Scene, car: Car, width: float) -> Known:
     ay, curvature = slow["vehicle.ay"], slow["vehicle.yaw_rate"] / slow["vehicle.speed"]
     linear = at_zero(ay, slow[SEEN])[1] / at_zero(ay, curvature)[1]
     at = int(np.argmax(ay >= min(4.0, 0.7 * ay[-1])))
-    over = SPEED**2 - PROBE**2
-    at_no_speed, driven = low - (linear - low) / over * PROBE**2, float(slow[SEEN][at] / curvature[at])
+    over = SPEED**2 - TURNS.probe**2
+    at_no_speed, driven = low - (linear - low) / over * TURNS.probe**2, float(slow[SEEN][at] / curvature[at])
     return Known(car, at_no_speed, (driven - low) / over, width, slow, lag_of(slow))
 
 

@@ -4,6 +4,7 @@ The mass matrix is diagonal.  The method is far faster than the whole LU if bodi
 """
 
 from math import log
+from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, state_view
 from stiffmbs.compile.machine.native.calls import int32
@@ -17,7 +18,7 @@ from stiffmbs.dynamics.elimination.native.by_blocks import (
 from stiffmbs.dynamics.elimination.native.by_pins import accelerate_by_pins, move_by_pins, pins_view
 from stiffmbs.dynamics.native.views import eliminated_view
 
-SMALL_PRODUCT = 1e-100
+SMALL_PRODUCT: Final = 1e-100
 """Product of pivots from which on the next one may not be a number of full precision."""
 
 
