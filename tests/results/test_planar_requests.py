@@ -225,6 +225,10 @@ def test_the_unit_of_a_formula(formula, unit):
 
 
 WRONG = [
+    (
+        "{r: {formula: bar.x, unit: mm}}",
+        "requests.r: found the component 'formula', expected a formula, whose unit follows",
+    ),
     ("{r: dz(bar)}", "requests.r: found the unknown function 'dz'.*, expected one of"),
     ("{r: fz(hinge)}", "requests.r: found the unknown function 'fz'"),
     ("{r: bar.z}", "requests.r: found 'bar.z' in 'bar.z', expected one of bar.x, bar.y, bar.angle, .*, bar.alpha"),

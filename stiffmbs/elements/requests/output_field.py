@@ -124,6 +124,11 @@ def read_request(family: OutputNames, found: object, context: Context) -> Any:
     if not found:
         raise FormulaError("found {}, expected a formula, or formulas by the names of their components")
     check_names(found, "component")
+    for name in ("formula", "expression", "unit", "units"):
+        if name in found:
+            raise FormulaError(
+                f"found the component '{name}', expected a formula, whose unit follows, or formulas by the names of their components"
+            )
     formulas = {}
     for name, formula in found.items():
         with prefixed(f"{name}: ", FormulaError, FormulaError):
