@@ -422,18 +422,18 @@ DECISIONS = {
     "studies.handling.lane_changes:BEFORE": start_of_lanes,
     "studies.handling.metrics:LINEAR": lambda: metrics.at_zero(np.arange(-10.0, 11), np.arange(-10.0, 11) ** 7)[1],
     "studies.handling.metrics:UNEQUAL": largest_difference_of_steps,
-    "studies.handling.steady_state_cornering:TurnParameters.probe": lambda: steady_state_cornering.probe(Record(angular=False)).speed,
-    "studies.handling.steady_state_cornering:TurnParameters.spun": lambda: steady_state_cornering.ramp(None, 1.0).spun,
-    "studies.handling.steady_state_cornering:TurnParameters.drop": lambda: count_while(
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.probe": lambda: steady_state_cornering.probe(Record(angular=False)).speed,
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.spun": lambda: steady_state_cornering.ramp(None, 1.0).spun,
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.drop": lambda: count_while(
         lambda part: length_of_a_ramp(np.array([2.0, 2.0 * part, 3.0])) == 3, 1.1 * BELOW
     ),
-    "studies.handling.steady_state_cornering:TurnParameters.begun": lambda: 1000 - length_of_a_ramp(0.01 * np.arange(1000.0)),
-    "studies.handling.steady_state_cornering:TurnParameters.follows": turns_at_a_gradient,
-    "studies.handling.steady_state_cornering:TurnParameters.ramp_begin": lambda: steady_state_cornering.lag_of(
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.begun": lambda: 1000 - length_of_a_ramp(0.01 * np.arange(1000.0)),
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.follows": turns_at_a_gradient,
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.ramp_begin": lambda: steady_state_cornering.lag_of(
         {"time": np.array([5.0, 6.0]), steady_state_cornering.SEEN: np.array([1.0, 2.0])}
     ),
     "studies.handling.known:Known.lag": lambda: Known(None, 1.0, 0.0, 1.8, {}).driver()["anticipation"],
-    "studies.handling.steady_state_cornering:TurnParameters.settled": time_on_a_circle,
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.settled": time_on_a_circle,
     "studies.handling.steering_inputs:STEER_BEGIN": lambda: steering_inputs.dwell_end(Record(frequency=1.0, dwell=0.0)),
     "studies.handling.study:WIDER": width_beyond_the_track,
     "studies.handling.vibration:Weighting.f1": lambda: weighting(0.4),
@@ -483,11 +483,11 @@ EXPECTED = {
     "studies.follow:SHARE": 21, "studies.handling.braking:BEFORE_BRAKING": 201.0, "studies.handling.car:MISPLACED": 27,
     "studies.handling.car:Manoeuvre.output": 0.01, "studies.handling.lane_changes:BEFORE": 30.0,
     "studies.handling.metrics:LINEAR": 334.4055944055936, "studies.handling.metrics:UNEQUAL": 7,
-    "studies.handling.steady_state_cornering:TurnParameters.probe": 5.0, "studies.handling.steady_state_cornering:TurnParameters.spun": 0.25,
-    "studies.handling.steady_state_cornering:TurnParameters.drop": 1, "studies.handling.steady_state_cornering:TurnParameters.begun": 31,
-    "studies.handling.steady_state_cornering:TurnParameters.follows": 4.01,
-    "studies.handling.steady_state_cornering:TurnParameters.ramp_begin": 3.0, "studies.handling.known:Known.lag": 0.12,
-    "studies.handling.steady_state_cornering:TurnParameters.settled": 45.0, "studies.handling.steering_inputs:STEER_BEGIN": 2.0,
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.probe": 5.0, "studies.handling.steady_state_cornering:QuasiSteadyTurns.spun": 0.25,
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.drop": 1, "studies.handling.steady_state_cornering:QuasiSteadyTurns.begun": 31,
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.follows": 4.01,
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.ramp_begin": 3.0, "studies.handling.known:Known.lag": 0.12,
+    "studies.handling.steady_state_cornering:QuasiSteadyTurns.settled": 45.0, "studies.handling.steering_inputs:STEER_BEGIN": 2.0,
     "studies.handling.study:WIDER": 0.2, "studies.handling.vibration:Weighting.f1": 0.7071067810960379,
     "studies.handling.vibration:Weighting.f2": 0.7071067810960378, "studies.input_numbers:MOST_KEPT": 1001, "studies.measured:ROUNDS": 4,
     "studies.optimise:STEP": 0.001, "studies.sensitivities.formulas:SAME": 1e-12, "studies.sensitivities.formulas:ZERO": 1e-14,

@@ -44,7 +44,7 @@ def test_each_subsystem_has_a_dataclass_of_numbers(name):
 
 
 def test_all_parameters_are_registered():
-    """Except those of pictures, which change no result."""
+    """Except those of pictures, which change no result; parameters of studies do not belong to `run.tuning`."""
     made = {
         (str(path.relative_to(ROOT / "stiffmbs").with_suffix("")).replace("/", "."), variable)
         for path in (ROOT / "stiffmbs").glob("**/*.py")

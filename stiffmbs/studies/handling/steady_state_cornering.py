@@ -14,7 +14,7 @@ from .parameters import SPEED, ConstantRadius, ConstantSpeed, G
 
 
 @dataclass(frozen=True)
-class TurnParameters:
+class QuasiSteadyTurns:
     """Parameters of quasi-steady turns. Source: tests/studies/handling, with the ramps of the example cars."""
 
     probe: float = 5.0
@@ -33,7 +33,7 @@ class TurnParameters:
     """Time after which the driver follows the growing speed steadily, s."""
 
 
-TURNS = TurnParameters()
+TURNS = QuasiSteadyTurns()
 
 
 def probe(car: Car) -> Manoeuvre:
