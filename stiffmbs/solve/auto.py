@@ -137,7 +137,7 @@ class _AutoRun:
 
     def _rerun_implicit(self, start: InitialValues, message: str) -> None:
         """Integrate the whole run with the implicit integrator, because explicit steps have failed."""
-        self._implicit.create()
+        self._implicit.confirm()
         trajectory = bdf.integrated(self._implicit.integrator, start, self._grid, self._watch)
         self._segments = [Segment(replace(trajectory, solver=self._implicit.name), self._implicit.traits())]
         self._messages = [f"{self._implicit.name}, because explicit integration {message}"]

@@ -76,10 +76,10 @@ class Choice:
         return Switch(f"{self.implicit.name} (fastest rate {rates.fastest:.3g} 1/s)", rate, self.thresholds)
 
     def _confirmed(self, pays: Callable[[], bool]) -> bool:
-        """Return True if implicit steps pay, first by lower bounds of their cost, then by that of the created integrator."""
+        """Return True if implicit steps pay, first by lower bounds of their cost, then by that with their linear solver."""
         if not pays():
             return False
-        self.implicit.create()
+        self.implicit.confirm()
         return pays()
 
     def _least_cost(self, pieces: int, decay: float = 0.0) -> float:

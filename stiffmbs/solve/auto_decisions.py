@@ -24,14 +24,11 @@ class AutoParameters:
       steps, above which it is justified; and run length above which radau replaces bdf for overdamped motions.
     - `check_interval`: least number of steps up to the next check of implicit steps, relative to those of the segment
       so far.
-    - `loose`: smallest relative tolerance at which bdf is always taken for overdamped motions; at tighter ones the
-      higher orders of radau save more than its iterations cost.
     """
 
     steps_per_radian: float = 0.35
     trial_margin: float = 3.0
     check_interval: float = 0.25
-    loose: float = 1e-4
 
 
 AUTO = tuned("auto", AutoParameters())
@@ -93,15 +90,14 @@ class Thresholds:
         return replace(self, penalty=max(cost, 2.0 * self.penalty))
 
 
-def implicit_solver(parameters: AutoParameters, damping_ratio: float, rtol: float, run_length: float) -> str:
+def implicit_solver(parameters: AutoParameters, damping_ratio: float, run_length: float) -> str:
     """Return the name of the implicit integrator, ``bdf`` or ``radau``.
 
-    BDF is taken for overdamped motions at loose tolerances, or if small steps after starts are a large part of the run.
+    BDF is taken for overdamped motions if small steps after starts are a large part of the run.
     `damping_ratio`: that of the stiffest motion. `run_length`: number of explicit steps at the cost of steps of bdf,
     relative to the cost of the small steps of radau.
     """
-    pays = rtol < parameters.loose and run_length > parameters.trial_margin
-    return "radau" if damping_ratio < 1.0 or pays else "bdf"
+    return "radau" if damping_ratio < 1.0 or run_length > parameters.trial_margin else "bdf"
 
 
 def steps_of_decay(parameters: AutoParameters, excitation: float, damping_ratio: float, radians: float) -> float:

@@ -13,11 +13,14 @@ from . import bdf
 from .auto_decisions import AUTO, ImplicitSteps, implicit_solver
 from .cost import ImplicitCost
 from .explicit.stable_step import Rates
-from .integrator import Integrator, driven
+from .ida.choice import cost_for_bdf
+from .integrator import Integrator
 from .radau import radau
 from .solver import Traits
 
 OF_STEPS = {"bdf": ImplicitCost.of, "radau": radau.of_radau}
+OF_SOLVERS = {"bdf": cost_for_bdf, "radau": radau.cost_for_radau}
+"""Costs of the linear solvers, ns."""
 DRIVERS: dict[str, Callable[[], dict[str, Any]]] = {"bdf": dict, "radau": radau.driver}
 
 
@@ -30,11 +33,11 @@ class Estimates(NamedTuple):
 
 
 class Implicit:
-    """Implicit integrator, created when it or its cost is needed.
+    """Implicit integrator, created when it is needed.
 
     - `name`: ``bdf`` or ``radau``; empty before it is chosen.
-    - `cost`: cost of the chosen integrator with its linear solver. Before it exists, a lower bound; before it is
-      chosen, that of `bdf`, which is the least.
+    - `cost`: cost of the chosen integrator with its linear solver. Before that is chosen too, a lower bound; before
+      the integrator is chosen, that of `bdf`, which is the least.
     - `growth`: cost of the small steps after a start or a breakpoint.
     - `start`: cost of a switch to these steps, including the small ones.
     """
@@ -44,34 +47,34 @@ class Implicit:
         self._become("", False)
 
     def choose(self, rates: Rates, explicit_steps: float, pieces: int) -> None:
-        """Choose the integrator by the rates of the motion about a state, unless one exists.
+        """Choose the integrator by the rates of the motion about a state, unless its linear solver is chosen.
 
         `explicit_steps`: explicit steps in place of implicit ones. `pieces`: number of starts and restarts.
         """
-        if not self._created:
+        if not self._final:
             run_length = explicit_steps * self._estimated("bdf").cost.step / (pieces * self._estimated("radau").growth)
-            self._become(implicit_solver(AUTO, rates.damping_ratio, self._settings.rtol, run_length), False)
+            self._become(implicit_solver(AUTO, rates.damping_ratio, run_length), False)
 
-    def create(self) -> None:
-        """Create the engine of the chosen integrator, `bdf` if none is chosen, unless it exists, and estimate its cost."""
-        if not self._created:
+    def confirm(self) -> None:
+        """Confirm the chosen integrator, `bdf` if none is chosen, and estimate its cost with its linear solver."""
+        if not self._final:
             self._become(self.name or "bdf", True)
 
-    def _become(self, name: str, created: bool) -> None:
-        self.name, self._created = name, created
-        self.cost, self.growth, self.start = self._estimated(name or "bdf", created)
+    def _become(self, name: str, final: bool) -> None:
+        self.name, self._final = name, final
+        self.cost, self.growth, self.start = self._estimated(name or "bdf", final)
 
-    def _estimated(self, name: str, created: bool = False) -> Estimates:
-        """Return the costs of an integrator, which the dynamics keep: of its linear solver, or lower bounds before it is created."""
+    def _estimated(self, name: str, final: bool = False) -> Estimates:
+        """Return the costs of an integrator, which the dynamics keep: with its linear solver if it is final, or lower bounds."""
 
         def estimated() -> Estimates:
             """Return the costs."""
-            factors = 1e-3 * driven(self._dynamics, self._settings, **DRIVERS[name]())[2] if created else None
+            factors = 1e-3 * OF_SOLVERS[name](self._dynamics, self._settings) if final else None
             found = OF_STEPS[name](self._dynamics, factors)
             growth = -math.log10(self._settings.rtol) * found.start_steps * found.step
             return Estimates(found, growth, found.memory + growth)
 
-        return self._dynamics.kept(f"costs of {name}, {created}", self._settings, estimated)
+        return self._dynamics.kept(f"costs of {name}, {final}", self._settings, estimated)
 
     @cached_property
     def integrator(self) -> Integrator:

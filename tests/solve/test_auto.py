@@ -275,18 +275,11 @@ def test_radau_is_tried_sooner_at_a_loose_tolerance(examples, rtol, name):
 
 
 @pytest.mark.parametrize(
-    ("damping_ratio", "rtol", "long", "name"),
-    [
-        (0.9, 1e-3, 1.0, "radau"),
-        (1.5, 1e-4, 100.0, "bdf"),
-        (np.inf, 1e-4, 100.0, "bdf"),
-        (1.5, 0.9e-4, 100.0, "radau"),
-        (1.5, 0.9e-4, 2.9, "bdf"),
-        (1.5, 0.9e-4, 3.1, "radau"),
-    ],
+    ("damping_ratio", "run_length", "name"),
+    [(0.9, 1.0, "radau"), (1.5, 2.9, "bdf"), (np.inf, 2.9, "bdf"), (1.5, 3.1, "radau")],
 )
-def test_bdf_is_taken_for_overdamped_motions_at_loose_tolerances_and_in_short_runs(damping_ratio, rtol, long, name):
-    assert implicit_solver(AUTO, damping_ratio, rtol, long) == name
+def test_bdf_is_taken_for_overdamped_motions_in_short_runs(damping_ratio, run_length, name):
+    assert implicit_solver(AUTO, damping_ratio, run_length) == name
 
 
 @pytest.mark.parametrize("name", ["dzhanibekov", "heavy_top"])
@@ -295,13 +288,10 @@ def test_a_few_explicit_steps_are_not_left_to_a_trial(examples, name):
     assert stiffmbs.run(examples / f"{name}.yaml", solver="auto", rtol=1e-3).solver["name"] == "projected"
 
 
-@pytest.mark.parametrize(
-    ("zeta", "rtol", "name"),
-    [("0.01", 1e-3, "radau"), ("0.2", 1e-6, "radau"), ("2", 1e-3, "bdf"), ("2", 1e-6, "radau")],
-)
-def test_the_stiffest_vibration_decides(examples, zeta, rtol, name):
+@pytest.mark.parametrize(("zeta", "duration", "name"), [("0.01", 1.0, "radau"), ("2", 1.0, "radau"), ("2", 0.01, "bdf")])
+def test_the_stiffest_vibration_and_the_length_of_a_run_decide(examples, zeta, duration, name):
     scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e9"), ("zeta", zeta)])
-    assert stiffmbs.run(scene, solver="auto", duration=1.0, rtol=rtol).solver["name"] == name
+    assert stiffmbs.run(scene, solver="auto", duration=duration, rtol=1e-3).solver["name"] == name
 
 
 @pytest.mark.long

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
@@ -61,19 +61,21 @@ def in_pairs(matrix: FixedOrder, imaginary: np.ndarray) -> Pairs:
     place[order] = np.arange(len(order))
     parts = np.split(place, np.cumsum([len(rows), len(rows), len(row)]))
     fields: dict[str, Any] = {"n": 2 * matrix.n, "rows": all_rows[order], "columns": all_columns[order]}
-    own = matrix.order
     if isinstance(matrix, BlockLU):
-        work = 2 * own.fill, 4 * own.updates
         fields |= {"nodes": matrix.nodes, "kinds": np.repeat(matrix.kinds, 2), "parts": 2}
-    else:
-        work = 4 * own.fill, 8 * own.updates
-    fields["order"] = EliminationOrder(_doubled(own.unknowns), *work)
-    return Pairs(type(matrix)(**fields), *parts)
+    return Pairs(type(matrix)(**fields, order=_order_in_pairs(matrix)), *parts)
 
 
-def _doubled(unknowns: np.ndarray) -> np.ndarray:
-    doubled: np.ndarray = (2 * unknowns[:, None] + np.arange(2)).ravel()
-    return doubled
+def pair_cost(matrix: FixedOrder) -> float:
+    """Return the estimated cost of a complex matrix, in that of the real one."""
+    return cost_of(replace(matrix, n=2 * matrix.n, order=_order_in_pairs(matrix))) / cost_of(matrix)
+
+
+def _order_in_pairs(matrix: FixedOrder) -> EliminationOrder:
+    """Return the elimination order of a complex matrix, with its fill-in: blocks store real and imaginary parts once."""
+    own, parts = matrix.order, 2 if isinstance(matrix, BlockLU) else 4
+    doubled = (2 * own.unknowns[:, None] + np.arange(2)).ravel()
+    return EliminationOrder(doubled, parts * own.fill, 2 * parts * own.updates)
 
 
 class Radau:
@@ -98,7 +100,7 @@ class Radau:
         for term_set in ("effort", "effort_tangent"):
             state.load(term_set)
         self._pairs = in_pairs(matrix, equations.slots_with_rates)
-        self.pair_cost = cost_of(self._pairs.matrix) / cost_of(matrix)
+        self.pair_cost = pair_cost(matrix)
         methods = CHOSEN_FROM if stages is None else (stages,)
         self._coefficients = {
             count: _arrays(radau(count)) | _costs(count, cost, self.pair_cost, parameters)

@@ -14,12 +14,12 @@ from ..bdf import integrated, refuse_untested_reactions
 from ..cost import ImplicitCost, least_solver, of_evaluation
 from ..error_control.error_test import ErrorControl
 from ..formulations import READ_BY_FORMULATIONS
-from ..ida.choice import chosen, natural
+from ..ida.choice import linear_system
 from ..ida.native_engine import NativeEngine
 from ..integrator import Integrator
 from ..solver import Traits
 from ..trajectory import Grid, ProgressCallback, Trajectory
-from .memory import Radau
+from .memory import Radau, pair_cost
 from .parameters import RADAU
 
 
@@ -89,11 +89,16 @@ def driven_by_radau(
     dynamics: Dynamics, settings: RunSettings, control: ErrorControl
 ) -> tuple[Equations, NativeEngine, float]:
     """Return the equations, their driver and the mean cost of a real and two complex linear systems, ns."""
-    equations = natural(dynamics, settings)
-    matrix, cost = chosen(equations)
+    equations, matrix, cost = linear_system(dynamics, settings)
     stages = None if settings.stages == "auto" else settings.stages
     of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
     of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)
     formula = Radau(equations, matrix, dynamics.state, stages, of_steps, RADAU)
     engine = NativeEngine(equations, dynamics, matrix, settings, control, formula)
-    return equations, engine, cost * (1 + 2 * formula.pair_cost) / 3
+    return equations, engine, cost_for_radau(dynamics, settings)
+
+
+def cost_for_radau(dynamics: Dynamics, settings: RunSettings) -> float:
+    """Return the mean cost of a real and two complex linear systems, ns."""
+    found = linear_system(dynamics, settings)
+    return found.cost * (1 + 2 * pair_cost(found.solver)) / 3
