@@ -13,14 +13,11 @@ from . import bdf
 from .auto_decisions import AUTO, ImplicitSteps, implicit_solver
 from .cost import ImplicitCost
 from .explicit.stable_step import Rates
-from .ida.choice import cost_for_bdf
-from .integrator import Integrator
+from .integrator import Integrator, driven
 from .radau import radau
 from .solver import Traits
 
 OF_STEPS = {"bdf": ImplicitCost.of, "radau": radau.of_radau}
-OF_SOLVERS = {"bdf": cost_for_bdf, "radau": radau.cost_for_radau}
-"""Costs of the linear solvers, ns."""
 DRIVERS: dict[str, Callable[[], dict[str, Any]]] = {"bdf": dict, "radau": radau.driver}
 
 
@@ -69,7 +66,7 @@ class Implicit:
 
         def estimated() -> Estimates:
             """Return the costs."""
-            factors = 1e-3 * OF_SOLVERS[name](self._dynamics, self._settings) if final else None
+            factors = 1e-3 * driven(self._dynamics, self._settings, **DRIVERS[name]()).cost if final else None
             found = OF_STEPS[name](self._dynamics, factors)
             growth = -math.log10(self._settings.rtol) * found.start_steps * found.step
             return Estimates(found, growth, found.memory + growth)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..compile.equations import ABSENT, Equations
+from ..compile.equations import ABSENT
 from ..dynamics.algebraic_states import rates_of_algebraic
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, rates_of
@@ -19,20 +19,20 @@ from .events.discontinuity import VELOCITY_JUMP, VelocityJumps
 from .events.long_steps import LongSteps
 from .events.refusals import refuse_beyond_limits
 from .events.restart import just_after, restarted_past, straight_on
-from .ida.choice import driven_natively
+from .ida.choice import Driven, driven_natively
 from .ida.native.parameters import LOOP
-from .ida.native_engine import NativeEngine, Reached
+from .ida.native_engine import Reached
 from .stiff_rows import States, projected
 from .trajectory import Grid
 
-Driver = Callable[[Dynamics, RunSettings, ErrorControl], tuple[Equations, NativeEngine, float]]
+Driver = Callable[[Dynamics, RunSettings, ErrorControl], Driven]
 
 
 def driven(
     dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf",
     driver: Driver = driven_natively,
-) -> tuple[Equations, NativeEngine, float]:  # fmt: skip
-    """Return the equations, their engine and the cost of its linear solver, ns, which the dynamics keep under the name `memory`."""
+) -> Driven:  # fmt: skip
+    """Return the equations with their engine, which the dynamics keep under the name `memory`."""
     chosen = control or CHOSEN[dynamics.system.of_body.dimensions]
     return dynamics.kept(memory, (settings, chosen), lambda: driver(dynamics, settings, chosen))
 
@@ -52,9 +52,9 @@ class Integrator:
         self.control = control or CHOSEN[dynamics.system.of_body.dimensions]
         self.dynamics, self.settings = dynamics, settings
         self.reached: Reached | None = None
-        self.equations, self.engine, cost = driven(dynamics, settings, control, memory, driver)
+        found = driven(dynamics, settings, control, memory, driver)
+        self.equations, self.engine, self.factors = found.equations, found.engine, 1e-3 * found.cost
         self.engine.forget()
-        self.factors = 1e-3 * cost
         self._jumps = VelocityJumps(dynamics)
         self._of_inputs = ""
         self._events = self._breakpoints = 0

@@ -288,7 +288,9 @@ def test_a_few_explicit_steps_are_not_left_to_a_trial(examples, name):
     assert stiffmbs.run(examples / f"{name}.yaml", solver="auto", rtol=1e-3).solver["name"] == "projected"
 
 
-@pytest.mark.parametrize(("zeta", "duration", "name"), [("0.01", 1.0, "radau"), ("2", 1.0, "radau"), ("2", 0.01, "bdf")])
+@pytest.mark.parametrize(
+    ("zeta", "duration", "name"), [("0.01", 1.0, "radau"), ("2", 1.0, "radau"), ("2", 0.01, "bdf")]
+)
 def test_the_stiffest_vibration_and_the_length_of_a_run_decide(examples, zeta, duration, name):
     scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e9"), ("zeta", zeta)])
     assert stiffmbs.run(scene, solver="auto", duration=duration, rtol=1e-3).solver["name"] == name

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -78,33 +79,27 @@ def chosen(equations: Equations) -> tuple[FixedOrder, float]:
     return blocks, of_blocks
 
 
-class LinearSystem(NamedTuple):
-    """Equations of a formulation, the linear solver of their iteration matrix, and its estimated cost, ns."""
+@dataclass(frozen=True)
+class Driven:
+    """Equations, the estimated cost of a linear solver, ns, and the engine that solves them, made when it is needed."""
 
     equations: Equations
-    solver: FixedOrder
     cost: float
+    make: Callable[[], NativeEngine]
+
+    @cached_property
+    def engine(self) -> NativeEngine:
+        """The engine."""
+        return self.make()
 
 
-def linear_system(dynamics: Dynamics, settings: RunSettings) -> LinearSystem:
-    """Return the equations with their unknowns in the natural order, and their linear solver, which the dynamics keep."""
-
-    def made() -> LinearSystem:
-        formulation = FORMULATIONS[settings.formulation](settings)
-        equations = Equations(formulation, dynamics.system, dynamics.coordinates)
-        return LinearSystem(equations, *chosen(equations))
-
-    return dynamics.kept("linear system", settings, made)
+def driven_natively(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> Driven:
+    """Return the equations with their engine."""
+    equations = natural(dynamics, settings)
+    matrix, cost = chosen(equations)
+    return Driven(equations, cost, partial(NativeEngine, equations, dynamics, matrix, settings, control))
 
 
-def cost_for_bdf(dynamics: Dynamics, settings: RunSettings) -> float:
-    """Return the cost of the linear solver of bdf, ns."""
-    return linear_system(dynamics, settings).cost
-
-
-def driven_natively(
-    dynamics: Dynamics, settings: RunSettings, control: ErrorControl
-) -> tuple[Equations, NativeEngine, float]:
-    """Return the equations, their driver and the cost of its linear solver, ns."""
-    equations, solver, cost = linear_system(dynamics, settings)
-    return equations, NativeEngine(equations, dynamics, solver, settings, control), cost
+def natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
+    """Return the equations with their unknowns in the natural order."""
+    return Equations(FORMULATIONS[settings.formulation](settings), dynamics.system, dynamics.coordinates)

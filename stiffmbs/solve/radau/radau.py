@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...model.settings import RunSettings
@@ -14,7 +13,7 @@ from ..bdf import integrated, refuse_untested_reactions
 from ..cost import ImplicitCost, least_solver, of_evaluation
 from ..error_control.error_test import ErrorControl
 from ..formulations import READ_BY_FORMULATIONS
-from ..ida.choice import linear_system
+from ..ida.choice import Driven, chosen, natural
 from ..ida.native_engine import NativeEngine
 from ..integrator import Integrator
 from ..solver import Traits
@@ -85,20 +84,16 @@ def of_radau(dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
     return replace(of_bdf, residual=residual, matrix=factors, **each)
 
 
-def driven_by_radau(
-    dynamics: Dynamics, settings: RunSettings, control: ErrorControl
-) -> tuple[Equations, NativeEngine, float]:
-    """Return the equations, their driver and the mean cost of a real and two complex linear systems, ns."""
-    equations, matrix, cost = linear_system(dynamics, settings)
-    stages = None if settings.stages == "auto" else settings.stages
-    of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
-    of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)
-    formula = Radau(equations, matrix, dynamics.state, stages, of_steps, RADAU)
-    engine = NativeEngine(equations, dynamics, matrix, settings, control, formula)
-    return equations, engine, cost_for_radau(dynamics, settings)
+def driven_by_radau(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> Driven:
+    """Return the equations with their engine, and the mean cost of a real and two complex linear systems."""
+    equations = natural(dynamics, settings)
+    matrix, cost = chosen(equations)
 
+    def engine() -> NativeEngine:
+        stages = None if settings.stages == "auto" else settings.stages
+        of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
+        of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)
+        formula = Radau(equations, matrix, dynamics.state, stages, of_steps, RADAU)
+        return NativeEngine(equations, dynamics, matrix, settings, control, formula)
 
-def cost_for_radau(dynamics: Dynamics, settings: RunSettings) -> float:
-    """Return the mean cost of a real and two complex linear systems, ns."""
-    found = linear_system(dynamics, settings)
-    return found.cost * (1 + 2 * pair_cost(found.solver)) / 3
+    return Driven(equations, cost * (1 + 2 * pair_cost(matrix)) / 3, engine)

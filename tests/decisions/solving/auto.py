@@ -52,11 +52,11 @@ def residual_by_which_radau_chooses():
     """Return the cost of a residual, in that of bdf, by which radau chooses the number of stages."""
     costs = []
     replaced = {
-        "linear_system": lambda *_: (None, None, 1000.0), "NativeEngine": nothing, "cost_for_radau": nothing,
+        "chosen": lambda _: (None, 1000.0), "natural": nothing, "NativeEngine": nothing, "pair_cost": lambda _: 1.0,
         "Radau": lambda *given: costs.append(given[4]),
     }  # fmt: skip
     with patch.multiple(radau, **replaced):
-        radau.driven_by_radau(Record(state=None, **vars(mechanism())), Record(stages=3), None)
+        radau.driven_by_radau(Record(state=None, **vars(mechanism())), Record(stages=3), None).make()
     return costs[0].residual / ImplicitCost.of(mechanism(), 1.0).residual
 
 
