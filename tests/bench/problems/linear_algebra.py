@@ -17,7 +17,7 @@ from stiffmbs.compile.terms import TERM_SETS
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.solve.error_control.error_test import CHOSEN
 from stiffmbs.solve.formulations import FORMULATIONS
-from stiffmbs.solve.ida.choice import COSTS, sparse_cost
+from stiffmbs.solve.ida.choice import COSTS, Driven, sparse_cost
 from stiffmbs.solve.ida.native_engine import NativeEngine
 from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.linear_solvers.fixed_order import Pivoted
@@ -40,8 +40,8 @@ def with_pivots(job: Job) -> Job:
     order = elimination_order(equations)
     matrix = Pivoted(equations.n, *equations.pattern, order)
     cost = sparse_cost(equations.n, order, COSTS.fixed)
-    engine = NativeEngine(equations, dynamics, matrix, job.settings, control)
-    dynamics.kept("bdf", (job.settings, control), lambda: (equations, engine, cost))
+    engine = partial(NativeEngine, equations, dynamics, matrix, job.settings, control)
+    dynamics.kept("bdf", (job.settings, control), lambda: Driven(equations, cost, engine))
     return job
 
 
