@@ -7,8 +7,8 @@
 
 from __future__ import annotations
 
+import argparse
 import statistics
-import sys
 import tempfile
 import time
 from dataclasses import replace
@@ -223,4 +223,8 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    parser = argparse.ArgumentParser(description="Measure the cost of flexible bodies.")
+    parser.add_argument(
+        "names", nargs="*", choices=[[], *COMMANDS], metavar="NAME", help=f"{', '.join(COMMANDS)}; by default all"
+    )
+    main(parser.parse_args().names)
