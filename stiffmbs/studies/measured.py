@@ -29,30 +29,31 @@ def measured(data: object) -> Measured:
     `data`: channels by name with ``time``; a frame whose index is the time; or a file .csv, .npz or .nc of these.
     Raises InputError if times do not increase, or a channel has another length or no values.
     """
-    time, channels = _read(data)
+    source = quoted(str(data)) if isinstance(data, str | Path) else "data"
+    time, channels = _read(data, source)
     time = np.asarray(time, dtype=float)
     if time.ndim != 1 or len(time) < 2 or not np.all(np.diff(time) > 0):
-        raise InputError("data: found times that do not increase, expected two or more that do")
+        raise InputError(f"{source}: found times that do not increase, expected two or more that do")
     if not channels:
-        raise InputError("data: found no channel except the time, expected one or more")
+        raise InputError(f"{source}: found no channel except the time, expected one or more")
     arrays = {}
     for name, values in channels.items():
         array = np.asarray(values, dtype=float)
         if array.shape != time.shape:
             raise InputError(
-                f"data: found {array.shape} values of '{name}', expected one for each of {len(time)} times"
+                f"{source}: found {array.shape} values of '{name}', expected one for each of {len(time)} times"
             )
         if np.isinf(array).any():
-            raise InputError(f"data: found an infinite value of '{name}', expected finite ones, or nan for a gap")
+            raise InputError(f"{source}: found an infinite value of '{name}', expected finite ones, or nan for a gap")
         if np.isnan(array).all():
-            raise InputError(f"data: found no value of '{name}' that is a number, expected one or more")
+            raise InputError(f"{source}: found no value of '{name}' that is a number, expected one or more")
         arrays[str(name)] = array
     return Measured(time, arrays)
 
 
-def _read(data: Any) -> tuple[Any, dict[str, object]]:
+def _read(data: Any, source: str) -> tuple[Any, dict[str, object]]:
     if isinstance(data, str | Path):
-        data = _from_file(Path(data))
+        data = _from_file(Path(data), source)
     if isinstance(data, Solution):
         return data.time, dict(data.channels)
     if hasattr(data, "index") and hasattr(data, "columns"):
@@ -60,11 +61,10 @@ def _read(data: Any) -> tuple[Any, dict[str, object]]:
         return columns.pop("time", data.index.to_numpy()), columns
     if isinstance(data, Mapping) and "time" in data:
         return data["time"], {str(name): values for name, values in data.items() if name != "time"}
-    raise InputError("data: found no times, expected channels over 'time'")
+    raise InputError(f"{source}: found no times, expected channels over 'time'")
 
 
-def _from_file(path: Path) -> dict[str, object]:
-    source = quoted(str(path))
+def _from_file(path: Path, source: str) -> dict[str, object]:
     if path.suffix not in READERS:
         raise InputError(f"{source}: found the ending '{path.suffix}', expected one of {', '.join(READERS)}")
     try:

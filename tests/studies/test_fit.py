@@ -133,6 +133,15 @@ def test_what_cannot_be_fitted_is_refused(data, parameters, error, sentence):
         fit(stiffmbs.read_scene(SLED), data, parameters)
 
 
+@pytest.mark.parametrize(
+    ("text", "sentence"), [("", "found no times"), ("time,sled.x\n1,2\n1,3\n", "found times that do not")]
+)
+def test_a_file_that_cannot_be_fitted_is_named(tmp_path, text, sentence):
+    (tmp_path / "empty.csv").write_text(text)
+    with pytest.raises(InputError, match=rf"empty\.csv: {sentence}"):
+        fit(stiffmbs.read_scene(SLED), tmp_path / "empty.csv", PARAMETERS)
+
+
 def test_the_damping_of_least_mean_square_is_that_of_the_closed_form():
     """Over a long time the integral of x^2 is x0^2/2 (m/c + c/k), least at c = sqrt(m k)."""
     scene = stiffmbs.read_scene(SLED)
