@@ -119,7 +119,9 @@ def check_marker(
     if marker.body != GROUND and marker.body not in bodies:
         of_parts = any(name.startswith(f"{marker.body}.") for name in bodies)  # such as the nodes of a beam
         name = marker.label if of_parts else marker.body
-        raise ValueError(f"{where}: found the unknown body '{name}'{did_you_mean(name, bodies)}, expected {listed(bodies)}")
+        raise ValueError(
+            f"{where}: found the unknown body '{name}'{did_you_mean(name, bodies)}, expected {listed(bodies)}"
+        )
     own = on_ground if marker.body == GROUND else bodies[marker.body].markers
     if marker.marker is not None and marker.marker not in own:
         near = did_you_mean(marker.marker, own)
