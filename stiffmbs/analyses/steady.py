@@ -63,27 +63,39 @@ def start_in_motion(
 
 def rotation_left_out(model: ModelData, dynamics: Dynamics, start: InitialValues) -> tuple[str, ...]:
     """Return a note if the described velocities are a rotation of all bodies as one, whose forces deform the mechanism."""
+    with dynamics.state.unchanged():
+        dynamics.state.q[:] = start.q
+        found = rotation_as_one(model, dynamics, start.u)
+    if found is None:
+        return ()
+    return (
+        "the run starts in the equilibrium at rest, without the centrifugal forces of its rotation; for the equilibrium in "
+        f"rotation write start: {{rotation: {found[0]}, about: {found[1]}}}",
+    )
+
+
+def rotation_as_one(
+    model: ModelData, dynamics: Dynamics, u: np.ndarray
+) -> tuple[list[float] | float, list[float]] | None:
+    """Return angular velocity, rad/s, and axis point, m, if velocities are a rotation of all bodies about the vertical.
+
+    `dynamics`: at the pose. `u` of shape (n_u,). Without gravity the axis has any direction. None for a single body.
+    """
     system = dynamics.system
     d, gravity = system.of_body.dimensions, np.array(model.gravity)
     still = SteadyMotion(np.zeros(d), np.zeros(2 * d - 3), np.zeros(d))
-    with dynamics.state.unchanged():
-        dynamics.state.q[:] = start.q
-        units = np.eye(3 * d - 3)
-        carried = [replace(still, velocity=unit[:d], rotation=unit[d:]).carried(dynamics) for unit in units]
-    motion, *_ = np.linalg.lstsq(np.array(carried).T, start.u, rcond=None)
+    units = np.eye(3 * d - 3)
+    carried = [replace(still, velocity=unit[:d], rotation=unit[d:]).carried(dynamics) for unit in units]
+    motion, *_ = np.linalg.lstsq(np.array(carried).T, u, rcond=None)
     velocity, rotation = np.append(motion[:d], np.zeros(3 - d)), np.append(np.zeros(6 - 2 * d), motion[d:])
     rate = float(np.linalg.norm(rotation))
     tilt = np.linalg.norm(np.cross(rotation, np.append(gravity, np.zeros(3 - d))))  # m/s^2 times the rate
-    misfit = np.abs(np.append(np.array(carried).T @ motion - start.u, velocity @ rotation / max(rate, 1e-300)))
+    misfit = np.abs(np.append(np.array(carried).T @ motion - u, velocity @ rotation / max(rate, 1e-300)))
     turns = rate > 0.0 and tilt <= VELOCITY_ERROR * rate * np.linalg.norm(gravity)
-    if len(system.bodies) < 2 or not turns or np.any(misfit > VELOCITY_ERROR * np.max(np.abs(start.u))):
-        return ()
-    about = _rounded(np.cross(rotation, velocity) / rate**2, system.size)[:d]
+    if len(system.bodies) < 2 or not turns or np.any(misfit > VELOCITY_ERROR * np.max(np.abs(u))):
+        return None
     turn = _rounded(rotation, rate)
-    return (
-        "the run starts in the equilibrium at rest, without the centrifugal forces of its rotation; for the equilibrium in "
-        f"rotation write start: {{rotation: {turn[2] if d == 2 else turn}, about: {about}}}",
-    )
+    return turn[2] if d == 2 else turn, _rounded(np.cross(rotation, velocity) / rate**2, system.size)[:d]
 
 
 def _rounded(vector: np.ndarray, size: float) -> list[float]:

@@ -117,8 +117,10 @@ def check_marker(
 ) -> None:
     """Refuse a marker on an unknown body, or a marker name that its body does not have."""
     if marker.body != GROUND and marker.body not in bodies:
+        of_parts = any(name.startswith(f"{marker.body}.") for name in bodies)  # such as the nodes of a beam
+        name = marker.label if of_parts else marker.body
         raise ValueError(
-            f"{where}: found the unknown body '{marker.body}'{did_you_mean(marker.body, bodies)}, expected {listed(bodies)}"
+            f"{where}: found the unknown body '{name}'{did_you_mean(name, bodies)}, expected {listed(bodies)}"
         )
     own = on_ground if marker.body == GROUND else bodies[marker.body].markers
     if marker.marker is not None and marker.marker not in own:

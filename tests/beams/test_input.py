@@ -53,6 +53,7 @@ def test_bad_beams_are_reported_in_one_sentence(change, expected):
 def test_bad_references_are_reported():
     beam = f"bodies: {{s: {GOOD}}}\n"
     assert "expected s.start, s.node1" in message(beam + "joints: {c: {type: fixed, i: s, j: ground}}")
+    assert "found the unknown body 's.node99'" in message(beam + "joints: {c: {type: fixed, i: s.node99, j: ground}}")
     load = "forces: {c: {type: distributed_load, beam: t, force: [0, 1]}}"
     assert "forces.c.beam: found the unknown beam 't', expected s" in message(beam + load)
     assert "expected one of type beam" in message("bodies: {s: {mass: 1, inertia: 1}}\n" + load)

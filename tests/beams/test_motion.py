@@ -266,3 +266,23 @@ def test_a_rotor_that_starts_in_its_pose_at_rest_is_told_the_other_start():
     across = settled.replace("[0, 0, -9.81]", "[-9.81, 0, 0]")
     for text in (across, settled.replace("omega: [0, 0, 60],", "")):
         assert "write start" not in str(stiffmbs.run(stiffmbs.read_scene(text), duration=1e-3).notes)
+
+
+@pytest.mark.parametrize("torque", [0, 8.9, 9.1])
+def test_a_twisted_shaft_buckles_at_the_torque_of_greenhill_and_has_no_breakpoint(torque):
+    """With clamped ends, tan(M L/2EI) = M L/2EI: M = 8.987 EI/L; the gyroscopic terms of the shaft at rest are smooth."""
+    found = stiffmbs.modes(
+        stiffmbs.read_scene(f"""
+dimensions: 3
+bodies:
+  s: {{type: beam, start: [0, 0, 0], end: [1, 0, 0], elements: 24, stiffness: [1e6, 1e6, 1e6, 1, 1, 1], mass_per_length: 1,
+      inertia_per_length: [2e-6, 1e-6, 1e-6]}}
+joints:
+  a: {{type: fixed, i: s.start, j: ground}}
+  b: {{type: cylindrical, i: {{body: s.end, orientation: {{z: [1, 0, 0]}}}}, j: {{body: ground, orientation: {{z: [1, 0, 0]}}}}}}
+forces: {{m: {{type: torque, i: s.end, torque: [{torque}, 0, 0]}}}}
+start: equilibrium
+""")
+    )
+    assert found.sides == ()
+    assert all(mode.frequency > 0 for mode in found.modes[:2]) == (torque < 8.987)

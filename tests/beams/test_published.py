@@ -150,3 +150,34 @@ def test_a_stiff_beam_in_rotation_is_steady():
     """The pose a little later is so exact that a beam has no force of its own, with 1e6 times its bending stiffness."""
     stiffness = "stiffness: [1e6, 1e6, 1e6, 1e2, 1, 1e2], mass_per_length: 1, inertia_per_length: [2e-6, 1e-6, 1e-6]"
     assert len(rotating(0.3, 4, stiffness=stiffness))
+
+
+@pytest.mark.parametrize("drive", ["", "  motor: {type: drive, joint: axle, position: 5*t}"])
+def test_a_beam_on_a_rotating_hub_swings_in_its_plane_of_rotation_at_the_frequencies_of_the_rotating_frame(drive):
+    """Ritz' method with the tension of a clamp at 0.5 m from the axis; `modes` names the analysis that has them."""
+    points, weights = np.polynomial.legendre.leggauss(40)
+    x, w = points + 1, weights
+    shapes = [Polynomial([0] * (k + 2) + [0.5 ** (k + 2)]) for k in range(9)]
+    f, slope, bend = (np.array([shape.deriv(k)(x) if k else shape(x) for shape in shapes]) for k in range(3))
+    stiffness = (100 * bend * w) @ bend.T + (slope * w * 30 * ((4 - x**2) / 2 + 0.5 * (2 - x))) @ slope.T
+    mass = 1.2 * (f * w) @ f.T
+    expected = np.sqrt(eigh(stiffness - 25 * mass, mass, eigvals_only=True)[:2])
+    text = f"""
+dimensions: 3
+bodies:
+  hub: {{mass: 1, inertia: [1e9, 1e9, 1e9], omega: [0, 0, 5]}}
+  b: {{type: beam, start: [0.5, 0, 0], end: [2.5, 0, 0], elements: 16, stiffness: [1e7, 1e7, 1e7, 1e4, 100, 100], mass_per_length: 1.2,
+      inertia_per_length: [2e-6, 1e-6, 1e-6], velocity: [0, 2.5, 0], omega: [0, 0, 5]}}
+joints:
+  axle: {{type: revolute, i: hub, j: ground}}
+  clamp: {{type: fixed, i: b.start, j: {{body: hub, point: [0.5, 0, 0]}}}}
+{drive}
+start: {{rotation: 5 rad/s}}
+"""
+    scene = read_scene(text)
+    assert "motion=SteadyMotion(rotation=[0.0, 0.0, 5.0], about=[0.0, 0.0, 0.0])" in stiffmbs.modes(scene).notes[1]
+    found = np.abs(
+        stiffmbs.equilibrium(scene, motion=stiffmbs.SteadyMotion(rotation=[0, 0, 5], about=[0, 0, 0])).eigenvalues
+    )
+    for frequency in expected:
+        assert np.min(np.abs(found / frequency - 1)) < 1e-4

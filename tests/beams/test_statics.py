@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import stiffmbs
 from stiffmbs.model.beams.section import Circle, IProfile, Rectangle, Tube
@@ -230,3 +231,24 @@ forces: {P: {type: force, i: bar.end, force: [0, -0.01]}}
     assert found.channels["bar.end.y"] - 1 == pytest.approx(-0.01 * (4 / 3e3 + 2e-6), rel=1e-4) and not found.notes
     folded = stiffmbs.equilibrium(stiffmbs.read_scene(text.replace("post.end.ground_axes", "post.end")))
     assert "the axes of a beam's node are along the beam, those of its marker post.end.ground_axes" in folded.notes[0]
+
+
+@pytest.mark.parametrize("EI", [1e-4, 1e-2])
+def test_a_cable_that_is_described_as_an_arc_hangs_as_an_elastic_catenary(EI):
+    """Its bending stiffness is far below its tension times the square of an element's length."""
+    EA, w, length, span = 1e6, 2 * 9.81, 10.5, 10.0
+    V = w * length / 2
+    H = brentq(lambda H: H * length / EA + 2 * H / w * math.asinh(V / H) - span, 1, 1e4)
+    sag = V * length / (4 * EA) + H / w * (math.hypot(1, V / H) - 1)
+    half = brentq(lambda angle: angle * span / math.sin(angle) - length, 0.1, 2)
+    found = at_rest(f"""
+gravity: [0, -9.81]
+bodies:
+  c: {{type: beam, start: [0, 0], through: [5, {-5 * math.tan(half / 2)!r}], end: [10, 0], elements: 20,
+       stiffness: [1e6, 1e6, {EI}], mass_per_length: 2, inertia_per_length: 1e-6}}
+joints:
+  a: {{type: revolute, i: c.start, j: ground}}
+  b: {{type: revolute, i: c.end, j: {{body: ground, point: [10, 0]}}}}
+""")
+    assert -found["c.node10.y"] == pytest.approx(sag, rel=1e-4)
+    assert found["b.fx"] == pytest.approx(H, rel=1e-4)

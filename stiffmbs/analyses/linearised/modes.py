@@ -24,6 +24,7 @@ from ..equilibrium import solution_of_rows
 from ..job import Runnable
 from ..settled import GROWING
 from ..start_from import StartFrom
+from ..steady import rotation_as_one
 from .at_state import AtState, at_state
 from .sides import Kink, linearised_at
 
@@ -172,6 +173,12 @@ def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
             f"{found.acceleration[most]:.3g}; the frequencies hold at this time only, and in coordinates that measure displacements in "
             f"sizes of the mechanism ({system.size:.3g} m) and rotations in rad: other coordinates have others"
         )
+        turning = rotation_as_one(found.data, found.dynamics, found.dynamics.state.u)
+        if turning is not None and not system.has_coupled_inertia:
+            yield (
+                "all bodies rotate as one, and the modes are in ground axes; those in the rotating frame are the eigenvalues of "
+                f"stiffmbs.equilibrium(..., motion=SteadyMotion(rotation={turning[0]}, about={turning[1]}))"
+            )
     rolling = state.n_poses - state.degrees_of_freedom
     if rolling:
         ways = "one pose variation" if rolling == 1 else f"{rolling} pose variations"

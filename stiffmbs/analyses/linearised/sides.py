@@ -104,7 +104,8 @@ def _breakpoint(
     parts = wide[0].parts
     summed = len(scale) * np.finfo(float).eps  # an entry is a sum over all velocities: Higham (2002), eq. 3.5
     curved = moves.steep * moves.wide  # relative change of a derivative over a move that a curved law may have
-    zero = np.maximum(curved * parts, summed * _largest(parts, state))
+    # An entry that is zero at the state, of products of two small motions, changes by a part of second order of the others.
+    zero = np.maximum(curved * parts, max(summed, curved * moves.wide) * _largest(parts, state))
     # At a breakpoint, changes across the state and to a side are not proportional to the move.
     bends = moves.break_between(*changes) & moves.break_between(*to_a_side) & (np.abs(changes[0]) > zero)
     # On a breakpoint the derivatives of several functions, such as max(x, 0) + min(x, 0), may add up to those of no side.

@@ -18,7 +18,8 @@ def element_stiffness(unloaded: np.ndarray, length: float, section: Callable[[fl
     The strain of an element under end loads is not constant. Its average depends on the loads by the compliance of the
     continuous beam, the integral of P(s) K(s)^-1 P(s)^T / L. P(s) is the relative displacement of the ends by a unit
     strain at s. For a straight beam this adds L^2/(12 EI) to 1/GA, the residual bending flexibility of MacNeal (1978).
-    The nodes of a linear beam under nodal loads then have no discretisation error.
+    The nodes of a straight linear beam under nodal loads then have no discretisation error. Bending within a curved element
+    is not counted as a stretch, a part L^4 kappa^2/(720 EI) of the compliance: a taut cable exhausts it at once.
 
     `unloaded` is (Gamma, kappa) without load, shape (6,); its first part is (1, 0, 0) for a tangent axis. `section`
     returns the stiffness of the section, shape (6, 6), at a fraction of the length.
@@ -28,6 +29,7 @@ def element_stiffness(unloaded: np.ndarray, length: float, section: Callable[[fl
     compliance = np.zeros((6, 6))
     for point, weight in zip(POINTS, WEIGHTS, strict=True):
         P = symmetric @ exponential(point * length / 2 * bracket)
+        P[0, 3:] = 0.0  # bending and torsion do not stretch the element
         compliance += weight / 2 * P @ np.linalg.solve(section((1 + point) / 2), P.T)
     return inverse(compliance)
 
