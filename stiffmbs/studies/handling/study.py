@@ -91,7 +91,7 @@ def handling(
     """Run handling and ride tests of the standards on a car.
 
     The car is the scene without its own driver, roads, start and drives of the steering joint; each test attaches the
-    part `driver`, a level road and its steering or course. Preliminary runs at 10 m/s and slow ramps at 80 km/h and at
+    part `driver`, a level road and its steering or course. Preliminary runs at 5 m/s and slow ramps at 80 km/h and at
     the speeds of the tests scale the amplitudes to the lateral accelerations of the standards.
 
     Parameters
