@@ -175,7 +175,7 @@ def length_of_a_ramp(ay):
 
 def turns_at_a_gradient():
     """Return the time from which a circle is evaluated, without the way of its entry."""
-    run = {"time": np.arange(0.0, 20, 0.01), "handling_driver.lateral_error": np.zeros(2000)}
+    run = {"time": np.arange(0.0, 20, 0.01), "vehicle.ay": np.arange(2000)}
     with patch.object(steady_state_cornering, "_steady", lambda run, *_: reach(run["time"][0])):
         return reached(lambda: steady_state_cornering.of_constant_radius(None, Record(first=1e9, radius=1.0), [run]))
 

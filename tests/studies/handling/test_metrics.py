@@ -47,7 +47,7 @@ def test_the_understeer_gradient_of_both_methods():
     of = metrics.understeer_gradient
     assert of(ay, at_constant_speed * 16, 1 / 16, WHEELBASE, ay / SPEED**2) == pytest.approx(GRADIENT, rel=1e-6)
     assert of(ay, at_constant_radius * 16, 1 / 16) == pytest.approx(GRADIENT, rel=1e-6)
-    with pytest.raises(stiffmbs.InputError, match="found 0 values within"):
+    with pytest.raises(stiffmbs.InputError, match=r"found 0 lateral accelerations up to 4 m/s\^2"):
         of(ay + 10, ay, 1.0)
 
 
@@ -134,6 +134,25 @@ def test_a_ramp_is_quasi_steady_up_to_its_largest_lateral_acceleration():
     assert found[SEEN] == pytest.approx(0.01 * found["vehicle.ay"], abs=1e-9)
     later = steady_state_cornering.quasi_steady({**run, "time": time + 1.3})
     assert steady_state_cornering.lag_of(later) == pytest.approx(0.3)
+
+
+def test_a_circle_counts_up_to_the_limit():
+    """A car that slid off a circle of 30 m at 17 m/s had -207 mrad/(m/s^2) of understeer, and a lateral error of 22 m."""
+    time = np.arange(0, 100, 0.05)
+    speed = 5 + 0.1 * time
+    ay = np.where(time < 80, speed**2 / 40, 2.0)
+    run = {
+        "time": time + 13.1, "vehicle.ay": ay, "vehicle.speed": speed, "vehicle.yaw_rate": ay / speed,
+        "vehicle.sideslip": 1e-3 * ay, "vehicle.roll": 0.02 * ay, SEEN: np.where(time < 80, WHEELBASE / 40 + 3e-3 * ay, 0.5),
+        "handling_driver.lateral_error": np.where(time < 80, 0.01, 20.0),
+    }  # fmt: skip
+    known, test = Known(SimpleNamespace(wheelbase=WHEELBASE), WHEELBASE, 0.0, 1.8, {}), ConstantRadius(radius=40.0)
+    found = steady_state_cornering.of_constant_radius(known, test, [run])
+    assert found["understeer gradient"][0] == pytest.approx(3, rel=1e-6)
+    assert found["largest lateral error"][0] == 0.01
+    short = {name: values[:0] for name, values in run.items()}
+    with pytest.raises(stiffmbs.InputError, match="found 0 lateral accelerations"):
+        steady_state_cornering.of_constant_radius(known, test, [short])
 
 
 def test_a_circle_has_turns_for_its_whole_speed():
