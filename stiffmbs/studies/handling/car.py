@@ -178,38 +178,33 @@ def with_manoeuvre(scene: Scene, car: Car, manoeuvre: Manoeuvre) -> Scene:
         raise InputError("found a scene built in Python, expected one that was read from a file or a text")
     content, chosen, changes = chosen_options(unshared(kept.content), kept.changes, kept.source)
     content, changes = placed_in_use(content, changes)
-    _change_what_is_kept(content, changes)
+    others = list(_set_parts_and_run(content, changes))
     removed = _strip(content, car)
-    left = [(path, value) for path, value in changes if not f"{path}.".startswith(removed)]
+    left = [(path, value) for path, value in others if not f"{path}.".startswith(removed)]
     _attach(content, car, manoeuvre)
     words = {name: word for name, word in chosen["words"].items() if word is not None}
     content |= {"choose": words, "options": {name: {word: {}} for name, word in words.items()}} if words else {}
     return made_scene(content, left, kept.source, lambda _: None, kept.folder)
 
 
-def _drivers(content: Content) -> list[str]:
-    """Return the names of the scene's own drivers."""
-    use = content.get("use") or {}
-    return [name for name, entry in use.items() if isinstance(entry, dict) and entry.get("part") == "driver"]
-
-
-def _change_what_is_kept(content: Content, changes: Iterable[tuple[str, object]]) -> None:
-    """Set changed values of the scene's own drivers and run, parts of which a manoeuvre keeps."""
-    kept = ("run.", *(f"use.{name}." for name in _drivers(content)))
+def _set_parts_and_run(content: Content, changes: Iterable[tuple[str, object]]) -> Iterator[tuple[str, object]]:
+    """Set changed values of parts and of the run, which a manoeuvre changes further; yield the other changes."""
     for path, value in changes:
-        if path.startswith(kept):
+        if path.startswith(("use.", "run.")):
             set_value(content, path, read_yaml(value, f"--set {path}") if isinstance(value, str) else value)
+        else:
+            yield path, value
 
 
 def _strip(content: Content, car: Car) -> tuple[str, ...]:
     """Remove what a manoeuvre replaces; return the beginnings of the paths of changes that concern it."""
     replaced = ["figure", "stages", "at_start", "path", "start", "requests", *(() if car.vehicle else ("vehicle",))]
-    gone = ["run.", *(f"{section}." for section in replaced)]
+    gone = [f"{section}." for section in replaced]
     for section in replaced:
         content.pop(section, None)
-    for name in _drivers(content):
-        content.setdefault("_driver", {**content["use"].pop(name), "name": name})
-        gone.append(f"use.{name}.")
+    use = content.get("use") or {}
+    for name in [name for name, entry in use.items() if isinstance(entry, dict) and entry.get("part") == "driver"]:
+        content.setdefault("_driver", {**use.pop(name), "name": name})
     joints = content.get("joints") or {}
     for name in [
         name for name, entry in joints.items() if isinstance(entry, dict) and entry.get("joint") in car.steered
