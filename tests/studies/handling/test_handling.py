@@ -176,6 +176,12 @@ def test_the_scenes_own_manoeuvre_does_not_act_in_a_test():
         assert np.ptp(speeds(scene)) < 0.01, entry
 
 
+def test_a_car_that_does_not_keep_the_speed_of_a_test_is_refused():
+    """A distance of braking from 20 m/s was that of a test from 28 m/s."""
+    with pytest.raises(stiffmbs.InputError, match=r"found a steady speed of 0.381 m/s, expected 20 m/s: the engine"):
+        speeds(car_with([("parts.driver.parameters.strongest", "100 N")]))
+
+
 def test_changes_of_what_a_test_keeps_count():
     """Pedal, drive and tolerances by --set were left out, and so were parameters whose names begin as a section's."""
     pedal = speeds(car_with(driver=("begins: -1 s}", "begins: -1 s, pedal: 1 kN}")), driver={"brakes": 1})
