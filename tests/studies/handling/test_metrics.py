@@ -136,6 +136,17 @@ def test_a_ramp_is_quasi_steady_up_to_its_largest_lateral_acceleration():
     assert steady_state_cornering.lag_of(later) == pytest.approx(0.3)
 
 
+@pytest.mark.parametrize("direction", [1, -1])
+def test_the_steering_for_a_lateral_acceleration_is_that_of_the_ramp(direction):
+    """Below the first quasi-steady value, 0.3 m/s^2, it was the steering for that."""
+    ay = np.arange(0.31, 8, 0.017)
+    known = Known(None, 1.0, 0.0, 1.8, {"vehicle.ay": ay, SEEN: direction * 0.01 * ay})
+    for wanted in (0.05, 0.31, 2.0, 7.9):
+        assert known.steer_for(wanted) == pytest.approx(direction * 0.01 * wanted, rel=1e-9)
+    with pytest.raises(stiffmbs.InputError, match="largest lateral acceleration of 7.9"):
+        known.steer_for(8.1)
+
+
 def test_a_circle_counts_up_to_the_limit():
     """A car that slid off a circle of 30 m at 17 m/s had -207 mrad/(m/s^2) of understeer, and a lateral error of 22 m."""
     time = np.arange(0, 100, 0.05)
