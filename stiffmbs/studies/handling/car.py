@@ -164,7 +164,8 @@ class Manoeuvre:
     driver: Mapping[str, object] | None = None  # parameters of the driver
     path: Content | None = None  # section ``path``, which the driver keeps
     road: Mapping[str, object] | None = None
-    spun: float | None = None  # sideslip and roll, root of the sum of squares, at which the run ends, rad
+    # sideslip of the rear axle and roll, root of the sum of squares, at which the run ends, rad
+    spun: float | None = None
     output: float = 0.01  # s
 
 
@@ -288,7 +289,8 @@ def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
     content["vehicle"] = {"body": car.body, **vehicle}
     content["requests"] = {STEER + "_seen": f"{car.steering}.{'angle' if car.angular else 'displacement'}"}
     if manoeuvre.spun:
-        content["requests"] |= {SPINNING: "sqrt(vehicle.sideslip^2 + vehicle.roll^2)"}
+        at_rear = f"vehicle.sideslip - ({car.rear!r})*vehicle.yaw_rate/vehicle.speed"
+        content["requests"] |= {SPINNING: f"sqrt(({at_rear})^2 + vehicle.roll^2)"}
         content["stages"] = [{"until": {"spun": {"request": SPINNING, "at_least": manoeuvre.spun}}}]
     if manoeuvre.path:
         content["path"] = dict(manoeuvre.path)

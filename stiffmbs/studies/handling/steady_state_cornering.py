@@ -19,7 +19,7 @@ class QuasiSteadyTurns:
     probe: float = 5.0
     """Speed of the first run, m/s."""
     spun: float = 0.25
-    """Sideslip and roll, root of the sum of squares, beyond which a car no longer turns quasi-steadily, rad."""
+    """Sideslip of the rear axle and roll, root of the sum of squares, beyond which a car no longer turns quasi-steadily, rad."""
     begun: float = 0.3
     """Lateral acceleration from which a ramp is quasi-steady, m/s^2."""
     drop: float = 0.9

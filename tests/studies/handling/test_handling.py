@@ -24,6 +24,7 @@ from stiffmbs.studies.handling.parameters import (
     with_changes,
 )
 from stiffmbs.studies.handling.standards import TESTS
+from stiffmbs.studies.handling.steady_state_cornering import ramp
 from stiffmbs.studies.handling.steering_inputs import dwell_formula
 
 EXAMPLES = Path(stiffmbs.__file__).parents[1] / "examples"
@@ -174,6 +175,17 @@ def test_the_scenes_own_manoeuvre_does_not_act_in_a_test():
     for entry in ("brakes: 1 s", "acceleration: 1 m/s^2", "releases: 1 s"):
         scene = car_with(driver=("{target: V, begins: -1 s}", f"{{target: V, begins: -1 s, {entry}}}"))
         assert np.ptp(speeds(scene)) < 0.01, entry
+
+
+@pytest.mark.long
+def test_a_tight_turn_at_low_speed_is_no_spin():
+    """The sideslip of its centre is that of the radius: a ramp at 5 m/s ended at 4.5 m/s^2."""
+    scene = stiffmbs.load_scene(CAR)
+    car = car_of(scene)
+    slow = replace(ramp(car, 0.335, 5.0), duration=14.0)
+    found = study.solved(with_manoeuvre(scene, car, slow))
+    assert found["vehicle.ay"].max() > 5.2
+    assert found["vehicle.sideslip"].max() > 0.25
 
 
 def test_a_car_that_does_not_keep_the_speed_of_a_test_is_refused():
