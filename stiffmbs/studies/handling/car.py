@@ -189,9 +189,14 @@ def with_manoeuvre(scene: Scene, car: Car, manoeuvre: Manoeuvre) -> Scene:
 
 
 def _set_parts_and_run(content: Content, changes: Iterable[tuple[str, object]]) -> Iterator[tuple[str, object]]:
-    """Set changed values of parts and of the run, which a manoeuvre changes further; yield the other changes."""
+    """Set changed values of parts and of the run, which a manoeuvre changes further; yield the other changes.
+
+    Parameters that changes add are set, too: they may be of parts alone.
+    """
     for path, value in changes:
-        if path.startswith(("use.", "run.")):
+        section, _, name = path.partition(".")
+        added = section == "parameters" and name not in (content.get("parameters") or {})
+        if added or section in ("use", "run"):
             set_value(content, path, read_yaml(value, f"--set {path}") if isinstance(value, str) else value)
         else:
             yield path, value

@@ -210,6 +210,8 @@ def test_changes_of_what_a_test_keeps_count():
     tested = with_manoeuvre(scene, car_of(scene), Manoeuvre(20.0, 3.0))
     assert (tested.run.rtol, tested.run.duration) == (1e-6, 3.0)
     assert "handling_driver.drive_front_left" in tested.forces
+    scene = stiffmbs.load_scene(CAR, [("parameters.soft", "2e6 N/m"), ("parts.front.left.parameters.k_b", "soft")])
+    assert with_manoeuvre(scene, car_of(scene), Manoeuvre(20.0, 3.0)).parameters["soft"] is not None
     assert tested.bodies["chassis"].position[2] == 0.5
 
 
