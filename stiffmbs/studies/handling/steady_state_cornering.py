@@ -111,12 +111,17 @@ def of_constant_speed(known: Known, test: ConstantSpeed, runs: list[Run]) -> Met
     }
 
 
+def circle(radius: float, transition: float, length: float) -> dict[str, object]:
+    """Return the section ``path`` of a circle with its transition, m, that does not end within a length, m."""
+    turns = float(np.ceil(length / (2 * np.pi * radius)))
+    return {"circle": radius, "entry": 10.0, "transition": transition, "turns": turns}
+
+
 def constant_radius(known: Known, test: ConstantRadius) -> list[Manoeuvre]:
     """Return a circle with slowly growing speed."""
     settled = TURNS.settled / test.first
     duration = settled + 1 + (test.last - test.first) / test.acceleration
-    turns = test.last * duration / (2 * np.pi * abs(test.radius))
-    path = {"circle": test.radius, "entry": 10.0, "transition": 30.0, "turns": float(np.ceil(turns))}
+    path = circle(test.radius, 30.0, test.last * duration)
     driver = {**known.driver(), "acceleration": test.acceleration, "accelerates": settled}
     return [Manoeuvre(test.first, duration, driver=driver, path=path, output=0.05)]
 

@@ -7,9 +7,9 @@ import pytest
 from scipy.signal import butter, lsim, sosfilt
 
 import stiffmbs
-from stiffmbs.studies.handling import metrics, steady_state_cornering, steering_inputs, vibration
+from stiffmbs.studies.handling import braking, metrics, steady_state_cornering, steering_inputs, vibration
 from stiffmbs.studies.handling.known import SEEN, Known
-from stiffmbs.studies.handling.parameters import ConstantRadius, SineWithDwell
+from stiffmbs.studies.handling.parameters import BrakingInATurn, ConstantRadius, SineWithDwell
 
 MASS, YAW_INERTIA, TO_FRONT, TO_REAR, FRONT, REAR, SPEED = 1500.0, 2600.0, 1.2, 1.5, 9e4, 1.2e5, 22.0
 WHEELBASE = TO_FRONT + TO_REAR
@@ -174,6 +174,29 @@ def test_a_circle_has_turns_for_its_whole_speed():
         (one,) = steady_state_cornering.constant_radius(known, test)
         way = test.first * one.driver["accelerates"] + (test.last**2 - test.first**2) / (2 * acceleration) + test.last
         assert one.path["turns"] * 2 * np.pi * test.radius > way - one.path["entry"]
+
+
+@pytest.mark.parametrize("radius", [5.0, 100.0])
+def test_a_circle_does_not_end_before_braking(radius):
+    """That of 5 m ended after three turns: the car braked straight ahead."""
+    test = BrakingInATurn(radius=radius)
+    (one,) = braking.braking_in_a_turn(Known(None, 1.0, 0.0, 1.8, {}), test)
+    assert one.path["turns"] * 2 * np.pi * radius >= one.speed * one.duration
+
+
+def test_a_car_that_stands_has_no_sideslip():
+    """A pedal of 14 kN stopped it within the 3 s: the directions of its last movements gave 178 deg."""
+    test = BrakingInATurn(lateral_acceleration=4.0)
+    begin = braking._turn(test)[1]
+    time = np.arange(0, begin + 3, 0.01)
+    speed = np.maximum(20 - 9 * np.maximum(time - begin, 0), 1e-6)
+    run = {
+        "time": time, "vehicle.speed": speed, "vehicle.yaw_rate": speed / 100, "vehicle.ay": speed**2 / 100,
+        "vehicle.ax": np.where(time > begin, -9.0, 0.0), "vehicle.sideslip": np.where(speed > 1, 0.02, 3.1),
+    }  # fmt: skip
+    found = braking.of_braking_in_a_turn(Known(None, 1.0, 0.0, 1.8, {}), test, [run])
+    assert found["largest sideslip"][0] == pytest.approx(np.degrees(0.02))
+    assert found["yaw rate ratio 1 s after"][0] == pytest.approx(1)
 
 
 def test_a_slope_at_zero_does_not_depend_on_how_far_a_car_turned():
