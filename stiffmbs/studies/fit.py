@@ -40,7 +40,7 @@ class Fit:
     values : dict of str to float
         The parameters, SI units.
     intervals : dict of str to (float, float)
-        95 % confidence intervals, by the linearised model and Student's distribution.
+        95 % confidence intervals, by the linearised model and Student's distribution, without integration errors.
     standard_errors : dict of str to float
         Standard errors of the parameters, SI units, by the linearised model.
     correlation : ndarray

@@ -8,6 +8,7 @@ from scipy.interpolate import CubicSpline
 import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.adams.load import read_adams
+from stiffmbs.adams.scene.fitted_curves import _plane
 
 from .trials.adams_oracle import euler, rotation
 
@@ -121,6 +122,22 @@ def test_the_axes_of_a_curve_do_not_depend_on_rounding(sort, scale):
     np.testing.assert_allclose(seen[:, 0], TURN @ x / np.linalg.norm(x), atol=1e-12)
     np.testing.assert_allclose(seen[:, 2], TURN[:, 1], atol=1e-12)
     assert not any("not used" in note for note in scene.notes)
+
+
+@pytest.mark.parametrize("towards", [(1, 1), (1, -1)])
+def test_the_side_of_a_plane_at_45_degrees_does_not_depend_on_rounding(towards):
+    """Of two equal components of its normal, rounding chose the one that is positive."""
+    generator = np.random.default_rng(1)
+    points = np.column_stack([towards[0] * X, towards[1] * X, Z])
+    sides = [_plane(points + generator.normal(0, 1e-13, points.shape), False).axes[:, 2] for _ in range(20)]
+    np.testing.assert_allclose(sides, np.tile([np.sqrt(0.5), -towards[1] * np.sqrt(0.5), 0], (20, 1)), atol=1e-9)
+
+
+def test_the_axes_of_a_straight_curve_do_not_depend_on_rounding():
+    generator = np.random.default_rng(1)
+    points = np.column_stack([0 * X, 0 * X, X - X[0]])
+    axes = [_plane(points + generator.normal(0, 1e-16, points.shape), False).axes for _ in range(20)]
+    np.testing.assert_allclose(axes, np.tile(axes[0], (20, 1, 1)), atol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from stiffmbs.errors import SolverError
+from stiffmbs.model.settings import SteadyMotion
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.studies import (
     case_solver,
@@ -175,7 +176,7 @@ def length_of_a_ramp(ay):
 
 def turns_at_a_gradient():
     """Return the time from which a circle is evaluated, without the way of its entry."""
-    run = {"time": np.arange(0.0, 20, 0.01), "handling_driver.lateral_error": np.zeros(2000)}
+    run = {"time": np.arange(0.0, 20, 0.01), "vehicle.ay": np.arange(2000)}
     with patch.object(steady_state_cornering, "_steady", lambda run, *_: reach(run["time"][0])):
         return reached(lambda: steady_state_cornering.of_constant_radius(None, Record(first=1e9, radius=1.0), [run]))
 
@@ -183,6 +184,20 @@ def turns_at_a_gradient():
 def time_on_a_circle():
     test = Record(first=1.0, last=1.0, radius=1.0, acceleration=1.0)
     return steady_state_cornering.constant_radius(Record(driver=dict), test)[0].driver["accelerates"]
+
+
+def slowest_start():
+    """Return the number of percents by which a start may be slower."""
+    scene = Record(start=SteadyMotion(velocity=(1.0, 0.0, 0.0)))
+
+    class Slower(dict):
+        success, time = True, (0.0,)
+
+    def accepts(percents):
+        with patch.object(study, "run", lambda _: Slower({"vehicle.speed": [1 - percents / 100 + 1e-9]})):
+            return not refused(lambda: study.solved(scene))
+
+    return count_while(accepts, range(20))
 
 
 def width_beyond_the_track():
@@ -435,6 +450,7 @@ DECISIONS = {
     "studies.handling.known:Known.lag": lambda: Known(None, 1.0, 0.0, 1.8, {}).driver()["anticipation"],
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.settled": time_on_a_circle,
     "studies.handling.steering_inputs:STEER_BEGIN": lambda: steering_inputs.dwell_end(Record(frequency=1.0, dwell=0.0)),
+    "studies.handling.study:SLOWER": slowest_start,
     "studies.handling.study:WIDER": width_beyond_the_track,
     "studies.handling.vibration:Weighting.f1": lambda: weighting(0.4),
     "studies.handling.vibration:Weighting.f2": lambda: weighting(100.0),
@@ -488,7 +504,7 @@ EXPECTED = {
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.follows": 4.01,
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.ramp_begin": 3.0, "studies.handling.known:Known.lag": 0.12,
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.settled": 45.0, "studies.handling.steering_inputs:STEER_BEGIN": 2.0,
-    "studies.handling.study:WIDER": 0.2, "studies.handling.vibration:Weighting.f1": 0.7071067810960379,
+    "studies.handling.study:SLOWER": 6, "studies.handling.study:WIDER": 0.2, "studies.handling.vibration:Weighting.f1": 0.7071067810960379,
     "studies.handling.vibration:Weighting.f2": 0.7071067810960378, "studies.input_numbers:MOST_KEPT": 1001, "studies.measured:ROUNDS": 4,
     "studies.optimise:STEP": 0.001, "studies.sensitivities.formulas:SAME": 1e-12, "studies.sensitivities.formulas:ZERO": 1e-14,
     "studies.sensitivities.formulas:ALIKE": 27, "studies.sensitivities.parameters:STEP": 0.0001,

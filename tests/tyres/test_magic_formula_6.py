@@ -141,6 +141,10 @@ def test_a_tyre_without_coefficients_of_turn_slip_or_pressure_refuses_them():
         TYRE.steady_state(4000.0, p=0.0)
     with pytest.raises(InputError, match="found a load of -1 N"):
         TYRE.steady_state([10.0, -1.0])
+    with pytest.raises(InputError, match="found a load of inf N"):
+        TYRE.steady_state([10.0, np.inf])
+    with pytest.raises(InputError, match="found a pressure of inf Pa"):
+        TYRE.steady_state(4000.0, p=np.inf)
     with pytest.raises(InputError, match="found Q_FZ2 = 100, expected less than 68"):
         TyreProperties(coefficients={**NUMBERS, "Q_FZ2": 100.0}, version="6.1")
 

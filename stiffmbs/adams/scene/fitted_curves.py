@@ -101,8 +101,8 @@ def _points(user: Numbered, number: int, mechanism: Mechanism) -> tuple[np.ndarr
 def _plane(points: np.ndarray, closed: bool) -> Frame:
     """Return axes with x and y in the curve's plane, at the centre of a closed curve or at the first point.
 
-    x is towards the first point of a closed curve, or along the chord. The largest component of z is positive: the sign
-    of a singular vector depends on rounding.
+    x is towards the first point of a closed curve, or along the chord. The largest component of z, the first of equal
+    ones, is positive: the sign of a singular vector depends on rounding.
     """
     own = points[:-1] if closed else points
     middle, size = own.mean(axis=0), np.max(np.ptp(points, axis=0))
@@ -114,7 +114,8 @@ def _plane(points: np.ndarray, closed: bool) -> Frame:
         normal = IDENTITY[2]
     else:
         normal = directions[2] if sizes[1] > PRECISION * sizes[0] else _across(x)
-        normal = normal * np.sign(normal[np.argmax(np.abs(normal))])
+        large = np.abs(normal) > (1 - np.sqrt(PRECISION)) * np.max(np.abs(normal))
+        normal = normal * np.sign(normal[np.argmax(large)])
     y = np.cross(normal, x)
     y /= np.linalg.norm(y)
     x = np.cross(y, normal) if closed else x / np.linalg.norm(x)
@@ -122,8 +123,9 @@ def _plane(points: np.ndarray, closed: bool) -> Frame:
 
 
 def _across(x: np.ndarray) -> np.ndarray:
-    """Return a unit vector normal to a direction."""
-    across = np.cross(x, IDENTITY[int(np.argmin(np.abs(x)))])
+    """Return a unit vector normal to a direction and to the axis of its smallest component, the first of equal ones."""
+    sizes = np.abs(x)
+    across = np.cross(x, IDENTITY[int(np.argmax(sizes <= np.min(sizes) + PRECISION * np.max(sizes)))])
     found: np.ndarray = across / np.linalg.norm(across)
     return found
 

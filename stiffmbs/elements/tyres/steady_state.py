@@ -65,10 +65,10 @@ def steady_state(
 
 
 def _check(load: np.ndarray, pressure: np.ndarray) -> None:
-    if np.any(load < 0) or not np.all(np.isfinite(load)):
-        raise InputError(f"found a load of {load[~(load >= 0)].flat[0]:g} N, expected zero or a positive number")
-    if np.any(~(pressure > 0)):
-        raise InputError(f"found a pressure of {pressure[~(pressure > 0)].flat[0]:g} Pa, expected a number above zero")
+    for wrong in load[~((load >= 0) & np.isfinite(load))]:
+        raise InputError(f"found a load of {wrong:g} N, expected zero or a positive number")
+    for wrong in pressure[~((pressure > 0) & np.isfinite(pressure))]:
+        raise InputError(f"found a pressure of {wrong:g} Pa, expected a number above zero")
 
 
 def _names(numbers: Numbers) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from .car import Manoeuvre
 from .known import Known, Metrics, Run
 from .metrics import mean_deceleration, yaw_rate_ratio
 from .parameters import BrakingInATurn, StraightBraking
+from .steady_state_cornering import circle
 
 BEFORE_BRAKING = 201.0
 """Way before braking in a turn, m: entry, transition and a steady part of the circle."""
@@ -24,19 +25,25 @@ def _pressed(pedal: float | None) -> dict[str, float]:
     return {} if pedal is None else {"pedal": pedal}
 
 
+def _moving(speed: np.ndarray) -> np.ndarray:
+    """Return True down to a tenth of the first speed, as in the mean deceleration: anti-lock control ends at a few m/s."""
+    moving: np.ndarray = speed > 0.1 * speed[0]
+    return moving
+
+
 def braking_in_a_turn(known: Known, test: BrakingInATurn) -> list[Manoeuvre]:
     """Return braking on a circle with the steering held."""
     speed, brakes = _turn(test)
     driver = {**known.driver(), "brakes": brakes, "holds": brakes - 0.2, "pressing": 0.2, **_pressed(test.pedal)}
-    path = {"circle": test.radius, "entry": 10.0, "transition": 60.0}
-    return [Manoeuvre(speed, brakes + 3.0, driver=driver, path=path)]
+    duration = brakes + 3.0
+    return [Manoeuvre(speed, duration, driver=driver, path=circle(test.radius, 60.0, speed * duration))]
 
 
 def of_braking_in_a_turn(known: Known, test: BrakingInATurn, runs: list[Run]) -> Metrics:
     """Return the reaction of the yaw rate, deceleration and sideslip after braking begins."""
     run, begin = runs[0], _turn(test)[1]
-    after = run["time"] >= begin
     yaw_rate, speed = run["vehicle.yaw_rate"], run["vehicle.speed"]
+    after = (run["time"] >= begin) & _moving(speed)
     one = int(np.searchsorted(run["time"], begin + 1.0))
     return {
         "lateral acceleration before": (float(np.interp(begin - 0.2, run["time"], run["vehicle.ay"])), "m/s^2"),
@@ -61,8 +68,7 @@ def of_straight_braking(known: Known, test: StraightBraking, runs: list[Run]) ->
     run = runs[0]
     part = run["time"] >= 1.0
     time, speed = run["time"][part], run["vehicle.speed"][part]
-    moving = speed > 0.1 * speed[0]  # as in the mean deceleration: anti-lock control ends at a few m/s
-    slip = min(float(np.min(run[f"{tyre}.slip"][part][moving])) for tyre in known.car.tyres.values())
+    slip = min(float(np.min(run[f"{tyre}.slip"][part][_moving(speed)])) for tyre in known.car.tyres.values())
     distance = np.sum((speed[1:] + speed[:-1]) / 2 * np.diff(time))
     return {
         "mean fully developed deceleration": (mean_deceleration(time, speed), "m/s^2"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -10,13 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...elements.spatial.forces.wheel_torque import WheelTorque
+from ...elements.spatial.orientation import IDENTITY
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
+from ...model.files.expand import set_value, unshared
 from ...model.parts.placing import placed_in_use
 from ...model.read_scene import chosen_options, made_scene
 from ...model.scene import Scene
+from ...model.vehicle import Vehicle
 from ...reading.did_you_mean import did_you_mean
-from ...reading.files.yaml_text import Content
+from ...reading.files.yaml_text import Content, read_yaml
 
 DRIVER = "handling_driver"
 STEER = "handling_steer"
@@ -35,6 +37,7 @@ class Car:
     """Car of a scene."""
 
     body: str  # sprung body
+    vehicle: Vehicle | None  # section ``vehicle`` of that body
     # tyres, wheels, uprights: by corner: ``front_left`` ... ``rear_right``
     tyres: Mapping[str, str]
     wheels: Mapping[str, str]
@@ -64,6 +67,7 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
         raise InputError("found a scene in the plane, expected a car in space")
     vehicle = getattr(scene, "vehicle", None)
     body = body or (vehicle.body if vehicle else "chassis")
+    vehicle = vehicle if vehicle and vehicle.body == body else None
     if body not in scene.bodies:
         near = did_you_mean(body, scene.bodies)
         raise InputError(
@@ -87,7 +91,7 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
     )
     joint = _steering(scene, steering)
     return Car(
-        body, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()},
+        body, vehicle, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()},
         _rolling(scene, wheels.values()), joint, tuple(dict.fromkeys([joint, *_steering_joints(scene)])),
         scene.joints[joint].kind == "revolute",
         float((at["front_left"] + at["front_right"] - at["rear_left"] - at["rear_right"])[0] / 2),
@@ -160,7 +164,8 @@ class Manoeuvre:
     driver: Mapping[str, object] | None = None  # parameters of the driver
     path: Content | None = None  # section ``path``, which the driver keeps
     road: Mapping[str, object] | None = None
-    spun: float | None = None  # sideslip and roll, root of the sum of squares, at which the run ends, rad
+    # sideslip of the rear axle and roll, root of the sum of squares, at which the run ends, rad
+    spun: float | None = None
     output: float = 0.01  # s
 
 
@@ -172,31 +177,46 @@ def with_manoeuvre(scene: Scene, car: Car, manoeuvre: Manoeuvre) -> Scene:
     kept = scene.written
     if kept is None:
         raise InputError("found a scene built in Python, expected one that was read from a file or a text")
-    content, chosen, changes = chosen_options(copy.deepcopy(dict(kept.content)), kept.changes, kept.source)
+    content, chosen, changes = chosen_options(unshared(kept.content), kept.changes, kept.source)
     content, changes = placed_in_use(content, changes)
+    others = list(_set_parts_and_run(content, changes))
     removed = _strip(content, car)
-    left = [(path, value) for path, value in changes if not path.startswith(removed)]
+    left = [(path, value) for path, value in others if not f"{path}.".startswith(removed)]
     _attach(content, car, manoeuvre)
     words = {name: word for name, word in chosen["words"].items() if word is not None}
     content |= {"choose": words, "options": {name: {word: {}} for name, word in words.items()}} if words else {}
     return made_scene(content, left, kept.source, lambda _: None, kept.folder)
 
 
+def _set_parts_and_run(content: Content, changes: Iterable[tuple[str, object]]) -> Iterator[tuple[str, object]]:
+    """Set changed values of parts and of the run, which a manoeuvre changes further; yield the other changes.
+
+    Parameters that changes add are set, too: they may be of parts alone.
+    """
+    for path, value in changes:
+        section, _, name = path.partition(".")
+        added = section == "parameters" and name not in (content.get("parameters") or {})
+        if added or section in ("use", "run"):
+            set_value(content, path, read_yaml(value, f"--set {path}") if isinstance(value, str) else value)
+        else:
+            yield path, value
+
+
 def _strip(content: Content, car: Car) -> tuple[str, ...]:
     """Remove what a manoeuvre replaces; return the beginnings of the paths of changes that concern it."""
-    gone = ["run.", "start", "figure", "stages", "at_start", "path", "requests."]
-    for section in ("figure", "stages", "at_start", "path", "start", "requests"):
+    replaced = ["figure", "stages", "at_start", "path", "start", "requests", *(() if car.vehicle else ("vehicle",))]
+    gone = [f"{section}." for section in replaced]
+    for section in replaced:
         content.pop(section, None)
     use = content.get("use") or {}
     for name in [name for name, entry in use.items() if isinstance(entry, dict) and entry.get("part") == "driver"]:
         content.setdefault("_driver", {**use.pop(name), "name": name})
-        gone.append(f"use.{name}.")
     joints = content.get("joints") or {}
     for name in [
         name for name, entry in joints.items() if isinstance(entry, dict) and entry.get("joint") in car.steered
     ]:
         del joints[name]
-        gone.append(f"joints.{name}")
+        gone.append(f"joints.{name}.")
     held = [str(entry.get("joint")) for entry in joints.values() if isinstance(entry, dict)]
     if car.angular and (racks := [joint for joint in held if joint.rpartition(".")[2] in STEERING_JOINTS]):
         raise InputError(
@@ -219,6 +239,8 @@ def _set_roads(content: object) -> None:
             _set_roads(value)
 
 
+OF_ANOTHER_MANOEUVRE = ("acceleration", "accelerates", "steers", "releases", "brakes", "holds", "path_start")
+"""Parameters of the scene's own driver that belong to its own manoeuvre."""
 OF_A_PRESSED_PEDAL = ("presses", "pressing", "force")
 
 
@@ -249,7 +271,8 @@ def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
         **{f"{corner}_upright": upright for corner, upright in car.uprights.items()},
     }  # fmt: skip
     parameters = {
-        **(own.get("parameters") or {}), "target": manoeuvre.speed, "begins": -1, "radius": car.radius, "rear": car.rear,
+        **{name: x for name, x in (own.get("parameters") or {}).items() if name not in OF_ANOTHER_MANOEUVRE},
+        "target": manoeuvre.speed, "begins": -1, "radius": car.radius, "rear": car.rear,
         "largest": 10.0 if car.angular else 0.12, "fastest": 20.0 if car.angular else 0.6, **(manoeuvre.driver or {}),
     }  # fmt: skip
     if car.angular:
@@ -259,8 +282,9 @@ def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
             if isinstance(parameters.get(name), int | float)
         }
     driver = {
-        "part": "driver", "on": car.body, "drive": own.get("drive", "rear"), "mounts": {**mounts, "steering": car.steering},
-        "parameters": parameters, "path": "course" if manoeuvre.path else "none", "pace": "given",
+        "part": "driver", "on": car.body, "orientation": list(car.vehicle.orientation if car.vehicle else IDENTITY),
+        "drive": own.get("drive", "rear"), "mounts": {**mounts, "steering": car.steering}, "parameters": parameters,
+        "path": "course" if manoeuvre.path else "none", "pace": "given",
     }  # fmt: skip
     use = content.get("use") or {}
     _brake_by(driver, use, content)
@@ -270,7 +294,8 @@ def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
     content["vehicle"] = {"body": car.body, **vehicle}
     content["requests"] = {STEER + "_seen": f"{car.steering}.{'angle' if car.angular else 'displacement'}"}
     if manoeuvre.spun:
-        content["requests"] |= {SPINNING: "sqrt(vehicle.sideslip^2 + vehicle.roll^2)"}
+        at_rear = f"vehicle.sideslip - ({car.rear!r})*vehicle.yaw_rate/vehicle.speed"
+        content["requests"] |= {SPINNING: f"sqrt(({at_rear})^2 + vehicle.roll^2)"}
         content["stages"] = [{"until": {"spun": {"request": SPINNING, "at_least": manoeuvre.spun}}}]
     if manoeuvre.path:
         content["path"] = dict(manoeuvre.path)

@@ -40,11 +40,11 @@ class Known:
         return {"per_curvature": self.per_curvature, "understeer": self.understeer, "anticipation": self.lag}
 
     def steer_for(self, acceleration: float) -> float:
-        """Return the steering for a steady lateral acceleration, from the ramp.
+        """Return the steering for a steady lateral acceleration, by interpolation in the ramp from straight ahead on.
 
         Raises InputError if the ramp did not reach it.
         """
         ay = np.maximum.accumulate(self.ramp["vehicle.ay"])
         if ay[-1] < acceleration:
             raise InputError(f"found a largest lateral acceleration of {ay[-1]:.3g} m/s^2, expected {acceleration:.3g}")
-        return float(self.ramp[SEEN][np.argmax(ay >= acceleration)])
+        return float(np.interp(acceleration, np.append(0.0, ay), np.append(0.0, self.ramp[SEEN])))

@@ -16,7 +16,7 @@ UNEQUAL = 1e-6
 
 
 def at_zero(x: np.ndarray, y: np.ndarray, limit: float = LINEAR) -> tuple[float, float]:
-    """Return y and dy/dx at x = 0 by a fit over abs(x) <= limit: a constant, and x, x^3 and x^5.
+    """Return y and dy/dx at a lateral acceleration x of 0 by a fit over abs(x) <= limit: a constant, and x, x^3 and x^5.
 
     Turns to the left and to the right are alike, so that only odd powers belong to a car.
 
@@ -27,7 +27,9 @@ def at_zero(x: np.ndarray, y: np.ndarray, limit: float = LINEAR) -> tuple[float,
     """
     inside = np.abs(x) <= limit
     if np.count_nonzero(inside) < 5:
-        raise InputError(f"found {np.count_nonzero(inside)} values within {limit:g}, expected 5 or more")
+        raise InputError(
+            f"found {np.count_nonzero(inside)} lateral accelerations up to {limit:g} m/s^2 in steady turns, expected 5 or more"
+        )
     powers = (x[inside, None] / limit) ** np.array([0, 1, 3, 5])
     value, slope = np.linalg.lstsq(powers, y[inside], rcond=None)[0][:2]
     return float(value), float(slope / limit)
@@ -45,7 +47,7 @@ def understeer_gradient(
     ratio : float
         Steer angle of the wheels per steering-wheel angle or travel.
     wheelbase : float
-        m; not needed at constant radius.
+        m; not needed at constant curvature.
     curvature : float or ndarray, shape (n,)
         Curvature of the path, yaw rate over speed, 1/m: L times it, the kinematic steer angle, is subtracted.
     """

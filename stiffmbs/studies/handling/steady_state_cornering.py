@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,7 @@ class QuasiSteadyTurns:
     probe: float = 5.0
     """Speed of the first run, m/s."""
     spun: float = 0.25
-    """Sideslip and roll, root of the sum of squares, beyond which a car no longer turns quasi-steadily, rad."""
+    """Sideslip of the rear axle and roll, root of the sum of squares, beyond which a car no longer turns quasi-steadily, rad."""
     begun: float = 0.3
     """Lateral acceleration from which a ramp is quasi-steady, m/s^2."""
     drop: float = 0.9
@@ -52,18 +51,24 @@ def ramp(car: Car, per_curvature: float, speed: float = SPEED) -> Manoeuvre:
     return Manoeuvre(speed, 46.0, f"({most!r})*max(t - {TURNS.ramp_begin}, 0)/45", spun=TURNS.spun, output=0.05)
 
 
-def quasi_steady(run: Run) -> Run:
-    """Return the quasi-steady part of a ramp, up to its largest lateral acceleration before the car slides.
-
-    The response follows the ramp after a constant delay: the steering at zero lateral acceleration is subtracted from
-    its channel, which is that of steady turns then.
-    """
+def up_to_the_limit(run: Run) -> Run:
+    """Return a turn up to its largest lateral acceleration before the car slides."""
     ay = run["vehicle.ay"]
     largest = np.maximum.accumulate(ay)
     slides = (ay < TURNS.drop * largest) & (largest > 1.0)
     end = int(np.argmax(slides)) if slides.any() else len(ay)
-    rows = (np.arange(len(ay)) <= np.argmax(ay[:end])) & (ay > TURNS.begun)
-    kept = {name: values[rows] for name, values in run.items()}
+    last = int(np.argmax(ay[:end])) if end else 0
+    return {name: values[: last + 1] for name, values in run.items()}
+
+
+def quasi_steady(run: Run) -> Run:
+    """Return the quasi-steady part of a ramp, up to its limit.
+
+    The response follows the ramp after a constant delay: the steering at zero lateral acceleration is subtracted from
+    its channel, which is that of steady turns then.
+    """
+    turn = up_to_the_limit(run)
+    kept = {name: values[turn["vehicle.ay"] > TURNS.begun] for name, values in turn.items()}
     return {**kept, SEEN: kept[SEEN] - at_zero(kept["vehicle.ay"], kept[SEEN])[0]}
 
 
@@ -74,8 +79,8 @@ def lag_of(slow: Run) -> float:
     return max(float(time[0] - TURNS.ramp_begin - steer[0] / rate), 0.0)
 
 
-def _steady(run: Run, known: Known, curvature: Any) -> Metrics:
-    ay = run["vehicle.ay"]
+def _steady(run: Run, known: Known) -> Metrics:
+    ay, curvature = run["vehicle.ay"], run["vehicle.yaw_rate"] / run["vehicle.speed"]
     gradient = understeer_gradient(ay, run[SEEN], known.ratio, known.car.wheelbase, curvature)
     return {
         "understeer gradient": (1e3 * gradient, "mrad/(m/s^2)"),
@@ -94,7 +99,7 @@ def of_constant_speed(known: Known, test: ConstantSpeed, runs: list[Run]) -> Met
     """Return gradients, characteristic speed and rollover threshold from the slow ramp."""
     run = known.ramp
     ay = run["vehicle.ay"]
-    found = _steady(run, known, run["vehicle.yaw_rate"] / run["vehicle.speed"])
+    found = _steady(run, known)
     gradient = found["understeer gradient"][0] / 1e3
     if gradient > 0:
         found["characteristic speed"] = float(np.sqrt(known.car.wheelbase / gradient)), "m/s"
@@ -106,19 +111,24 @@ def of_constant_speed(known: Known, test: ConstantSpeed, runs: list[Run]) -> Met
     }
 
 
+def circle(radius: float, transition: float, length: float) -> dict[str, object]:
+    """Return the section ``path`` of a circle with its transition, m, that does not end within a length, m."""
+    turns = float(np.ceil(length / (2 * np.pi * radius)))
+    return {"circle": radius, "entry": 10.0, "transition": transition, "turns": turns}
+
+
 def constant_radius(known: Known, test: ConstantRadius) -> list[Manoeuvre]:
     """Return a circle with slowly growing speed."""
     settled = TURNS.settled / test.first
     duration = settled + 1 + (test.last - test.first) / test.acceleration
-    turns = test.last * duration / (2 * np.pi * abs(test.radius))
-    path = {"circle": test.radius, "entry": 10.0, "transition": 30.0, "turns": float(np.ceil(turns))}
+    path = circle(test.radius, 30.0, test.last * duration)
     driver = {**known.driver(), "acceleration": test.acceleration, "accelerates": settled}
     return [Manoeuvre(test.first, duration, driver=driver, path=path, output=0.05)]
 
 
 def of_constant_radius(known: Known, test: ConstantRadius, runs: list[Run]) -> Metrics:
-    """Return the gradients of the method at constant radius."""
+    """Return the gradients of the method at constant radius, up to the limit."""
     follows = runs[0]["time"] > TURNS.settled / test.first + TURNS.follows
-    run = {name: values[follows] for name, values in runs[0].items()}
-    error = float(np.max(np.abs(run["handling_driver.lateral_error"])))
-    return _steady(run, known, 1 / test.radius) | {"largest lateral error": (error, "m")}
+    run = up_to_the_limit({name: values[follows] for name, values in runs[0].items()})
+    found = _steady(run, known)
+    return found | {"largest lateral error": (float(np.max(np.abs(run["handling_driver.lateral_error"]))), "m")}

@@ -17,6 +17,7 @@ from ...analyses.load_scene import load_scene
 from ...analyses.run import run
 from ...errors import InputError, SolverError, StiffmbsError, refuse_text
 from ...model.scene import Scene
+from ...model.settings import SteadyMotion
 from ...reading.did_you_mean import instead_of
 from ..executors import refuse_workers
 from .car import Car, Manoeuvre, car_of, with_manoeuvre
@@ -28,6 +29,9 @@ from .steady_state_cornering import TURNS, curvature_of, lag_of, probe, quasi_st
 
 WIDER = 0.2
 """Width of the body beyond the track, m, unless given: tyres and wings."""
+
+SLOWER = 0.05
+"""Largest difference of the speed at the start from that of a test, relative. Source: a distance of braking differs by twice it."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +95,7 @@ def handling(
     """Run handling and ride tests of the standards on a car.
 
     The car is the scene without its own driver, roads, start and drives of the steering joint; each test attaches the
-    part `driver`, a level road and its steering or course. Preliminary runs at 10 m/s and slow ramps at 80 km/h and at
+    part `driver`, a level road and its steering or course. Preliminary runs at 5 m/s and slow ramps at 80 km/h and at
     the speeds of the tests scale the amplitudes to the lateral accelerations of the standards.
 
     Parameters
@@ -194,8 +198,18 @@ def _ramps(scene: Scene, car: Car, known: Known) -> Callable[[float], Known]:
 
 
 def solved(scene: Scene) -> Run:
-    """Return the channels of a run, with its times. Raises SolverError if it stops early."""
+    """Return the channels of a run, with its times.
+
+    Raises SolverError if it stops early, or InputError if the steady motion at its start is not that of the test.
+    """
     solution = run(scene)
     if not solution.success:
         raise SolverError(solution.message)
+    assert isinstance(scene.start, SteadyMotion)
+    found, expected = float(solution["vehicle.speed"][0]), scene.start.velocity[0]
+    if abs(found - expected) > SLOWER * expected:
+        raise InputError(
+            f"found a steady speed of {found:.3g} m/s, expected {expected:.3g} m/s: the engine, or a driver with a small "
+            "'strongest', does not keep it"
+        )
     return {**{name: np.array(values) for name, values in solution.items()}, "time": np.array(solution.time)}

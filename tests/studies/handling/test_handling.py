@@ -24,6 +24,7 @@ from stiffmbs.studies.handling.parameters import (
     with_changes,
 )
 from stiffmbs.studies.handling.standards import TESTS
+from stiffmbs.studies.handling.steady_state_cornering import ramp
 from stiffmbs.studies.handling.steering_inputs import dwell_formula
 
 EXAMPLES = Path(stiffmbs.__file__).parents[1] / "examples"
@@ -154,6 +155,91 @@ def test_variables_read_the_driver_of_the_test():
     scene = with_driveline(driver, variables={"throttle": "min(driver.throttle_position, 1)"})
     tested = with_manoeuvre(scene, car_of(scene), Manoeuvre(20.0, 1.0))
     assert "handling_driver.throttle_position" in tested.states
+
+
+def car_with(changes=(), **replaced):
+    """Return the example car with texts of its file replaced."""
+    text = CAR.read_text().replace("properties: car.tir", f"properties: {EXAMPLES / 'car.tir'}")
+    for old, new in replaced.values():
+        assert old in text
+        text = text.replace(old, new, 1)
+    return stiffmbs.read_scene(text, changes)
+
+
+def speeds(scene, **manoeuvre):
+    return study.solved(with_manoeuvre(scene, car_of(scene), Manoeuvre(20.0, 3.0, "0", **manoeuvre)))["vehicle.speed"]
+
+
+def test_the_scenes_own_manoeuvre_does_not_act_in_a_test():
+    """A driver who brakes after 1 s, as in the guide, braked in every test."""
+    for entry in ("brakes: 1 s", "acceleration: 1 m/s^2", "releases: 1 s"):
+        scene = car_with(driver=("{target: V, begins: -1 s}", f"{{target: V, begins: -1 s, {entry}}}"))
+        assert np.ptp(speeds(scene)) < 0.01, entry
+
+
+@pytest.mark.long
+def test_a_tight_turn_at_low_speed_is_no_spin():
+    """The sideslip of its centre is that of the radius: a ramp at 5 m/s ended at 4.5 m/s^2."""
+    scene = stiffmbs.load_scene(CAR)
+    car = car_of(scene)
+    slow = replace(ramp(car, 0.335, 5.0), duration=14.0)
+    found = study.solved(with_manoeuvre(scene, car, slow))
+    assert found["vehicle.ay"].max() > 5.2
+    assert found["vehicle.sideslip"].max() > 0.25
+
+
+def test_a_car_that_does_not_keep_the_speed_of_a_test_is_refused():
+    """A distance of braking from 20 m/s was that of a test from 28 m/s."""
+    with pytest.raises(stiffmbs.InputError, match=r"found a steady speed of 0.381 m/s, expected 20 m/s: the engine"):
+        speeds(car_with([("parts.driver.parameters.strongest", "100 N")]))
+
+
+def test_changes_of_what_a_test_keeps_count():
+    """Pedal, drive and tolerances by --set were left out, and so were parameters whose names begin as a section's."""
+    pedal = speeds(car_with(driver=("begins: -1 s}", "begins: -1 s, pedal: 1 kN}")), driver={"brakes": 1})
+    changed = speeds(car_with([("parts.driver.parameters.pedal", "1 kN")]), driver={"brakes": 1})
+    assert pedal[-1] == pytest.approx(18.4, abs=0.2)
+    assert changed == pytest.approx(pedal, rel=1e-9)
+    changes = [
+        ("parts.driver.drive", "front"),
+        ("run.rtol", "1e-6"),
+        ("run.duration", "1 h"),
+        ("start_height", "0.5 m"),
+    ]
+    scene = car_with(changes, height=("height: 0.55 m", "start_height: 0.55 m\n  height: start_height"))
+    tested = with_manoeuvre(scene, car_of(scene), Manoeuvre(20.0, 3.0))
+    assert (tested.run.rtol, tested.run.duration) == (1e-6, 3.0)
+    assert "handling_driver.drive_front_left" in tested.forces
+    scene = stiffmbs.load_scene(CAR, [("parameters.soft", "2e6 N/m"), ("parts.front.left.parameters.k_b", "soft")])
+    assert with_manoeuvre(scene, car_of(scene), Manoeuvre(20.0, 3.0)).parameters["soft"] is not None
+    assert tested.bodies["chassis"].position[2] == 0.5
+
+
+CAB = """  cab: {mass: 1 kg, inertia: [0.1, 0.1, 0.1], position: [0, 0, height], orientation: AXES, velocity: [V, 0, 0]}
+parts:
+  steering"""
+ON_CAB = """joints: {on_cab: {type: fixed, i: cab, j: {body: chassis, orientation: AXES}}}
+vehicle: {body: cab, orientation: BACK}
+forces:
+"""
+
+
+@pytest.mark.parametrize(
+    ("axes", "back"),
+    [("{x: [1, 0, 0], z: [0, 0, -1]}", "{x: [1, 0, 0], z: [0, 0, -1]}"), ("{x: [0, 1, 0], z: [0, 0, 1]}", "{x: [0, -1, 0], z: [0, 0, 1]}")],
+)  # fmt: skip
+def test_a_body_with_axes_of_its_own_is_driven_as_any_other(axes, back):
+    """Axes of the section `vehicle` did not apply to the driver, and its channels were not those of another --body."""
+    turn = Manoeuvre(15.0, 6.0, path={"circle": 100, "entry": 10.0, "transition": 30.0})
+    scene = car_with(
+        bodies=("parts:\n  steering", CAB.replace("AXES", axes)),
+        joints=("forces:\n", ON_CAB.replace("AXES", axes).replace("BACK", back)),
+    )
+    by_cab, by_chassis = (study.solved(with_manoeuvre(scene, car_of(scene, body), turn)) for body in (None, "chassis"))
+    assert by_cab["vehicle.yaw_rate"][-1] == pytest.approx(0.149, abs=0.002)
+    assert abs(by_cab["handling_driver.lateral_error"][-1]) < 0.05
+    for name in ("vehicle.ay", "vehicle.sideslip", "vehicle.roll", "vehicle.yaw_rate"):
+        assert by_chassis[name][-1] == pytest.approx(by_cab[name][-1], rel=0.01), name
 
 
 def test_a_misspelt_test_and_a_scene_that_is_no_car_are_refused():

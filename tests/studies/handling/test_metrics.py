@@ -7,9 +7,9 @@ import pytest
 from scipy.signal import butter, lsim, sosfilt
 
 import stiffmbs
-from stiffmbs.studies.handling import metrics, steady_state_cornering, steering_inputs, vibration
+from stiffmbs.studies.handling import braking, metrics, steady_state_cornering, steering_inputs, vibration
 from stiffmbs.studies.handling.known import SEEN, Known
-from stiffmbs.studies.handling.parameters import ConstantRadius, SineWithDwell
+from stiffmbs.studies.handling.parameters import BrakingInATurn, ConstantRadius, SineWithDwell
 
 MASS, YAW_INERTIA, TO_FRONT, TO_REAR, FRONT, REAR, SPEED = 1500.0, 2600.0, 1.2, 1.5, 9e4, 1.2e5, 22.0
 WHEELBASE = TO_FRONT + TO_REAR
@@ -47,7 +47,7 @@ def test_the_understeer_gradient_of_both_methods():
     of = metrics.understeer_gradient
     assert of(ay, at_constant_speed * 16, 1 / 16, WHEELBASE, ay / SPEED**2) == pytest.approx(GRADIENT, rel=1e-6)
     assert of(ay, at_constant_radius * 16, 1 / 16) == pytest.approx(GRADIENT, rel=1e-6)
-    with pytest.raises(stiffmbs.InputError, match="found 0 values within"):
+    with pytest.raises(stiffmbs.InputError, match=r"found 0 lateral accelerations up to 4 m/s\^2"):
         of(ay + 10, ay, 1.0)
 
 
@@ -136,6 +136,36 @@ def test_a_ramp_is_quasi_steady_up_to_its_largest_lateral_acceleration():
     assert steady_state_cornering.lag_of(later) == pytest.approx(0.3)
 
 
+@pytest.mark.parametrize("direction", [1, -1])
+def test_the_steering_for_a_lateral_acceleration_is_that_of_the_ramp(direction):
+    """Below the first quasi-steady value, 0.3 m/s^2, it was the steering for that."""
+    ay = np.arange(0.31, 8, 0.017)
+    known = Known(None, 1.0, 0.0, 1.8, {"vehicle.ay": ay, SEEN: direction * 0.01 * ay})
+    for wanted in (0.05, 0.31, 2.0, 7.9):
+        assert known.steer_for(wanted) == pytest.approx(direction * 0.01 * wanted, rel=1e-9)
+    with pytest.raises(stiffmbs.InputError, match=r"largest lateral acceleration of 7\.9"):
+        known.steer_for(8.1)
+
+
+def test_a_circle_counts_up_to_the_limit():
+    """A car that slid off a circle of 30 m at 17 m/s had -207 mrad/(m/s^2) of understeer, and a lateral error of 22 m."""
+    time = np.arange(0, 100, 0.05)
+    speed = 5 + 0.1 * time
+    ay = np.where(time < 80, speed**2 / 40, 2.0)
+    run = {
+        "time": time + 13.1, "vehicle.ay": ay, "vehicle.speed": speed, "vehicle.yaw_rate": ay / speed,
+        "vehicle.sideslip": 1e-3 * ay, "vehicle.roll": 0.02 * ay, SEEN: np.where(time < 80, WHEELBASE / 40 + 3e-3 * ay, 0.5),
+        "handling_driver.lateral_error": np.where(time < 80, 0.01, 20.0),
+    }  # fmt: skip
+    known, test = Known(SimpleNamespace(wheelbase=WHEELBASE), WHEELBASE, 0.0, 1.8, {}), ConstantRadius(radius=40.0)
+    found = steady_state_cornering.of_constant_radius(known, test, [run])
+    assert found["understeer gradient"][0] == pytest.approx(3, rel=1e-6)
+    assert found["largest lateral error"][0] == 0.01
+    short = {name: values[:0] for name, values in run.items()}
+    with pytest.raises(stiffmbs.InputError, match="found 0 lateral accelerations"):
+        steady_state_cornering.of_constant_radius(known, test, [short])
+
+
 def test_a_circle_has_turns_for_its_whole_speed():
     """The path went straight on after three turns: 70 mrad/(m/s^2) of understeer for 2.8."""
     known = Known(None, 1.0, 0.0, 1.8, {})
@@ -144,6 +174,29 @@ def test_a_circle_has_turns_for_its_whole_speed():
         (one,) = steady_state_cornering.constant_radius(known, test)
         way = test.first * one.driver["accelerates"] + (test.last**2 - test.first**2) / (2 * acceleration) + test.last
         assert one.path["turns"] * 2 * np.pi * test.radius > way - one.path["entry"]
+
+
+@pytest.mark.parametrize("radius", [5.0, 100.0])
+def test_a_circle_does_not_end_before_braking(radius):
+    """That of 5 m ended after three turns: the car braked straight ahead."""
+    test = BrakingInATurn(radius=radius)
+    (one,) = braking.braking_in_a_turn(Known(None, 1.0, 0.0, 1.8, {}), test)
+    assert one.path["turns"] * 2 * np.pi * radius >= one.speed * one.duration
+
+
+def test_a_car_that_stands_has_no_sideslip():
+    """A pedal of 14 kN stopped it within the 3 s: the directions of its last movements gave 178 deg."""
+    test = BrakingInATurn(lateral_acceleration=4.0)
+    begin = braking._turn(test)[1]
+    time = np.arange(0, begin + 3, 0.01)
+    speed = np.maximum(20 - 9 * np.maximum(time - begin, 0), 1e-6)
+    run = {
+        "time": time, "vehicle.speed": speed, "vehicle.yaw_rate": speed / 100, "vehicle.ay": speed**2 / 100,
+        "vehicle.ax": np.where(time > begin, -9.0, 0.0), "vehicle.sideslip": np.where(speed > 1, 0.02, 3.1),
+    }  # fmt: skip
+    found = braking.of_braking_in_a_turn(Known(None, 1.0, 0.0, 1.8, {}), test, [run])
+    assert found["largest sideslip"][0] == pytest.approx(np.degrees(0.02))
+    assert found["yaw rate ratio 1 s after"][0] == pytest.approx(1)
 
 
 def test_a_slope_at_zero_does_not_depend_on_how_far_a_car_turned():
