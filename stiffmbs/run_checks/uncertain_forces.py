@@ -26,7 +26,7 @@ def coarse_forces_sentence(dynamics: Dynamics, trajectory: Trajectory, rows: Out
 
     There they follow from second differences of positions, which are no accelerations where the step changes (Gear,
     Hsu and Petzold 1981, Differential-algebraic equations revisited). Accelerations then differ from the mean rate of
-    velocities since the output before in the same step.
+    velocities since the output before, at most a step earlier.
     """
     ends, orders = trajectory.history.t, trajectory.history.order
     if len(orders) != len(ends) or len(rows.t) < 2 or not (orders == 1).any():
