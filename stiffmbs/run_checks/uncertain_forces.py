@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
+from ..dynamics.storage import blocks, release
 from ..solve.error_control.newton import stiffness_at
 from ..solve.stiff_rows import lengths_of_steps
 from ..solve.trajectory import Trajectory
@@ -26,7 +27,7 @@ def coarse_forces_sentence(dynamics: Dynamics, trajectory: Trajectory, rows: Out
 
     There they follow from second differences of positions, which are no accelerations where the step changes (Gear,
     Hsu and Petzold 1981, Differential-algebraic equations revisited). Accelerations then differ from the mean rate of
-    velocities since the output before in the same step.
+    velocities since the output before, at most a step earlier.
     """
     ends, orders = trajectory.history.t, trajectory.history.order
     if len(orders) != len(ends) or len(rows.t) < 2 or not (orders == 1).any():
@@ -40,8 +41,11 @@ def coarse_forces_sentence(dynamics: Dynamics, trajectory: Trajectory, rows: Out
     at, lengths = at[within], lengths[within]
     if not len(at):
         return
-    mass, rate = dynamics.system.mass, np.diff(rows.u, axis=0)[at - 1] / np.diff(rows.t)[at - 1, None]
-    largest = float(np.nanmax(rows.acceleration**2 @ mass))
+    mass, rate = dynamics.system.mass, (rows.u[at] - rows.u[at - 1]) / (rows.t[at] - rows.t[at - 1])[:, None]
+    largest = 0.0
+    for block in blocks(len(rows.t)):
+        largest = max(largest, float(np.fmax.reduce(rows.acceleration[block] ** 2 @ mass)))
+        release(rows.acceleration)
     off = np.sqrt((rows.acceleration[at] - rate) ** 2 @ mass / largest) if largest else np.zeros(len(at))
     found = off > RUN_CHECKS.contradicted_part
     at, off, lengths = at[found], off[found], lengths[found]

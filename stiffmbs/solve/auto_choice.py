@@ -82,7 +82,7 @@ class Choice:
         self.implicit.confirm()
         return pays()
 
-    def _least_cost(self, pieces: int, decay: float = 0.0) -> float:
+    def _least_cost(self, pieces: int, decay: float) -> float:
         """Return a lower bound of the cost of implicit steps from the start: small steps and a decay, at least a failed trial."""
         of_decay = decay * self.implicit.cost.work(self.implicit.cost.step_residuals, 0)  # it keeps its matrices
         return max(pieces * self.implicit.growth + of_decay, self.implicit.start)

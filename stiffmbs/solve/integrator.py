@@ -41,8 +41,7 @@ class Integrator:
     """IDA over the pieces of a run, from breakpoint to breakpoint and from event to event.
 
     `memory`: name under which the dynamics keep the engine for the next integrator of that name. `driver`: returns the
-    equations, their engine and the cost of its linear solver. `reached`: last return of the engine. `factors`:
-    estimated time to factorize an iteration matrix and solve with it, us.
+    equations, their engine and the cost of its linear solver. `reached`: last return of the engine.
     """
 
     def __init__(
@@ -53,7 +52,7 @@ class Integrator:
         self.dynamics, self.settings = dynamics, settings
         self.reached: Reached | None = None
         found = driven(dynamics, settings, control, memory, driver)
-        self.equations, self.engine, self.factors = found.equations, found.engine, 1e-3 * found.cost
+        self.equations, self.engine = found.equations, found.engine
         self.engine.forget()
         self._jumps = VelocityJumps(dynamics)
         self._of_inputs = ""

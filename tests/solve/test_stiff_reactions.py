@@ -86,6 +86,13 @@ def test_interpolated_states_that_cannot_be_corrected_are_told():
     assert not interpolated("solver: bdf, rtol: 1e-4")
 
 
+def test_states_between_output_times_are_not_told():
+    """Radau left up to 51 states of the search for events open, which the note counted among 3 output times."""
+    run = "solver: radau, rtol: 1e-4, tuning: {polishing: {most_corrections: 1}}"
+    notes = stiffmbs.run(pendulum(run, 1e14, STOP), points=3).notes
+    assert [re.search("at (.*?) from", note).group(1) for note in notes if "interpolated" in note] == ["1 output time"]
+
+
 @pytest.mark.parametrize(("stiffness", "most"), [(1e12, 0.01), (1e14, 0.1)])
 def test_long_steps_at_a_loose_tolerance_have_right_forces(rigid, stiffness, most):
     """Newton's iteration failed in a quarter of the steps. Reactions were wrong by 0.8 and 390 times the largest."""

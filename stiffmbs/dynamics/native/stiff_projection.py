@@ -12,12 +12,11 @@ from stiffmbs.dynamics.native.parameters import CONSISTENCY
 
 @compiled
 def _right_side(s, factors, equations, values, before, part):
-    """Set the violations and a part of the changes of forces as right side; return the largest of these changes."""
+    """Set the violations and a part of the changes of forces as right side."""
     f = factors_view(factors)
     add_products(equations_view(equations), values, f.previous, f.previous, f.b)
     for k in range(s.n_u):
         f.b[k] = part * (f.b[k] - before[k])
-    return largest_of(f.b, s.n_u)
 
 
 @compiled

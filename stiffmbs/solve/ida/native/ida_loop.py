@@ -23,7 +23,12 @@ from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view, watched
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
 from stiffmbs.solve.ida.native.layouts import NO_EVENT, PASSED_INTERVAL, STEP_WIDTH
-from stiffmbs.solve.ida.native.output_correction import corrected, corrected_at_event, output_correction_view
+from stiffmbs.solve.ida.native.output_correction import (
+    corrected,
+    corrected_at_event,
+    count_failure,
+    output_correction_view,
+)
 from stiffmbs.solve.ida.native.parameters import LOOP
 
 STALLED: Final = -101
@@ -289,6 +294,9 @@ def _report_at(c, t, row):
         return int32(OK)
     flag = call_int(c.interpolate, (c.memory, t, int32(0), c.at_output))
     _report(c, c.output, row)
+    if flag == RECOVERABLE:
+        count_failure(output_correction_view(c.output_correction), t)
+        return int32(OK)
     return flag
 
 

@@ -191,6 +191,14 @@ def _without_spurious_forces(b, s, e, t):
 
 
 @compiled
+def count_failure(b, t):
+    """Count an output time at which stiff forces do not balance."""
+    if b.failed == 0:
+        b.first_failed = t
+    b.failed = b.failed + 1
+
+
+@compiled
 def corrected(output_correction, state, equations, t):
     """Interpolate and correct the state in the table's y and y'; return False if the interpolant is to be used."""
     b = output_correction_view(output_correction)
@@ -210,9 +218,7 @@ def corrected(output_correction, state, equations, t):
         _look(b, s, e, t)
     if _converged(b, s, e, t):
         return True
-    if b.failed == 0:
-        b.first_failed = t
-    b.failed = b.failed + 1
+    count_failure(b, t)
     corrects = _without_spurious_forces(b, s, e, t)
     b.factored = 0.0  # the factors of a short step make any correction small
     return corrects

@@ -124,7 +124,7 @@ def _corrected(x, c, place, count):
 
 @compiled
 def _closed_at(x, c, t, place):
-    """Close the state at a place; the matrix of the step may be too old for it. States that stay open are counted."""
+    """Close the state at a place; the matrix of the step may be too old for it. Return False if it stays open."""
     for new in range(2):
         _corrected(x, c, place, 0)
         if new or x.n_tested < x.n:
@@ -132,12 +132,9 @@ def _closed_at(x, c, t, place):
         if new and not factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True):
             break
         if closed(x, t, MOST_MOVED_WITHIN) != OPEN:
-            return
-    b = output_correction_view(x.output_correction)
-    if b.failed == 0:
-        b.first_failed = t
-    b.failed = b.failed + 1
+            return True
     _corrected(x, c, place, 0)
+    return False
 
 
 @compiled
@@ -164,16 +161,18 @@ def _find_corrections(x, c):
 
 @compiled
 def dense_output(x, t, place, target):
-    """Compute the state at a place of the last step."""
+    """Compute the state at a place of the last step; return False if it stays open."""
     if not (x.h_past > output_correction_view(x.output_correction).long and x.h_factored > 0.0 and place < 1.0):
         polynomial(x, place, x.n, target)
-        return
+        return True
     c = collocation_view(ints(x.methods[x.method_past]))
     x.outputs += 1
     if x.outputs == FEW + 1:
         _find_corrections(x, c)
+    succeeded = True
     if x.outputs > FEW and x.suffice:
         _corrected(x, c, place, x.n_corrections)
     else:
-        _closed_at(x, c, t, place)
+        succeeded = _closed_at(x, c, t, place)
     copied(target, x.y_stage, x.n)
+    return succeeded

@@ -6,7 +6,7 @@ from typing import Final
 from stiffmbs.compile.machine.native.access import compiled, floats, ints
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.compile.machine.native.statuses import OK, ROOT_RETURN, STOP_RETURN
+from stiffmbs.compile.machine.native.statuses import OK, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
 from stiffmbs.solve.events.native.parameters import BISECTIONS, INDISTINCT, SEARCH
 from stiffmbs.solve.events.native.step_bound import STRETCHED
@@ -167,7 +167,7 @@ def repeat(memory, begin, h):
 
 
 def interpolate(memory, t, order, target):
-    """Evaluate the polynomial of the last step, or its derivative (IDAGetDky)."""
+    """Evaluate the polynomial of the last step, or its derivative (IDAGetDky); RECOVERABLE for a state that stays open."""
     x = radau_view(ints(memory))
     if order > 1:
         return int32(BAD_ORDER)
@@ -179,8 +179,8 @@ def interpolate(memory, t, order, target):
         return int32(BAD_TIME)
     if order == 1:
         polynomial_rates(x, place, _data(x, target))
-    else:
-        dense_output(x, t, place, _data(x, target))
+    elif not dense_output(x, t, place, _data(x, target)):
+        return int32(RECOVERABLE)
     return int32(OK)
 
 
