@@ -96,13 +96,17 @@ def least_singular_value():
 def largest_acceleration_at_rest():
     """Return the acceleration, in quarter octaves of 1e-8 m/s^2, of a state that counts as an equilibrium."""
     body = Record(accelerations=())
-    system = Record(per_velocity=lambda *_: np.ones(1), of_body=body, size=1.0, name_of=lambda *_: "a.ax")
+    system = Record(
+        per_velocity=lambda *_: np.ones(1), of_body=body, size=1.0, name_of=lambda *_: "a.ax", has_coupled_inertia=True
+    )
     state = Record(n_poses=1, degrees_of_freedom=1)
-    given = {"dynamics": Record(system=system), "data": Record(gravity=np.zeros(2)), "t": 0.0}
+    given = {"dynamics": Record(system=system, state=Record(u=None)), "data": Record(gravity=np.zeros(2)), "t": 0.0}
 
     def is_silent(acceleration):
         found = Record(acceleration=np.array([acceleration]), redundancy=Record(degrees_of_freedom=1), **given)
-        with patch.multiple(modes, derivative_sentences=lambda *_: (), held=lambda _: ()):
+        with patch.multiple(
+            modes, derivative_sentences=lambda *_: (), held=lambda _: (), rotation_as_one=lambda *_: None
+        ):
             return not [*modes._notes(found, state)]
 
     return count_while(lambda acceleration: is_silent(1e-8 * acceleration), DOUBLES)
