@@ -165,6 +165,12 @@ def test_a_steady_state_refuses_angles_in_degrees(name, words, degrees):
         TYRE.steady_state(4000.0, **{name: [0.0, degrees]})
 
 
+@pytest.mark.parametrize("hand", [0.5, -2.0])
+def test_a_hand_other_than_that_of_either_side_is_refused(hand):
+    with pytest.raises(InputError, match=f"hand: found {hand:g}, expected 1 or -1"):
+        MagicFormulaTyre(i="wheel", properties=TYRE, hand=hand)
+
+
 def test_a_standing_tyre_has_no_forces_of_rolling():
     """At rest there is neither camber thrust, residual torque nor rolling resistance, and nothing is divided by zero."""
     found = reported(wheel(MagicFormulaTyre(i="wheel", properties=TYRE), 0.33, 0.02, 0.0, 0.1, 0.0, 0.0))
