@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from pydantic import Field
 
-from ..elements.tyres.coefficients import PRESSED, TyreProperties
-from ..errors import InputError
+from ..elements.tyres.coefficients import TyreProperties
 from ..reading.fields import Described
 from ..reading.units import si
 
@@ -69,10 +68,8 @@ class TyreCurve:
 def tyre_curves(tyre: TyreProperties, sweep: TyreSweep) -> list[TyreCurve]:
     """Return the curves of a tyre, load by load and pressure by pressure.
 
-    Raises InputError for a pressure of a tyre that does not depend on it.
+    Raises InputError for what `TyreProperties.steady_state` refuses.
     """
-    if sweep.pressure and not tyre.has_pressure:
-        raise InputError(f"found a pressure for a tyre of version {tyre.version}, expected {PRESSED}")
     loads = sweep.load or tuple(part * tyre.nominal_load for part in PARTS_OF_LOAD)
     pressures = sweep.pressure or (tyre.nominal_pressure,)
     return [_curve(tyre, load, pressure, sweep) for load, pressure in itertools.product(loads, pressures)]

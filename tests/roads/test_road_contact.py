@@ -80,3 +80,14 @@ def test_a_box_that_rolls_over_comes_to_rest_on_a_hill_with_its_weight_on_its_co
     assert carried[-50:] == pytest.approx(np.full(50, 9810.0), rel=1e-2)
     lowest = found["box.z"] - 0.2 * np.sin(found["box.x"]) - 0.05 * found["box.y"]
     assert lowest.min() > 0.25, "no corner is far within the ground"
+
+
+@pytest.mark.parametrize("factor", ["-0.8", "2*-0.3 + 0.1"])
+def test_a_friction_factor_below_zero_is_refused(factor):
+    touch = f"type: road_contact, i: ball, road: course, radius: 0.1, friction: 0.6, {LAW}"
+    with pytest.raises(
+        stiffmbs.InputError, match=r"roads\.course\.friction: found -0\.[58], expected zero or a positive"
+    ):
+        ball(touch, friction=factor)
+    for right in ("0", "0.5 - x", "-0.1 + 0.2"):
+        ball(touch, friction=right)

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.spatial import Body, MagicFormulaTyre, Model
+from stiffmbs.studies.tyre_curves import TyreSweep, tyre_curves
 from stiffmbs.tyres import TyreProperties
 
 from .wheels import reported, wheel
@@ -145,8 +147,32 @@ def test_a_tyre_without_coefficients_of_turn_slip_or_pressure_refuses_them():
         TYRE.steady_state([10.0, np.inf])
     with pytest.raises(InputError, match="found a pressure of inf Pa"):
         TYRE.steady_state(4000.0, p=np.inf)
+    with pytest.raises(InputError, match=r"found a friction factor of -0\.5, expected zero or a positive number"):
+        TYRE.wrench(4000.0, friction=[1.0, -0.5])
     with pytest.raises(InputError, match="found Q_FZ2 = 100, expected less than 68"):
         TyreProperties(coefficients={**NUMBERS, "Q_FZ2": 100.0}, version="6.1")
+
+
+@pytest.mark.parametrize("pressure", [2.3, 2300.0, 2.3e8])
+def test_a_steady_state_refuses_the_pressures_that_a_wheel_refuses(pressure):
+    message = re.escape(f"found a pressure of {pressure:g} Pa, expected 10000 to 5e+06 Pa")
+    with pytest.raises(InputError, match=message):
+        TYRE.steady_state(4000.0, p=[2.3e5, pressure])
+    with pytest.raises(InputError, match=message):
+        tyre_curves(TYRE, TyreSweep(pressure=(pressure,)))
+
+
+@pytest.mark.parametrize(("name", "words"), [("alpha", "slip angle"), ("gamma", "camber")])
+@pytest.mark.parametrize("degrees", [5.0, -95.0, float("nan")])
+def test_a_steady_state_refuses_angles_in_degrees(name, words, degrees):
+    with pytest.raises(InputError, match=rf"found a {words} of {degrees:g} rad, expected -1\.5708 to 1\.5708 rad"):
+        TYRE.steady_state(4000.0, **{name: [0.0, degrees]})
+
+
+@pytest.mark.parametrize("hand", [0.5, -2.0])
+def test_a_hand_other_than_that_of_either_side_is_refused(hand):
+    with pytest.raises(InputError, match=f"hand: found {hand:g}, expected 1 or -1"):
+        MagicFormulaTyre(i="wheel", properties=TYRE, hand=hand)
 
 
 def test_a_standing_tyre_has_no_forces_of_rolling():

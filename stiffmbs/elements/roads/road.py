@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -10,6 +11,7 @@ from pydantic import Field, PrivateAttr, model_validator
 from ...reading.fields import typed
 from ...reading.formula.field import FormulaOf
 from ...reading.formula.formula import Formula
+from ...reading.formula.value import formula_value
 from ...reading.table import Table
 from ...reading.units import si
 from ..element import Component, Expr, Symbolic
@@ -59,6 +61,15 @@ class Road(Component):
             raise ValueError(
                 f"found filter_radius on a road '{self.kind}' without an extent, expected a road with one, such as a table"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _has_friction(self) -> Road:
+        """Refuse a friction factor below zero, if it is the same everywhere."""
+        if self.friction is not None:
+            used = {node.id for node in ast.walk(self.friction.tree) if isinstance(node, ast.Name)}
+            if used.isdisjoint((*OF_PLACE[0], *self.friction.tables)) and (factor := formula_value(self.friction)) < 0:
+                raise ValueError(f"friction: found {factor:g}, expected zero or a positive number")
         return self
 
     def extent(self) -> tuple[float, float] | None:

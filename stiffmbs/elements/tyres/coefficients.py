@@ -333,7 +333,8 @@ class TyreProperties(Component):
         Raises
         ------
         InputError
-            For a negative load, or a pressure or turn slip of a tyre without their coefficients.
+            For a negative load or friction factor, a slip angle or camber beyond pi/2, a pressure that no tyre has, or a
+            pressure or turn slip of a tyre without their coefficients.
         """
         from .steady_state import steady_state
 

@@ -5,6 +5,7 @@ The equations are those of the element, evaluated by NumPy.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from types import SimpleNamespace
@@ -14,6 +15,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..element import Expr
+from .file_fields import PLAUSIBLE
 from .property_file import VERSIONS
 
 if TYPE_CHECKING:
@@ -31,6 +33,13 @@ UNCARRIED = 1e-9
 """Largest error of the load that a loaded radius carries, relative; beyond it there is no such radius."""
 BEYOND = 1.2
 """Upper end of the search for the loaded radius, in free radii: a cambered tyre touches the road with its edge."""
+CONTACT = {
+    "load": (0.0, math.inf, " N"), "friction factor": (0.0, math.inf, ""),
+    **dict.fromkeys(("slip angle", "camber"), (-math.pi / 2, math.pi / 2, " rad")),
+}  # fmt: skip
+"""Least and largest value of the state of the contact, and its unit; of angles by geometry."""
+IN_RANGE = {**CONTACT, "pressure": (*PLAUSIBLE["INFLPRES"], " Pa")}
+"""The same with the inflation pressure."""
 Numbers = Mapping[str, Any]
 """Numbers of a tyre by the symbols of the Magic Formula, with its version, ellipse of friction and load curve."""
 
@@ -50,7 +59,7 @@ def steady_state(
     Fz, kappa, alpha, gamma, friction, pressure, speed, turned = (
         np.array(x, dtype=float) for x in np.broadcast_arrays(*contact, *given)
     )
-    _check(Fz, pressure)
+    _check((Fz, friction, alpha, gamma), None if p is None else pressure)
     dpi = 0 * Fz if nominal is None else pressure / nominal - 1
     rolled = _rolling(numbers, Fz, kappa, speed, dpi)
     rolling = (1 + kappa) * np.cos(alpha) * np.sign(speed) / rolled["Re"]
@@ -64,11 +73,15 @@ def steady_state(
     return forces | rolled | _deflected(numbers, Fz, gamma, dpi, rolled["omega"], free, forces)
 
 
-def _check(load: np.ndarray, pressure: np.ndarray) -> None:
-    for wrong in load[~((load >= 0) & np.isfinite(load))]:
-        raise InputError(f"found a load of {wrong:g} N, expected zero or a positive number")
-    for wrong in pressure[~((pressure > 0) & np.isfinite(pressure))]:
-        raise InputError(f"found a pressure of {wrong:g} Pa, expected a number above zero")
+def _check(contact: Sequence[np.ndarray], pressure: np.ndarray | None) -> None:
+    """Refuse a state without meaning: most often one in other units."""
+    given = zip(CONTACT, contact, strict=True) if pressure is None else zip(IN_RANGE, (*contact, pressure), strict=True)
+    for name, x in given:
+        least, most, unit = IN_RANGE[name]
+        wrong = x[~((x >= least) & (x <= most) & np.isfinite(x))]
+        if wrong.size:
+            limits = f"{least:.6g} to {most:.6g}{unit}" if math.isfinite(most) else "zero or a positive number"
+            raise InputError(f"found a {name} of {wrong.flat[0]:g}{unit}, expected {limits}")
 
 
 def _names(numbers: Numbers) -> tuple[str, ...]:

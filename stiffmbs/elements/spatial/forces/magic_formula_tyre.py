@@ -82,6 +82,8 @@ class MagicFormulaTyre(Tyre):
     @model_validator(mode="after")
     def _has_coefficients(self) -> MagicFormulaTyre:
         p = self.properties
+        if abs(self.hand) != 1:
+            raise ValueError(f"hand: found {self.hand:g}, expected 1 or -1")
         if self.transient and not p.has_lengths:
             missing = " and ".join(p.names_of_lengths)
             raise ValueError(f"transient: found properties without {missing}, expected relaxation lengths")
