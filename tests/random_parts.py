@@ -41,6 +41,8 @@ ALL_KINDS = [
 ]  # fmt: skip
 JOINTS = ("pin", "second_pin", "slider")
 """Those of `add_joints`."""
+SIGNS = ("hand",)
+"""Numbers that are 1 or -1."""
 
 
 def add_joints(model: typing.Any) -> None:
@@ -81,6 +83,13 @@ class RandomSamples(Samples):
         model = three_bodies(rng) if dimensions == 2 else three_bodies_in_space(rng)
         add_joints(model)
         super().__init__(lambda k: _marker(f"b{k}", rng, dimensions), model.joints)
+
+    def made(
+        self, kind: type[Element], form: typing.Mapping[str, object], left_out: frozenset[str] = frozenset()
+    ) -> Element:
+        """An element with signs besides numbers."""
+        signs = {name: self.rng.choice([-1.0, 1.0]) for name in SIGNS if name in kind.model_fields}
+        return super().made(kind, {**signs, **form}, left_out)
 
     def number(self, mark: Measured) -> float:
         """About one, within the bounds of the field."""
