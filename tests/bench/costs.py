@@ -20,7 +20,7 @@ from stiffmbs.model.model_data import ModelData
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import cost
-from stiffmbs.solve.integrator import Integrator
+from stiffmbs.solve.integrator import driven
 from stiffmbs.solve.subsystems import Subsystem
 
 from .drives import CARS
@@ -134,7 +134,7 @@ def main() -> None:
         model, duration = make(), {"duration": LONGEST} if name.endswith(("_bushings", "_ideal")) else {}
         job, found = runs(model, solver="bdf", **duration)
         residual = np.array([1.0, cost.unknowns(job.dynamics)])
-        factors = Integrator(job.dynamics, RunSettings()).factors
+        factors = 1e-3 * driven(job.dynamics, RunSettings()).cost
         matrix = np.array([job.dynamics.system.n_operations("tangent"), factors])
         for spent, counted in found:
             implicit[0].append(np.r_[1.0, counted["residuals"] * residual, counted["jacobians"] * matrix])

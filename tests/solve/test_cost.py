@@ -4,7 +4,8 @@ import pytest
 
 from stiffmbs.analyses.job import prepare
 from stiffmbs.solve.cost import of_explicit_step
-from stiffmbs.solve.radau.radau import of_radau, radau_integrator
+from stiffmbs.solve.integrator import driven
+from stiffmbs.solve.radau.radau import driver, of_radau
 from tests.bench.costs import SCENES
 
 
@@ -33,6 +34,6 @@ def test_residuals_and_matrices_of_radau_cost_what_they_were_measured_to_beside_
     """Explicit steps of the same time as runs at rtol 1e-7 with bushings of 1e7 N/m; the car's cost was half of it."""
     job = prepare(SCENES[name](), solver="radau")
     dynamics = (job.subsystems or [job])[0].dynamics
-    cost = of_radau(dynamics, radau_integrator(dynamics, job.settings).factors)
+    cost = of_radau(dynamics, 1e-3 * driven(dynamics, job.settings, **driver()).cost)
     steps = cost.work(residuals, matrices) / of_explicit_step(dynamics)
     assert steps == pytest.approx(explicit_steps, rel=0.3)
