@@ -90,6 +90,7 @@ def driven_by_radau(dynamics: Dynamics, settings: RunSettings, control: ErrorCon
     matrix, cost = chosen(equations)
 
     def engine() -> NativeEngine:
+        """Return the engine; its formula weighs residuals by `RESIDUAL`."""
         stages = None if settings.stages == "auto" else settings.stages
         of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
         of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)

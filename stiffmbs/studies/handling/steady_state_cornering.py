@@ -14,7 +14,7 @@ from .parameters import SPEED, ConstantRadius, ConstantSpeed, G
 
 @dataclass(frozen=True)
 class QuasiSteadyTurns:
-    """Parameters of quasi-steady turns. Source: tests/studies/handling, with the ramps of the example cars."""
+    """Parameters of quasi-steady turns and starts. Source: tests/studies/handling, with the ramps of the example cars."""
 
     probe: float = 5.0
     """Speed of the first run, m/s."""
@@ -30,6 +30,8 @@ class QuasiSteadyTurns:
     """Way after which a car has settled on the circle, m."""
     follows: float = 4.0
     """Time after which the driver follows the growing speed steadily, s."""
+    slower: float = 0.05
+    """Largest difference of the speed at the start from that of a test, relative: a braking distance differs by twice it."""
 
 
 TURNS = QuasiSteadyTurns()

@@ -30,9 +30,6 @@ from .steady_state_cornering import TURNS, curvature_of, lag_of, probe, quasi_st
 WIDER = 0.2
 """Width of the body beyond the track, m, unless given: tyres and wings."""
 
-SLOWER = 0.05
-"""Largest difference of the speed at the start from that of a test, relative. Source: a distance of braking differs by twice it."""
-
 
 @dataclass(frozen=True)
 class Tested:
@@ -207,7 +204,7 @@ def solved(scene: Scene) -> Run:
         raise SolverError(solution.message)
     assert isinstance(scene.start, SteadyMotion)
     found, expected = float(solution["vehicle.speed"][0]), scene.start.velocity[0]
-    if abs(found - expected) > SLOWER * expected:
+    if abs(found - expected) > TURNS.slower * expected:
         raise InputError(
             f"found a steady speed of {found:.3g} m/s, expected {expected:.3g} m/s: the engine, or a driver with a small "
             "'strongest', does not keep it"
