@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from .auto_choice import Choice, Switch
-from .auto_decisions import AUTO, ExplicitSteps, Interval, cost_ahead, loss_of_trial, since
+from .auto_decisions import AUTO, ExplicitSteps, Interval, cost_ahead, loss_of_trial, since, tolerable_loss
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED
+from .ida.native.parameters import LOOP
 from .ida.native_engine import Reached
 
 
@@ -37,7 +38,7 @@ class ExplicitCheck:
 
 
 class ImplicitCheck:
-    """Check of the implicit steps of a segment: they are kept while they lose less than a start, or if the rest of them costs less.
+    """Check of the implicit steps of a segment: they are kept while their loss is tolerable, or if the rest of them costs less.
 
     `rate`: cost of implicit steps per second of the motion in the last interval. `loss`: cost in excess of explicit
     steps, since it was last lower.
@@ -71,10 +72,12 @@ class ImplicitCheck:
 
     def _wait(self) -> float:
         """Set the next check, before which average steps do not exceed the tolerable loss; return the remaining loss."""
-        left = self._implicit.start - self.loss
-        integrator = self._implicit.integrator
+        integrator, choice = self._implicit.integrator, self._choice
+        ahead = choice.explicit_cost(choice.remaining(self._counted.time), 0)
+        left = tolerable_loss(AUTO, self._implicit.start, ahead) - self.loss
         taken = integrator.steps() - self._begun
-        every = max(int(left / self._implicit.cost.step), int(AUTO.check_interval * taken), 1)
+        steps = min(left / self._implicit.cost.step, LOOP.most_steps)
+        every = max(int(steps), int(AUTO.check_interval * taken), 1)
         self._next = integrator.steps() + every
         integrator.engine.ida.pause_after(every)
         return left

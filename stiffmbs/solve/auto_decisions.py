@@ -24,11 +24,14 @@ class AutoParameters:
       steps, above which it is justified; and run length above which radau replaces bdf for overdamped motions.
     - `check_interval`: least number of steps up to the next check of implicit steps, relative to those of the segment
       so far.
+    - `trial_loss`: loss up to which implicit steps are kept, relative to the cost of explicit steps to the end of the run.
+      That of their start is always tolerated.
     """
 
     steps_per_radian: float = 0.35
     trial_margin: float = 3.0
     check_interval: float = 0.25
+    trial_loss: float = 0.05
 
 
 AUTO = tuned("auto", AutoParameters())
@@ -123,6 +126,11 @@ def saving_by_return(explicit_rate: float, implicit_rate: float, ratio: float, r
 def loss_of_trial(before: float, implicit_cost: float, explicit_cost: float) -> float:
     """Return the cost of implicit steps in excess of explicit ones, summed since they were last less expensive."""
     return max(before + implicit_cost - explicit_cost, 0.0)
+
+
+def tolerable_loss(parameters: AutoParameters, start: float, explicit_cost: float) -> float:
+    """Return the loss up to which implicit steps are kept; their start costs `start`, explicit steps to the end `explicit_cost`."""
+    return max(start, parameters.trial_loss * explicit_cost)
 
 
 class Interval(NamedTuple):

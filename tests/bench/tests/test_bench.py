@@ -116,8 +116,8 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
 
 LONG_LOOKS = (
     "elements_in_space", "chain_scaling", "stiffness", "stepping", "half_car_gradient", "half_car_study", "bushing_fit", "car",
-    "car_choice", "car_conditioning", "car_events",
-    "car_equal_error", "car_jobs", "start_up", "tolerances",
+    "car_conditioning", "car_events",
+    "car_jobs", "start_up", "tolerances",
 )  # fmt: skip
 MANY = (pytest.mark.long, pytest.mark.sampled(5))
 BY_ELEMENTS = {"flexible": 2e-6}
@@ -130,12 +130,10 @@ BEYOND_THE_SOLVER = {
 WITHOUT_YARDSTICK = (
     "flexible",
     "reductions",
-    "car_equal_error",
     "tolerances",
     "linear_algebra",
     "bushing_fit",
     "car",
-    "car_choice",
     "car_conditioning",
     "car_events",
     "car_jobs",

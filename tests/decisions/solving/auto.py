@@ -20,7 +20,7 @@ def check_after_steps():
     waits, counts = [], [0, 0, 1000, 1000]
     engine = Record(ida=Record(pause_after=waits.append))
     integrator = Record(steps=lambda: counts.pop(0) if len(counts) > 1 else counts[0], engine=engine)
-    implicit = Record(integrator=integrator, steps=nothing, start=0.0, cost=Record(step=1.0))
+    implicit = Record(integrator=integrator, steps=lambda t: Record(time=t), start=0.0, cost=Record(step=1.0))
     choice = Record(
         implicit=implicit, parameters=parameters("auto"), explicit_cost=lambda *_: 0.0, remaining=lambda t: 0.0,
     )  # fmt: skip
@@ -87,6 +87,7 @@ DECISIONS = {
         lambda k: auto_decisions.implicit_solver(parameters("auto"), 2.0, 0.1 * k) == "bdf", range(100)
     ),
     "auto.check_interval": check_after_steps,
+    "auto.trial_loss": lambda: auto_decisions.tolerable_loss(parameters("auto"), 1.0, 1000.0),
     "cost.restart_steps": lambda: auto_choice.Choice.explicit_cost(Record(_explicit_rate=0.0, explicit_step=1.0), 0.0, 1),
     "solve.auto:MOST_MESSAGES": switches_in_a_note,
     "solve.radau.radau:ITERATIONS": lambda: of_five_stages("step_residuals"),
@@ -97,7 +98,7 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
-    "auto.steps_per_radian": 0.35, "auto.trial_margin": 31, "auto.check_interval": 250, "cost.restart_steps": 27,
+    "auto.steps_per_radian": 0.35, "auto.trial_margin": 31, "auto.check_interval": 250, "auto.trial_loss": 50.0, "cost.restart_steps": 27,
     "solve.auto:MOST_MESSAGES": 3, "solve.radau.radau:ITERATIONS": 15, "solve.radau.radau:START_STEPS": 4, "solve.radau.radau:RESIDUAL": 4.0,
     "solve.subsystems:IMPLICIT_STEPS": 75, "solve.subsystems:EXPLICIT_STEPS": 45,
 }  # fmt: skip

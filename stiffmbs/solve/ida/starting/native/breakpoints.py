@@ -93,6 +93,7 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
     w = event_restart_view(table)
     b = start_view(w.start)
     c = native_ida_view(ida)
+    s = state_view(c.state)
     clear_call(c)
     w.passed = 0
     w.steps_before = 0
@@ -106,8 +107,8 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
             return int32(flag)
         t = c.returned + w.indistinct * abs(c.returned)
         same = t + w.indistinct * abs(t)
-        long = c.size > output_correction_view(c.output_correction).long
-        if long or same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
+        open_ = s.n_c > 0 and c.size > output_correction_view(c.output_correction).long
+        if open_ or same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
             return int32(flag)
         if _restarted_at_breakpoint(w, b, c, t) < 0:
             return int32(flag)
