@@ -271,4 +271,5 @@ class NativeEngine:
 
     def history(self) -> History:
         """Return the ends of the steps, and their orders."""
-        return History(self.ida.history.t, self.ida.history.order)
+        t, order, _ = self.ida.history.stored()
+        return History(t, order)

@@ -10,7 +10,7 @@ import numpy as np
 from ...compile.machine.layout import addresses
 from ...compile.machine.routines import Routine
 from .libraries import Libraries
-from .native.layouts import STEP
+from .native.layouts import STEP_WIDTH
 from .native.parameters import LOOP
 
 _COUNT = Routine("stiffmbs.solve.ida.starting.native.start", "count", "void(int64, int64*, int64*, int64*, int64*)")
@@ -122,20 +122,20 @@ def failure_sentence(flag: int) -> str:
     return FAILURES.get(flag, f"IDA failed with flag {flag}: {_INSIDE}")
 
 
-ROW = np.dtype([(name, float) for name in STEP])
+END, ORDER, SIZE = range(STEP_WIDTH)
 
 
 class StepLog:
     """Log of steps, filled by compiled code in each call and read as arrays. `count`: number of steps."""
 
     def __init__(self) -> None:
-        self._rows = np.empty(0, dtype=ROW)
+        self._rows = np.empty((0, STEP_WIDTH))
         self.forget()
 
     def rows(self, steps: int) -> np.ndarray:
         """Return memory for the steps of one call, numbers in the order of `STEP`."""
-        self._rows = np.empty(steps, dtype=ROW)
-        return self._rows.view(float)
+        self._rows = np.empty((steps, STEP_WIDTH))
+        return self._rows
 
     def forget(self) -> None:
         """Drop all steps."""
@@ -146,9 +146,9 @@ class StepLog:
         """Note a start at `t`; a last step beyond it, within which an event was found, is shortened."""
         if self._chunks:
             last = self._chunks[-1][-1]
-            if last["end"] > t:
-                last["size"] -= last["end"] - t
-                last["end"] = t
+            if last[END] > t:
+                last[SIZE] -= last[END] - t
+                last[END] = t
 
     def add(self, steps: int) -> None:
         """Store the first rows."""
@@ -164,23 +164,9 @@ class StepLog:
         if not self._chunks:
             return None
         last = self._chunks[-1][-1]
-        return float(last["size"]), int(last["order"])
+        return float(last[SIZE]), int(last[ORDER])
 
-    def stored(self) -> np.ndarray:
-        """Return the stored steps."""
-        return np.concatenate([self._rows[:0], *self._chunks])
-
-    @property
-    def t(self) -> np.ndarray:
-        """Return the ends of the steps, s."""
-        return self.stored()["end"].copy()
-
-    @property
-    def order(self) -> np.ndarray:
-        """Return the order of each step."""
-        return self.stored()["order"].astype(int)
-
-    @property
-    def step(self) -> np.ndarray:
-        """Return the size of each step, s."""
-        return self.stored()["size"].copy()
+    def stored(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the ends of the stored steps, s, their orders and sizes, s."""
+        rows = np.concatenate([self._rows[:0], *self._chunks])
+        return rows[:, END].copy(), rows[:, ORDER].astype(int), rows[:, SIZE].copy()
