@@ -139,12 +139,12 @@ def _export(solver: LiveSolver, request: Request, watch: ProgressCallback, tell:
         if suffix == ".report.html":
             from ..show.report import check_report, write_report
 
-            check_report(path)
+            check_report("export", path)
             write_report(path, found.scene, found.solution, request.text)  # type: ignore[arg-type]  # a scene, or a model
         elif suffix == ".html":
             from ..show.drawing.animate import check_animation, write_animation
 
-            check_animation(path)
+            check_animation("export", path)
             write_animation(path, found.scene, {"": found.solution})
         else:
             write(path, found.solution)

@@ -97,20 +97,15 @@ WRITERS: dict[str, Callable[[Path, Solution], None]] = {
 }
 
 
-def check_output(path: Path, option: str = "-o") -> None:
-    """Check that a file can be written, before anything is solved.
-
-    Raises InputError if the suffix is unknown, or the folder or a package is missing.
-    """
-    refuse_path(option, path, WRITERS)
-    if path.suffix == ".nc":
-        refuse_missing("xarray", "'stiffmbs[netcdf]'", f"{option} {path}: ")
+def check_output(option: str, path: Path) -> None:
+    """Check that results can be written to the path of an option; errors as for `refuse_path`."""
+    refuse_path(option, path, WRITERS, **({"xarray": "netcdf"} if path.suffix == ".nc" else {}))
 
 
-def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
-    """Reject a file with an unknown suffix, or in a folder that is missing or not writable.
+def refuse_path(option: str, path: Path, endings: Collection[str], **packages: str) -> None:
+    """Reject a file with an unknown suffix, or in a folder that is missing or not writable, before anything is solved.
 
-    Raises InputError: The message names the option.
+    `packages`: packages that write it, with the extra that installs each. Raises InputError: The message names the option.
     """
     if path.suffix not in endings:
         raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected one of {', '.join(endings)}")
@@ -125,6 +120,8 @@ def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
         raise InputError(
             f"{option} {path}: found a place that cannot be written to, expected a file in a writable folder"
         )
+    for package, extra in packages.items():
+        refuse_missing(package, f"'stiffmbs[{extra}]'", f"{option} {path}: ")
 
 
 def write(path: Path, solution: Solution) -> None:

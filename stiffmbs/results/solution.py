@@ -180,7 +180,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         """
         from .files import check_output, write
 
-        check_output(Path(path), "save")
+        check_output("save", Path(path))
         write(Path(path), self)
 
     def state(self, at: float | None = None) -> SavedState:

@@ -29,12 +29,8 @@ MOST_PLOTS = 6
 
 
 def check_figure(option: str, path: Path) -> None:
-    """Check that a figure can be drawn to the path of an option, before anything is solved.
-
-    Raises InputError if the suffix is unknown, or the folder or matplotlib is missing.
-    """
-    refuse_path(option, path, ENDINGS)
-    refuse_missing("matplotlib", "'stiffmbs[plot]'", f"{option} {path}: ")
+    """Check that a figure can be drawn to the path of an option; errors as for `refuse_path`."""
+    refuse_path(option, path, ENDINGS, matplotlib="plot")
 
 
 def drawn(solution: Solution, figure: Figure | None) -> Sheet:

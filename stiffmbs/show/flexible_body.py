@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import InputError, needs
 from ..flexible_bodies.finite_elements import FiniteElements
 from ..flexible_bodies.reduction import ReducedBody
+from ..results.files import refuse_path
 
 if TYPE_CHECKING:
     from ..results.flexible_motion import FlexibleMotion
@@ -142,12 +142,9 @@ def flexible_motion_text(report: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def check_shapes_file(path: Path) -> None:
-    """Refuse a file of another type, and a missing package. Raises InputError."""
-    if path.suffix.lower() not in SHAPES_SUFFIXES:
-        raise InputError(f"-o {path}: found the type '{path.suffix}', expected {' or '.join(SHAPES_SUFFIXES)}")
-    with needs("meshio", "flexible"):
-        import meshio  # noqa: F401
+def check_shapes_file(option: str, path: Path) -> None:
+    """Check that mode shapes can be written to the path of an option; errors as for `refuse_path`."""
+    refuse_path(option, path, SHAPES_SUFFIXES, meshio="flexible")
 
 
 def write_shapes(path: Path, model: FiniteElements, body: ReducedBody) -> None:

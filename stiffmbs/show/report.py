@@ -13,7 +13,7 @@ import numpy as np
 
 from ..analyses.check import check
 from ..analyses.linearised.modes import modes
-from ..errors import InputError, StiffmbsError, refuse_missing
+from ..errors import InputError, StiffmbsError
 from ..model.scene import Figure, Scene
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
@@ -38,20 +38,14 @@ from .verdict import verdict
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
-NEEDED = ("jinja2", "matplotlib")
 MOST_LINES = 5_000
 """Number of points above which a line drawing becomes a bitmap."""
 ENERGIES = Figure(title="energy (J)", y=("energy.kinetic", "energy.potential", "energy.total"))
 
 
-def check_report(path: Path) -> None:
-    """Check that a report can be written, before anything is solved.
-
-    Raises InputError if the suffix is not .html, or the folder or a package is missing.
-    """
-    refuse_path("-o", path, (".html",))
-    for package in NEEDED:
-        refuse_missing(package, "'stiffmbs[report]'", f"-o {path}: ")
+def check_report(option: str, path: Path) -> None:
+    """Check that a report can be written to the path of an option; errors as for `refuse_path`."""
+    refuse_path(option, path, (".html",), jinja2="report", matplotlib="report")
 
 
 def write_report(

@@ -91,16 +91,11 @@ def _array(name: str, values: Sequence[object]) -> np.ndarray:
     return array if array.dtype.kind in "if" else array.astype(str)
 
 
-def check_output(path: Path) -> None:
-    """Check that a file can be written, before anything is solved.
-
-    Raises InputError if the suffix is unknown, or the folder or a package is missing.
-    """
+def check_output(option: str, path: Path) -> None:
+    """Check that a table can be written to the path of an option; errors as for `refuse_path`."""
     from ..results.files import refuse_path
 
-    refuse_path("-o", path, WRITERS)
-    with needs("xarray", "netcdf"):
-        import xarray  # noqa: F401
+    refuse_path(option, path, WRITERS, xarray="netcdf")
 
 
 def write(path: Path, data: xarray.Dataset) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...analyses.job import Runnable, data_of
 from ...analyses.run import run
-from ...errors import InputError, refuse_missing, refuse_text
+from ...errors import InputError, refuse_text
 from ...model.model_data import ModelData
 from ...reading.marker import MarkerReference
 from ...results.files import refuse_path, write_text, written_whole
@@ -24,18 +24,13 @@ from .scene_graph import Anchor
 from .view import check_view, view_named
 
 FILMS: dict[str, Callable[..., None]] = {".gif": write_gif, ".mp4": write_mp4}
+NEEDED = {".html": {"jinja2": "report"}}
+"""Packages that write a file, with their extras, other than matplotlib."""
 
 
-def check_animation(path: Path) -> None:
-    """Check that an animation can be written, before anything is solved.
-
-    Raises InputError if the suffix is unknown, or the folder or a program to write it is missing.
-    """
-    refuse_path("-o", path, (*FILMS, ".html"))
-    if path.suffix == ".html":
-        refuse_missing("jinja2", "'stiffmbs[report]'", f"-o {path}: ")
-        return
-    refuse_missing("matplotlib", "'stiffmbs[plot]'", f"-o {path}: ")
+def check_animation(option: str, path: Path) -> None:
+    """Check that an animation can be written to the path of an option; errors as for `refuse_path`."""
+    refuse_path(option, path, (*FILMS, ".html"), **NEEDED.get(path.suffix, {"matplotlib": "plot"}))
     need_encoder(path)
 
 
@@ -120,7 +115,7 @@ def animate(
         As for `stiffmbs.run`, and for a file that cannot be written.
     """
     playback = Playback(speed, rate)
-    check_animation(Path(path))
+    check_animation("-o", Path(path))
     check_playback(playback)
     check_view(view)
     data = data_of(model)

@@ -30,14 +30,9 @@ if TYPE_CHECKING:
 ENDINGS = (".svg", ".png", ".pdf", ".json")
 
 
-def check_drawing(path: Path) -> None:
-    """Check that a drawing can be written, before anything is solved.
-
-    Raises InputError if the suffix is unknown, or the folder or matplotlib is missing.
-    """
-    refuse_path("-o", path, ENDINGS)
-    if path.suffix != ".json":
-        refuse_missing("matplotlib", "'stiffmbs[plot]'", f"-o {path}: ")
+def check_drawing(option: str, path: Path) -> None:
+    """Check that a drawing can be written to the path of an option; errors as for `refuse_path`."""
+    refuse_path(option, path, ENDINGS, **({} if path.suffix == ".json" else {"matplotlib": "plot"}))
 
 
 def state_drawn(
@@ -120,7 +115,7 @@ def draw(
     if path is None:
         refuse_missing("matplotlib", "'stiffmbs[plot]'", "draw: ")
     else:
-        check_drawing(Path(path))
+        check_drawing("-o", Path(path))
     drawing, poses = state_drawn(model, at, described, checked, **changes)
     if path is None:
         seen = view_named(view, drawing.dimensions, drawing.gravity)

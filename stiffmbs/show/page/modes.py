@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...analyses.linearised.modes import Modes
-from ...errors import InputError, SolverError, refuse_missing
+from ...errors import InputError, SolverError
 from ...linear_analysis.modes import Motion
 from ...results.files import refuse_path, write_text
 from ...results.solution import Solution
@@ -44,10 +44,9 @@ def modes_data(found: Modes, amplitude: float = AMPLITUDE) -> dict[str, str] | N
     return page_data(replace(drawing, loads={}), poses, choose="Mode")
 
 
-def check_page(path: Path) -> None:
-    """Check that a page can be written, before anything is solved. Raises InputError."""
-    refuse_path("-o", path, (".html",))
-    refuse_missing("jinja2", "'stiffmbs[report]'", f"-o {path}: ")
+def check_page(option: str, path: Path) -> None:
+    """Check that a page can be written to the path of an option; errors as for `refuse_path`."""
+    refuse_path(option, path, (".html",), jinja2="report")
 
 
 def write_modes(path: Path, found: Modes, amplitude: float) -> None:
