@@ -54,11 +54,8 @@ def flexible(
             found = reduced_body(described, folder)
         frequencies = {f"{text} held": found.held_frequencies(numbers) for text, numbers in sets.items()}
     written = is_written(output, lambda path: write_shapes(path, described.model(folder), found))
-    click.echo(
-        json.dumps(flexible_body_as_dict(body, found, names, frequencies))
-        if as_json
-        else flexible_body_text(body, found, names, frequencies)
-    )
+    report = body, found, names, frequencies
+    click.echo(json.dumps(flexible_body_as_dict(*report)) if as_json else flexible_body_text(*report))
     sys.exit(Status.DONE if written else Status.FAILED)
 
 

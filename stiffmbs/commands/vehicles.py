@@ -214,11 +214,8 @@ def tyre(
         })  # fmt: skip
         curves = tyre_curves(properties, sweep)
         found = tyre_states(properties, [_state(text) for text in states])
-        text = (
-            property_text(properties, {kind.upper(): unit for kind, unit in assigned(UNIT, units, str).items()})
-            if copy is not None
-            else ""
-        )
+        of_copy = {kind.upper(): unit for kind, unit in assigned(UNIT, units, str).items()}
+        text = property_text(properties, of_copy) if copy is not None else ""
     kind = "Magic Formula " * properties.formula.is_magic + properties.version
     title = f"{file}: {kind}, camber {sweep.camber:.4g} rad"
     written = is_written(copy, lambda path: write_text(path, text))

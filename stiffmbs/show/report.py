@@ -113,17 +113,11 @@ def relevant_figures(solution: Solution, own: Figure | None) -> list[Figure]:
         if not any(name.startswith(f"{element}.") for name in shown)
     }
     largest = max(sizes, key=lambda element: np.nan_to_num(sizes[element]), default="")
-    force = (
-        [
-            Figure(
-                title=f"force of {largest} (N)",
-                y=tuple(f"{largest}.{p}" for p in reactions_of(solution) if p[0] == "f"),
-            )
-        ]
-        if largest and sizes[largest] > 0
-        else []
-    )
-    return [*([own] if own else []), *force, ENERGIES]
+    found = [own] if own else []
+    if largest and sizes[largest] > 0:
+        parts = tuple(f"{largest}.{part}" for part in reactions_of(solution) if part[0] == "f")
+        found.append(Figure(title=f"force of {largest} (N)", y=parts))
+    return [*found, ENERGIES]
 
 
 def _modes(scene: Scene) -> tuple[list[str], dict[str, str] | None]:
