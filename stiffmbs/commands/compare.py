@@ -65,11 +65,10 @@ def compare(scene: str, output: Path | None, as_json: bool, **options: object) -
     be written, 2 the input is wrong.
     """
     from ..comparison.figure import write_figure
-    from ..show.figure import check_figure
     from .progress import StatusLine
 
     with refusing(scene, as_json):
-        refuse_file("-o", output, scene, check_figure)
+        refuse_file("-o", output, scene, "figure")
         with StatusLine() as tell:
             found = _found(scene, options, tell)
     _show(scene, found, as_json)

@@ -57,11 +57,11 @@ def equilibrium(
     Exit status: 0 done, 1 no equilibrium was found or the file could not be written, 2 the input is wrong.
     """
     from ..analyses.equilibrium import equilibrium as found_equilibrium
-    from ..results.files import check_output, write
+    from ..results.files import write
     from ..show.modes import equilibrium_text
 
     with refusing(scene, as_json):
-        refuse_file("-o", output, scene, check_output)
+        refuse_file("-o", output, scene, "results")
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         start = start_of(loaded, state, at, changes)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from functools import partial
 from pathlib import Path
 
 import click
@@ -42,11 +41,11 @@ def flexible(
     """
     from ..flexible_bodies.read import read_flexible_body
     from ..flexible_bodies.reduced import reduced_body
-    from ..show.flexible_body import check_shapes_file, flexible_body_as_dict, flexible_body_text, write_shapes
+    from ..show.flexible_body import flexible_body_as_dict, flexible_body_text, write_shapes
     from .progress import ProgressBar
 
     with refusing(body, as_json):
-        refuse_file("-o", output, body, check_shapes_file)
+        refuse_file("-o", output, body, "mode shapes")
         described = read_flexible_body(body, changes)
         names, folder = list(described.interfaces), Path(body).parent
         sets = {text: [_number(name, names) for name in text.split(",")] for text in held}
@@ -85,13 +84,12 @@ def stresses(
 
     Exit status: 0 done, 1 stopped early or not written, 2 the input is wrong.
     """
-    from ..results.files import refuse_path
     from ..results.flexible_motion import FlexibleMotion
     from ..results.solution import Solution
     from ..show.flexible_body import flexible_motion_as_dict, flexible_motion_text
 
     with refusing(scene, as_json, output):
-        refuse_file("-o", output, scene, partial(refuse_path, endings=(".xdmf",)))
+        refuse_file("-o", output, scene, "deformation")
         loaded = load_scene(scene, changes_of(options))
         FlexibleMotion.check(loaded, body)
         solution = Solution.load(results) if results is not None else solve_scene(scene, loaded, as_json)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from functools import partial
 from pathlib import Path
 
 import click
@@ -49,14 +48,14 @@ def modes(
     Exit status: 0 done, 1 no such state is found or a file could not be written, 2 the input is wrong.
     """
     from ..analyses.linearised.modes import modes as found_modes
-    from ..results.files import check_output, write
+    from ..results.files import write
     from ..show.modes import modes_text
 
     page = output is not None and output.suffix == ".html"
     with refusing(scene, as_json, output):
         if page:
-            from ..show.page.modes import check_page, write_modes
-        refuse_file("-o", output, scene, check_page if page else check_output)
+            from ..show.page.modes import write_modes
+        refuse_file("-o", output, scene, "modes in motion" if page else "results")
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         start = {"at": at} if state is None else start_of(loaded, state, at, changes)
@@ -96,14 +95,14 @@ def response(
 
     from ..analyses.linearised.inputs import force_on, parameter_of
     from ..analyses.linearised.transfer import transfer
-    from ..results.files import refuse_path, write_text
+    from ..results.files import write_text
     from ..show.modes import response_as_json, response_csv, response_text
 
     changes = changes_of(options)
     with refusing(scene, as_json):
         if not lowest < highest:
             raise InputError(f"--from {lowest:g} --to {highest:g}: found no range, expected --from below --to")
-        refuse_file("-o", path, scene, partial(refuse_path, endings=(".csv",)))
+        refuse_file("-o", path, scene, "curves")
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = {

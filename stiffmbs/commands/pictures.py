@@ -80,12 +80,12 @@ def draw(
 
     Exit status: 0 done, 1 no such state is found, or the file could not be written, 2 the input is wrong.
     """
-    from ..show.drawing.draw import check_drawing, state_drawn, summary, write_drawing
+    from ..show.drawing.draw import state_drawn, summary, write_drawing
     from ..show.drawing.view import check_view
 
     path = output or file_beside(scene, ".svg")
     with refusing(scene, as_json, path):
-        refuse_file("-o", path, scene, check_drawing)
+        refuse_file("-o", path, scene, "drawing")
         check_view(view)
         loaded = load_scene(scene, changes_of(options))
         with in_file(scene):
@@ -117,15 +117,14 @@ def animate(
 
     Exit status: 0 done, 1 stopped early (the part that was solved is shown) or not written, 2 the input is wrong.
     """
-    from ..show.drawing.animate import check_animation, check_playback, traced, write_animation
+    from ..show.drawing.animate import check_animation, traced, write_animation
     from ..show.drawing.film import Playback
     from ..show.drawing.picture import Shown
     from ..show.drawing.view import check_view
 
     path, playback = output or file_beside(scene, ".html"), Playback(speed, rate)
     with refusing(scene, as_json, path):
-        check_animation("-o", path)
-        check_playback(playback)
+        check_animation(path, playback)
         check_view(view)
         for read in (scene, *map(str, results)):
             refuse_own_input("-o", read, path)

@@ -50,13 +50,13 @@ def report(
     from ..comparison.compare import compare as compared
     from ..comparison.table import comparison_section
     from ..show.modes import equilibrium_section
-    from ..show.report import check_report, write_report
+    from ..show.report import write_report
     from ..show.suspension import road_loads_section
     from ..studies.suspension.road_loads import road_loads
 
     path = output or file_beside(scene, ".report.html")
     with refusing(scene, output=path):
-        refuse_file("-o", path, scene, check_report)
+        refuse_file("-o", path, scene, "report")
         loaded = load_scene(scene, changes_of(options))
         compared_with = _run_of(other) if other else None
         solution = solve_scene(scene, loaded, verify)

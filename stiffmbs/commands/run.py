@@ -55,15 +55,11 @@ def run(
     Exit status: 0 done, 1 stopped early (results up to there are kept) or a requested file could not be written, 2 the
     input is wrong.
     """
-    from ..results.files import check_output
     from .progress import ProgressBar
 
     with refusing(scene, as_json):
-        refuse_file("-o", output, scene, check_output)
-        if figure is not None:
-            from ..show.figure import check_figure
-
-            refuse_file("--figure", figure, scene, check_figure)
+        refuse_file("-o", output, scene, "results")
+        refuse_file("--figure", figure, scene, "figure")
         changes = changes_of(options)
         with ProgressBar(0.0, 0.0):
             loaded = load_scene(scene, changes)

@@ -164,11 +164,13 @@ def in_file(path: str) -> Iterator[None]:
         raise type(error)(f"{source_name(path)}: {error}") from None
 
 
-def refuse_file(option: str, path: Path | None, scene: str, check: Callable[[str, Path], object]) -> None:
-    """Reject a requested file that cannot be written, or that is the file that is read."""
-    refuse_own_input(option, scene, path)
+def refuse_file(option: str, path: Path | None, scene: str, kind: str) -> None:
+    """Reject a requested file of a kind of `KINDS` that cannot be written, or that is the file that is read."""
     if path is not None:
-        check(option, path)
+        from ..results.files import refuse_path
+
+        refuse_own_input(option, scene, path)
+        refuse_path(option, path, kind)
 
 
 def refuse_own_input(option: str, scene: str, output: Path | None) -> None:

@@ -44,11 +44,11 @@ def study(
     Exit status: 0 done, 1 not all cases could be solved or the file could not be written, 2 the input is wrong.
     """
     from ..reading.variation import read_variation
-    from ..studies.data_set import as_dict, check_output, text, write
+    from ..studies.data_set import as_dict, text, write
     from ..studies.sweep import study_of
 
     with refusing(scene, as_json):
-        refuse_file("-o", output, scene, check_output)
+        refuse_file("-o", output, scene, "cases")
         loaded = load_scene(scene, changes_of(options))
         varied = [read_variation(text, "--vary") for text in vary]
         store = None if output is None else output.with_name(f"{output.name}.study")

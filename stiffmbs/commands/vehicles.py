@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -57,16 +56,15 @@ def kc(
 
     Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
     """
-    from ..results.files import refuse_path, write_text
-    from ..show.figure import check_figure
+    from ..results.files import write_text
     from ..show.style import write_sheet
     from ..show.suspension import kc_csv, kc_figure, kc_text
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
     from ..studies.suspension.vehicle import VehicleOptions
 
     with refusing(scene, as_json):
-        refuse_file("--figure", figure, scene, check_figure)
-        refuse_file("-o", output, scene, partial(refuse_path, endings=(".csv",)))
+        refuse_file("--figure", figure, scene, "figure")
+        refuse_file("-o", output, scene, "curves")
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = VehicleOptions(**vehicle)
@@ -148,11 +146,10 @@ def handling(
     Exit status: 0 done, 1 a test was not done or the page could not be written, 2 the input is wrong.
     """
     from ..show.handling import handling_text, write_handling
-    from ..show.report import check_report
     from ..studies.handling.study import handling as handled
 
     with refusing(scene, as_json):
-        refuse_file("-o", output, scene, check_report)
+        refuse_file("-o", output, scene, "report")
         loaded = load_scene(scene, changes)
         with in_file(scene):
             found = handled(
@@ -199,15 +196,14 @@ def tyre(
     """
     from ..elements.tyres.coefficients import TyreProperties
     from ..elements.tyres.written_file import property_text
-    from ..results.files import refuse_path, write_text
-    from ..show.figure import check_figure
+    from ..results.files import write_text
     from ..show.style import write_sheet
     from ..show.tyre import tyre_figure, tyre_text
     from ..studies.tyre_curves import TyreSweep, tyre_curves, tyre_states
 
     with refusing(file, as_json):
-        refuse_file("-o", output, file, check_figure)
-        refuse_file("--write", copy, file, partial(refuse_path, endings=(".tir",)))
+        refuse_file("-o", output, file, "figure")
+        refuse_file("--write", copy, file, "tyre")
         properties = TyreProperties.from_file(file)
         sweep = TyreSweep(**{
             "load": loads, "pressure": pressures, "camber": camber, "points": points, **({} if speed is None else {"speed": speed}),

@@ -15,7 +15,7 @@ from ..comparison.compare import compare
 from ..comparison.table import text as comparison_text
 from ..errors import InputError
 from ..model.model_data import ModelData
-from ..results.files import WRITERS, write
+from ..results.files import WRITERS, refuse_path, write
 from ..results.solution import Solution
 from ..show.modes import modes_text
 from ..show.verdict import verdict
@@ -124,14 +124,14 @@ def _export(request: Request) -> dict[str, object]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"scene{suffix}"
         if suffix == ".report.html":
-            from ..show.report import check_report, write_report
+            from ..show.report import write_report
 
-            check_report("export", path)
+            refuse_path("export", path, "report")
             write_report(path, found.scene, found.solution, request.text)  # type: ignore[arg-type]  # a scene, or a model
         elif suffix == ".html":
-            from ..show.drawing.animate import check_animation, write_animation
+            from ..show.drawing.animate import write_animation
 
-            check_animation("export", path)
+            refuse_path("export", path, "animation")
             write_animation(path, found.scene, {"": found.solution})
         else:
             write(path, found.solution)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -97,18 +97,35 @@ WRITERS: dict[str, Callable[[Path, Solution], None]] = {
 }
 
 
-def check_output(option: str, path: Path) -> None:
-    """Check that results can be written to the path of an option; errors as for `refuse_path`."""
-    refuse_path(option, path, WRITERS, **({"xarray": "netcdf"} if path.suffix == ".nc" else {}))
+JINJA, MATPLOTLIB, MESHIO, XARRAY = (
+    {"jinja2": "report"}, {"matplotlib": "plot"}, {"meshio": "flexible"}, {"xarray": "netcdf"},
+)  # fmt: skip
+KINDS: dict[str, dict[str, dict[str, str]]] = {
+    "results": {".csv": {}, ".npz": {}, ".nc": XARRAY, ".tab": {}, ".res": {}},
+    "cases": {".nc": XARRAY, ".csv": XARRAY},
+    "curves": {".csv": {}},
+    "tyre": {".tir": {}},
+    "mode shapes": {".vtu": MESHIO, ".vtk": MESHIO},
+    "deformation": {".xdmf": {}},
+    "fmu": {".fmu": {}},
+    "figure": {".png": MATPLOTLIB, ".svg": MATPLOTLIB, ".pdf": MATPLOTLIB},
+    "drawing": {".svg": MATPLOTLIB, ".png": MATPLOTLIB, ".pdf": MATPLOTLIB, ".json": {}},
+    "animation": {".gif": MATPLOTLIB, ".mp4": MATPLOTLIB, ".html": JINJA},
+    "modes in motion": {".html": JINJA},
+    "report": {".html": {**JINJA, "matplotlib": "report"}},
+}
+"""Endings of the files that are written, by what they contain, with the packages needed and the extra of each."""
 
 
-def refuse_path(option: str, path: Path, endings: Collection[str], **packages: str) -> None:
-    """Reject a file with an unknown suffix, or in a folder that is missing or not writable, before anything is solved.
+def refuse_path(option: str, path: Path, kind: str) -> None:
+    """Reject the path of an option where no file of a kind of `KINDS` can be written, before anything is solved.
 
-    `packages`: packages that write it, with the extra that installs each. Raises InputError: The message names the option.
+    Raises InputError if its suffix is another one, its folder is missing or not writable, or a package is missing.
     """
+    endings = KINDS[kind]
     if path.suffix not in endings:
-        raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected one of {', '.join(endings)}")
+        expected = f"one of {', '.join(endings)}" if len(endings) > 2 else " or ".join(endings)
+        raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected {expected}")
     try:
         path.exists()
     except (OSError, ValueError) as error:
@@ -120,7 +137,7 @@ def refuse_path(option: str, path: Path, endings: Collection[str], **packages: s
         raise InputError(
             f"{option} {path}: found a place that cannot be written to, expected a file in a writable folder"
         )
-    for package, extra in packages.items():
+    for package, extra in endings[path.suffix].items():
         refuse_missing(package, f"'stiffmbs[{extra}]'", f"{option} {path}: ")
 
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..flexible_bodies.finite_elements import FiniteElements
 from ..flexible_bodies.reduction import ReducedBody
-from ..results.files import refuse_path
 
 if TYPE_CHECKING:
     from ..results.flexible_motion import FlexibleMotion
@@ -19,8 +18,6 @@ MOST_FREQUENCIES = 12
 """Number of modes that are shown, the slowest first."""
 LARGE_CONDITION = 1e12
 """Condition number above which a note advises fewer modes."""
-SHAPES_SUFFIXES = (".vtu", ".vtk")
-"""Types of files of mode shapes."""
 
 
 def flexible_body_text(name: str, body: ReducedBody, interfaces: Sequence[str], held: Mapping[str, np.ndarray]) -> str:
@@ -140,11 +137,6 @@ def flexible_motion_text(report: Mapping[str, Any]) -> str:
     for node, own in report["displacement"].items():
         lines.append(f"{f'node {node}':20}{own['largest']:.6g} m at {own['time']:.6g} s, at most")
     return "\n".join(lines)
-
-
-def check_shapes_file(option: str, path: Path) -> None:
-    """Check that mode shapes can be written to the path of an option; errors as for `refuse_path`."""
-    refuse_path(option, path, SHAPES_SUFFIXES, meshio="flexible")
 
 
 def write_shapes(path: Path, model: FiniteElements, body: ReducedBody) -> None:

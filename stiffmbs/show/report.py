@@ -17,7 +17,7 @@ from ..errors import InputError, StiffmbsError
 from ..model.scene import Figure, Scene
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
-from ..results.files import refuse_path, write_text
+from ..results.files import write_text
 from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import History
@@ -41,11 +41,6 @@ if TYPE_CHECKING:
 MOST_LINES = 5_000
 """Number of points above which a line drawing becomes a bitmap."""
 ENERGIES = Figure(title="energy (J)", y=("energy.kinetic", "energy.potential", "energy.total"))
-
-
-def check_report(option: str, path: Path) -> None:
-    """Check that a report can be written to the path of an option; errors as for `refuse_path`."""
-    refuse_path(option, path, (".html",), jinja2="report", matplotlib="report")
 
 
 def write_report(

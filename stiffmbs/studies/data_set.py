@@ -91,13 +91,6 @@ def _array(name: str, values: Sequence[object]) -> np.ndarray:
     return array if array.dtype.kind in "if" else array.astype(str)
 
 
-def check_output(option: str, path: Path) -> None:
-    """Check that a table can be written to the path of an option; errors as for `refuse_path`."""
-    from ..results.files import refuse_path
-
-    refuse_path(option, path, WRITERS, xarray="netcdf")
-
-
 def write(path: Path, data: xarray.Dataset) -> None:
     """Write a data set to a file, completely or not at all.
 

@@ -24,18 +24,12 @@ from .scene_graph import Anchor
 from .view import check_view, view_named
 
 FILMS: dict[str, Callable[..., None]] = {".gif": write_gif, ".mp4": write_mp4}
-NEEDED = {".html": {"jinja2": "report"}}
-"""Packages that write a file, with their extras, other than matplotlib."""
 
 
-def check_animation(option: str, path: Path) -> None:
-    """Check that an animation can be written to the path of an option; errors as for `refuse_path`."""
-    refuse_path(option, path, (*FILMS, ".html"), **NEEDED.get(path.suffix, {"matplotlib": "plot"}))
+def check_animation(path: Path, playback: Playback) -> None:
+    """Check that an animation can be written to a file, and that speed and picture rate are positive."""
+    refuse_path("-o", path, "animation")
     need_encoder(path)
-
-
-def check_playback(playback: Playback) -> None:
-    """Check that speed and picture rate are positive."""
     for option, value in (("--speed", playback.speed), ("--rate", playback.rate)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{option}: found {value:g}, expected a number greater than 0")
@@ -115,8 +109,7 @@ def animate(
         As for `stiffmbs.run`, and for a file that cannot be written.
     """
     playback = Playback(speed, rate)
-    check_animation("-o", Path(path))
-    check_playback(playback)
+    check_animation(Path(path), playback)
     check_view(view)
     data = data_of(model)
     traced(data, traces)

@@ -27,13 +27,6 @@ from .view import check_view, view_named
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
-ENDINGS = (".svg", ".png", ".pdf", ".json")
-
-
-def check_drawing(option: str, path: Path) -> None:
-    """Check that a drawing can be written to the path of an option; errors as for `refuse_path`."""
-    refuse_path(option, path, ENDINGS, **({} if path.suffix == ".json" else {"matplotlib": "plot"}))
-
 
 def state_drawn(
     model: Any, at: float | None = None, described: bool = False, checked: bool = False, **changes: Any
@@ -115,7 +108,7 @@ def draw(
     if path is None:
         refuse_missing("matplotlib", "'stiffmbs[plot]'", "draw: ")
     else:
-        check_drawing("-o", Path(path))
+        refuse_path("-o", Path(path), "drawing")
     drawing, poses = state_drawn(model, at, described, checked, **changes)
     if path is None:
         seen = view_named(view, drawing.dimensions, drawing.gravity)
