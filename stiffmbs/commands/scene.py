@@ -210,11 +210,12 @@ def refusing(scene: str, as_json: bool = False, output: Path | None = None) -> I
     try:
         yield
     except StiffmbsError as error:
-        from ..show.summary import error_as_json
+        from ..show.summary import json_line
 
         unsolved = isinstance(error, SolverError)
         if as_json:
-            click.echo(error_as_json(scene, str(error), "stopped" if unsolved else "error"))
+            status = "stopped" if unsolved else "error"
+            click.echo(json_line({"scene": scene, "status": status, "message": str(error)}))
         click.echo(f"stiffmbs: {error}", err=True)
         sys.exit(Status.FAILED if unsolved else Status.WRONG_INPUT)
     except OSError as error:

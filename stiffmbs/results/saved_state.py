@@ -87,10 +87,6 @@ class SavedState:
     turns: Mapping[str, float] = field(default_factory=dict)
     elements: frozenset[str] | None = None
 
-    def is_new(self, element: str) -> bool:
-        """Return True if the saved run is known not to have an element."""
-        return self.elements is not None and element not in self.elements
-
     def turn(self, element: str, k: int = 0) -> float | None:
         """Return the angle at an element's counter of revolutions, or that of a request, rad; None if not known."""
         return self.turns.get(f"{element}/{k}", self.channels.get(element))

@@ -31,7 +31,7 @@ from .modes import modes_text
 from .page.data import environment, page_data, page_parts
 from .page.modes import modes_data
 from .sections import Section, differences_section
-from .style import COLORS, data_url, dress
+from .style import COLORS, data_url, dress, new_sheet
 from .summary import solver_lines
 from .verdict import verdict
 
@@ -156,10 +156,8 @@ def _embedded(sheet: Sheet, points: int) -> str:
 
 def step_history(history: History) -> Sheet:
     """Plot the step length over time on a logarithmic axis, and below it the order if known."""
-    from matplotlib.figure import Figure as Sheet
-
     has_orders = len(history.order) == len(history.t)
-    sheet = Sheet(figsize=(8, 5 if has_orders else 3), layout="constrained")
+    sheet = new_sheet((8, 5 if has_orders else 3))
     lengths = np.diff(history.t)
     rows = sheet.subplots(
         2 if has_orders else 1, sharex=True, squeeze=False, height_ratios=[2, 1] if has_orders else None
@@ -167,12 +165,9 @@ def step_history(history: History) -> Sheet:
     shown = lengths > 0
     rows[0].plot(history.t[1:][shown], lengths[shown], ".", color=COLORS[0], markersize=2)
     rows[0].set_yscale("log")
-    rows[0].set_ylabel("step (s)")
-    rows[0].set_title("steps of the solver")
+    dress(rows[0], ylabel="step (s)", title="steps of the solver")
     if has_orders:
         rows[1].plot(history.t, history.order, ".", color=COLORS[0], markersize=2)
-        rows[1].set_ylabel("order")
+        dress(rows[1], ylabel="order")
     rows[-1].set_xlabel("time (s)")
-    for axes in rows:
-        dress(axes)
     return sheet

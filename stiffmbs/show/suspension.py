@@ -11,6 +11,7 @@ import numpy as np
 from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
 from ..studies.suspension.road_loads import COMPONENTS, RoadLoads
 from .sections import Section, Table
+from .style import new_sheet
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -139,13 +140,12 @@ def kc_csv(found: KinematicsAndCompliance) -> str:
 
 def kc_figure(found: KinematicsAndCompliance) -> Sheet:
     """Draw the page: the panels that apply to the axle, with wheel travel upwards as chassis engineers draw it."""
-    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
     panels = [panel for panel in PANELS if panel.case in found.sweeps and _curves(found, panel)]
     columns = min(COLUMNS, max(len(panels), 1))
     rows = max(1, -(-len(panels) // columns))
-    figure = Figure(figsize=(3.0 * columns, 2.3 * rows), layout="constrained")
+    figure = new_sheet((3.0 * columns, 2.3 * rows))
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for each, panel in zip(axes, panels, strict=False):
         _draw(each, found, panel)
