@@ -179,11 +179,8 @@ def _curves(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, str
         sides = ["axle"] if name.startswith("axle.") else [wheel.side for wheel in found.axle.wheels]
         for side, style in zip(sides, STYLES, strict=False):
             channel = name if side == "axle" else f"{side}.{name}"
-            over = (
-                panel.over if panel.over.startswith("axle.") else f"{sides[0] if side == 'axle' else side}.{panel.over}"
-            )
-            if side == "axle" and panel.over == "travel":
-                over = f"{found.axle.wheels[0].side}.travel"
+            wheel = found.axle.wheels[0].side if side == "axle" else side
+            over = panel.over if panel.over.startswith("axle.") else f"{wheel}.{panel.over}"
             x = sweep.channels.get(over) if panel.over else sweep.abscissa
             if channel in sweep.channels and x is not None and np.any(np.isfinite(sweep.channels[channel] + x)):
                 curves.append((name, style, x, sweep.channels[channel]))

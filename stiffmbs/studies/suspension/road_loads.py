@@ -84,7 +84,8 @@ def road_loads(model: Runnable, cases: Mapping[str, Solution]) -> RoadLoads:
 
 def _in_own_axes(model: ModelData, names: list[str], case: str, solution: Solution) -> dict[str, np.ndarray]:
     found: dict[str, np.ndarray] = {}
-    measures = Measures(model, solution.__getitem__, {}.__getitem__, np)
+    counters: dict[str, np.ndarray] = {}
+    measures = Measures(model, solution.__getitem__, counters.__getitem__, np)
     for name in names:
         marker = model.forces[name].j  # type: ignore[attr-defined]
         needed = [f"{name}.{part}" for part in COMPONENTS]
