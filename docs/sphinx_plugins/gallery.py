@@ -97,14 +97,14 @@ def write_pages(app: Sphinx) -> None:
 def _write_page(path: Path, page: Path, motion: Path) -> None:
     from matplotlib.figure import Figure
 
-    from stiffmbs.show.figure import draw_on
+    from stiffmbs.show.figure import draw_runs
 
     scene = stiffmbs.load_scene(path)
     solution = stiffmbs.run(scene)
     stiffmbs.animate(scene, motion, solution)
     if scene.figure:
         figure = Figure(figsize=(7, 3.6), layout="constrained")
-        draw_on(figure, solution, scene.figure)
+        draw_runs(figure, {"": solution}, scene.figure)
         figure.savefig(page.with_suffix(".svg"))
     named = {"title": scene.name, "stem": path.stem}
     text = PAGE.format(

@@ -143,16 +143,9 @@ def _of_run(found: Examined) -> Report:
     redundancy, system = found.redundancy, found.redundancy.system
     cases = tuple(overconstraints(redundancy))
     against = tuple(inconsistency_sentences(redundancy))
-    held_twice = (
-        []
-        if against
-        else [
-            sentence
-            for case in cases
-            for sentence in overconstraint_sentences(case, known_near_start(case, redundancy))
-        ]
-    )
-    problems = [*against, *held_twice]
+    problems = [*against]
+    for case in () if against else cases:
+        problems += overconstraint_sentences(case, known_near_start(case, redundancy))
     problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
     dynamics, subsystems, free = found.dynamics(), tuple[Subsystem, ...](), list[IdleFreedom]()
     start: InitialValues | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -175,6 +175,11 @@ def data_of(model: Runnable) -> ModelData:
     raise InputError(f"found {model!r}, expected a Model, a Scene, or the name of a scene's file")
 
 
+def settings_of(data: ModelData, settings: RunSettings | None, changes: Mapping[str, object]) -> RunSettings:
+    """Return the given settings, or those of a scene, with changes; raise an InputError if one is invalid."""
+    return changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), dict(changes))
+
+
 def with_elements(data: ModelData, solve: Callable[[Scene], Solution]) -> ModelData:
     """Return a model whose beams have as many elements as their tolerances require; see `beam_elements.divided_by`."""
     if not isinstance(data, Scene) or not data._beams.by_tolerance:
@@ -298,8 +303,7 @@ def examined(
     if isinstance(data, Scene) and data.stages:
         raise InputError("found a scene with stages, which only `run` accepts, expected a scene of one run")
     state = state_to_start_from(start_from)
-    given = settings or (data.run if isinstance(data, Scene) else RunSettings())
-    chosen = changed(given, starting_at(state, settings, changes))
+    chosen = settings_of(data, settings, starting_at(state, settings, changes))
     grid = output_grid(chosen)
     for name in chosen.drop_first:
         if name not in data.joints:

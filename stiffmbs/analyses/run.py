@@ -29,12 +29,12 @@ from ..run_checks.motion import motion_notes
 from ..run_checks.uncertain_forces import uncertain_forces
 from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.missing_rows import reported
-from ..solve.settings import changed, settings_notes, traits_of
+from ..solve.settings import settings_notes, traits_of
 from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
 from .given_inputs import Given, with_inputs
-from .job import Job, Runnable, data_of, prepare, up_to_a_fault, with_elements
+from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
 from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
 from .start_from import StartFrom
 
@@ -86,8 +86,7 @@ def run(
         return run_stages(data, settings, watch, start_from, inputs, **changes)
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
-        chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), {**changes})
-        data = with_inputs(data, inputs, chosen)
+        data = with_inputs(data, inputs, settings_of(data, settings, changes))
     return solved(prepare(data, settings, start_from, **changes), watch)
 
 

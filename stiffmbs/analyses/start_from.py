@@ -91,7 +91,8 @@ def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
     turns = np.zeros(system.n_counters)
     for (name, k), place in counters_of(system).items():
         known = state.turn(name, k)
-        is_known = name in of_requests or of_joint[place] in state.channels or state.is_new(name)
+        is_new = state.elements is not None and name not in state.elements
+        is_known = name in of_requests or of_joint[place] in state.channels or is_new
         if known is None and not is_known:
             raise InputError(
                 f"{state.source}: found no count of the turns of '{name}', expected a file .npz of the same mechanism"

@@ -12,7 +12,7 @@ import click
 from ..analyses.load_scene import DATASET, load_scene
 from ..errors import StiffmbsError
 from .process import Status
-from .scene import CHANGES, in_file, refusing
+from .scene import CHANGES, in_file, option, refusing
 
 if TYPE_CHECKING:
     from ..adams.listing import ListedStatement
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @click.command(short_help="Degrees of freedom, redundancy.")
 @click.argument("scene")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of sentences.")
+@option("--json", "Print one JSON object on one line instead of sentences.", "as_json")
 @CHANGES
 def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
     """Report SCENE's degrees of freedom, redundant equations, and reactions without a unique value.

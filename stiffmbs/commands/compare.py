@@ -13,7 +13,7 @@ from ..analyses.load_scene import load_scene
 from ..errors import InputError, StiffmbsError
 from ..solver_names import SchemeName
 from .process import Status
-from .scene import CHANGES, in_file, is_written, output_option, refuse_own_input, refusing
+from .scene import CHANGES, in_file, is_written, option, output_option, refuse_file, refusing
 
 if TYPE_CHECKING:
     from ..comparison.compare import Comparison
@@ -25,42 +25,35 @@ if TYPE_CHECKING:
 
 @click.command(short_help="Solvers compared on any scene.")
 @click.argument("scene")
-@click.option(
-    "--solver", "--solvers", "solvers", metavar="NAME,...",
-    help=f"bdf, radau, auto, kinematic, {', '.join(get_args(SchemeName))}, or all; bdf,dop853,auto by default.",
-)  # fmt: skip
-@click.option("--formulation", "--formulations", "formulations", metavar="NAME,...", help="Of bdf: SI2, SI1, I3, ...")
-@click.option(
-    "--rtol",
-    metavar="VALUES",
-    help="Relative tolerances, FROM:TO[:COUNT][:log] or VALUE,VALUE,...; 1e-3:1e-8:log, four per decade, by default.",
+@option(
+    "--solver, --solvers NAME,...",
+    f"bdf, radau, auto, kinematic, {', '.join(get_args(SchemeName))}, or all; bdf,dop853,auto by default.",
+    "solvers",
 )
-@click.option("--step", metavar="VALUES", help="Steps of the fixed-step schemes, s, in the forms of --rtol.")
-@click.option(
-    "--measure",
-    default="positions",
-    show_default=True,
-    help="Quantity whose errors are compared: positions, velocities or forces.",
+@option("--formulation, --formulations NAME,...", "Of bdf: SI2, SI1, I3, ...", "formulations")
+@option(
+    "--rtol VALUES",
+    "Relative tolerances, FROM:TO[:COUNT][:log] or VALUE,VALUE,...; 1e-3:1e-8:log, four per decade, by default.",
 )
-@click.option(
-    "--over",
-    metavar="NAME=VALUES",
-    help="Time at an equal error against a parameter or a path, as in k_b=1e5:1e9:9:log, k=1:100 N/mm:5 or N=10,20.",
+@option("--step VALUES", "Steps of the fixed-step schemes, s, in the forms of --rtol.")
+@option("--measure TEXT", "Quantity whose errors are compared: positions, velocities or forces.", default="positions")
+@option(
+    "--over NAME=VALUES",
+    "Time at an equal error against a parameter or a path, as in k_b=1e5:1e9:9:log, k=1:100 N/mm:5 or N=10,20.",
 )
-@click.option(
-    "--error",
-    type=float,
-    help="With --over: the error at which run times are compared; by default 1e-4 m or rad for positions.",
+@option(
+    "--error FLOAT", "With --over: the error at which run times are compared; by default 1e-4 m or rad for positions."
 )
-@click.option("--repeats", type=click.IntRange(1), default=9, show_default=True, help="How often a run is timed.")
-@click.option(
-    "--longest", type=click.FloatRange(0, min_open=True), default=20.0, show_default=True,
-    help="Longest time of a run, s; ten times as long for the reference. Longer runs are aborted.",
-)  # fmt: skip
-@click.option("--duration", help="Time to solve, s, or with a unit.")
+@option("--repeats INTEGER RANGE", "How often a run is timed.", default=9)
+@option(
+    "--longest FLOAT RANGE",
+    "Longest time of a run, s; ten times as long for the reference. Longer runs are aborted.",
+    default=20.0,
+)
+@option("--duration TEXT", "Time to solve, s, or with a unit.")
 @CHANGES
 @output_option("Draw the figure: .svg, .png or .pdf.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of tables.")
+@option("--json", "Print one JSON object on one line instead of tables.", "as_json")
 def compare(scene: str, output: Path | None, as_json: bool, **options: object) -> None:
     """Measure run time against error of solvers, schemes and formulations on SCENE.
 
@@ -72,17 +65,14 @@ def compare(scene: str, output: Path | None, as_json: bool, **options: object) -
     be written, 2 the input is wrong.
     """
     from ..comparison.figure import write_figure
-    from ..show.figure import check_figure
     from .progress import StatusLine
 
     with refusing(scene, as_json):
-        if output is not None:
-            check_figure("-o", output)
-            refuse_own_input("-o", scene, output)
+        refuse_file("-o", output, scene, "figure")
         with StatusLine() as tell:
             found = _found(scene, options, tell)
     _show(scene, found, as_json)
-    written = output is None or is_written(output, lambda: write_figure(output, found.plot()))
+    written = is_written(output, lambda path: write_figure(path, found.plot()))
     sys.exit(0 if written and not found.interrupted else Status.FAILED)
 
 
@@ -131,7 +121,7 @@ def _show(scene: str, found: Found, as_json: bool) -> None:
 
 @click.command(short_help="Run time against error of the examples.")
 @click.argument("names", metavar="[EXAMPLE]...", nargs=-1)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each example.")
+@option("--json", "Print one JSON object a line for each example.", "as_json")
 def bench(names: tuple[str, ...], as_json: bool) -> None:
     """Measure run time against error of bdf, dop853 and auto on the shipped examples.
 

@@ -15,8 +15,9 @@ from .scene import (
     changes_of,
     in_file,
     is_written,
+    option,
     output_option,
-    refuse_own_input,
+    refuse_file,
     refusing,
     solving_options,
     start_of,
@@ -30,16 +31,18 @@ if TYPE_CHECKING:
 @click.command(short_help="The pose in which forces balance.")
 @click.argument("scene")
 @output_option("Write the state, which run --from starts from: .npz, .csv or .nc.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
-@click.option("--velocity", help="Equilibrium at constant velocity: VX,VY or VX,VY,VZ, m/s, or with units.")
-@click.option(
-    "--rotation",
-    help="Equilibrium in rotation: an angular velocity, rad/s, or found; in space about the vertical, or WX,WY,WZ.",
+@option("--json", "Print one JSON object on one line instead of a table.", "as_json")
+@option("--velocity TEXT", "Equilibrium at constant velocity: VX,VY or VX,VY,VZ, m/s, or with units.")
+@option(
+    "--rotation TEXT",
+    "Equilibrium in rotation: an angular velocity, rad/s, or found; in space about the vertical, or WX,WY,WZ.",
 )
-@click.option("--about", help="A point of the axis of rotation: X,Y or X,Y,Z, m; by default the origin.")
-@click.option("--rolling", multiple=True, metavar="BODY", help="A further body that rolls, or spins as described.")
-@click.option(
-    "--speed", type=click.Choice(["given", "found"]), help="Whether the forces determine the speed along --velocity."
+@option("--about TEXT", "A point of the axis of rotation: X,Y or X,Y,Z, m; by default the origin.")
+@option("--rolling BODY ...", "A further body that rolls, or spins as described")
+@option(
+    "--speed [given|found]",
+    "Whether the forces determine the speed along --velocity.",
+    type=click.Choice(["given", "found"]),
 )
 @state_options
 @solving_options
@@ -54,20 +57,18 @@ def equilibrium(
     Exit status: 0 done, 1 no equilibrium was found or the file could not be written, 2 the input is wrong.
     """
     from ..analyses.equilibrium import equilibrium as found_equilibrium
-    from ..results.files import check_output, write
+    from ..results.files import write
     from ..show.modes import equilibrium_text
 
     with refusing(scene, as_json):
-        if output is not None:
-            check_output(output)
-            refuse_own_input("-o", scene, output)
+        refuse_file("-o", output, scene, "results")
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         start = start_of(loaded, state, at, changes)
         motion = _motion(velocity, rotation, about, rolling, speed)
         with in_file(scene):
             found = found_equilibrium(loaded, motion=motion, **start)
-    written = output is None or is_written(output, lambda: write(output, found.solution))
+    written = is_written(output, lambda path: write(path, found.solution))
     click.echo(json.dumps(found.as_dict(scene)) if as_json else equilibrium_text(found, loaded))
     sys.exit(0 if written else Status.FAILED)
 

@@ -11,21 +11,19 @@ import click
 from ..errors import InputError
 from ..reading.files.files_read import content_of
 from .process import Status
-from .scene import CHANGES, file_beside, is_written, output_option, refuse_own_input, refusing
+from .scene import CHANGES, assigned, file_beside, is_written, option, output_option, refuse_own_input, refusing
 
-DATASET = ".adm"
+DATASET, AT = ".adm", "--at JOINT=VALUE with a number"
 
 
 @click.command(short_help="Write a dataset, a robot, or a planar scene, as a scene; or a scene as a dataset.")
 @click.argument("scene")
 @output_option("Scene file, or dataset if it ends in .adm; by default standard output.")
-@click.option("--in-space", is_flag=True, help="Take a planar SCENE, and write it in the x-y plane of space.")
-@click.option(
-    "--at",
+@option("--in-space", "Take a planar SCENE, and write it in the x-y plane of space.")
+@option(
+    "--at JOINT=VALUE ...",
+    "Initial position of a hinge or slide of a robot, rad or m; by default as drawn",
     "coordinates",
-    multiple=True,
-    metavar="JOINT=VALUE",
-    help="Initial position of a hinge or slide of a robot, rad or m; by default as drawn.",
 )
 @CHANGES
 def convert(
@@ -50,7 +48,7 @@ def convert(
     for path, text in texts.items():
         if path is None:
             click.echo(text, nl=False)
-        elif not is_written(path, partial(write_text, path, text)):
+        elif not is_written(path, partial(write_text, text=text)):
             sys.exit(Status.FAILED)
 
 
@@ -68,7 +66,7 @@ def _as_dataset(
     commands = output.with_suffix(COMMANDS)
     refuse_own_input("-o", path, commands)
     if coordinates and Path(path).suffix.lower() in ROBOTS:
-        scene = load_robot(path, changes, coordinates=dict(map(_coordinate, coordinates)))
+        scene = load_robot(path, changes, coordinates=assigned(AT, coordinates, float))
     else:
         scene = load_scene(path, changes)
     spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
@@ -85,7 +83,7 @@ def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, 
     if changes:
         raise InputError(f"{path}: found --set, expected it with --in-space alone")
     if suffix in ROBOTS:
-        return convert_robot(path, coordinates=dict(map(_coordinate, coordinates)))
+        return convert_robot(path, coordinates=assigned(AT, coordinates, float))
     if coordinates:
         raise InputError(f"{path}: found --at, expected it with a robot alone")
     if suffix in (".yaml", ".yml"):
@@ -95,28 +93,16 @@ def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, 
     return convert_file(path)
 
 
-def _coordinate(text: str) -> tuple[str, float]:
-    joint, _, value = text.partition("=")
-    try:
-        return joint.strip(), float(value)
-    except ValueError:
-        raise InputError(f"--at: found '{text}', expected JOINT=VALUE with a number") from None
-
-
 @click.command(short_help="Results compared with another program's listing.")
 @click.argument("results")
 @click.argument("listing")
-@click.option(
-    "--map",
+@option(
+    "--map CHANNEL=COLUMN[*FACTOR] ...",
+    "A channel and the column that it is compared with, by name or number (1 is time), times a factor; or a file of such lines",
     "mapped",
-    multiple=True,
-    metavar="CHANNEL=COLUMN[*FACTOR]",
-    help="A channel and the column that it is compared with, by name or number (1 is time), times a factor; or a file of such lines.",
 )
-@click.option(
-    "--tolerance", type=float, default=1e-3, show_default=True, help="Largest relative difference that counts as equal."
-)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+@option("--tolerance FLOAT", "Largest relative difference that counts as equal.", default=1e-3)
+@option("--json", "Print one JSON object on one line.", "as_json")
 def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, as_json: bool) -> None:
     """Compare RESULTS (.npz, .nc, .csv) with LISTING: a table as text, Adams' .res in XML, or results of another run.
 
@@ -127,7 +113,8 @@ def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, 
     from ..results.listings import differences
 
     with refusing(results, as_json):
-        found = differences(results, listing, _pairs(mapped))
+        lines = [line for text in mapped for line in _lines(text)]
+        found = differences(results, listing, assigned("--map CHANNEL=COLUMN", lines, str))
     far = [one for one in found if not one.relative <= tolerance]
     if as_json:
         from ..show.summary import json_line
@@ -144,17 +131,6 @@ def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, 
     sys.exit(Status.FAILED if far else Status.DONE)
 
 
-def _pairs(mapped: tuple[str, ...]) -> dict[str, str]:
-    lines = [line for text in mapped for line in _lines(text)]
-    pairs = {}
-    for line in lines:
-        channel, equals, column = (part.strip() for part in line.partition("="))
-        if not equals or not channel or not column:
-            raise InputError(f"--map: found '{line}', expected CHANNEL=COLUMN")
-        pairs[channel] = column
-    return pairs
-
-
 def _lines(text: str) -> list[str]:
     """Return the lines of a file, or of a text with an assignment."""
     if "=" in text:
@@ -169,13 +145,8 @@ def _lines(text: str) -> list[str]:
 @click.command(short_help="An FMU for co-simulation.")
 @click.argument("scene")
 @output_option("The FMU, .fmu; by default SCENE.fmu in the working folder.")
-@click.option(
-    "--channel",
-    "outputs",
-    multiple=True,
-    help="An output of the FMU; by default the requests of the scene, or all channels.",
-)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+@option("--channel TEXT ...", "An output of the FMU; by default the requests of the scene, or all channels", "outputs")
+@option("--json", "Print one JSON object on one line.", "as_json")
 def fmu(scene: str, output: Path | None, outputs: tuple[str, ...], as_json: bool) -> None:
     """Write SCENE as an FMU (FMI 2.0, co-simulation) with its inputs, parameters and channels.
 

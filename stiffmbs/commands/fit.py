@@ -11,7 +11,7 @@ import click
 from ..analyses.load_scene import load_scene
 from ..errors import InputError
 from .process import Status
-from .scene import changes_of, in_file, refusing, several, solving_options
+from .scene import assigned, changes_of, in_file, option, refusing, several, solving_options
 
 if TYPE_CHECKING:
     from ..studies.fit import Fit
@@ -21,15 +21,13 @@ if TYPE_CHECKING:
 
 @click.command(short_help="Derivatives of an output by parameters.")
 @click.argument("scene")
-@click.option(
-    "--to", "to", multiple=True, required=True, metavar="NAME,NAME...",
-    help="Parameters, or paths of numbers such as bodies.bar.mass; any number of times.",
-)  # fmt: skip
-@click.option(
-    "--of", required=True, metavar="FORMULA",
-    help="The output: peak, max, min, final, first, rms, mean or integral of channels, and formulas of them.",
-)  # fmt: skip
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@option("--to NAME,NAME... ...", "Parameters, or paths of numbers such as bodies.bar.mass", required=True)
+@option(
+    "--of FORMULA",
+    "The output: peak, max, min, final, first, rms, mean or integral of channels, and formulas of them.",
+    required=True,
+)
+@option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @solving_options
 def sensitivities(scene: str, to: tuple[str, ...], of: str, as_json: bool, **options: object) -> None:
     """Compute derivatives of an output of SCENE by parameters, by forward sensitivity analysis along the steps of bdf
@@ -60,18 +58,15 @@ def _text(found: Sensitivity) -> str:
 
 
 _search_options = several(
-    click.option(
-        "--parameter", "parameters", multiple=True, required=True, metavar="NAME=FROM:TO[:log]",
-        help="Parameter or path to determine, with its bounds; any number of times.",
-    ),
-    click.option("--start", "start", multiple=True, metavar="NAME=VALUE", help="Initial value of the search."),
-    click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table."),
+    option("--parameter NAME=FROM:TO[:log] ...", "Parameter or path to determine, with its bounds", "parameters", required=True),
+    option("--start NAME=VALUE ...", "Initial value of the search"),
+    option("--json", "Print one JSON object on one line instead of a table.", "as_json"),
 )  # fmt: skip
 
 
 @click.command(short_help="Fit parameters to measured channels.")
 @click.argument("scene")
-@click.option("--data", required=True, metavar="FILE", help="Measured channels over time: .csv, .npz or .nc.")
+@option("--data FILE", "Measured channels over time: .csv, .npz or .nc.", required=True)
 @_search_options
 @solving_options
 def fit(
@@ -93,10 +88,8 @@ def fit(
 
 @click.command(short_help="Find the parameters that minimise an output.")
 @click.argument("scene")
-@click.option("--minimise", required=True, metavar="FORMULA", help="Objective: 'rms(chassis.ay)'.")
-@click.option(
-    "--keep", multiple=True, metavar="'FORMULA <= VALUE'", help="A constraint, with <= or >=; any number of times."
-)
+@option("--minimise FORMULA", "Objective: 'rms(chassis.ay)'.", required=True)
+@option("--keep 'FORMULA <= VALUE' ...", "A constraint, with <= or >=")
 @_search_options
 @solving_options
 def optimise(
@@ -126,13 +119,7 @@ def _ranges(parameters: tuple[str, ...]) -> dict[str, object]:
 def _values(pairs: tuple[str, ...]) -> dict[str, float]:
     from ..reading.variation import number
 
-    found = {}
-    for text in pairs:
-        name, equals, value = text.partition("=")
-        if not equals:
-            raise InputError(f"--start {text}: found no value, expected NAME=VALUE")
-        found[name.strip()] = number(value)
-    return found
+    return assigned("--start NAME=VALUE", pairs, number)
 
 
 def _limits(keep: tuple[str, ...]) -> dict[str, tuple[float | None, float | None]]:

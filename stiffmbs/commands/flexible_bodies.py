@@ -15,8 +15,9 @@ from .scene import (
     CHANGES,
     changes_of,
     is_written,
+    option,
     output_option,
-    refuse_own_input,
+    refuse_file,
     refusing,
     solve_scene,
     solving_options,
@@ -25,13 +26,9 @@ from .scene import (
 
 @click.command(short_help="Reduction of a flexible body.")
 @click.argument("body")
-@click.option(
-    "--hold", "held", multiple=True, metavar="NAME,...", help="Also list the frequencies with these interfaces fixed."
-)
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="Write the nodes and the mode shapes for ParaView: .vtu."
-)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of text.")
+@option("--hold NAME,... ...", "Also list the frequencies with these interfaces fixed", "held")
+@option("-o, --output PATH", "Write the nodes and the mode shapes for ParaView: .vtu.")
+@option("--json", "Print one JSON object on one line instead of text.", "as_json")
 @CHANGES
 def flexible(
     body: str, held: tuple[str, ...], output: Path | None, as_json: bool, changes: list[tuple[str, str]]
@@ -44,26 +41,20 @@ def flexible(
     """
     from ..flexible_bodies.read import read_flexible_body
     from ..flexible_bodies.reduced import reduced_body
-    from ..show.flexible_body import check_shapes_file, flexible_body_as_dict, flexible_body_text, write_shapes
+    from ..show.flexible_body import flexible_body_as_dict, flexible_body_text, write_shapes
     from .progress import ProgressBar
 
     with refusing(body, as_json):
-        if output is not None:
-            check_shapes_file(output)
+        refuse_file("-o", output, body, "mode shapes")
         described = read_flexible_body(body, changes)
         names, folder = list(described.interfaces), Path(body).parent
         sets = {text: [_number(name, names) for name in text.split(",")] for text in held}
         with prefixed(f"{body}: "), ProgressBar(0.0, 0.0):
             found = reduced_body(described, folder)
         frequencies = {f"{text} held": found.held_frequencies(numbers) for text, numbers in sets.items()}
-    written = True
-    if output is not None:
-        written = is_written(output, lambda: write_shapes(output, described.model(folder), found))
-    click.echo(
-        json.dumps(flexible_body_as_dict(body, found, names, frequencies))
-        if as_json
-        else flexible_body_text(body, found, names, frequencies)
-    )
+    written = is_written(output, lambda path: write_shapes(path, described.model(folder), found))
+    report = body, found, names, frequencies
+    click.echo(json.dumps(flexible_body_as_dict(*report)) if as_json else flexible_body_text(*report))
     sys.exit(Status.DONE if written else Status.FAILED)
 
 
@@ -80,12 +71,10 @@ def _number(name: str, names: list[str]) -> int:
 @click.argument("body")
 @click.argument("results", required=False, type=click.Path(path_type=Path))
 @output_option("Write the deformed mesh with its stresses over time for ParaView: .xdmf.")
-@click.option(
-    "--node", "nodes", multiple=True, type=int, help="Also report the displacement of this node (numbers from 0)."
-)
-@click.option("--scale", type=float, default=1.0, show_default=True, help="Factor of the deformation in the file.")
-@click.option("--every", type=click.IntRange(1), default=1, show_default=True, help="Write every n-th output time.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of text.")
+@option("--node INTEGER ...", "Also report the displacement of this node (numbers from 0)", "nodes")
+@option("--scale FLOAT", "Factor of the deformation in the file.", default=1.0)
+@option("--every INTEGER RANGE", "Write every n-th output time.", default=1)
+@option("--json", "Print one JSON object on one line instead of text.", "as_json")
 @solving_options
 def stresses(
     scene: str, body: str, results: Path | None, output: Path | None, nodes: tuple[int, ...], scale: float, every: int,
@@ -95,15 +84,12 @@ def stresses(
 
     Exit status: 0 done, 1 stopped early or not written, 2 the input is wrong.
     """
-    from ..results.files import refuse_path
     from ..results.flexible_motion import FlexibleMotion
     from ..results.solution import Solution
     from ..show.flexible_body import flexible_motion_as_dict, flexible_motion_text
 
     with refusing(scene, as_json, output):
-        if output is not None:
-            refuse_path("-o", output, (".xdmf",))
-            refuse_own_input("-o", scene, output)
+        refuse_file("-o", output, scene, "deformation")
         loaded = load_scene(scene, changes_of(options))
         FlexibleMotion.check(loaded, body)
         solution = Solution.load(results) if results is not None else solve_scene(scene, loaded, as_json)
@@ -111,6 +97,6 @@ def stresses(
             motion = FlexibleMotion(loaded, solution, body)
             motion.displacement(nodes, slice(0, 0))
         report = flexible_motion_as_dict(scene, motion, nodes)
-    written = output is None or is_written(output, lambda: motion.write(output, slice(None, None, every), scale))
+    written = is_written(output, lambda path: motion.write(path, slice(None, None, every), scale))
     click.echo(json.dumps(report) if as_json else flexible_motion_text(report))
     sys.exit(Status.DONE if written and solution.success else Status.FAILED)

@@ -11,29 +11,34 @@ import click
 from ..analyses.load_scene import load_scene
 from ..errors import InputError
 from .process import Status
-from .scene import changes_of, in_file, is_written, output_option, refuse_own_input, refusing, solving_options, start_of
+from .scene import (
+    changes_of,
+    in_file,
+    is_written,
+    option,
+    output_option,
+    refuse_file,
+    refusing,
+    solving_options,
+    start_of,
+)
 
 
 @click.command(short_help="Natural frequencies and damping.")
 @click.argument("scene")
-@click.option("--from", "state", metavar="FILE", help="Take the state in FILE, results of run -o or equilibrium -o.")
-@click.option(
-    "--at",
-    type=float,
-    help="Time at which the state is taken, s: of FILE (by default its last row), or of the run (by default its start).",
+@option("--from FILE", "Take the state in FILE, results of run -o or equilibrium -o.", "state")
+@option(
+    "--at FLOAT",
+    "Time at which the state is taken, s: of FILE (by default its last row), or of the run (by default its start).",
 )
 @output_option(
     "Write a page with the modes in motion (.html), or one period of every mode: FILE.npz becomes FILE_1.npz, FILE_2.npz, "
     "..., results as of run -o."
 )
-@click.option(
-    "--amplitude",
-    type=click.FloatRange(0, min_open=True),
-    default=0.1,
-    show_default=True,
-    help="Amplitude of the motion written, relative to the size of the mechanism.",
+@option(
+    "--amplitude FLOAT RANGE", "Amplitude of the motion written, relative to the size of the mechanism.", default=0.1
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @solving_options
 def modes(
     scene: str, state: str | None, at: float | None, output: Path | None, amplitude: float, as_json: bool, **options: object
@@ -43,19 +48,14 @@ def modes(
     Exit status: 0 done, 1 no such state is found or a file could not be written, 2 the input is wrong.
     """
     from ..analyses.linearised.modes import modes as found_modes
-    from ..results.files import check_output, write
+    from ..results.files import write
     from ..show.modes import modes_text
 
     page = output is not None and output.suffix == ".html"
     with refusing(scene, as_json, output):
-        if output is not None:
-            if page:
-                from ..show.page.modes import check_page, write_modes
-
-                check_page(output)
-            else:
-                check_output(output)
-        refuse_own_input("-o", scene, output)
+        if page:
+            from ..show.page.modes import write_modes
+        refuse_file("-o", output, scene, "modes in motion" if page else "results")
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         start = {"at": at} if state is None else start_of(loaded, state, at, changes)
@@ -71,28 +71,14 @@ def modes(
 
 @click.command(short_help="Frequency response.")
 @click.argument("scene")
-@click.option(
-    "--input",
-    "inputs",
-    multiple=True,
-    required=True,
-    help="BODY.fx, BODY.MARKER.fy, ..., or a parameter of SCENE; any number of times.",
-)
-@click.option("--output", "outputs", multiple=True, required=True, help="A channel or request; any number of times.")
-@click.option("--from", "lowest", type=click.FloatRange(0, min_open=True), default=0.1, show_default=True, help="Hz.")
-@click.option("--to", "highest", type=click.FloatRange(0, min_open=True), default=100.0, show_default=True, help="Hz.")
-@click.option(
-    "--points",
-    type=click.IntRange(2),
-    default=400,
-    show_default=True,
-    help="Frequencies, evenly on a logarithmic scale.",
-)
-@click.option("--at", type=float, help="Time of the run at which the state is taken, s; by default the start.")
-@click.option(
-    "-o", "--to-file", "path", type=click.Path(path_type=Path), help="Write gain and phase at every frequency: .csv."
-)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@option("--input TEXT ...", "BODY.fx, BODY.MARKER.fy, ..., or a parameter of SCENE", "inputs", required=True)
+@option("--output TEXT ...", "A channel or request", "outputs", required=True)
+@option("--from FLOAT RANGE", "Hz.", "lowest", default=0.1)
+@option("--to FLOAT RANGE", "Hz.", "highest", default=100.0)
+@option("--points INTEGER RANGE", "Frequencies, evenly on a logarithmic scale.", type=click.IntRange(2), default=400)
+@option("--at FLOAT", "Time of the run at which the state is taken, s; by default the start.")
+@option("-o, --to-file PATH", "Write gain and phase at every frequency: .csv.", "path")
+@option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @solving_options
 def response(
     scene: str, inputs: tuple[str, ...], outputs: tuple[str, ...], lowest: float, highest: float, points: int,
@@ -109,16 +95,14 @@ def response(
 
     from ..analyses.linearised.inputs import force_on, parameter_of
     from ..analyses.linearised.transfer import transfer
-    from ..results.files import refuse_path, write_text
+    from ..results.files import write_text
     from ..show.modes import response_as_json, response_csv, response_text
 
     changes = changes_of(options)
     with refusing(scene, as_json):
         if not lowest < highest:
             raise InputError(f"--from {lowest:g} --to {highest:g}: found no range, expected --from below --to")
-        refuse_own_input("-o", scene, path)
-        if path is not None:
-            refuse_path("-o", path, (".csv",))
+        refuse_file("-o", path, scene, "curves")
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = {
@@ -131,6 +115,6 @@ def response(
             frequencies = np.geomspace(lowest, highest, points)
             values = found.response(frequencies)
     text = response_csv(found, frequencies, values)
-    written = path is None or is_written(path, lambda: write_text(path, text))
+    written = is_written(path, lambda path: write_text(path, text))
     click.echo((response_as_json if as_json else response_text)(scene, found, frequencies, values))
     sys.exit(0 if written else Status.FAILED)

@@ -17,7 +17,9 @@ from .scene import (
     changes_of,
     file_beside,
     in_file,
+    option,
     output_option,
+    refuse_file,
     refuse_own_input,
     refusing,
     solve_scene,
@@ -62,15 +64,13 @@ def runs_of(source: str, others: Sequence[Path], options: dict[str, object]) -> 
 @click.command(short_help="A picture of a mechanism.")
 @click.argument("scene")
 @output_option("File to draw: .svg, .png, .pdf, or .json; by default SCENE.svg.")
-@click.option("--at", type=float, help="Time of the run, s; by default the start.")
-@click.option("--described", is_flag=True, help="Draw the bodies as described, before assembly, without forces.")
-@click.option("--check", "checked", is_flag=True, help="Color redundant joints and reactions that are not unique.")
-@click.option(
-    "--view", default="", help="front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees."
-)
-@click.option("--names/--no-names", default=True, show_default=True, help="Whether names are written.")
-@click.option("--forces/--no-forces", default=None, help="Draw forces to scale; by default only for planar scenes.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was drawn.")
+@option("--at FLOAT", "Time of the run, s; by default the start.")
+@option("--described", "Draw the bodies as described, before assembly, without forces.")
+@option("--check", "Color redundant joints and reactions that are not unique.", "checked")
+@option("--view TEXT", "front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees.", default="")
+@option("--names/--no-names", "Whether names are written.", default=True)
+@option("--forces/--no-forces", "Draw forces to scale; by default only for planar scenes.", default=None)
+@option("--json", "Print one JSON object on one line on what was drawn.", "as_json")
 @solving_options
 def draw(
     scene: str, output: Path | None, at: float | None, described: bool, checked: bool, view: str, names: bool, forces: bool | None,
@@ -80,14 +80,13 @@ def draw(
 
     Exit status: 0 done, 1 no such state is found, or the file could not be written, 2 the input is wrong.
     """
-    from ..show.drawing.draw import check_drawing, state_drawn, summary, write_drawing
+    from ..show.drawing.draw import state_drawn, summary, write_drawing
     from ..show.drawing.view import check_view
 
     path = output or file_beside(scene, ".svg")
     with refusing(scene, as_json, path):
-        check_drawing(path)
+        refuse_file("-o", path, scene, "drawing")
         check_view(view)
-        refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes_of(options))
         with in_file(scene):
             drawing, poses = state_drawn(loaded, at, described, checked)
@@ -102,24 +101,13 @@ def draw(
 @click.argument("scene")
 @click.argument("results", nargs=-1, type=click.Path(path_type=Path))
 @output_option("File to write: .gif, .mp4 or .html; by default SCENE.html.")
-@click.option(
-    "--view", default="", help="front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees."
-)
-@click.option(
-    "--speed", type=float, default=1.0, show_default=True, help="Seconds of the model in one second of a film."
-)
-@click.option("--rate", type=float, default=25.0, show_default=True, help="Pictures in one second of a film.")
-@click.option(
-    "--trace",
-    "traces",
-    multiple=True,
-    help="A marker, such as coupler.tip, or a body whose path is drawn; any number of times.",
-)
-@click.option("--names/--no-names", default=False, show_default=True, help="Whether a film shows names.")
-@click.option(
-    "--forces/--no-forces", default=None, help="Show forces to scale in a film; by default only for planar scenes."
-)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was written.")
+@option("--view TEXT", "front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees.", default="")
+@option("--speed FLOAT", "Seconds of the model in one second of a film.", default=1.0)
+@option("--rate FLOAT", "Pictures in one second of a film.", default=25.0)
+@option("--trace TEXT ...", "A marker, such as coupler.tip, or a body whose path is drawn", "traces")
+@option("--names/--no-names", "Whether a film shows names.", default=False)
+@option("--forces/--no-forces", "Show forces to scale in a film; by default only for planar scenes.", default=None)
+@option("--json", "Print one JSON object on one line on what was written.", "as_json")
 @solving_options
 def animate(
     scene: str, results: tuple[Path, ...], output: Path | None, view: str, speed: float, rate: float, traces: tuple[str, ...],
@@ -129,15 +117,14 @@ def animate(
 
     Exit status: 0 done, 1 stopped early (the part that was solved is shown) or not written, 2 the input is wrong.
     """
-    from ..show.drawing.animate import check_animation, check_playback, traced, write_animation
+    from ..show.drawing.animate import check_animation, traced, write_animation
     from ..show.drawing.film import Playback
     from ..show.drawing.picture import Shown
     from ..show.drawing.view import check_view
 
     path, playback = output or file_beside(scene, ".html"), Playback(speed, rate)
     with refusing(scene, as_json, path):
-        check_animation(path)
-        check_playback(playback)
+        check_animation(path, playback)
         check_view(view)
         for read in (scene, *map(str, results)):
             refuse_own_input("-o", read, path)
@@ -159,18 +146,12 @@ def animate(
 @click.command(short_help="Plots of any channels.")
 @click.argument("source", metavar="SCENE|RESULTS")
 @click.argument("channels", nargs=-1)
-@click.option("--against", default="time", show_default=True, help="A channel, or time.")
-@click.option(
-    "--with",
-    "others",
-    multiple=True,
-    type=click.Path(path_type=Path),
-    help="Results (.npz) of another run, drawn over; any number of times.",
-)
-@click.option("--title", default="", help="Title; by default the name of the scene.")
+@option("--against TEXT", "A channel, or time.", default="time")
+@option("--with PATH ...", "Results (.npz) of another run, drawn over", "others")
+@option("--title TEXT", "Title; by default the name of the scene.", default="")
 @output_option("File to draw: .png, .svg or .pdf; by default a window.")
-@click.option("--live", is_flag=True, help="Show the plots in a window while SCENE is solved.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was drawn.")
+@option("--live", "Show the plots in a window while SCENE is solved.")
+@option("--json", "Print one JSON object on one line on what was drawn.", "as_json")
 @solving_options
 def plot(
     source: str, channels: tuple[str, ...], against: str, others: tuple[Path, ...], title: str, output: Path | None,

@@ -15,9 +15,10 @@ from ..errors import StiffmbsError
 from ..reading.files.text_file import STANDARD_INPUT, file_text
 from .pictures import runs_of
 from .process import Status
-from .scene import changes_of, file_beside, output_option, refuse_own_input, refusing, solve_scene, solving_options
+from .scene import changes_of, file_beside, option, output_option, refuse_file, refusing, solve_scene, solving_options
 
 if TYPE_CHECKING:
+    from ..model.scene import Scene
     from ..results.solution import Solution
     from ..show.sections import Section
 
@@ -26,11 +27,11 @@ if TYPE_CHECKING:
 @click.argument("scene")
 @click.argument("other", required=False)
 @output_option("Where to write the page: .html.")
-@click.option("--verify/--no-verify", default=True, show_default=True, help="Whether peaks get error bars.")
-@click.option("--equilibrium", is_flag=True, help="With the static equilibrium.")
-@click.option("--compare", is_flag=True, help="Add run time against error of bdf, dop853 and auto.")
-@click.option("--kc", multiple=True, metavar="AXLE", help="Add kinematics and compliance of an axle, such as front.")
-@click.option("--loads", is_flag=True, help="With the largest loads of all bushings.")
+@option("--verify/--no-verify", "Whether peaks get error bars.", default=True)
+@option("--equilibrium", "With the static equilibrium.")
+@option("--compare", "Add run time against error of bdf, dop853 and auto.")
+@option("--kc AXLE ...", "Add kinematics and compliance of an axle, such as front")
+@option("--loads", "With the largest loads of all bushings.")
 @solving_options
 def report(
     scene: str, other: str | None, output: Path | None, verify: bool, equilibrium: bool, compare: bool, kc: tuple[str, ...], loads: bool,
@@ -49,41 +50,36 @@ def report(
     from ..comparison.compare import compare as compared
     from ..comparison.table import comparison_section
     from ..show.modes import equilibrium_section
-    from ..show.report import check_report, write_report
-    from ..show.suspension import kc_section, road_loads_section
-    from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
+    from ..show.report import write_report
+    from ..show.suspension import road_loads_section
     from ..studies.suspension.road_loads import road_loads
 
     path = output or file_beside(scene, ".report.html")
     with refusing(scene, output=path):
-        check_report(path)
-        refuse_own_input("-o", scene, path)
+        refuse_file("-o", path, scene, "report")
         loaded = load_scene(scene, changes_of(options))
         compared_with = _run_of(other) if other else None
         solution = solve_scene(scene, loaded, verify)
-        asked: list[tuple[str, Callable[[], Section]]] = [
-            *(
-                [("Static equilibrium", lambda: equilibrium_section(found_equilibrium(loaded), loaded))]
-                if equilibrium
-                else []
-            ),
-            *(
-                (
-                    f"Kinematics and compliance: {axle}",
-                    partial(lambda axle: kc_section(kinematics_and_compliance(loaded, axle)), axle),
-                )
-                for axle in kc
-            ),
-            *([("Road loads", lambda: road_loads_section(road_loads(loaded, {"run": solution})))] if loads else []),
-            *([("Solvers compared", lambda: comparison_section(compared(loaded)))] if compare else []),
+        asked: list[tuple[bool, str, Callable[[], Section]]] = [
+            (equilibrium, "Static equilibrium", lambda: equilibrium_section(found_equilibrium(loaded), loaded)),
+            *((True, f"Kinematics and compliance: {axle}", partial(_of_axle, loaded, axle)) for axle in kc),
+            (loads, "Road loads", lambda: road_loads_section(road_loads(loaded, {"run": solution}))),
+            (compare, "Solvers compared", lambda: comparison_section(compared(loaded))),
         ]
-        sections = [_section(title, made) for title, made in asked]
+        sections = [_section(title, made) for wanted, title, made in asked if wanted]
         text = "" if scene == STANDARD_INPUT else file_text(scene)
         write_report(path, loaded, solution, text, sections, compared_with)
     for note in solution.notes:
         click.echo(f"note: {note}")
     click.echo(f"report: {path}")
     sys.exit(0 if solution.outcome.name == "DONE" else Status.FAILED)
+
+
+def _of_axle(loaded: Scene, axle: str) -> Section:
+    from ..show.suspension import kc_section
+    from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
+
+    return kc_section(kinematics_and_compliance(loaded, axle))
 
 
 def _run_of(other: str) -> tuple[str, Solution]:

@@ -15,8 +15,9 @@ from .scene import (
     changes_of,
     file_beside,
     is_written,
+    option,
     output_option,
-    refuse_own_input,
+    refuse_file,
     refusing,
     solve_scene,
     solving_options,
@@ -39,14 +40,12 @@ READ_BY_RICH = "COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "J
 @output_option(
     "Write every channel: .csv, .npz, .nc, .tab or .res; by default SCENE.results.npz, or no file with --json."
 )
-@click.option("--figure", type=click.Path(path_type=Path), help="Draw the scene's figure: .png, .svg or .pdf.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")
-@click.option("--all", "all_loads", is_flag=True, help="List the loads of all elements, not only the ten largest.")
+@option("--figure PATH", "Draw the scene's figure: .png, .svg or .pdf.")
+@option("--json", "Print one JSON object on one line instead of the summary.", "as_json")
+@option("--all", "List the loads of all elements, not only the ten largest.", "all_loads")
 @state_options
 @solving_options
-@click.option(
-    "--verify", is_flag=True, help="Rerun at a smaller tolerance and with another integrator: error bars, and warnings."
-)
+@option("--verify", "Rerun at a smaller tolerance and with another integrator: error bars, and warnings.")
 def run(
     scene: str, output: Path | None, figure: Path | None, as_json: bool, all_loads: bool, verify: bool, state: str | None,
     at: float | None, **options: object,
@@ -56,18 +55,11 @@ def run(
     Exit status: 0 done, 1 stopped early (results up to there are kept) or a requested file could not be written, 2 the
     input is wrong.
     """
-    from ..results.files import check_output
     from .progress import ProgressBar
 
     with refusing(scene, as_json):
-        if output is not None:
-            check_output(output)
-            refuse_own_input("-o", scene, output)
-        if figure is not None:
-            from ..show.figure import check_figure
-
-            check_figure("--figure", figure)
-            refuse_own_input("--figure", scene, figure)
+        refuse_file("-o", output, scene, "results")
+        refuse_file("--figure", figure, scene, "figure")
         changes = changes_of(options)
         with ProgressBar(0.0, 0.0):
             loaded = load_scene(scene, changes)
@@ -78,7 +70,7 @@ def run(
         from ..show.style import write_sheet
 
         with refusing(scene, as_json):
-            written = is_written(figure, lambda: write_sheet(figure, drawn(solution, loaded.figure))) and written
+            written = is_written(figure, lambda path: write_sheet(path, drawn(solution, loaded.figure))) and written
     from ..show import summary
 
     if as_json:

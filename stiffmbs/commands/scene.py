@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
@@ -21,6 +21,47 @@ if TYPE_CHECKING:
     from ..results.solution import Solution
 
 Command = TypeVar("Command", bound=Callable[..., Any])
+Value = TypeVar("Value")
+TYPES = {
+    "FLOAT": float, "FLOAT RANGE": click.FloatRange(0, min_open=True), "INTEGER": int, "INTEGER RANGE": click.IntRange(1),
+    "PATH": click.Path(path_type=Path),
+}  # fmt: skip
+"""Types of options by their placeholders, unless given; text for others."""
+
+
+def option(usage: str, words: str, name: str = "", **settings: Any) -> Callable[[Command], Command]:
+    """Return an option.
+
+    `usage`: names and placeholder, as ``-o, --output PATH``; without a placeholder it is a flag, and three dots follow if it
+    may be given any number of times. `words`: its help. `name`: parameter of the command, by default the last name. Other
+    settings are those of `click.option`.
+    """
+    parts = usage.removesuffix(" ...").split(" ")
+    names = [part.rstrip(",") for part in parts if part.startswith("-")]
+    placeholder = " ".join(parts[len(names) :])
+    settings.setdefault("show_default", settings.get("default") not in (None, ""))
+    if usage.endswith(" ..."):
+        settings["multiple"], words = True, f"{words}; any number of times."
+    settings |= (
+        {"metavar": placeholder, "type": settings.get("type", TYPES.get(placeholder))}
+        if placeholder
+        else {"is_flag": True}
+    )
+    return click.option(*names, *([name] if name else []), help=words, **settings)
+
+
+def assigned(usage: str, texts: Iterable[str], read: Callable[[str], Value]) -> dict[str, Value]:
+    """Return the values of an option, NAME=VALUE, by name; raise an InputError for other texts. `usage`: option and placeholder."""
+    found = {}
+    option, _, expected = usage.partition(" ")
+    for text in texts:
+        name, _, value = (part.strip() for part in text.partition("="))
+        with suppress(ValueError):
+            if name and value:
+                found[name] = read(value)
+                continue
+        raise InputError(f"{option}: found '{text}', expected {expected}")
+    return found
 
 
 def pairs(_: click.Context, __: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, str]]:
@@ -34,13 +75,11 @@ def pairs(_: click.Context, __: click.Parameter, values: tuple[str, ...]) -> lis
     return found
 
 
-CHANGES = click.option(
-    "--set",
+CHANGES = option(
+    "--set PATH=VALUE ...",
+    "Change a value of the scene, such as bodies.cart.mass=12, or a parameter, N=40",
     "changes",
-    multiple=True,
     callback=pairs,
-    metavar="PATH=VALUE",
-    help="Change a value of the scene, such as bodies.cart.mass=12, or a parameter, N=40; any number of times.",
 )
 
 
@@ -48,8 +87,8 @@ def several(*options: Callable[[Command], Command]) -> Callable[[Command], Comma
     """Return one decorator that adds several options to a command, in their order."""
 
     def add(command: Command) -> Command:
-        for option in reversed(options):
-            command = option(command)
+        for each in reversed(options):
+            command = each(command)
         return command
 
     return add
@@ -57,25 +96,23 @@ def several(*options: Callable[[Command], Command]) -> Callable[[Command], Comma
 
 def output_option(words: str) -> Callable[[Command], Command]:
     """Return the option ``-o`` with its help."""
-    return click.option("-o", "--output", type=click.Path(path_type=Path), help=words)
+    return option("-o, --output PATH", words)
 
 
 solving_options = several(
-    click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes."),
-    click.option("--duration", help="Time to solve, s, or with a unit."),
-    click.option("--solver", help=f"{', '.join(get_args(SolverName))}."),
-    click.option(
-        "--scheme",
-        help=f"Scheme of projected: {', '.join(get_args(SchemeName))}; by default dop853, or euler_cromer if a step is given.",
+    option("--rtol TEXT", "Relative tolerance of bdf and the adaptive schemes."),
+    option("--duration TEXT", "Time to solve, s, or with a unit."),
+    option("--solver TEXT", f"{', '.join(get_args(SolverName))}."),
+    option(
+        "--scheme TEXT",
+        f"Scheme of projected: {', '.join(get_args(SchemeName))}; by default dop853, or euler_cromer if a step is given.",
     ),
     CHANGES,
 )
 """Options ``--rtol``, ``--duration``, ``--solver``, ``--scheme`` and ``--set``; see `changes_of`."""
 state_options = several(
-    click.option(
-        "--from", "state", metavar="FILE", help="Start from the state in FILE, results of run -o or equilibrium -o."
-    ),
-    click.option("--at", type=float, help="Time of the row in FILE, s; by default the last row."),
+    option("--from FILE", "Start from the state in FILE, results of run -o or equilibrium -o.", "state"),
+    option("--at FLOAT", "Time of the row in FILE, s; by default the last row."),
 )
 """Options ``--from`` and ``--at`` of a command that may start from a saved state; see `start_of`."""
 
@@ -127,6 +164,15 @@ def in_file(path: str) -> Iterator[None]:
         raise type(error)(f"{source_name(path)}: {error}") from None
 
 
+def refuse_file(option: str, path: Path | None, scene: str, kind: str) -> None:
+    """Reject a requested file of a kind of `KINDS` that cannot be written, or that is the file that is read."""
+    if path is not None:
+        from ..results.files import refuse_path
+
+        refuse_own_input(option, scene, path)
+        refuse_path(option, path, kind)
+
+
 def refuse_own_input(option: str, scene: str, output: Path | None) -> None:
     """Reject an output that is the input file under any name."""
     try:
@@ -137,17 +183,18 @@ def refuse_own_input(option: str, scene: str, output: Path | None) -> None:
         raise InputError(f"{option} {output}: found the file that is read, {scene}, expected another one")
 
 
-def is_written(path: Path, write: Callable[[], object]) -> bool:
-    """Write a requested file; if this fails, print the reason and continue."""
+def is_written(path: Path | None, write: Callable[[Path], object]) -> bool:
+    """Write a file if it is requested; if this fails, print the reason and continue."""
     try:
-        write()
+        if path is not None:
+            write(path)
     except OSError as error:
         tell_unwritten(path, error)
         return False
     return True
 
 
-def tell_unwritten(path: Path, error: OSError) -> None:
+def tell_unwritten(path: Path | None, error: OSError) -> None:
     """Print the reason why a file is not written."""
     click.echo(f"stiffmbs: not written: {path}: {error.strerror or error}", err=True)
 
@@ -163,11 +210,12 @@ def refusing(scene: str, as_json: bool = False, output: Path | None = None) -> I
     try:
         yield
     except StiffmbsError as error:
-        from ..show.summary import error_as_json
+        from ..show.summary import json_line
 
         unsolved = isinstance(error, SolverError)
         if as_json:
-            click.echo(error_as_json(scene, str(error), "stopped" if unsolved else "error"))
+            status = "stopped" if unsolved else "error"
+            click.echo(json_line({"scene": scene, "status": status, "message": str(error)}))
         click.echo(f"stiffmbs: {error}", err=True)
         sys.exit(Status.FAILED if unsolved else Status.WRONG_INPUT)
     except OSError as error:

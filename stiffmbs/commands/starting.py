@@ -14,7 +14,7 @@ import click
 from ..comparison.machine import installed
 from ..errors import InputError
 from ..reading.did_you_mean import instead_of
-from .scene import refusing
+from .scene import option, refusing
 
 FIRST_SCENE = Path(__file__).with_name("first_scene.yaml")
 
@@ -34,10 +34,13 @@ def init(file: Path) -> None:
 
 @click.command("open", short_help="Edit and solve in the browser.")
 @click.argument("scene")
-@click.option(
-    "--port", type=click.IntRange(0, 65535), default=0, help="Port on the loopback interface; by default a free one."
+@option(
+    "--port INTEGER RANGE",
+    "Port on the loopback interface; by default a free one.",
+    type=click.IntRange(0, 65535),
+    default=0,
 )
-@click.option("--browser/--no-browser", default=True, show_default=True, help="Whether to open the browser.")
+@option("--browser/--no-browser", "Whether to open the browser.", default=True)
 def open_scene(scene: str, port: int, browser: bool) -> None:
     """Open SCENE on a page in the browser that solves it again after every change.
 
@@ -66,7 +69,7 @@ def schema() -> None:
 
 @click.command(short_help="The parts of vehicles that come with the package.")
 @click.argument("name", required=False)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+@option("--json", "Print one JSON object on one line.", "as_json")
 def parts(name: str | None, as_json: bool) -> None:
     """List the parts that come with the package, or print the definition of the part NAME as a template.
 
@@ -149,7 +152,7 @@ def examples() -> None:
 
 
 @examples.command("list", short_help="List the examples.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+@option("--json", "Print one JSON object on one line.", "as_json")
 def list_all(as_json: bool) -> None:
     """List the examples, each with its subject."""
     with refusing("examples"):
@@ -164,9 +167,7 @@ def list_all(as_json: bool) -> None:
 
 @examples.command(short_help="Copy examples to a folder.")
 @click.argument("names", nargs=-1, metavar="[NAME]...")
-@click.option(
-    "--to", "folder", type=click.Path(path_type=Path), default=Path("examples"), show_default=True, help="The folder."
-)
+@option("--to PATH", "The folder.", "folder", default=Path("examples"))
 def copy(names: tuple[str, ...], folder: Path) -> None:
     """Copy the examples with these NAMEs, or all of them, with the files that they read.
 
@@ -206,7 +207,7 @@ LETTERS = f"{string.ascii_letters}{string.digits}-_."
 
 
 @click.command("version", short_help="Show the versions of stiffmbs and of what it depends on.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+@option("--json", "Print one JSON object on one line.", "as_json")
 def show_version(as_json: bool) -> None:
     """Show the versions of stiffmbs, Python, and every package it depends on, for bug reports."""
     found = {

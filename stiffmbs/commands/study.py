@@ -13,7 +13,7 @@ import click
 from ..analyses.load_scene import load_scene
 from .process import Status
 from .progress import CaseBar
-from .scene import changes_of, in_file, is_written, output_option, refuse_own_input, refusing, solving_options
+from .scene import changes_of, in_file, is_written, option, output_option, refuse_file, refusing, solving_options
 
 if TYPE_CHECKING:
     import xarray
@@ -23,24 +23,14 @@ if TYPE_CHECKING:
 
 @click.command(short_help="Solve a scene for many values of its parameters.")
 @click.argument("scene")
-@click.option(
-    "--vary",
-    multiple=True,
-    metavar="NAME=VALUES",
-    help="FROM:TO:COUNT[:log] or VALUE,VALUE,... of a parameter or a path; any number of times.",
-)
-@click.option("--sample", metavar="KIND:N", help="lhs:N, sobol:N or random:N cases instead of the full grid.")
-@click.option("--seed", type=int, default=0, help="Seed of the sample.")
-@click.option(
-    "--of",
-    "outputs",
-    multiple=True,
-    help="Output to keep: 'peak(rail.fy)', 'rms(bar.ax)', 'bar.x'; any number of times.",
-)
-@click.option("--workers", type=click.IntRange(1), default=1, help="How many cases are solved at once.")
-@click.option("--processes", is_flag=True, help="Processes in place of threads.")
+@option("--vary NAME=VALUES ...", "FROM:TO:COUNT[:log] or VALUE,VALUE,... of a parameter or a path")
+@option("--sample KIND:N", "lhs:N, sobol:N or random:N cases instead of the full grid.")
+@option("--seed INTEGER", "Seed of the sample.", default=0)
+@option("--of TEXT ...", "Output to keep: 'peak(rail.fy)', 'rms(bar.ax)', 'bar.x'", "outputs")
+@option("--workers INTEGER RANGE", "How many cases are solved at once.", default=1)
+@option("--processes", "Processes in place of threads.")
 @output_option("Write the table: .nc or .csv.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @solving_options
 def study(
     scene: str, vary: tuple[str, ...], sample: str | None, seed: int, outputs: tuple[str, ...], workers: int,
@@ -54,13 +44,11 @@ def study(
     Exit status: 0 done, 1 not all cases could be solved or the file could not be written, 2 the input is wrong.
     """
     from ..reading.variation import read_variation
-    from ..studies.data_set import as_dict, check_output, text, write
+    from ..studies.data_set import as_dict, text, write
     from ..studies.sweep import study_of
 
     with refusing(scene, as_json):
-        if output is not None:
-            check_output(output)
-            refuse_own_input("-o", scene, output)
+        refuse_file("-o", output, scene, "cases")
         loaded = load_scene(scene, changes_of(options))
         varied = [read_variation(text, "--vary") for text in vary]
         store = None if output is None else output.with_name(f"{output.name}.study")
@@ -93,7 +81,7 @@ def _write(
     """Write the table if requested, and then remove the stored rows; return True unless writing fails."""
     if output is None or store is None:
         return True
-    if not is_written(output, lambda: write(output, data)):
+    if not is_written(output, lambda path: write(path, data)):
         return False
     for ending in ("", "-wal", "-shm"):
         store.with_name(store.name + ending).unlink(missing_ok=True)

@@ -12,50 +12,33 @@ import click
 from ..analyses.load_scene import load_scene
 from ..errors import InputError
 from .process import Status
-from .scene import CHANGES, in_file, is_written, output_option, pairs, refuse_own_input, refusing
+from .scene import CHANGES, assigned, in_file, is_written, option, output_option, pairs, refuse_file, refusing
+
+UNIT = "--unit DIMENSION=UNIT such as LENGTH=mm"
 
 
 @click.command(short_help="Kinematics and compliance of an axle.")
 @click.argument("scene")
-@click.option(
-    "--axle",
-    default="front",
-    show_default=True,
-    help="Name of the axle: the part of names before .left and .right; '' for none.",
-)
-@click.option(
-    "--points", type=int, default=11, show_default=True, help="Number of points of each curve: odd, 5 or more."
-)
-@click.option("--body", help="Body that the rig clamps; by default chassis, or the body that carries the axle.")
-@click.option("--steering", help="Prismatic or revolute joint that steers; by default the guide of the axle.")
-@click.option(
-    "--wheel",
-    "wheels",
-    multiple=True,
-    metavar="BODY",
-    help="Body of a wheel, for scenes with other names; once or twice.",
-)
-@click.option(
-    "--radius", type=float, help="Distance from the wheel centres to the road, m; by default the radius of the tyres."
-)
-@click.option("--wheelbase", type=float, help="Wheelbase, m; by default from the scene.")
-@click.option("--cg-height", type=float, help="Height of the centre of mass, m; by default from the scene.")
-@click.option(
-    "--brake-share",
-    type=float,
-    help="Share of this axle in braking, 0 to 1; by default 0.6 in front and 0.4 at the rear.",
-)
-@click.option("--drive-share", type=float, help="Share of this axle in traction, 0 to 1; by default 1.")
-@click.option("--inboard-brakes", is_flag=True, help="The brakes are mounted on the body.")
-@click.option(
+@option("--axle TEXT", "Name of the axle: the part of names before .left and .right; '' for none.", default="front")
+@option("--points INTEGER", "Number of points of each curve: odd, 5 or more.", default=11)
+@option("--body TEXT", "Body that the rig clamps; by default chassis, or the body that carries the axle.")
+@option("--steering TEXT", "Prismatic or revolute joint that steers; by default the guide of the axle.")
+@option("--wheel BODY", "Body of a wheel, for scenes with other names; once or twice.", "wheels", multiple=True)
+@option("--radius FLOAT", "Distance from the wheel centres to the road, m; by default the radius of the tyres.")
+@option("--wheelbase FLOAT", "Wheelbase, m; by default from the scene.")
+@option("--cg-height FLOAT", "Height of the centre of mass, m; by default from the scene.")
+@option("--brake-share FLOAT", "Share of this axle in braking, 0 to 1; by default 0.6 in front and 0.4 at the rear.")
+@option("--drive-share FLOAT", "Share of this axle in traction, 0 to 1; by default 1.")
+@option("--inboard-brakes", "The brakes are mounted on the body.")
+@option(
     "--outboard-drive/--inboard-drive",
+    "Whether the carriers react the driving torque; a solid axle does.",
     default=None,
-    help="Whether the carriers react the driving torque; a solid axle does.",
 )
-@click.option("--case", "cases", multiple=True, metavar="NAME=SIZE", help="Size of a load case; 0 omits it.")
-@click.option("--figure", type=click.Path(path_type=Path), help="Draw the curves: .png, .svg or .pdf.")
+@option("--case NAME=SIZE ...", "Size of a load case; 0 omits it", "cases")
+@option("--figure PATH", "Draw the curves: .png, .svg or .pdf.")
 @output_option("Write the curves: .csv.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @CHANGES
 def kc(
     scene: str, axle: str, points: int, body: str | None, steering: str | None, wheels: tuple[str, ...],
@@ -73,50 +56,30 @@ def kc(
 
     Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
     """
-    from ..results.files import refuse_path, write_text
-    from ..show.figure import check_figure
+    from ..results.files import write_text
     from ..show.style import write_sheet
     from ..show.suspension import kc_csv, kc_figure, kc_text
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
     from ..studies.suspension.vehicle import VehicleOptions
 
     with refusing(scene, as_json):
-        if figure is not None:
-            check_figure("--figure", figure)
-        refuse_own_input("--figure", scene, figure)
-        refuse_own_input("-o", scene, output)
-        if output is not None:
-            refuse_path("-o", output, (".csv",))
+        refuse_file("--figure", figure, scene, "figure")
+        refuse_file("-o", output, scene, "curves")
         loaded = load_scene(scene, changes)
         with in_file(scene):
             given = VehicleOptions(**vehicle)
-            found = kinematics_and_compliance(
-                loaded, axle, points, body, steering, wheels, radius, given, **_sizes(cases)
-            )
-    written = output is None or is_written(output, lambda: write_text(output, kc_csv(found)))
-    if figure is not None:
-        written = is_written(figure, lambda: write_sheet(figure, kc_figure(found))) and written
+            sizes = assigned("--case NAME=SIZE such as bump=40", cases, float)
+            found = kinematics_and_compliance(loaded, axle, points, body, steering, wheels, radius, given, **sizes)
+    written = is_written(output, lambda path: write_text(path, kc_csv(found)))
+    written = is_written(figure, lambda path: write_sheet(path, kc_figure(found))) and written
     click.echo(json.dumps(found.as_dict(scene)) if as_json else kc_text(scene, found))
     sys.exit(0 if written else Status.FAILED)
 
 
-def _sizes(cases: tuple[str, ...]) -> dict[str, float]:
-    sizes = {}
-    for text in cases:
-        name, _, size = text.partition("=")
-        try:
-            sizes[name.strip()] = float(size)
-        except ValueError:
-            raise InputError(f"--case {text}: found no number, expected NAME=SIZE such as bump=40") from None
-    return sizes
-
-
 @click.command(short_help="Peaks of all bushings' loads over load cases.")
 @click.argument("scene")
-@click.option(
-    "--case", "cases", multiple=True, metavar="NAME=PATH=VALUE[,...]", help="A load case, and a change of SCENE for it."
-)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@option("--case NAME=PATH=VALUE[,...] ...", "A load case, and a change of SCENE for it", "cases")
+@option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @CHANGES
 def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple[str, str]]) -> None:
     """Run SCENE in each load case, and print the largest force and torque of every bushing in its own axes.
@@ -156,23 +119,19 @@ def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
 
 @click.command(short_help="Handling and ride tests of the standards on a car.")
 @click.argument("scene")
-@click.option(
-    "--test", "tests", multiple=True, metavar="NAME", help="One of the tests; any number of times, all by default."
-)
-@click.option("--body", help="Sprung body; by default that of the section vehicle, or chassis.")
-@click.option("--steering", help="Joint that steers; by default steering_wheel, or the only joint named guide.")
-@click.option("--width", type=float, help="Width of the vehicle, m; by default the track plus 0.2 m.")
-@click.option("--workers", type=click.IntRange(1), help="Number of processes; by default one for each core.")
-@click.option(
-    "--set-test",
+@option("--test NAME ...", "One of the tests, all by default", "tests")
+@option("--body TEXT", "Sprung body; by default that of the section vehicle, or chassis.")
+@option("--steering TEXT", "Joint that steers; by default steering_wheel, or the only joint named guide.")
+@option("--width FLOAT", "Width of the vehicle, m; by default the track plus 0.2 m.")
+@option("--workers INTEGER RANGE", "Number of processes; by default one for each core.")
+@option(
+    "--set-test NAME=VALUE ...",
+    "Change a parameter of a test, such as step_steer.speed='100 km/h', or of each test that has it, speed=30",
     "parameters",
-    multiple=True,
     callback=pairs,
-    metavar="NAME=VALUE",
-    help="Change a parameter of a test, such as step_steer.speed='100 km/h', or of each test that has it, speed=30; any number of times.",
 )
 @output_option("Write a page: .html.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @CHANGES
 def handling(
     scene: str, tests: tuple[str, ...], body: str | None, steering: str | None, width: float | None,
@@ -187,13 +146,10 @@ def handling(
     Exit status: 0 done, 1 a test was not done or the page could not be written, 2 the input is wrong.
     """
     from ..show.handling import handling_text, write_handling
-    from ..show.report import check_report
     from ..studies.handling.study import handling as handled
 
     with refusing(scene, as_json):
-        if output is not None:
-            check_report(output)
-            refuse_own_input("-o", scene, output)
+        refuse_file("-o", output, scene, "report")
         loaded = load_scene(scene, changes)
         with in_file(scene):
             found = handled(
@@ -205,7 +161,7 @@ def handling(
                 workers=workers,
                 parameters=dict(parameters),
             )
-    written = output is None or is_written(output, lambda: write_handling(output, found))
+    written = is_written(output, lambda path: write_handling(path, found))
     printed = found.as_dict(scene)
     click.echo(json.dumps(printed) if as_json else handling_text(scene, found))
     sys.exit(0 if written and printed["status"] == "done" else Status.FAILED)
@@ -213,21 +169,20 @@ def handling(
 
 @click.command(short_help="Curves of a tyre; conversion of property files.")
 @click.argument("file")
-@click.option("--load", "loads", multiple=True, help="N, or with a unit; any number of times.")
-@click.option(
-    "--pressure", "pressures", multiple=True, help="Pa, or with a unit, of 6.1, 6.2 and PAC2002; any number of times."
+@option("--load TEXT ...", "N, or with a unit", "loads")
+@option("--pressure TEXT ...", "Pa, or with a unit, of 6.1, 6.2 and PAC2002", "pressures")
+@option("--camber TEXT", "rad, or with a unit.", default="0")
+@option("--speed TEXT", "m/s, or with a unit; LONGVL by default.")
+@option("--points INTEGER", "Number of points of each curve.", default=61)
+@option(
+    "--at Fz,kappa,... ...",
+    "Evaluate one state of Fz, kappa, alpha, gamma, p, Vx, phit in SI units, each empty for its default",
+    "states",
 )
-@click.option("--camber", default="0", help="rad, or with a unit.")
-@click.option("--speed", help="m/s, or with a unit; LONGVL by default.")
-@click.option("--points", type=int, default=61, show_default=True, help="Number of points of each curve.")
-@click.option(
-    "--at", "states", multiple=True, metavar="Fz,kappa,...",
-    help="Evaluate one state of Fz, kappa, alpha, gamma, p, Vx, phit in SI units, each empty for its default; any number of times.",
-)  # fmt: skip
 @output_option("Draw Fx, Fy, Mz and the friction ellipse: .png, .svg or .pdf.")
-@click.option("--write", "copy", type=click.Path(path_type=Path), help="Write the properties that are used: .tir.")
-@click.option("--unit", "units", multiple=True, metavar="LENGTH=mm", help="Unit of --write; any number of times.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+@option("--write PATH", "Write the properties that are used: .tir.", "copy")
+@option("--unit LENGTH=mm ...", "Unit of --write", "units")
+@option("--json", "Print one JSON object on one line.", "as_json")
 def tyre(
     file: str, loads: tuple[str, ...], pressures: tuple[str, ...], camber: str, speed: str | None, points: int,
     states: tuple[str, ...], output: Path | None, copy: Path | None, units: tuple[str, ...], as_json: bool,
@@ -241,30 +196,26 @@ def tyre(
     """
     from ..elements.tyres.coefficients import TyreProperties
     from ..elements.tyres.written_file import property_text
-    from ..results.files import refuse_path, write_text
-    from ..show.figure import check_figure
+    from ..results.files import write_text
     from ..show.style import write_sheet
     from ..show.tyre import tyre_figure, tyre_text
     from ..studies.tyre_curves import TyreSweep, tyre_curves, tyre_states
 
     with refusing(file, as_json):
-        if output is not None:
-            check_figure("-o", output)
-        if copy is not None:
-            refuse_path("--write", copy, (".tir",))
-            refuse_own_input("--write", file, copy)
+        refuse_file("-o", output, file, "figure")
+        refuse_file("--write", copy, file, "tyre")
         properties = TyreProperties.from_file(file)
         sweep = TyreSweep(**{
             "load": loads, "pressure": pressures, "camber": camber, "points": points, **({} if speed is None else {"speed": speed}),
         })  # fmt: skip
         curves = tyre_curves(properties, sweep)
         found = tyre_states(properties, [_state(text) for text in states])
-        text = property_text(properties, dict(map(_unit, units))) if copy is not None else ""
+        of_copy = {kind.upper(): unit for kind, unit in assigned(UNIT, units, str).items()}
+        text = property_text(properties, of_copy) if copy is not None else ""
     kind = "Magic Formula " * properties.formula.is_magic + properties.version
     title = f"{file}: {kind}, camber {sweep.camber:.4g} rad"
-    written = copy is None or is_written(copy, lambda: write_text(copy, text))
-    if output is not None:
-        written = is_written(output, lambda: write_sheet(output, tyre_figure(title, curves))) and written
+    written = is_written(copy, lambda path: write_text(path, text))
+    written = is_written(output, lambda path: write_sheet(path, tyre_figure(title, curves))) and written
     notes = list(properties.notes())
     printed = {
         "file": file, "version": properties.version, "camber": sweep.camber,
@@ -285,10 +236,3 @@ def _state(text: str) -> tuple[float | None, ...]:
     if len(row) > len(STATE):
         raise InputError(f"--at {text}: found {len(row)} numbers, expected up to {len(STATE)}: {','.join(STATE)}")
     return row
-
-
-def _unit(text: str) -> tuple[str, str]:
-    kind, equals, unit = text.partition("=")
-    if not equals:
-        raise InputError(f"--unit {text}: found no unit, expected DIMENSION=UNIT such as LENGTH=mm")
-    return kind.strip().upper(), unit.strip()

@@ -69,6 +69,5 @@ def curve(axes: Any, x: Sequence[float], seconds: Sequence[float], label: str, m
 
 def finished(axes: Any, x: str, title: str) -> None:
     """Add labels, grid and legend to the axes."""
-    axes.set(xlabel=x, ylabel="time of a solution, s", title=title)
-    dress(axes)
+    dress(axes, xlabel=x, ylabel="time of a solution, s", title=title)
     legend_below(axes.figure, [axes])

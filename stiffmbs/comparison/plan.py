@@ -8,9 +8,9 @@ from numbers import Real
 
 import numpy as np
 
+from ..analyses.job import settings_of
 from ..errors import InputError, refuse_text
 from ..model.model_data import ModelData
-from ..model.scene import Scene
 from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..reading.did_you_mean import did_you_mean
 from ..reading.variation import FORMS, Range, Variation, variation
@@ -193,5 +193,5 @@ def base_settings(model: ModelData, settings: RunSettings | None, changes: Mappi
         raise InputError(
             f"{own[0]}: found a setting of one solver, expected it among solvers, formulations, tolerances or steps"
         )
-    chosen = changed(settings or (model.run if isinstance(model, Scene) else RunSettings()), dict(changes))
+    chosen = settings_of(model, settings, changes)
     return changed(chosen, {"points": DEFAULT_POINTS}) if chosen.points == "steps" else chosen

@@ -106,21 +106,9 @@ class _Pair:
 def reference(model: ModelData, settings: RunSettings, allowed: float, tell: Tell) -> Reference:
     """Solve a model at tight tolerances by both integrators.
 
-    Parameters
-    ----------
-    settings : RunSettings
-        Settings of the comparison that do not depend on the solver: duration, output points and others.
-    allowed : float
-        Time limit of each run, s.
-    tell : callable
-        Called with a line of text on the progress.
-
-    Raises
-    ------
-    SolverError
-        If a run does not reach the end, or they disagree; the message names the channel, the time and the difference.
-    InputError, AssemblyError
-        As for `stiffmbs.run`.
+    `settings`: settings of the comparison that do not depend on the solver. `allowed`: time limit of each run, s.
+    `tell`: called with a line of text on the progress. Raises SolverError if a run does not reach the end, or they
+    disagree; the message names the channel, the time and the difference; and other errors of `stiffmbs.run`.
     """
     best, unended = None, ""
     for rtol in (TIGHT, TIGHTER, *LOOSER):

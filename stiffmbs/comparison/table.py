@@ -8,6 +8,7 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any
 
 from ..show.escaped import console as escaping_console
+from ..show.force_table import rich_table
 from ..show.sections import Section
 from ..show.sections import Table as Cells
 from ..show.summary import UNBROKEN
@@ -61,7 +62,8 @@ def _show_measured(comparison: Comparison, console: Console, say: Say) -> None:
         say(sentence)
     if comparison.at_errors:
         say(f"ms at an error of ({unit}):")
-        console.print(_table(*_at_errors(comparison)))
+        heads, rows = _at_errors(comparison)
+        console.print(rich_table(heads, *rows))
         if any(at.better for at in comparison.at_errors):
             say(BETTER_WORDS)
     for sentence in comparison.reference.sentences():
@@ -77,7 +79,7 @@ def _show_over(comparison: ComparisonOver, console: Console, say: Say) -> None:
     )
     names = [entry.name for entry in comparison.entries]
     rows = [[f"{one.value:.4g}", *(_time(name, one.at) for name in names)] for one in comparison.values]
-    console.print(_table([comparison.parameter, *names], rows))
+    console.print(rich_table([comparison.parameter, *names], *rows))
     if any(at.better for at in comparison.at if at):
         say(BETTER_WORDS)
     for one in comparison.values:
@@ -87,22 +89,16 @@ def _show_over(comparison: ComparisonOver, console: Console, say: Say) -> None:
 
 def measured_tables(comparison: Comparison, columns: int) -> Iterator[Table]:
     """Yield tables with a line for each setting and several solvers side by side, grouped by the kind of setting."""
-    from rich.table import Table
-
     of_solver: dict[str, dict[str, Row]] = {}
     for row in comparison.rows:
         of_solver.setdefault(row.solver, {})[row.setting] = row
     resolved = comparison.reference.resolved(comparison.measure)
     for names in _together(of_solver, columns):
-        table = Table()
-        table.add_column("setting", no_wrap=True)
-        for name in names:
-            for head in (f"{name}\nerror", "\nms", "\nsteps"):
-                table.add_column(head, justify="right", no_wrap=True)
+        lines = [["setting", *(head for name in names for head in (f"{name}\nerror", "\nms", "\nsteps"))]]
         for setting in dict.fromkeys(setting for name in names for setting in of_solver[name]):
             rows = [of_solver[name].get(setting) for name in names]
-            table.add_row(setting, *(cell for row in rows for cell in _cells(row, comparison.measure, resolved)))
-        yield table
+            lines.append([setting, *(cell for row in rows for cell in _cells(row, comparison.measure, resolved))])
+        yield rich_table(*lines)
 
 
 def _together(of_solver: dict[str, dict[str, Row]], columns: int) -> Iterator[list[str]]:
@@ -153,17 +149,6 @@ def _time(name: str, at: Any) -> str:
     if at is None or name not in at.seconds:
         return NO_TIME
     return milliseconds(at.seconds[name]) + BETTER * (name in at.better)
-
-
-def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
-    from rich.table import Table
-
-    table = Table()
-    for k, head in enumerate(heads):
-        table.add_column(head, justify="right" if k else "left", no_wrap=True)
-    for row in rows:
-        table.add_row(*row)
-    return table
 
 
 def milliseconds(seconds: float) -> str:

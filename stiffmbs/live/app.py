@@ -194,13 +194,9 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
     async def save(request: Request, content: dict[str, object]) -> Response:
         """Write the document, unless its file was changed elsewhere."""
         try:
-            digest = (
-                ""
-                if document.file is None
-                else _digest(document.file)
-                if content.get("over")
-                else str(content.get("digest"))
-            )
+            digest = str(content.get("digest"))
+            if content.get("over") and document.file is not None:
+                digest = _digest(document.file)
             return JSONResponse({"digest": document.save(str(content.get("text", "")), digest)})
         except InputError as error:
             return JSONResponse({"message": str(error)}, status_code=409)

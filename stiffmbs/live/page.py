@@ -11,12 +11,11 @@ from html import escape
 from pathlib import Path
 from typing import Any, Final
 
-from ..analyses.job import Runnable, data_of
+from ..analyses.job import Runnable, data_of, settings_of
 from ..cache.entries import code_of
 from ..errors import InputError, refuse_missing
 from ..model.model_data import ModelData
 from ..model.model_text import model_text
-from ..model.scene import Scene
 from ..reading.files.yaml_text import scene_text
 
 PACKAGES = ("starlette", "uvicorn")
@@ -125,10 +124,7 @@ def _file(path: Path) -> Path:
 
 def _text(data: ModelData, changes: dict[str, object]) -> str | None:
     """Return a model as the text of a scene; None if it cannot be written."""
-    from ..model.settings import RunSettings
-    from ..solve.settings import changed
-
-    settings = changed(data.run if isinstance(data, Scene) else RunSettings(), changes)
+    settings = settings_of(data, None, changes)
     chosen = {name: getattr(settings, name) for name in settings.model_fields_set}
     try:
         text = model_text(data)

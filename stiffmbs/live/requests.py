@@ -14,13 +14,14 @@ from ..analyses.linearised.modes import modes
 from ..comparison.compare import compare
 from ..comparison.table import text as comparison_text
 from ..errors import InputError
-from ..results.files import WRITERS, write
+from ..model.model_data import ModelData
+from ..results.files import WRITERS, refuse_path, write
 from ..results.solution import Solution
 from ..show.modes import modes_text
 from ..show.verdict import verdict
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..verification.verify import verify
-from .solver import LiveSolver, shown
+from .solver import LiveSolver, Solved, shown
 
 MOST_CASES = 41
 """Largest number of runs of a sweep."""
@@ -32,17 +33,27 @@ Tell = Callable[[dict[str, object]], None]
 
 
 class Request:
-    """Request of a page.
+    """Request of a page, with the solver that answers it.
 
-    `what`: name of an entry of `ANSWERS`. `text`: text of the scene. `numbers`: parameters with other values than in
-    the text. `rest`: further fields.
+    `text`: text of the scene. `numbers`: parameters with other values than in the text. `rest`: further fields. `watch`,
+    `tell`: functions that report the time reached, and other progress.
     """
 
-    def __init__(self, content: Mapping[str, object]) -> None:
-        self.what, self.text = str(content.get("what", "")), str(content.get("text", ""))
+    def __init__(self, content: Mapping[str, object], solver: LiveSolver, watch: ProgressCallback, tell: Tell) -> None:
+        self._solver, self.watch, self.tell = solver, watch, tell
+        self.text = str(content.get("text", ""))
         numbers = content.get("numbers")
         self.numbers = {str(k): str(v) for k, v in numbers.items()} if isinstance(numbers, dict) else {}
         self.rest = content
+
+    @property
+    def scene(self) -> ModelData:
+        """Scene of the text; errors as for `LiveSolver.scene`."""
+        return self._solver.scene(self.text, self.numbers)
+
+    def solved(self, numbers: Mapping[str, str] | None = None) -> Solved:
+        """Return the solution of the scene, with other numbers if they are given."""
+        return self._solver.solve(self.text, self.numbers if numbers is None else numbers, self.watch)
 
     def names(self, field: str) -> list[str]:
         """Return a field that is a list of names."""
@@ -57,40 +68,22 @@ class Request:
         return float(found)
 
 
-Answer = Callable[[LiveSolver, Request, ProgressCallback, Tell], dict[str, object]]
-
-
-def _solve(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
-    return shown(solver.solve(request.text, request.numbers, watch), request.names("channels"))
-
-
-def _check(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
-    return {"status": "done", "text": str(check(solver.scene(request.text, request.numbers)))}
-
-
-def _modes(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
-    return {"status": "done", "text": modes_text(modes(solver.scene(request.text, request.numbers)))}
-
-
-def _verify(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
-    judged = verdict(verify(solver.scene(request.text, request.numbers), watch=watch))
+def _verify(request: Request) -> dict[str, object]:
+    judged = verdict(verify(request.scene, watch=request.watch))
     notes = [f"- {note}" for note in judged.to_check] or ["Nothing to check."]
     return {"status": judged.status, "text": "\n".join([judged.headline, judged.digits_words, *notes])}
 
 
-def _compare(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
+def _compare(request: Request) -> dict[str, object]:
     def line(text: str) -> None:
-        watch(np.nan)
-        tell({"stage": text})
+        request.watch(np.nan)
+        request.tell({"stage": text})
 
-    scene = solver.scene(request.text, request.numbers)
-    return {
-        "status": "done",
-        "text": comparison_text(compare(scene, tolerances="1e-3:1e-8:6:log", repeats=3, tell=line)),
-    }
+    found = compare(request.scene, tolerances="1e-3:1e-8:6:log", repeats=3, tell=line)
+    return {"status": "done", "text": comparison_text(found)}
 
 
-def _sweep(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
+def _sweep(request: Request) -> dict[str, object]:
     """Return each channel over time for several values of a parameter, and the least and greatest value at each instant."""
     name = str(request.rest.get("parameter", ""))
     count = int(request.number("count", 2, MOST_CASES))
@@ -100,9 +93,9 @@ def _sweep(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: 
     runs: list[tuple[str, Solution]] = []
     failed: list[tuple[str, Solution]] = []
     for k, value in enumerate(values):
-        tell({"stage": f"case {k + 1} of {count}"})
+        request.tell({"stage": f"case {k + 1} of {count}"})
         text = f"{value:.9g} {unit}".strip()
-        found = solver.solve(request.text, {**request.numbers, name: text}, watch).solution
+        found = request.solved({**request.numbers, name: text}).solution
         if found.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         (runs if found.outcome is Outcome.DONE else failed).append((text, found))
@@ -115,36 +108,30 @@ def _sweep(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: 
         curves = [np.interp(time[rows], run.time, run.channels[channel]) for _, run in runs if channel in run.channels]
         if curves:
             least, greatest = np.min(curves, axis=0), np.max(curves, axis=0)
-            bands.append(
-                {
-                    "channel": channel,
-                    "low": least.tolist(),
-                    "high": greatest.tolist(),
-                    "curves": [c.tolist() for c in curves],
-                }
-            )
+            band = {"channel": channel, "low": least.tolist(), "high": greatest.tolist()}
+            bands.append({**band, "curves": [c.tolist() for c in curves]})
     notes = [f"{name} = {text}: {run.message}" for text, run in failed]
     head = f"{name}: {count} values from {low:g} to {high:g} {unit}; the bands hold all of their curves"
     return {"status": "done", "text": "\n".join([head, *notes]), "time": time[rows].tolist(), "bands": bands}
 
 
-def _export(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, object]:
+def _export(request: Request) -> dict[str, object]:
     """Return the file of the results, of the page in motion, or of the report, in base64."""
     suffix = str(request.rest.get("suffix", ""))
     if suffix not in (*WRITERS, *PAGES):
         raise InputError(f"export: found '{suffix}', expected one of {', '.join((*WRITERS, *PAGES))}")
-    found = solver.solve(request.text, request.numbers, watch)
+    found = request.solved()
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"scene{suffix}"
         if suffix == ".report.html":
-            from ..show.report import check_report, write_report
+            from ..show.report import write_report
 
-            check_report(path)
+            refuse_path("export", path, "report")
             write_report(path, found.scene, found.solution, request.text)  # type: ignore[arg-type]  # a scene, or a model
         elif suffix == ".html":
-            from ..show.drawing.animate import check_animation, write_animation
+            from ..show.drawing.animate import write_animation
 
-            check_animation(path)
+            refuse_path("export", path, "animation")
             write_animation(path, found.scene, {"": found.solution})
         else:
             write(path, found.solution)
@@ -152,6 +139,13 @@ def _export(solver: LiveSolver, request: Request, watch: ProgressCallback, tell:
     return {"status": "done", "suffix": suffix, "content": base64.b64encode(content).decode("ascii")}
 
 
-ANSWERS: dict[str, Answer] = {
-    "solve": _solve, "check": _check, "modes": _modes, "verify": _verify, "compare": _compare, "sweep": _sweep, "export": _export,
-}  # fmt: skip
+ANSWERS: dict[str, Callable[[Request], dict[str, object]]] = {
+    "solve": lambda request: shown(request.solved(), request.names("channels")),
+    "check": lambda request: {"status": "done", "text": str(check(request.scene))},
+    "modes": lambda request: {"status": "done", "text": modes_text(modes(request.scene))},
+    "verify": _verify,
+    "compare": _compare,
+    "sweep": _sweep,
+    "export": _export,
+}
+"""Answers by the field ``what`` of a request."""

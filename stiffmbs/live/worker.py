@@ -116,7 +116,7 @@ class Worker:
                 tell({"time": t})
 
         try:
-            answer = ANSWERS[str(message.get("what"))](self._solver, Request(message), watch, tell)
+            answer = ANSWERS[str(message.get("what"))](Request(message, self._solver, watch, tell))
         except KeyboardInterrupt:
             answer = {"status": "interrupted", "message": "interrupted", "text": "interrupted"}
         except NeedsConsent as error:
@@ -124,11 +124,8 @@ class Worker:
         except StiffmbsError as error:
             answer = error_of(error, self._solver.source)
         except Exception as error:  # a fault of the package must not end the page
-            answer = {
-                "status": "error",
-                "line": 0,
-                "message": f"unexpected {type(error).__name__}: {error}; please report it",
-            }
+            unexpected = f"unexpected {type(error).__name__}: {error}; please report it"
+            answer = {"status": "error", "line": 0, "message": unexpected}
         return answer if number == self._newest.number else {"status": "superseded"}
 
 

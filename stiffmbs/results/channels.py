@@ -21,16 +21,7 @@ from .joint_angles import joint_angles
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
     """Return all channels by name: bodies, joints and forces, energies, constraint violations, requests."""
-    channels: dict[str, np.ndarray] = {}
-    of_body = system.of_body
-    states = rows.q, rows.u, rows.acceleration
-    if of_body.dimensions == 3:
-        states = in_own_axes(system, *states)
-    labels = (of_body.positions, of_body.velocities, of_body.accelerations)
-    for k, body in enumerate(system.bodies):
-        for state, names in zip(states, labels, strict=True):
-            for offset, name in enumerate(names):
-                channels[f"{body}.{name}"] = state[:, len(names) * k + offset]
+    channels = motion_channels(system, rows.q, rows.u, rows.acceleration)
     if system.states or any(group.entries["signal"] for group in system.groups):
         channels |= state_channels(system, rows.q, rows.values)
     channels |= reactions(system, rows.values)
@@ -42,6 +33,19 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
     from .requests import requested
 
     return channels | requested(model, rows.t, channels, counters(model, system, rows.q))
+
+
+def motion_channels(system: System, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray) -> dict[str, np.ndarray]:
+    """Return positions, velocities and accelerations of the bodies, or their derivatives, by name."""
+    of_body = system.of_body
+    states = in_own_axes(system, q, u, acceleration)
+    labels = of_body.positions, of_body.velocities, of_body.accelerations
+    return {
+        f"{body}.{name}": state[:, len(names) * k + offset]
+        for k, body in enumerate(system.bodies)
+        for state, names in zip(states, labels, strict=True)
+        for offset, name in enumerate(names)
+    }
 
 
 def channels_of_model(rows: OutputRows) -> dict[str, np.ndarray]:

@@ -114,21 +114,9 @@ def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balan
 def work_since_start(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
     """Integrate a power by the trapezoidal rule with end corrections.
 
-    Davis and Rabinowitz, Methods of Numerical Integration (1984), sec. 2.9.
-
-    Parameters
-    ----------
-    t, power : ndarrays, shape (n,)
-        Times, s, and power, W; n is 1 or more.
-
-    Returns
-    -------
-    work : ndarray, shape (n,)
-        Work since the start, J.
-    within : ndarray, shape (n - 1,)
-        End corrections in each interval, J.
-    resolved : float
-        Difference between the work and that of every other instant, J.
+    Davis and Rabinowitz, Methods of Numerical Integration (1984), sec. 2.9. `t`, `power` of shape (n,): times, s, and
+    power, W; n is 1 or more. The result: work since the start, shape (n,), end corrections in each interval, shape
+    (n - 1,), and the difference between the work and that of every other instant, J.
     """
     t, power = np.ascontiguousarray(t), np.ascontiguousarray(power)
     total, within = np.empty(len(t)), np.empty(len(t) - 1)

@@ -53,16 +53,9 @@ UNKNOWN = ErrorBar(np.nan, np.nan, np.nan, 0.0, 0.0)
 def error_bar(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine | None, rounding: float) -> ErrorBar:
     """Return the error bar of one channel.
 
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        Reported values; instants without a value are skipped here and in the other arguments.
-    others : sequence of ndarray, shapes (m,), m <= n
-        Values of better runs at the same instants, shorter if they ended earlier.
-    fine : (ndarray, ndarray, ndarray of int), optional
-        Times, s, and values of a run with instants between the reported ones, and the indices of these.
-    rounding : float
-        Rounding error.
+    `values` of shape (n,): reported values; instants without a value are skipped here and in the other arguments.
+    `others` of shapes (m,), m <= n: values of better runs at the same instants, shorter if they ended earlier. `fine`:
+    times, s, and values of a run with instants between the reported ones, and the indices of these.
     """
     if not others and fine is None:
         return UNKNOWN

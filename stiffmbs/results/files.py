@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -97,23 +97,35 @@ WRITERS: dict[str, Callable[[Path, Solution], None]] = {
 }
 
 
-def check_output(path: Path, option: str = "-o") -> None:
-    """Check that a file can be written, before anything is solved.
+JINJA, MATPLOTLIB, MESHIO, XARRAY = (
+    {"jinja2": "report"}, {"matplotlib": "plot"}, {"meshio": "flexible"}, {"xarray": "netcdf"},
+)  # fmt: skip
+KINDS: dict[str, dict[str, dict[str, str]]] = {
+    "results": {".csv": {}, ".npz": {}, ".nc": XARRAY, ".tab": {}, ".res": {}},
+    "cases": {".nc": XARRAY, ".csv": XARRAY},
+    "curves": {".csv": {}},
+    "tyre": {".tir": {}},
+    "mode shapes": {".vtu": MESHIO, ".vtk": MESHIO},
+    "deformation": {".xdmf": {}},
+    "fmu": {".fmu": {}},
+    "figure": {".png": MATPLOTLIB, ".svg": MATPLOTLIB, ".pdf": MATPLOTLIB},
+    "drawing": {".svg": MATPLOTLIB, ".png": MATPLOTLIB, ".pdf": MATPLOTLIB, ".json": {}},
+    "animation": {".gif": MATPLOTLIB, ".mp4": MATPLOTLIB, ".html": JINJA},
+    "modes in motion": {".html": JINJA},
+    "report": {".html": {**JINJA, "matplotlib": "report"}},
+}
+"""Endings of the files that are written, by what they contain, with the packages needed and the extra of each."""
 
-    Raises InputError if the suffix is unknown, or the folder or a package is missing.
+
+def refuse_path(option: str, path: Path, kind: str) -> None:
+    """Reject the path of an option where no file of a kind of `KINDS` can be written, before anything is solved.
+
+    Raises InputError if its suffix is another one, its folder is missing or not writable, or a package is missing.
     """
-    refuse_path(option, path, WRITERS)
-    if path.suffix == ".nc":
-        refuse_missing("xarray", "'stiffmbs[netcdf]'", f"{option} {path}: ")
-
-
-def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
-    """Reject a file with an unknown suffix, or in a folder that is missing or not writable.
-
-    Raises InputError: The message names the option.
-    """
+    endings = KINDS[kind]
     if path.suffix not in endings:
-        raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected one of {', '.join(endings)}")
+        expected = f"one of {', '.join(endings)}" if len(endings) > 2 else " or ".join(endings)
+        raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected {expected}")
     try:
         path.exists()
     except (OSError, ValueError) as error:
@@ -125,18 +137,17 @@ def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
         raise InputError(
             f"{option} {path}: found a place that cannot be written to, expected a file in a writable folder"
         )
+    for package, extra in endings[path.suffix].items():
+        refuse_missing(package, f"'stiffmbs[{extra}]'", f"{option} {path}: ")
 
 
 def write(path: Path, solution: Solution) -> None:
     """Write all channels to a file, completely or not at all.
 
-    Parameters
-    ----------
-    path : Path
-        The suffix selects the format: .csv (a header line of names and units, time first), .npz (arrays by channel
-        name, ``time``, and further data for `Solution.load` under names with a slash), .nc, .tab (tab-separated
-        columns), or .res (Adams' XML).  Channels without a unique value are marked: by a column ``rail.fy.not_unique``
-        of ones, an array ``not_unique`` of names, or the attribute ``unique`` of each variable.
+    The suffix selects the format: .csv (a header line of names and units, time first), .npz, .nc, .tab (tab-separated
+    columns), or .res (Adams' XML).  A file .npz has arrays by channel name, ``time``, and further data for
+    `Solution.load` under names with a slash.  Channels without a unique value are marked: by a column ``rail.fy.not_unique`` of ones, an array
+    ``not_unique`` of names, or the attribute ``unique`` of each variable.
     """
     written_whole(path, lambda part: WRITERS[path.suffix](part, solution))
 

@@ -71,11 +71,9 @@ class FlexibleMotion:
         values = np.array([solution[place] for place in places]).reshape(len(places), len(self.t))
         self.modal = values.T * np.sqrt(self.reduced.mass)
         errors = getattr(solution, "errors", {})
-        self._modal_errors = (
-            np.array([errors[place].over_time for place in places]) * np.sqrt(self.reduced.mass)
-            if places and all(place in errors for place in places)
-            else None
-        )
+        self._modal_errors: np.ndarray | None = None
+        if places and errors.keys() >= {*places}:
+            self._modal_errors = np.array([errors[place].over_time for place in places]) * np.sqrt(self.reduced.mass)
 
     @staticmethod
     def check(scene: Scene, body: str) -> None:

@@ -1,7 +1,7 @@
 """Channels of a model at one instant, each computed when it is read.
 
-A request is compiled to a Python function of numbers. Where it has no finite value, and for measures that few requests
-use, it is evaluated as over a run (`stiffmbs.results.requests`).
+A request is compiled to a Python function of numbers. Where it has no finite value, it is evaluated as over a run
+(`stiffmbs.results.requests`).
 """
 
 from __future__ import annotations
@@ -9,32 +9,26 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable, Iterator, Mapping
-from functools import cached_property, partial
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 
 from ..compile.system import System
 from ..compile.table_values import curve
 from ..dynamics.dynamics import OutputRows
-from ..elements.requests.check import ends
-from ..elements.requests.output import CONTINUOUS_ANGLES, Output, Term, placeholder
+from ..elements.requests.output import Output, Term, placeholder
 from ..model.model_data import ModelData
 from ..reading.formula.functions import FUNCTIONS
 from ..reading.formula.nodes import TIME
-from ..reading.marker import GROUND, MarkerReference
 from .channels import channels_of, channels_of_model, counters, named, state_channels
-from .frames import BodyFrame, GroundFrame, MarkerFrame, Vector, cross, dot, in_own_axes, minus, own_are_principal
-from .joint_angles import TURN, joint_angles
-from .marker_motion import place
+from .frames import in_own_axes, own_are_principal
+from .joint_angles import joint_angles
+from .marker_motion import Measures
 from .requests import value_over_time
 
-LEVELS = {"d": "point", "v": "velocity", "w": "omega", "acc": "acceleration", "wdt": "alpha"}
-"""Vectors of a marker whose differences are measures, by the name of their components without the last letter."""
 BUILT_IN: dict[str, Callable[..., object]] = {
     **{name: function.value for name, function in FUNCTIONS.items() if function.in_numbers}, "sqrt": math.sqrt,
 }  # fmt: skip
-_GROUND = GroundFrame()
 
 
 class Instant(Mapping[str, np.ndarray]):
@@ -60,7 +54,7 @@ class Instant(Mapping[str, np.ndarray]):
         angles = joint_angles(system)
         self._angles = frozenset(angles.places if angles else ())
         self._principal = own_are_principal(system)
-        self._placed: dict[int, tuple[Any, Any]] = {}
+        self._measures = Measures(model, self.value, lambda angle: self.rows.q.item(0, self._counted[angle]), math)
         self._begin()
 
     def forget(self) -> None:
@@ -70,8 +64,7 @@ class Instant(Mapping[str, np.ndarray]):
 
     def _begin(self) -> None:
         self._known: dict[str, float] = {}
-        self._frames: dict[str, BodyFrame] = {GROUND: _GROUND}
-        self._markers: dict[int, MarkerFrame] = {}
+        self._measures.forget()
         for kept in ("rows", "_levels", "_others"):
             self.__dict__.pop(kept, None)
 
@@ -137,80 +130,20 @@ class Instant(Mapping[str, np.ndarray]):
             found = self._compiled[name](self)
             if isinstance(found, float | int) and math.isfinite(found):
                 return float(found)
-        except (ArithmeticError, ValueError, NotCompiledError):
+        except (ArithmeticError, ValueError):
             pass
         known = counters(self._model, self._system, self.rows.q)
         return float(value_over_time(self._model, output, self.rows.t, self, known)[0])
 
     def term(self, term: Term) -> float:
-        """Return a measure between markers, or a component of an action.
-
-        Raises NotCompiledError for a measure that few requests use.
-        """
-        if term.element:
-            return self._action(term)
-        i, j, *axes = (self._marker(marker) for marker in term.markers)
-        name = term.function
-        if name in CONTINUOUS_ANGLES:
-            return self._continuous_angle(term, i, j)
-        if name == "vr":
-            offset = minus(i.point, j.point)
-            return dot(offset, minus(i.velocity, j.velocity)) / math.sqrt(dot(offset, offset))
-        level = LEVELS.get(name[:-1])
-        if level is None:
-            raise NotCompiledError
-        return _component(minus(getattr(i, level), getattr(j, level)), name[-1], axes)
-
-    def _continuous_angle(self, term: Term, i: MarkerFrame, j: MarkerFrame) -> float:
-        if self._system.of_body.dimensions == 2:
-            angles = [
-                self._model.place(marker).angle + (0.0 if marker.body == GROUND else self.value(f"{marker.body}.angle"))
-                for marker in term.markers
-            ]
-            return float(angles[0] - angles[1])
-        about = term.function[1]
-        if about == "z":
-            sine, cosine = dot(i.axes[0], j.axes[1]), dot(i.axes[0], j.axes[0])
-        else:
-            z = i.axes[2]
-            sine, cosine = -dot(z, j.axes[1]) if about == "x" else dot(z, j.axes[0]), dot(z, j.axes[2])
-        angle, counted = math.atan2(sine, cosine), self._counted[str(term)]
-        return angle + TURN * round((self.rows.q.item(0, counted) - angle) / TURN)
+        """Return a measure between markers, or a component of an action."""
+        return self._measures.value(term)  # type: ignore[no-any-return]
 
     @cached_property
     def _counted(self) -> dict[str, int]:
         """Coordinates that count the turns of angles, by the text of the angle."""
         system = self._system
         return {name: int(places[0]) for group in system.groups for name, places in zip(group.names, group.counters, strict=True) if len(places)}  # fmt: skip
-
-    def _action(self, term: Term) -> float:
-        force, torque = ("fx fy 0", "0 0 torque") if self._system.of_body.dimensions == 2 else ("fx fy fz", "tx ty tz")
-        f, m = _vector(self._read(term.element, force)), _vector(self._read(term.element, torque))
-        if term.on_second:
-            i, j = (self._marker(marker).point for marker in ends(term.element, self._model))
-            f, m = _negative(f), minus(_negative(m), cross(minus(i, j), f))
-        return _component(
-            f if term.function[0] == "f" else m, term.function[1], [self._marker(x) for x in term.markers]
-        )
-
-    def _read(self, owner: str, labels: str) -> tuple[float, ...]:
-        return tuple(0.0 if label == "0" else self.value(f"{owner}.{label}") for label in labels.split())
-
-    def _marker(self, marker: MarkerReference) -> MarkerFrame:
-        at = id(marker)  # hashing the marker would take longer; the model keeps it
-        if at not in self._markers:
-            if at not in self._placed:
-                point, orientation = place(self._model, marker)
-                self._placed[at] = tuple(point.tolist()), tuple(orientation.tolist())
-            if marker.body not in self._frames:
-                planar = self._system.of_body.dimensions == 2
-                self._frames[marker.body] = BodyFrame(partial(self._read, marker.body), planar)
-            self._markers[at] = MarkerFrame(self._frames[marker.body], *self._placed[at])
-        return self._markers[at]
-
-
-class NotCompiledError(Exception):
-    """A measure is evaluated over time only."""
 
 
 def compiled(output: Output) -> Callable[[Instant], float]:
@@ -260,20 +193,3 @@ def compiled(output: Output) -> Callable[[Instant], float]:
 def _power(base: float, exponent: float) -> float:
     value = base**exponent
     return math.nan if isinstance(value, complex) else value
-
-
-def _component(v: Vector, which: str, axes: list[MarkerFrame]) -> float:
-    """Return the magnitude of a vector, or its component along the axes of a marker or of ground."""
-    if which == "m":
-        return math.sqrt(dot(v, v))
-    k = "xyz".index(which)
-    return dot(v, axes[0].axes[k]) if axes else v[k]
-
-
-def _vector(values: tuple[float, ...]) -> Vector:
-    x, y, z = values
-    return x, y, z
-
-
-def _negative(v: Vector) -> Vector:
-    return -v[0], -v[1], -v[2]

@@ -99,8 +99,5 @@ def joint_angles(system: System) -> JointAngles | None:
         for name in group.names
     }
     places = {name: found for name, found in angles.items() if min(found) >= 0}
-    return (
-        JointAngles(places, {a.channel: a.place for a in counted_angles(system) if a.channel}, system.start_angles)
-        if places
-        else None
-    )
+    counters = {angle.channel: angle.place for angle in counted_angles(system) if angle.channel}
+    return JointAngles(places, counters, system.start_angles) if places else None

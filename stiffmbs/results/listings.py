@@ -28,20 +28,11 @@ _WORDS = re.compile(r'"[^"]*"|[^\s,;"]+')
 
 
 def read_columns(path: str | Path) -> Columns:
-    """Read the columns of a file over time.
+    """Read the columns of a file over time; raise an InputError if it has none.
 
-    Parameters
-    ----------
-    path : str or Path
-        Results of this package (.npz, .csv, .nc), a table as text with time in its first column (.tab, .txt, .csv,
-        .req, ...), or a .res or .xml file of Adams.  A column of a table has its number as a name, ``1`` for time, and
-        its name in the header if that has as many names as columns.  A column of Adams' XML is called
-        ``entity.component``.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read or has no columns of numbers over time.
+    The file holds results of this package (.npz, .csv, .nc) or of Adams (.res, .xml), or a table as text: .tab, .txt,
+    .csv, .req and others, with time in its first column.  A column of a table has its number as a name, ``1`` for time, and
+    its name in the header if that has as many names as columns.  A column of Adams' XML is called ``entity.component``.
     """
     file = Path(path)
     reader = _reader(file)

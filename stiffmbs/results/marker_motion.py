@@ -1,64 +1,191 @@
-"""Motion of markers over a run, from the channels of their bodies."""
+"""Motion of markers, and measures between them: of numbers at one instant, or of arrays over time.
+
+Both are written once, in components. The plane is the x-y plane of space.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import cached_property, partial
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..compile.quaternions import CONJUGATE, rotated, times
-from ..elements.requests.output import Term
+from ..elements.requests.check import ends
+from ..elements.requests.output import CONTINUOUS_ANGLES, Term
 from ..reading.marker import GROUND, MarkerReference
 
 if TYPE_CHECKING:
     from ..model.model_data import ModelData
 
-Channels = Mapping[str, np.ndarray]
-"""Channels by name, shape (n,)."""
+Value = Any
+"""A number, or an array of shape (n,)."""
+Vector = tuple[Value, Value, Value]
+Matrix = tuple[Vector, Vector, Vector]
+"""Rows."""
+Quaternion = tuple[Value, Value, Value, Value]
 
 
-@dataclass(frozen=True, eq=False)
-class MarkerMotion:
-    """Motion of a marker over time in ground axes, one row per instant.
+def cross(a: Vector, b: Vector) -> Vector:
+    """Return the vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
-    `point`, `velocity`, `acceleration` of shape (n, 3). `orientation` of shape (n, 4): quaternion of its axes. `omega`,
-    `alpha` of shape (n, 3): angular velocity and acceleration.
+
+def dot(a: Vector, b: Vector) -> Value:
+    """Return the scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def plus(a: Vector, b: Vector) -> Vector:
+    """Return a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def minus(a: Vector, b: Vector) -> Vector:
+    """Return a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def turned(matrix: Matrix, v: Vector) -> Vector:
+    """Return matrix times vector."""
+    return dot(matrix[0], v), dot(matrix[1], v), dot(matrix[2], v)
+
+
+def rotation(p: Quaternion) -> Matrix:
+    """Return the rotation matrix of a unit quaternion."""
+    w, x, y, z = p
+    return (
+        (w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z),
+    )
+
+
+def times(p: Quaternion, r: Quaternion) -> Quaternion:
+    """Return the product of quaternions."""
+    (a, *v), (b, *w) = p, r
+    x, y, z = (a * w[k] + b * v[k] + c for k, c in enumerate(cross((*v,), (*w,))))
+    return a * b - dot((*v,), (*w,)), x, y, z
+
+
+class BodyFrame:
+    """Centre of mass of a body with the body's own axes; each part is read when it is needed.
+
+    `read`: returns channels of the body, given their names; ``0`` stands for zero. `maths`: module of the functions.
     """
 
-    point: np.ndarray
-    velocity: np.ndarray
-    acceleration: np.ndarray
-    orientation: np.ndarray
-    omega: np.ndarray
-    alpha: np.ndarray
+    def __init__(self, read: Callable[[str], tuple[Value, ...]], planar: bool, maths: ModuleType) -> None:
+        self._read, self._planar, self._maths = read, planar, maths
 
-    def along(self, vectors: np.ndarray) -> np.ndarray:
-        """Transform vectors from ground axes to this marker's axes, shape (n, 3)."""
-        return rotated(self.orientation * CONJUGATE, vectors)
+    def _vector(self, in_plane: str, in_space: str) -> Vector:
+        x, y, z = self._read(in_plane if self._planar else in_space)
+        return x, y, z
 
-    def axis(self, k: int, other: MarkerMotion) -> np.ndarray:
-        """Return the k-th axis of this marker in the axes of another, shape (n, 3)."""
-        return rotated(self.relative(other), np.eye(3)[k])
+    @cached_property
+    def quaternion(self) -> Quaternion:
+        """Quaternion of the axes."""
+        if self._planar:
+            (angle,) = self._read("angle")
+            return self._maths.cos(angle / 2), 0.0, 0.0, self._maths.sin(angle / 2)
+        w, x, y, z = self._read("q0 q1 q2 q3")
+        return w, x, y, z
 
-    def relative(self, other: MarkerMotion) -> np.ndarray:
-        """Return the quaternion of this marker's axes in those of another, shape (n, 4)."""
-        return times(other.orientation * CONJUGATE, self.orientation)
+    @cached_property
+    def matrix(self) -> Matrix:
+        """Rotation matrix, with the axes as columns."""
+        if self._planar:
+            (angle,) = self._read("angle")
+            c, s = self._maths.cos(angle), self._maths.sin(angle)
+            return (c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)
+        return rotation(self.quaternion)
 
-    def placed(self, point: np.ndarray, orientation: np.ndarray) -> MarkerMotion:
-        """Return the motion of a frame fixed to this marker, with its point and orientation in this marker's axes."""
-        arm = rotated(self.orientation, np.broadcast_to(point, self.point.shape))
-        turning = np.cross(self.omega, arm)
-        return MarkerMotion(
-            self.point + arm,
-            self.velocity + turning,
-            self.acceleration + np.cross(self.alpha, arm) + np.cross(self.omega, turning),
-            times(self.orientation, np.broadcast_to(orientation, self.orientation.shape)),
-            self.omega,
-            self.alpha,
-        )
+    @cached_property
+    def point(self) -> Vector:
+        """Position, m."""
+        return self._vector("x y 0", "x y z")
+
+    @cached_property
+    def velocity(self) -> Vector:
+        """Velocity, m/s."""
+        return self._vector("vx vy 0", "vx vy vz")
+
+    @cached_property
+    def acceleration(self) -> Vector:
+        """Acceleration, m/s^2."""
+        return self._vector("ax ay 0", "ax ay az")
+
+    @cached_property
+    def omega(self) -> Vector:
+        """Angular velocity, rad/s."""
+        return self._vector("0 0 omega", "") if self._planar else turned(self.matrix, self._vector("", "wx wy wz"))
+
+    @cached_property
+    def alpha(self) -> Vector:
+        """Angular acceleration, rad/s^2."""
+        return self._vector("0 0 alpha", "") if self._planar else turned(self.matrix, self._vector("", "wdx wdy wdz"))
+
+
+class GroundFrame(BodyFrame):
+    """Ground, at rest."""
+
+    def __init__(self) -> None:
+        super().__init__(lambda names: (0.0,) * len(names.split()), True, math)
+
+
+class MarkerFrame:
+    """Marker of a body.
+
+    `point`: from the centre of mass in the body's own axes, m. `orientation`: quaternion of the marker's axes in those
+    of the body.
+    """
+
+    def __init__(self, body: BodyFrame, point: Vector, orientation: Quaternion) -> None:
+        self._body, self._point, self._orientation = body, point, orientation
+
+    @cached_property
+    def _arm(self) -> Vector:
+        return turned(self._body.matrix, self._point)
+
+    @cached_property
+    def axes(self) -> Matrix:
+        """Unit axes in ground axes."""
+        by_rows, own = self._body.matrix, rotation(self._orientation)
+        x, y, z = (turned(by_rows, (own[0][k], own[1][k], own[2][k])) for k in range(3))
+        return x, y, z
+
+    @property
+    def quaternion(self) -> Quaternion:
+        """Quaternion of the axes."""
+        return times(self._body.quaternion, self._orientation)
+
+    @property
+    def point(self) -> Vector:
+        """Position, m."""
+        return plus(self._body.point, self._arm)
+
+    @property
+    def velocity(self) -> Vector:
+        """Velocity, m/s."""
+        return plus(self._body.velocity, cross(self._body.omega, self._arm))
+
+    @property
+    def acceleration(self) -> Vector:
+        """Acceleration, m/s^2."""
+        omega, arm = self._body.omega, self._arm
+        turning = plus(cross(self._body.alpha, arm), cross(omega, cross(omega, arm)))
+        return plus(self._body.acceleration, turning)
+
+    @property
+    def omega(self) -> Vector:
+        """Angular velocity, rad/s."""
+        return self._body.omega
+
+    @property
+    def alpha(self) -> Vector:
+        """Angular acceleration, rad/s^2."""
+        return self._body.alpha
 
 
 def place(model: ModelData, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
@@ -73,71 +200,130 @@ def place(model: ModelData, marker: MarkerReference) -> tuple[np.ndarray, np.nda
     return point, np.array(placed.orientation)
 
 
-class Motions:
-    """Motion of markers, and actions of joints and forces; the plane is the x-y plane of space.
+_GROUND = GroundFrame()
+ALIGNED = 1e-12
+"""Sine of the angle between two z axes below which they count as parallel."""
+VECTORS = {"d": "point", "v": "velocity", "w": "omega", "acc": "acceleration", "wdt": "alpha"}
+"""Vectors of a marker whose differences are measures, by the name of their components without the last letter."""
 
-    `channels`: channels of a run of the model. `count`: number of instants.
+
+def _distance_rate(i: MarkerFrame, j: MarkerFrame, maths: ModuleType) -> Value:
+    offset = minus(i.point, j.point)
+    return dot(offset, minus(i.velocity, j.velocity)) / maths.sqrt(dot(offset, offset))
+
+
+def _psi(i: MarkerFrame, j: MarkerFrame, _: ModuleType) -> Value:
+    """Return the first Euler angle of the sequence z, x, z; if the z axes are parallel, it is the whole rotation."""
+    (x, y, _z), along_x = turned(j.axes, i.axes[2]), turned(j.axes, i.axes[0])
+    whole = np.arctan2(along_x[1], along_x[0])
+    return np.where(np.hypot(x, y) > ALIGNED, np.arctan2(x, -y), whole)[()]
+
+
+def _theta(i: MarkerFrame, j: MarkerFrame, maths: ModuleType) -> Value:
+    x, y, z = turned(j.axes, i.axes[2])
+    return maths.atan2(maths.hypot(x, y), z)
+
+
+def _phi(i: MarkerFrame, j: MarkerFrame, _: ModuleType) -> Value:
+    x, y, _z = turned(i.axes, j.axes[2])
+    return np.where(np.hypot(x, y) > ALIGNED, np.arctan2(x, y), 0.0)[()]
+
+
+def _quaternion(k: int, i: MarkerFrame, j: MarkerFrame, _: ModuleType) -> Value:
+    """Return a component of the quaternion of the axes of i in those of j."""
+    w, x, y, z = j.quaternion
+    return times((w, -x, -y, -z), i.quaternion)[k]
+
+
+SCALARS: dict[str, Callable[[MarkerFrame, MarkerFrame, ModuleType], Value]] = {
+    "vr": _distance_rate, "psi": _psi, "theta": _theta, "phi": _phi, **{f"q{k}": partial(_quaternion, k) for k in range(4)},
+}  # fmt: skip
+"""Scalar measures."""
+
+
+class Measures:
+    """Measures between the markers of a model, and components of actions of its joints and forces.
+
+    `read`: returns a channel. `counter`: returns the revolution counter of an angle, by the text of the angle. `maths`: module
+    of the functions, `math` for numbers and NumPy for arrays.
     """
 
-    def __init__(self, model: ModelData, channels: Channels, count: int) -> None:
-        self._model, self._channels, self._zero = model, channels, np.zeros(count)
+    def __init__(
+        self, model: ModelData, read: Callable[[str], Value], counter: Callable[[str], Value], maths: ModuleType
+    ) -> None:
+        self._model, self._read_channel, self._counter, self._maths = model, read, counter, maths
         self._planar = model.dimensions == 2
-        self._bodies: dict[str, MarkerMotion] = {}
+        self._placed: dict[int, tuple[MarkerReference, Any, Any]] = {}
+        self.forget()
 
-    def of(self, marker: MarkerReference) -> MarkerMotion:
+    def forget(self) -> None:
+        """Discard the values of an earlier instant."""
+        self._bodies: dict[str, BodyFrame] = {GROUND: _GROUND}
+        self._markers: dict[int, MarkerFrame] = {}
+
+    def marker(self, marker: MarkerReference) -> MarkerFrame:
         """Return the motion of a marker."""
-        if marker.body not in self._bodies:
-            self._bodies[marker.body] = self._of_body(marker.body)
-        return self._bodies[marker.body].placed(*place(self._model, marker))
+        at = id(marker)  # hashing the marker would take longer
+        if at not in self._markers:
+            if at not in self._placed:
+                point, orientation = place(self._model, marker)
+                self._placed[at] = marker, tuple(point.tolist()), tuple(orientation.tolist())
+            body = marker.body
+            if body not in self._bodies:
+                self._bodies[body] = BodyFrame(partial(self._read, body), self._planar, self._maths)
+            self._markers[at] = MarkerFrame(self._bodies[body], *self._placed[at][1:])
+        return self._markers[at]
 
-    def _of_body(self, body: str) -> MarkerMotion:
-        """Return the motion of a body's centre of mass with the body's own axes; rest for ground."""
-        if body == GROUND:
-            rest = self._columns(body, "0 0 0")
-            return MarkerMotion(rest, rest, rest, np.tile([1.0, 0, 0, 0], (len(rest), 1)), rest, rest)
+    def value(self, term: Term) -> Value:
+        """Return a measure between markers, or a component of an action."""
+        if term.element:
+            return self._action(term)
+        i, j, *axes = (self.marker(marker) for marker in term.markers)
+        name = term.function
+        if name in CONTINUOUS_ANGLES:
+            return self._continuous_angle(term, i, j)
+        if name in SCALARS:
+            return SCALARS[name](i, j, self._maths)
+        level = VECTORS[name[:-1]]
+        return self._component(minus(getattr(i, level), getattr(j, level)), name[-1], axes)
+
+    def _component(self, v: Vector, which: str, axes: list[MarkerFrame]) -> Value:
+        """Return the magnitude of a vector, or its component along the axes of a marker or of ground."""
+        if which == "m":
+            return self._maths.sqrt(dot(v, v))
+        k = "xyz".index(which)
+        return dot(v, axes[0].axes[k]) if axes else v[k]
+
+    def _read(self, owner: str, labels: str) -> tuple[Value, ...]:
+        """Return channels of a body or element; the label 0 stands for zero."""
+        return tuple(0.0 if label == "0" else self._read_channel(f"{owner}.{label}") for label in labels.split())
+
+    def _action(self, term: Term) -> Value:
+        """Return a component of a force or torque on the first or second body of an element."""
+        labels = ("fx fy 0", "0 0 torque") if self._planar else ("fx fy fz", "tx ty tz")
+        force, torque = ((x, y, z) for x, y, z in (self._read(term.element, own) for own in labels))
+        if term.on_second:
+            i, j = (self.marker(marker).point for marker in ends(term.element, self._model))
+            torque = minus((0.0, 0.0, 0.0), plus(torque, cross(minus(i, j), force)))
+            force = minus((0.0, 0.0, 0.0), force)
+        acting = force if term.function[0] == "f" else torque
+        return self._component(acting, term.function[1], [self.marker(marker) for marker in term.markers])
+
+    def _continuous_angle(self, term: Term, i: MarkerFrame, j: MarkerFrame) -> Value:
+        """Return an unwrapped angle: of planar bodies, or in space by its revolution counter."""
         if self._planar:
-            half = self._channels[f"{body}.angle"] / 2
-            orientation = np.column_stack([np.cos(half), self._zero, self._zero, np.sin(half)])
-            names = ("x y 0", "vx vy 0", "ax ay 0", "0 0 omega", "0 0 alpha")
-            point, velocity, acceleration, *turning = (self._columns(body, labels) for labels in names)
-        else:
-            orientation = self._columns(body, "q0 q1 q2 q3")
-            point, velocity, acceleration = (
-                self._columns(body, labels) for labels in ("x y z", "vx vy vz", "ax ay az")
+            one, other = (
+                self._model.place(marker).angle
+                + (0.0 if marker.body == GROUND else self._read(marker.body, "angle")[0])
+                for marker in term.markers
             )
-            turning = [rotated(orientation, self._columns(body, labels)) for labels in ("wx wy wz", "wdx wdy wdz")]
-        return MarkerMotion(point, velocity, acceleration, orientation, *turning)
-
-    def _columns(self, owner: str, labels: str) -> np.ndarray:
-        """Return channels of a body or element as columns; the label 0 stands for zeros."""
-        return np.column_stack(
-            [self._zero if label == "0" else self._channels[f"{owner}.{label}"] for label in labels.split()]
-        )
-
-    def action(self, element: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return force and torque of a joint or force on its first body, in ground axes, shape (n, 3)."""
-        force, torque = ("fx fy 0", "0 0 torque") if self._planar else ("fx fy fz", "tx ty tz")
-        return self._columns(element, force), self._columns(element, torque)
-
-    def continuous_angle(self, term: Term, counters: Channels) -> np.ndarray:
-        """Return an unwrapped angle, shape (n,): of planar bodies, or in space by its revolution counter."""
-        if self._planar:
-            i, j = (self._planar_angle(marker) for marker in term.markers)
-            return np.broadcast_to(i - j, self._zero.shape)
-        sine, cosine = _sine_and_cosine(term.function[1], *map(self.of, term.markers))
-        counted = counters[str(term)]
-        s, c = np.sin(counted), np.cos(counted)
-        return np.asarray(counted + np.arctan2(sine * c - cosine * s, cosine * c + sine * s))
-
-    def _planar_angle(self, marker: MarkerReference) -> Any:
-        placed = self._model.place(marker).angle
-        return placed if marker.body == GROUND else self._channels[f"{marker.body}.angle"] + placed
-
-
-def _sine_and_cosine(about: str, i: MarkerMotion, j: MarkerMotion) -> tuple[np.ndarray, np.ndarray]:
-    """Return sine and cosine of an angle as in `stiffmbs.compile.symbolic.spatial_frames.SpatialFrame.angle_about`."""
-    if about == "z":
-        x = i.axis(0, j)
-        return x[:, 1], x[:, 0]
-    z = i.axis(2, j)
-    return (-z[:, 1] if about == "x" else z[:, 0]), z[:, 2]
+            return one - other
+        about = term.function[1]
+        if about == "z":
+            sine, cosine = dot(i.axes[0], j.axes[1]), dot(i.axes[0], j.axes[0])
+        else:
+            z = i.axes[2]
+            sine, cosine = -dot(z, j.axes[1]) if about == "x" else dot(z, j.axes[0]), dot(z, j.axes[2])
+        counted = self._counter(str(term))
+        s, c = self._maths.sin(counted), self._maths.cos(counted)
+        return counted + self._maths.atan2(sine * c - cosine * s, cosine * c + sine * s)

@@ -18,7 +18,7 @@ from ..model.scene import Figure
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
 from .error_bars import ErrorBar
-from .saved_state import TURNS, readable
+from .saved_state import TURNS, reading
 
 if TYPE_CHECKING:
     from .solution import Solution
@@ -53,13 +53,9 @@ def loaded(path: Path) -> Solution:
         raise InputError(
             f"load {path}: found the ending '{path.suffix}', expected .npz: other files hold the channels alone"
         )
-    try:
-        with readable(path), np.load(path, allow_pickle=False) as archive:
-            return _restored(path, dict(archive))
-    except OSError as error:
-        raise InputError(f"load {path}: {error.strerror or 'found no archive of arrays'}") from None
-    except ValueError:
-        raise InputError(f"load {path}: found no archive of arrays, expected a file that Solution.save wrote") from None
+    saved = "a file that Solution.save wrote"
+    with reading(path, f"load {path}", "archive of arrays", saved), np.load(path, allow_pickle=False) as archive:
+        return _restored(path, dict(archive))
 
 
 def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:

@@ -47,6 +47,18 @@ def readable(path: Path) -> Iterator[None]:
         raise ValueError(f"damaged content ({type(error).__name__})") from error
 
 
+@contextmanager
+def reading(path: Path, source: str, content: str, expected: str) -> Iterator[None]:
+    """Raise an InputError on `source` if a file cannot be read, or has another content than expected."""
+    try:
+        with readable(path):
+            yield
+    except OSError as error:
+        raise InputError(f"{source}: {error.strerror or f'found no {content}'}, expected {expected}") from None
+    except ValueError:
+        raise InputError(f"{source}: found no {content}, expected {expected}") from None
+
+
 TURNS = "run/turns/"
 """Prefix of the names of revolution counters in .npz files."""
 
@@ -75,10 +87,6 @@ class SavedState:
     turns: Mapping[str, float] = field(default_factory=dict)
     elements: frozenset[str] | None = None
 
-    def is_new(self, element: str) -> bool:
-        """Return True if the saved run is known not to have an element."""
-        return self.elements is not None and element not in self.elements
-
     def turn(self, element: str, k: int = 0) -> float | None:
         """Return the angle at an element's counter of revolutions, or that of a request, rad; None if not known."""
         return self.turns.get(f"{element}/{k}", self.channels.get(element))
@@ -103,16 +111,11 @@ def read_state(path: str | Path, at: float | None = None) -> SavedState:
     source = quoted(str(file))
     if file.suffix not in READERS:
         raise InputError(f"{source}: found the ending '{file.suffix}', expected one of {', '.join(READERS)}")
-    try:
+    with reading(file, source, "table of channels", "a file that stiffmbs run -o wrote"):
         found = READERS[file.suffix](file)
         if "time" not in found or not found["time"].size:
             raise InputError(f"{source}: found no channels over time, expected a file that stiffmbs run -o wrote")
         return _row(source, found["time"], found, at)
-    except OSError as error:
-        reason = error.strerror or "found no file of results"
-        raise InputError(f"{source}: {reason}, expected a file that stiffmbs run -o wrote") from None
-    except (ValueError, TypeError, IndexError, AttributeError):
-        raise InputError(f"{source}: found no table of channels, expected a file that stiffmbs run -o wrote") from None
 
 
 def state_of(solution: Solution, at: float | None) -> SavedState:
@@ -147,12 +150,12 @@ def _number_of_row(source: str, time: np.ndarray, at: float) -> int:
 
 
 def _npz(path: Path) -> dict[str, object]:
-    with readable(path), np.load(path, allow_pickle=False) as archive:
+    with np.load(path, allow_pickle=False) as archive:
         return {name: archive[name] for name in archive.files if "/" not in name or name.startswith(TURNS)}
 
 
 def _csv(path: Path) -> dict[str, object]:
-    with readable(path), warnings.catch_warnings():
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # NumPy warns of a table without rows
         file = io.StringIO(content_of(path).decode())
         heads = [head.partition(" (")[0] for head in file.readline().rstrip("\r\n").split(",")]
@@ -163,7 +166,7 @@ def _csv(path: Path) -> dict[str, object]:
 def _netcdf(path: Path) -> dict[str, object]:
     from scipy.io import netcdf_file
 
-    with readable(path), netcdf_file(path, mmap=False) as file:
+    with netcdf_file(path, mmap=False) as file:
         names = (
             getattr(variable, "channel", name.encode()).decode("utf-8") for name, variable in file.variables.items()
         )

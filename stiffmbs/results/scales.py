@@ -80,10 +80,8 @@ def scales(
     for kind, of in TURNING.items():
         largest[kind] = max(largest.get(kind, 0.0), CROSSED * largest.get(of, 0.0) / size)
     largest["torque"] = max(largest.get("torque", 0.0), CROSSED * largest.get("force", 0.0) * size)
+    parts = {kind: LITTLE_FORCE if kind in MECHANICAL else LITTLE for kind in largest} | {"": 0.0}
     return {
-        name: max(own[key], (LITTLE_FORCE if key[1] in MECHANICAL else LITTLE) * largest[key[1]])
-        if key[1]
-        else own[key]
-        for name in channels
-        for key in [(_owner(name), kinds[name])]
+        name: max(own[_owner(name), kind], parts[kind] * largest[kind]) if kind else own[_owner(name), kind]
+        for name, kind in kinds.items()
     }

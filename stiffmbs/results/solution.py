@@ -178,9 +178,9 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         InputError
             If the suffix is unknown, or the folder or a package is missing.
         """
-        from .files import check_output, write
+        from .files import refuse_path, write
 
-        check_output(Path(path), "save")
+        refuse_path("save", Path(path), "results")
         write(Path(path), self)
 
     def state(self, at: float | None = None) -> SavedState:

@@ -21,20 +21,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
 
-ENDINGS = (".png", ".svg", ".pdf")
 SIZE = (8, 5)
 TOTAL_ENERGY = Figure(title="total energy", y=("energy.total",))
 MOST_PLOTS = 6
 """Number of units above which all lines share one plot, with the units in the legend."""
-
-
-def check_figure(option: str, path: Path) -> None:
-    """Check that a figure can be drawn to the path of an option, before anything is solved.
-
-    Raises InputError if the suffix is unknown, or the folder or matplotlib is missing.
-    """
-    refuse_path(option, path, ENDINGS)
-    refuse_missing("matplotlib", "'stiffmbs[plot]'", f"{option} {path}: ")
 
 
 def drawn(solution: Solution, figure: Figure | None) -> Sheet:
@@ -43,7 +33,7 @@ def drawn(solution: Solution, figure: Figure | None) -> Sheet:
     InputError if the figure names an unknown channel.
     """
     sheet = new_sheet(SIZE)
-    draw_on(sheet, solution, figure or TOTAL_ENERGY)
+    draw_runs(sheet, {"": solution}, figure or TOTAL_ENERGY)
     return sheet
 
 
@@ -79,7 +69,7 @@ def plot(
     refuse_missing("matplotlib", "'stiffmbs[plot]'", "plot: ")
     figure = figure_of({"": solution}, channels, x, title, z, equal)
     sheet = new_sheet(SIZE, on_screen=True)
-    draw_on(sheet, solution, figure)
+    draw_runs(sheet, {"": solution}, figure)
     return sheet
 
 
@@ -104,11 +94,6 @@ def figure_of(
             if channel not in ("time", ""):
                 run[channel]
     return figure
-
-
-def draw_on(sheet: Sheet, solution: Solution, figure: Figure) -> None:
-    """Draw a figure on an empty sheet of matplotlib; errors as for `drawn`."""
-    draw_runs(sheet, {"": solution}, figure)
 
 
 def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> None:
@@ -175,14 +160,12 @@ def _is_mathematical(title: str) -> bool:
 def check_plot(path: Path | None) -> None:
     """Check that a plot can be drawn to a file, or in a window without a path, before anything is solved."""
     if path is not None:
-        refuse_path("-o", path, ENDINGS)
+        refuse_path("-o", path, "figure")
+        return
     refuse_missing("matplotlib", "'stiffmbs[plot]'", "plot: ")
-    if path is None and not _has_screen():
+    has_screen = sys.platform in ("darwin", "win32") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    if not has_screen:
         raise InputError("plot: found no screen for a window, expected -o FILE, such as -o plot.svg")
-
-
-def _has_screen() -> bool:
-    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def plotted_runs(runs: Mapping[str, Solution], figure: Figure, in_window: bool = False) -> Sheet:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import InputError, needs
 from ..flexible_bodies.finite_elements import FiniteElements
 from ..flexible_bodies.reduction import ReducedBody
 
@@ -19,8 +18,6 @@ MOST_FREQUENCIES = 12
 """Number of modes that are shown, the slowest first."""
 LARGE_CONDITION = 1e12
 """Condition number above which a note advises fewer modes."""
-SHAPES_SUFFIXES = (".vtu", ".vtk")
-"""Types of files of mode shapes."""
 
 
 def flexible_body_text(name: str, body: ReducedBody, interfaces: Sequence[str], held: Mapping[str, np.ndarray]) -> str:
@@ -140,14 +137,6 @@ def flexible_motion_text(report: Mapping[str, Any]) -> str:
     for node, own in report["displacement"].items():
         lines.append(f"{f'node {node}':20}{own['largest']:.6g} m at {own['time']:.6g} s, at most")
     return "\n".join(lines)
-
-
-def check_shapes_file(path: Path) -> None:
-    """Refuse a file of another type, and a missing package. Raises InputError."""
-    if path.suffix.lower() not in SHAPES_SUFFIXES:
-        raise InputError(f"-o {path}: found the type '{path.suffix}', expected {' or '.join(SHAPES_SUFFIXES)}")
-    with needs("meshio", "flexible"):
-        import meshio  # noqa: F401
 
 
 def write_shapes(path: Path, model: FiniteElements, body: ReducedBody) -> None:

@@ -25,16 +25,10 @@ LEAST_WITHOUT_EXPONENT = 1e-3
 
 
 def with_bar(value: float, half: float, noise: float = 0.0) -> str:
-    """Return a value and the half width of its error bar, as ``12.345 ± 0.002``.
+    """Return a value and the half width of its error bar, nan if unknown, as ``12.345 ± 0.002``.
 
     The bar has one digit, rounded up, or two if the first would be 1; the last digit of the value is at the same place.
-
-    Parameters
-    ----------
-    value, half : float
-        The half width is nan if it is unknown.
-    noise : float
-        Size up to which values and bars are zero.
+    `noise`: size up to which values and bars are zero.
 
     Examples
     --------
@@ -75,26 +69,13 @@ Cell = Mapping[str, float]
 
 @dataclass(frozen=True)
 class Loads:
-    """Choice of the loads of a summary.
+    """Choice of the loads of a summary."""
 
-    Attributes
-    ----------
-    most : int
-        Number of elements that are listed by default, those of the largest loads.
-    zero : float
-        Part of the largest force below which a force is shown as zero.
-    """
-
-    most: int = 10
-    zero: float = 1e-11
+    most: int = 10  # number of elements that are listed by default, those of the largest loads
+    zero: float = 1e-11  # part of the largest force below which a force is shown as zero
 
 
 LOADS = Loads()
-
-
-def force_table(solution: Solution, most: int | None = None) -> Table:
-    """Return the rows of `force_rows` as a table for a console of rich."""
-    return rich_table(*force_rows(solution, most))
 
 
 def rich_table(heads: Sequence[str], *rows: Sequence[str]) -> Table:

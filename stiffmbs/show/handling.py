@@ -13,7 +13,7 @@ from ..results.files import write_text
 from ..studies.handling.standards import TESTS
 from ..studies.handling.study import Handling, Tested
 from .page.data import environment
-from .style import data_url, dress
+from .style import data_url, dress, new_sheet
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -87,14 +87,10 @@ def _rows(one: Tested) -> list[tuple[str, str, str]]:
 
 
 def _figure(name: str, one: Tested) -> Figure:
-    from matplotlib.figure import Figure
-
-    sheet = Figure(figsize=(7, 3.2), layout="constrained")
+    sheet = new_sheet((7, 3.2))
     axes = sheet.subplots()
     x, y = TESTS[name].shown
     for run in one.runs:
         axes.plot(run[x], run[y])
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
-    dress(axes)
+    dress(axes, xlabel=x, ylabel=y)
     return sheet

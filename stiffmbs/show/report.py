@@ -13,11 +13,11 @@ import numpy as np
 
 from ..analyses.check import check
 from ..analyses.linearised.modes import modes
-from ..errors import InputError, StiffmbsError, refuse_missing
+from ..errors import InputError, StiffmbsError
 from ..model.scene import Figure, Scene
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
-from ..results.files import refuse_path, write_text
+from ..results.files import write_text
 from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import History
@@ -31,27 +31,16 @@ from .modes import modes_text
 from .page.data import environment, page_data, page_parts
 from .page.modes import modes_data
 from .sections import Section, differences_section
-from .style import COLORS, data_url, dress
+from .style import COLORS, data_url, dress, new_sheet
 from .summary import solver_lines
 from .verdict import verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
-NEEDED = ("jinja2", "matplotlib")
 MOST_LINES = 5_000
 """Number of points above which a line drawing becomes a bitmap."""
 ENERGIES = Figure(title="energy (J)", y=("energy.kinetic", "energy.potential", "energy.total"))
-
-
-def check_report(path: Path) -> None:
-    """Check that a report can be written, before anything is solved.
-
-    Raises InputError if the suffix is not .html, or the folder or a package is missing.
-    """
-    refuse_path("-o", path, (".html",))
-    for package in NEEDED:
-        refuse_missing(package, "'stiffmbs[report]'", f"-o {path}: ")
 
 
 def write_report(
@@ -119,17 +108,11 @@ def relevant_figures(solution: Solution, own: Figure | None) -> list[Figure]:
         if not any(name.startswith(f"{element}.") for name in shown)
     }
     largest = max(sizes, key=lambda element: np.nan_to_num(sizes[element]), default="")
-    force = (
-        [
-            Figure(
-                title=f"force of {largest} (N)",
-                y=tuple(f"{largest}.{p}" for p in reactions_of(solution) if p[0] == "f"),
-            )
-        ]
-        if largest and sizes[largest] > 0
-        else []
-    )
-    return [*([own] if own else []), *force, ENERGIES]
+    found = [own] if own else []
+    if largest and sizes[largest] > 0:
+        parts = tuple(f"{largest}.{part}" for part in reactions_of(solution) if part[0] == "f")
+        found.append(Figure(title=f"force of {largest} (N)", y=parts))
+    return [*found, ENERGIES]
 
 
 def _modes(scene: Scene) -> tuple[list[str], dict[str, str] | None]:
@@ -173,10 +156,8 @@ def _embedded(sheet: Sheet, points: int) -> str:
 
 def step_history(history: History) -> Sheet:
     """Plot the step length over time on a logarithmic axis, and below it the order if known."""
-    from matplotlib.figure import Figure as Sheet
-
     has_orders = len(history.order) == len(history.t)
-    sheet = Sheet(figsize=(8, 5 if has_orders else 3), layout="constrained")
+    sheet = new_sheet((8, 5 if has_orders else 3))
     lengths = np.diff(history.t)
     rows = sheet.subplots(
         2 if has_orders else 1, sharex=True, squeeze=False, height_ratios=[2, 1] if has_orders else None
@@ -184,12 +165,9 @@ def step_history(history: History) -> Sheet:
     shown = lengths > 0
     rows[0].plot(history.t[1:][shown], lengths[shown], ".", color=COLORS[0], markersize=2)
     rows[0].set_yscale("log")
-    rows[0].set_ylabel("step (s)")
-    rows[0].set_title("steps of the solver")
+    dress(rows[0], ylabel="step (s)", title="steps of the solver")
     if has_orders:
         rows[1].plot(history.t, history.order, ".", color=COLORS[0], markersize=2)
-        rows[1].set_ylabel("order")
+        dress(rows[1], ylabel="order")
     rows[-1].set_xlabel("time (s)")
-    for axes in rows:
-        dress(axes)
     return sheet

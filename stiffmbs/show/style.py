@@ -49,8 +49,9 @@ def stroke(k: int) -> dict[str, object]:
     return {"color": COLORS[k % len(COLORS)], "linestyle": STROKES[k % len(STROKES)], "linewidth": 1.4}
 
 
-def dress(axes: Axes) -> None:
-    """Add a light grid, and remove the frame above and to the right."""
+def dress(axes: Axes, **labels: str) -> None:
+    """Set `xlabel`, `ylabel` or `title`, add a light grid, and remove the frame above and to the right."""
+    axes.set(**labels)
     axes.grid(alpha=0.3)
     axes.spines[["top", "right"]].set_visible(False)
 

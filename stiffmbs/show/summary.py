@@ -129,11 +129,6 @@ def check_as_json(scene: str, report: Report, listed: Sequence[ListedStatement] 
     return json_line(report.as_dict(scene) | statements)
 
 
-def error_as_json(scene: str, message: str, status: str = "error") -> str:
-    """Return the one-line JSON object for a scene that could not be run, or that has no result."""
-    return json_line({"scene": scene, "status": status, "message": message})
-
-
 def json_line(content: object) -> str:
     """Return one line of JSON; NaN and infinity become null."""
     return json.dumps(_finite(content), allow_nan=False)

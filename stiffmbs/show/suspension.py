@@ -11,6 +11,7 @@ import numpy as np
 from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
 from ..studies.suspension.road_loads import COMPONENTS, RoadLoads
 from .sections import Section, Table
+from .style import new_sheet
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -139,13 +140,12 @@ def kc_csv(found: KinematicsAndCompliance) -> str:
 
 def kc_figure(found: KinematicsAndCompliance) -> Sheet:
     """Draw the page: the panels that apply to the axle, with wheel travel upwards as chassis engineers draw it."""
-    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
     panels = [panel for panel in PANELS if panel.case in found.sweeps and _curves(found, panel)]
     columns = min(COLUMNS, max(len(panels), 1))
     rows = max(1, -(-len(panels) // columns))
-    figure = Figure(figsize=(3.0 * columns, 2.3 * rows), layout="constrained")
+    figure = new_sheet((3.0 * columns, 2.3 * rows))
     axes = figure.subplots(rows, columns, squeeze=False).ravel()
     for each, panel in zip(axes, panels, strict=False):
         _draw(each, found, panel)
@@ -179,11 +179,8 @@ def _curves(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, str
         sides = ["axle"] if name.startswith("axle.") else [wheel.side for wheel in found.axle.wheels]
         for side, style in zip(sides, STYLES, strict=False):
             channel = name if side == "axle" else f"{side}.{name}"
-            over = (
-                panel.over if panel.over.startswith("axle.") else f"{sides[0] if side == 'axle' else side}.{panel.over}"
-            )
-            if side == "axle" and panel.over == "travel":
-                over = f"{found.axle.wheels[0].side}.travel"
+            wheel = found.axle.wheels[0].side if side == "axle" else side
+            over = panel.over if panel.over.startswith("axle.") else f"{wheel}.{panel.over}"
             x = sweep.channels.get(over) if panel.over else sweep.abscissa
             if channel in sweep.channels and x is not None and np.any(np.isfinite(sweep.channels[channel] + x)):
                 curves.append((name, style, x, sweep.channels[channel]))

@@ -31,9 +31,7 @@ def tyre_figure(title: str, curves: Sequence[TyreCurve]) -> Sheet:
         (along, "longitudinal slip", "Fx, kN"), (across, "slip angle, deg", "Fy, kN"),
         (aligning, "slip angle, deg", "Mz, N m"), (ellipse, "Fy, kN", "Fx, kN"),
     ):  # fmt: skip
-        one.set_xlabel(x)
-        one.set_ylabel(y)
-        dress(one)
+        dress(one, xlabel=x, ylabel=y)
     ellipse.set_aspect("equal", adjustable="datalim")
     sheet.suptitle(title, parse_math=False)
     legend_below(sheet, axes.ravel())

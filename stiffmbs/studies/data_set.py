@@ -91,18 +91,6 @@ def _array(name: str, values: Sequence[object]) -> np.ndarray:
     return array if array.dtype.kind in "if" else array.astype(str)
 
 
-def check_output(path: Path) -> None:
-    """Check that a file can be written, before anything is solved.
-
-    Raises InputError if the suffix is unknown, or the folder or a package is missing.
-    """
-    from ..results.files import refuse_path
-
-    refuse_path("-o", path, WRITERS)
-    with needs("xarray", "netcdf"):
-        import xarray  # noqa: F401
-
-
 def write(path: Path, data: xarray.Dataset) -> None:
     """Write a data set to a file, completely or not at all.
 

@@ -8,7 +8,7 @@ from typing import Unpack
 
 import numpy as np
 
-from ..analyses.job import Job, Runnable, data_of, prepare
+from ..analyses.job import Job, Runnable, data_of, prepare, settings_of
 from ..analyses.start_from import StartFrom
 from ..elements.requests.order import units
 from ..errors import InputError
@@ -72,7 +72,7 @@ def follow(
     if not every >= 0:
         raise InputError(f"follow: found every = {every}, expected a time of 0 s or more")
     data = data_of(model)
-    chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), dict(changes))
+    chosen = settings_of(data, settings, changes)
     job = prepare(data, chosen, start_from)
     if job.subsystems:
         job = prepare(data, changed(chosen, {"presolve": False}), start_from)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..reading.files.quoted import quoted
-from ..results.saved_state import READERS
+from ..results.saved_state import READERS, reading
 from ..results.solution import Solution
 
 
@@ -67,12 +67,8 @@ def _read(data: Any, source: str) -> tuple[Any, dict[str, object]]:
 def _from_file(path: Path, source: str) -> dict[str, object]:
     if path.suffix not in READERS:
         raise InputError(f"{source}: found the ending '{path.suffix}', expected one of {', '.join(READERS)}")
-    try:
+    with reading(path, source, "table of numbers", "a column for each channel, and time"):
         return READERS[path.suffix](path)
-    except OSError as error:
-        raise InputError(f"{source}: {error.strerror or error}, expected a file of measured channels") from None
-    except ValueError:
-        raise InputError(f"{source}: found no table of numbers, expected a column for each channel, and time") from None
 
 
 ROUNDS = 4

@@ -143,8 +143,14 @@ def _channels(node: ast.AST) -> Iterator[str]:
     if name:
         yield name
         return
-    for part in node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node):
+    for part in parts_of(node):
         yield from _channels(part)
+
+
+def parts_of(node: ast.AST) -> list[ast.expr]:
+    """Return the arguments of a function, or the operands."""
+    parts = node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node)
+    return [part for part in parts if isinstance(part, ast.expr)]
 
 
 def _check(text: str, node: ast.AST) -> None:
@@ -156,36 +162,26 @@ def _check(text: str, node: ast.AST) -> None:
                 raise InputError(
                     f"output '{text}': found {name} of {len(arguments)} values, expected one channel over time"
                 )
-            parts = arguments
-        case ast.BinOp(left, operator, right) if type(operator) in OPERATORS:
-            parts = [left, right]
-        case ast.UnaryOp(operator, operand) if type(operator) in OPERATORS:
-            parts = [operand]
+        case ast.BinOp(op=operator) | ast.UnaryOp(op=operator) if type(operator) in OPERATORS:
+            pass
         case _ if channel_of(node):
             return
         case _:
             known = (*REDUCTIONS, *FUNCTIONS)
-            near = (
-                did_you_mean(node.func.id, known)
-                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
-                else ""
-            )
+            called = channel_of(node.func) if isinstance(node, ast.Call) else None
+            near = did_you_mean(called, known) if called else ""
             raise InputError(
                 f"output '{text}': found '{ast.unparse(node)}'{near}, expected channels, numbers, + - * / ^ and {', '.join(known)}"
             )
-    for part in parts:
+    for part in parts_of(node):
         _check(text, part)
 
 
 def _is_series(node: ast.AST) -> bool:
-    match node:
-        case ast.Call(ast.Name(name), [*arguments], []):
-            return name not in REDUCTIONS and any(map(_is_series, arguments))
-        case ast.BinOp(left, _, right):
-            return _is_series(left) or _is_series(right)
-        case ast.UnaryOp(_, operand):
-            return _is_series(operand)
-    return channel_of(node) is not None
+    if channel_of(node):
+        return True
+    is_reduced = isinstance(node, ast.Call) and channel_of(node.func) in REDUCTIONS
+    return not is_reduced and any(map(_is_series, parts_of(node)))
 
 
 def evaluated(node: ast.AST, channel: Callable[[str], object], reduced: Callable[[str, Any], object]) -> Any:

@@ -254,18 +254,12 @@ class _Verification:
         shorter = self._shorter if _judges(self._shorter) else None
         lost = bool(self._along.stretches) and (shorter is None or bool(shorter.obstacle))
         runs = [*tighter, *([other] if other else []), *([shorter] if shorter else [])]
-        bars = {
-            name: UNKNOWN
-            if lost
-            else error_bar(
-                self._first[name],
-                [run.reported(name) for run in runs],
-                self._dense.fine(name) if self._dense else None,
-                VERIFICATION.tightest_rtol * self._sizes[name],
-            )
-            for name in self._first
-            if name not in self._first.not_unique and not name.startswith("constraint.")
-        }
+        bars = {}
+        for name, values in self._first.items():
+            if name not in self._first.not_unique and not name.startswith("constraint."):
+                others, fine = [run.reported(name) for run in runs], self._dense.fine(name) if self._dense else None
+                rounding = VERIFICATION.tightest_rtol * self._sizes[name]
+                bars[name] = UNKNOWN if lost else error_bar(values, others, fine, rounding)
         return Comparison(self._job, self._first, tighter, other, self._dense, bars, self._sizes)
 
     def _messages(self) -> list[str]:

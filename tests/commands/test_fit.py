@@ -58,7 +58,7 @@ def test_the_least_length_that_keeps_a_force_is_found(examples):
     [
         (("--parameter", "L=1,2"), "found no range"),
         (("--parameter", "L=0.5:0.7", "--keep", "peak(cart.x)"), "--keep peak(cart.x): found no bound"),
-        (("--parameter", "L=0.5:0.7", "--start", "L"), "--start L: found no value"),
+        (("--parameter", "L=0.5:0.7", "--start", "L"), "--start: found 'L', expected NAME=VALUE"),
         (("--parameter", "L=0.5:0.7:0.1:1"), "--parameter L=0.5:0.7:0.1:1: found 4 numbers"),
     ],
 )

@@ -31,13 +31,16 @@ def height_of_a_frame():
 
 def most_cases():
     request = Record(rest={}, number=lambda _name, _least, most: reach(most))
-    return reached(lambda: requests._sweep(None, request, nothing, nothing))
+    return reached(lambda: requests._sweep(request))
 
 
 def instants_of_a_band():
     found = Record(outcome=Outcome.DONE, time=np.arange(5000.0), channels={})
-    request = Record(rest={}, number=lambda *_: 2.0, text="", numbers={}, names=lambda _: ())
-    return len(requests._sweep(Record(solve=lambda *_: Record(solution=found)), request, nothing, nothing)["time"])
+    solved = Record(solution=found)
+    request = Record(
+        rest={}, number=lambda *_: 2.0, numbers={}, names=lambda _: (), tell=nothing, solved=lambda _: solved
+    )
+    return len(requests._sweep(request)["time"])
 
 
 def pause_before_the_end():

@@ -14,7 +14,7 @@ from stiffmbs.results import (
     error_bars,
     flexible_motion,
     joined,
-    requests,
+    marker_motion,
     saved_state,
     scales,
 )
@@ -118,8 +118,9 @@ def smallest_angle_of_axes():
     """Return the angle between z axes, in quarter octaves of 1 rad, up to which an Euler angle is defined."""
 
     def is_defined(angle):
-        leaning = Record(axis=lambda *_: np.array([[np.sin(angle), 0.0, np.cos(angle)]]))
-        return requests._phi(leaning, leaning)[0] != 0.0
+        axes = np.eye(3)
+        leaning = Record(axes=[axes[0], axes[1], (np.sin(angle), 0.0, np.cos(angle))])
+        return marker_motion._phi(Record(axes=axes), leaning, np) != 0.0
 
     return count_while(is_defined, HALVES)
 
@@ -165,7 +166,7 @@ DECISIONS = {
     "results.flexible_motion:AT_ONCE": parts_of_stresses,
     "results.joined:SAME_VALUE": largest_step_between_joined_runs,
     "results.joint_angles:UNCERTAIN_TURN": largest_difference_of_turns,
-    "results.requests:ALIGNED": smallest_angle_of_axes,
+    "results.marker_motion:ALIGNED": smallest_angle_of_axes,
     "results.scales:LITTLE": lambda: scale_of("a.x", a_x=0.0, b_x=1.0),
     "results.scales:LITTLE_FORCE": lambda: scale_of("j.fx", j_fx=0.0, k_fx=1.0),
     "results.scales:ROUNDING": farthest_saved_row,
@@ -180,6 +181,6 @@ EXPECTED = {
     "results.energy_balance_notes:REPORTED": 27, "results.energy_balance_notes:CERTAIN": 7, "results.energy_balance_notes:OF_TOLERANCE": 1e-5,
     "results.energy_balance_notes:OF_POTENTIAL": 1e-10, "results.error_bars:SAFETY": 2.0, "results.error_bars:FINER": 1.1,
     "results.flexible_motion:AT_ONCE": 8, "results.joined:SAME_VALUE": 40, "results.joint_angles:UNCERTAIN_TURN": 14,
-    "results.requests:ALIGNED": 160, "results.scales:LITTLE": 0.1, "results.scales:LITTLE_FORCE": 0.01, "results.scales:ROUNDING": 40,
+    "results.marker_motion:ALIGNED": 160, "results.scales:LITTLE": 0.1, "results.scales:LITTLE_FORCE": 0.01, "results.scales:ROUNDING": 40,
     "results.scales:FIXED": 1e-9, "results.scales:CROSSED": 1e-5, "results.scales:REQUEST_ROUNDING": 187,
 }  # fmt: skip

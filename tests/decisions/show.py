@@ -188,7 +188,7 @@ def farthest_torque():
         site = Record(point=np.array([distance, 0.0, 0.0]))
         draft = Record(i=site, size=1.0, u=1.0, put=lambda site, *_: reach(site is not None))
         with patch.object(shared, "replace", lambda *_, **__: None):
-            return reached(lambda: shared.torque(draft))
+            return reached(lambda: shared.torque(draft, draft.i, None))
 
     return count_while(lambda distance: is_at_its_marker(1e-3 * distance), DOUBLES)
 
@@ -198,7 +198,7 @@ def width_of_a_wheel():
         spatial, radius_of=lambda _: 1.0, _coefficient=lambda *_: 0.0,
         lathe=lambda profile, _: reach(np.max(profile[:, 1]) / np.max(spatial.PROFILE[:, 1])),
     ):  # fmt: skip
-        return reached(lambda: spatial.wheel(Record(element=None, i=Record(with_axes=nothing), put=nothing)))
+        return reached(lambda: spatial.wheel(Record(element=None, put=nothing), Record(with_axes=nothing), None))
 
 
 def spokes_of_a_wheel():
@@ -207,7 +207,7 @@ def spokes_of_a_wheel():
         element=None, i=Record(with_axes=nothing), put=lambda _site, _role, *found, **__: shapes.append(found)
     )
     with patch.multiple(spatial, radius_of=lambda _: 1.0, _coefficient=lambda *_: 0.0):
-        spatial.wheel(draft)
+        spatial.wheel(draft, draft.i, None)
     return len(shapes[1]) - 1
 
 

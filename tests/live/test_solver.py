@@ -71,11 +71,15 @@ def test_python_functions_need_consent():
     assert solver.solve("", {}, unwatched).solution.outcome.name == "DONE"
 
 
+SWEEP = {"parameter": "L", "low": 0.4, "high": 0.8, "count": 3, "unit": "m"}
+
+
+def request(**content):
+    return Request({"text": TEXT, **content}, LiveSolver(), unwatched, lambda progress: None)
+
+
 def test_a_band_holds_the_curves_of_a_sweep():
-    request = Request(
-        {"text": TEXT, "parameter": "L", "low": 0.4, "high": 0.8, "count": 3, "unit": "m", "channels": ["rail.fy"]}
-    )
-    answer = ANSWERS["sweep"](LiveSolver(), request, unwatched, lambda progress: None)
+    answer = ANSWERS["sweep"](request(**SWEEP, channels=["rail.fy"]))
     (band,) = answer["bands"]
     for length in ("0.4 m", "0.6 m", "0.8 m"):
         run = stiffmbs.run(stiffmbs.read_scene(TEXT, [("L", length)]))
@@ -87,22 +91,19 @@ def test_a_band_holds_the_curves_of_a_sweep():
     "content", [{"count": 1}, {"count": 1000}, {"count": "many"}, {"low": None}, {"high": float("nan")}]
 )
 def test_a_sweep_of_other_bounds_is_refused(content):
-    request = Request({"text": TEXT, "parameter": "L", "low": 0.4, "high": 0.8, "count": 3, "unit": "m", **content})
     with pytest.raises(InputError, match="expected a number"):
-        ANSWERS["sweep"](LiveSolver(), request, unwatched, lambda progress: None)
+        ANSWERS["sweep"](request(**SWEEP | content))
 
 
 @pytest.mark.parametrize("what", ["check", "modes", "verify"])
 def test_analyses_answer_in_words(what):
-    answer = ANSWERS[what](LiveSolver(), Request({"text": TEXT}), unwatched, lambda progress: None)
+    answer = ANSWERS[what](request())
     assert {"check": "2 degrees of freedom", "modes": "Hz", "verify": "positions to"}[what] in answer["text"]
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".npz", ".html"])
 def test_results_are_exported(suffix):
-    answer = ANSWERS["export"](
-        LiveSolver(), Request({"text": TEXT, "suffix": suffix}), unwatched, lambda progress: None
-    )
+    answer = ANSWERS["export"](request(suffix=suffix))
     assert len(answer["content"]) > 1000
 
 

@@ -7,7 +7,7 @@ from scipy.integrate import cumulative_simpson
 import stiffmbs
 from stiffmbs.compile.quaternions import rotated
 from stiffmbs.reading.marker import GROUND
-from stiffmbs.results.marker_motion import Motions
+from stiffmbs.results.marker_motion import Measures
 from stiffmbs.tyres import Tyre
 
 from ..conftest import EXAMPLES
@@ -52,7 +52,7 @@ def wrench(scene, run, name):
     return (
         vector(run, name, "fx fy fz"),
         vector(run, name, "tx ty tz"),
-        Motions(scene, run, len(run.time)).of(force.i).point,
+        np.stack(Measures(scene, run.__getitem__, {}.__getitem__, np).marker(force.i).point, axis=1),
     )
 
 

@@ -140,7 +140,7 @@ def test_names_are_no_markup(tmp_path):
 @pytest.mark.parametrize(
     ("scene", "output", "part"),
     [
-        (EXAMPLES / "cart_pendulum.yaml", "page.pdf", "expected one of .html"),
+        (EXAMPLES / "cart_pendulum.yaml", "page.pdf", "expected .html"),
         (EXAMPLES / "cart_pendulum.yaml", "nowhere/page.html", "found no folder"),
         ("missing.yaml", "page.html", "missing.yaml"),
         (f"{EXAMPLES / 'cart_pendulum.yaml'} missing.npz", "page.html", "missing.npz"),

@@ -16,7 +16,7 @@ from stiffmbs.commands.main import main
 from stiffmbs.elements.spatial.orientation import conjugate, matrix, product, rotated
 from stiffmbs.results.scales import scales
 from stiffmbs.show.figure import drawn
-from stiffmbs.show.force_table import force_table
+from stiffmbs.show.force_table import force_rows, rich_table
 from stiffmbs.verification.divergence import distance, divergence
 
 from ..conftest import EXAMPLES
@@ -124,7 +124,7 @@ def test_bodies_that_turn_apart_are_seen_whatever_the_sign_of_their_quaternions(
 def test_names_of_elements_and_numbers_stay_whole_in_narrow_tables(width):
     found = stiffmbs.run(swinging(TURN), **SETTINGS)
     file = io.StringIO()
-    Console(file=file, width=width).print(force_table(found))
+    Console(file=file, width=width).print(rich_table(*force_rows(found)))
     shown = file.getvalue()
     assert all(len(line) <= width for line in shown.splitlines())
     assert "…" not in shown
@@ -146,7 +146,7 @@ def test_a_request_that_only_rounds_off_is_in_no_doubt():
 def test_a_joint_without_torque_has_no_row_for_it():
     found = stiffmbs.run(stiffmbs.load_scene(EXAMPLES / "heavy_top.yaml"), duration=0.2)
     file = io.StringIO()
-    Console(file=file, width=80).print(force_table(found))
+    Console(file=file, width=80).print(rich_table(*force_rows(found)))
     assert "tip" in file.getvalue() and "torque" not in file.getvalue()
 
 

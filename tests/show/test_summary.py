@@ -9,7 +9,7 @@ import pytest
 import stiffmbs
 from stiffmbs.results.error_bars import ErrorBar
 from stiffmbs.show.escaped import console
-from stiffmbs.show.force_table import force_table
+from stiffmbs.show.force_table import force_rows, rich_table
 from stiffmbs.show.plain import PlainConsole
 from stiffmbs.show.summary import INDENT, print_summary
 
@@ -81,7 +81,9 @@ def test_a_force_of_rounding_is_shown_as_zero(chain, part, is_zero):
         for label, value in (("fx", part * largest), ("fy", 0), ("torque", 0))
     }
     table = io.StringIO()
-    console(file=table, width=200).print(force_table(replace(chain, channels={**chain.channels, **element})))
+    console(file=table, width=200).print(
+        rich_table(*force_rows(replace(chain, channels={**chain.channels, **element})))
+    )
     (row,) = [line for line in table.getvalue().splitlines() if line.startswith("│ b ")]
     assert (row.split("│")[2].strip() == "0 .. 0") == is_zero
 

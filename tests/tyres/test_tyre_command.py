@@ -108,7 +108,7 @@ def test_curves_states_and_files_of_the_command(tmp_path):
         (("--at", "1,x"), "--at 1,x: found no numbers, expected up to 7"),
         (("--at", "4000,0,0,0,0"), "found a pressure of 0 Pa"),
         (("--write", "other.txt"), ".tir"),
-        (("--unit", "mm", "--write", "other.tir"), "--unit mm: found no unit"),
+        (("--unit", "mm", "--write", "other.tir"), "--unit: found 'mm', expected DIMENSION=UNIT"),
     ],
 )
 def test_options_that_do_not_fit_are_refused(tmp_path, options, sentence):

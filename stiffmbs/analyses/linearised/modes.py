@@ -216,11 +216,9 @@ def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amp
             f"mode {number} cannot be shown with an amplitude of {amplitude:g} of the mechanism's size: "
             f"{failure(dynamics, rows.status, found.t)}; expected a smaller amplitude"
         )
-    message = (
-        f"one period of mode {number}, {mode.natural_frequency:.6g} Hz"
-        if oscillates
-        else f"mode {number}, forward and back"
-    )
+    message = f"mode {number}, forward and back"
+    if oscillates:
+        message = f"one period of mode {number}, {mode.natural_frequency:.6g} Hz"
     solution = solution_of_rows(
         f"{found.data.name or 'model'}, mode {number}", found.data, system, rows, found.redundancy.not_unique, message, (),
         {"name": "modes", "steps": 0},

@@ -27,26 +27,17 @@ class ForceJumpError(SolverError):
 
 @dataclass(frozen=True)
 class Moves:
-    """Perturbations by which the equations on both sides of a state are compared.
+    """Perturbations by which the equations on both sides of a state are compared."""
 
-    Attributes
-    ----------
-    wide, narrow : float
-        Sizes, relative to the mechanism's size, rad, or these per second.  A breakpoint within the wide one is near the state.
-    steep : float
-        Ratio of the change of a force to the change expected from its derivatives on both sides, above which the force is
-        discontinuous; and of the relative change of a derivative to the size of a perturbation, below which it is smooth.
-    curved : float
-        Relative deviation from proportionality between the changes over both perturbations that a smooth law may have.
-    rounding : float
-        Size that counts as zero, relative to the largest force. Entries that are rounding of the largest one of their kind
-        are zero, too.
-    """
-
+    # sizes, relative to the mechanism's size, rad, or these per second; a breakpoint within the wide one is near the state
     wide: float = 1e-6
     narrow: float = 1e-7
+    # ratio of the change of a force to the change expected from its derivatives on both sides, above which the force is
+    # discontinuous; and of the relative change of a derivative to the size of a perturbation, below which it is smooth
     steep: float = 10.0
+    # relative deviation from proportionality between the changes over both perturbations that a smooth law may have
     curved: float = 0.5
+    # size that counts as zero, relative to the largest force, or for entries to the largest of their kind
     rounding: float = 1e-6
 
     def break_between(self, wide: np.ndarray, narrow: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...analyses.job import Runnable, data_of
 from ...analyses.run import run
-from ...errors import InputError, refuse_missing, refuse_text
+from ...errors import InputError, refuse_text
 from ...model.model_data import ModelData
 from ...reading.marker import MarkerReference
 from ...results.files import refuse_path, write_text, written_whole
@@ -26,21 +26,10 @@ from .view import check_view, view_named
 FILMS: dict[str, Callable[..., None]] = {".gif": write_gif, ".mp4": write_mp4}
 
 
-def check_animation(path: Path) -> None:
-    """Check that an animation can be written, before anything is solved.
-
-    Raises InputError if the suffix is unknown, or the folder or a program to write it is missing.
-    """
-    refuse_path("-o", path, (*FILMS, ".html"))
-    if path.suffix == ".html":
-        refuse_missing("jinja2", "'stiffmbs[report]'", f"-o {path}: ")
-        return
-    refuse_missing("matplotlib", "'stiffmbs[plot]'", f"-o {path}: ")
+def check_animation(path: Path, playback: Playback) -> None:
+    """Check that an animation can be written to a file, and that speed and picture rate are positive."""
+    refuse_path("-o", path, "animation")
     need_encoder(path)
-
-
-def check_playback(playback: Playback) -> None:
-    """Check that speed and picture rate are positive."""
     for option, value in (("--speed", playback.speed), ("--rate", playback.rate)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{option}: found {value:g}, expected a number greater than 0")
@@ -120,8 +109,7 @@ def animate(
         As for `stiffmbs.run`, and for a file that cannot be written.
     """
     playback = Playback(speed, rate)
-    check_animation(Path(path))
-    check_playback(playback)
+    check_animation(Path(path), playback)
     check_view(view)
     data = data_of(model)
     traced(data, traces)

@@ -90,23 +90,32 @@ class Draft:
 
 Symbol = Callable[[Draft], None]
 """Function that draws an element."""
+Piece = Callable[[Draft, Site, Site], object]
+"""Function that draws a part of a symbol, from the first and the second marker of an element."""
 
 
-def at_first(draw: Callable[[Draft, Site], None]) -> Symbol:
-    """Return a symbol that is drawn if the element has a first marker."""
+def at_first(*pieces: Piece) -> Symbol:
+    """Return a symbol of pieces that is drawn if the element has a first marker; the second is then the first, too."""
 
     def symbol(draft: Draft) -> None:
         if draft.i is not None:
-            draw(draft, draft.i)
+            for piece in pieces:
+                piece(draft, draft.i, draft.j or draft.i)
 
     return symbol
 
 
-def at_both(draw: Callable[[Draft, Site, Site], None]) -> Symbol:
-    """Return a symbol that is drawn if the element has two markers."""
+def at_both(*pieces: Piece) -> Symbol:
+    """Return a symbol of pieces that is drawn if the element has two markers."""
+    drawn = at_first(*pieces)
+    return lambda draft: None if draft.j is None else drawn(draft)
 
-    def symbol(draft: Draft) -> None:
-        if draft.i is not None and draft.j is not None:
-            draw(draft, draft.i, draft.j)
 
-    return symbol
+def at_other(piece: Piece) -> Piece:
+    """Return a piece with the markers exchanged."""
+    return lambda d, i, j: piece(d, j, i)
+
+
+def at_each(piece: Piece) -> Piece:
+    """Return a piece that is drawn at both markers."""
+    return lambda d, i, j: (piece(d, i, j), piece(d, j, i))

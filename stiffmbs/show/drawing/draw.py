@@ -27,18 +27,6 @@ from .view import check_view, view_named
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
-ENDINGS = (".svg", ".png", ".pdf", ".json")
-
-
-def check_drawing(path: Path) -> None:
-    """Check that a drawing can be written, before anything is solved.
-
-    Raises InputError if the suffix is unknown, or the folder or matplotlib is missing.
-    """
-    refuse_path("-o", path, ENDINGS)
-    if path.suffix != ".json":
-        refuse_missing("matplotlib", "'stiffmbs[plot]'", f"-o {path}: ")
-
 
 def state_drawn(
     model: Any, at: float | None = None, described: bool = False, checked: bool = False, **changes: Any
@@ -120,7 +108,7 @@ def draw(
     if path is None:
         refuse_missing("matplotlib", "'stiffmbs[plot]'", "draw: ")
     else:
-        check_drawing(Path(path))
+        refuse_path("-o", Path(path), "drawing")
     drawing, poses = state_drawn(model, at, described, checked, **changes)
     if path is None:
         seen = view_named(view, drawing.dimensions, drawing.gravity)

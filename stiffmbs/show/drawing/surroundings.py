@@ -19,31 +19,15 @@ OWNER, ASPHALT = "road", "#dcdcda"
 
 @dataclass(frozen=True)
 class SurroundingsParameters:
-    """Extent and resolution of roads and floors.
+    """Extent and resolution of roads and floors, chosen by eye; lengths are relative to the mechanism's size."""
 
-    Attributes
-    ----------
-    margin : float
-        Width of a road or floor outside the mechanism, relative to its size; chosen by eye, as are all of these.
-    along, across : int
-        Largest number of points of a road along and across.
-    dense : int
-        Number of points of the uneven part of a road, if that part is short.
-    short : float
-        Length of an uneven part that gets `dense` points, relative to the mechanism's size.
-    lines : float
-        Distance of the lines of a floor, relative to the mechanism's size, before rounding to 1, 2 or 5.
-    instants : int
-        Instants at which the lowest point is looked for.
-    """
-
-    margin: float = 0.5
-    along: int = 240
-    across: int = 9
-    dense: int = 160
-    short: float = 10.0
-    lines: float = 0.25
-    instants: int = 24
+    margin: float = 0.5  # width of a road or floor outside the mechanism
+    along: int = 240  # largest number of points along a road
+    across: int = 9  # largest number of points across it
+    dense: int = 160  # number of points of the uneven part of a road, if that part is short
+    short: float = 10.0  # length of an uneven part that gets `dense` points
+    lines: float = 0.25  # distance of the lines of a floor, before rounding to 1, 2 or 5
+    instants: int = 24  # instants at which the lowest point is sought
 
 
 CHOSEN = SurroundingsParameters()

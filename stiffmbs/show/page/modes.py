@@ -6,9 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...analyses.linearised.modes import Modes
-from ...errors import InputError, SolverError, refuse_missing
+from ...errors import InputError, SolverError
 from ...linear_analysis.modes import Motion
-from ...results.files import refuse_path, write_text
+from ...results.files import write_text
 from ...results.solution import Solution
 from ..drawing.deformed import true_to_scale
 from ..drawing.derive import drawing_of
@@ -42,12 +42,6 @@ def modes_data(found: Modes, amplitude: float = AMPLITUDE) -> dict[str, str] | N
     poses = {name: poses_of(data, shape.time, shape.channels) for name, shape in shapes.items()}
     drawing = true_to_scale(drawing_of(data, along=next(iter(poses.values()))))
     return page_data(replace(drawing, loads={}), poses, choose="Mode")
-
-
-def check_page(path: Path) -> None:
-    """Check that a page can be written, before anything is solved. Raises InputError."""
-    refuse_path("-o", path, (".html",))
-    refuse_missing("jinja2", "'stiffmbs[report]'", f"-o {path}: ")
 
 
 def write_modes(path: Path, found: Modes, amplitude: float) -> None:

@@ -42,11 +42,6 @@ def probe(car: Car) -> Manoeuvre:
     return Manoeuvre(TURNS.probe, 5.0, f"step5(t, 0.5, 0, 1.5, {0.3 if car.angular else 0.005})", output=0.02)
 
 
-def curvature_of(run: Run) -> float:
-    """Return the curvature at the end, 1/m."""
-    return float(run["vehicle.yaw_rate"][-1] / run["vehicle.speed"][-1])
-
-
 def ramp(car: Car, per_curvature: float, speed: float = SPEED) -> Manoeuvre:
     """Return a slow ramp of steering to the left at a speed, m/s: to about 20 m/s^2, were there no limit of the tyres."""
     most = float(per_curvature * (1 + 1.5e-3 * speed**2) * 20 / speed**2)

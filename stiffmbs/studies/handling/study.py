@@ -25,7 +25,7 @@ from .known import SEEN, Known, Metrics, Run
 from .metrics import at_zero
 from .parameters import SPEED, positive, with_changes
 from .standards import TESTS
-from .steady_state_cornering import TURNS, curvature_of, lag_of, probe, quasi_steady, ramp
+from .steady_state_cornering import TURNS, lag_of, probe, quasi_steady, ramp
 
 WIDER = 0.2
 """Width of the body beyond the track, m, unless given: tyres and wings."""
@@ -142,7 +142,8 @@ def handling(
 
 def _preliminary(scene: Scene, car: Car, width: float) -> Known:
     first = solved(with_manoeuvre(scene, car, probe(car)))
-    low = float(first["handling_steer_seen"][-1] / curvature_of(first))
+    curvature = first["vehicle.yaw_rate"][-1] / first["vehicle.speed"][-1]
+    low = float(first["handling_steer_seen"][-1] / curvature)
     slow = quasi_steady(solved(with_manoeuvre(scene, car, ramp(car, low))))
     ay, curvature = slow["vehicle.ay"], slow["vehicle.yaw_rate"] / slow["vehicle.speed"]
     linear = at_zero(ay, slow[SEEN])[1] / at_zero(ay, curvature)[1]

@@ -11,8 +11,7 @@ from ...compile.directional.direction import Numbers
 from ...compile.reactions import reactions
 from ...compile.system import System
 from ...dynamics.dynamics import OutputRows
-from ...results.channels import counters, state_channels
-from ...results.frames import in_own_axes
+from ...results.channels import counters, motion_channels, state_channels
 from ...results.requests import requested
 from ...sensitivity_equations.block_system import Change
 from .set_up import SetUp
@@ -26,17 +25,11 @@ def changed_channels(
     `u` of shape (instants, n_u). `numbers`: numbers of the directions. `values` of shape (instants, directions,
     values): derivatives of the output terms.
     """
-    of_body, channels = system.of_body, dict[str, np.ndarray]()
     shape = len(changes), len(numbers)
     moved_q, moved_u, moved_a = (
         np.concatenate([getattr(change, name) for change in changes]) for name in ("q", "u", "acceleration")
     )
-    states = in_own_axes(system, moved_q, moved_u, moved_a)
-    labels = of_body.positions, of_body.velocities, of_body.accelerations
-    for k, body in enumerate(system.bodies):
-        for state, names in zip(states, labels, strict=True):
-            for offset, name in enumerate(names):
-                channels[f"{body}.{name}"] = state[:, len(names) * k + offset]
+    channels = motion_channels(system, moved_q, moved_u, moved_a)
     flat = values.reshape(-1, values.shape[-1])
     channels |= state_channels(system, moved_q, flat)
     channels |= reactions(system, flat)

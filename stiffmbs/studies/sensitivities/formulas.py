@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import InputError, SolverError
-from ..outputs import REDUCTIONS, TIME, channel_of, evaluated, parsed
+from ..outputs import REDUCTIONS, TIME, channel_of, evaluated, parsed, parts_of
 
 SELECTED = {
     "peak": lambda x: _largest(np.abs(x)), "max": lambda x: _largest(x), "min": lambda x: _largest(-x),
@@ -85,23 +85,18 @@ class Formula:
     def _mark(self, node: ast.AST, here: np.ndarray, wanted: np.ndarray) -> None:
         match node:
             case ast.Call(ast.Name(name), [argument], []) if name in REDUCTIONS:
-                if name in SELECTED:
-                    here = np.zeros_like(here)
-                    here[SELECTED[name](self._series(argument))] = True
-                elif name not in WHOLE:
+                if name not in (*SELECTED, *WHOLE):
                     raise InputError(
                         f"of: found {name} in '{self.text}', expected a channel, {', '.join((*SELECTED, *WHOLE))}"
                     )
-                else:
-                    here = np.ones_like(here)
+                here = np.full_like(here, name in WHOLE)
+                if name in SELECTED:
+                    here[SELECTED[name](self._series(argument))] = True
                 self._mark(argument, here, wanted)
             case _ if channel_of(node) not in (None, TIME):
                 wanted |= here
-            case ast.Call(_, arguments):
-                for argument in arguments:
-                    self._mark(argument, here, wanted)
             case _:
-                for part in ast.iter_child_nodes(node):
+                for part in parts_of(node):
                     self._mark(part, here, wanted)
 
     def _series(self, node: ast.AST) -> np.ndarray:

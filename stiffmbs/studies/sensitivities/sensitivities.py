@@ -201,16 +201,10 @@ def differentiable(settings: RunSettings, fewest: int = FEWEST) -> RunSettings:
 
 
 class DifferentiatedRun:
-    """Run with the derivatives of its outputs.
+    """Run with the derivatives of its outputs by parameters.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Names of the parameters.
-    job : Job
-        The unchanged scene, with settings that are `differentiable`.
-    times : ndarray, optional
-        Output times that replace those of the settings.
+    `job`: the unchanged scene, with settings that are `differentiable`. `times`: output times that replace those of the
+    settings.
     """
 
     def __init__(self, scenes: Scenes, names: Sequence[str], job: Job, times: np.ndarray | None = None) -> None:

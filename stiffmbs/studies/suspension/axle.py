@@ -108,29 +108,15 @@ def axle_of(
     wheels: Sequence[str] = (),
     radius: float | None = None,
 ) -> Axle:
-    """Return an axle of a scene.
+    """Return an axle of a scene; raise an InputError if a suspension, its markers or a named part is missing.
 
-    Parameters
-    ----------
-    model : ModelData
-    name : str
-        Prefix of the suspensions ``name.left`` and ``name.right`` or of ``name.upright``; if empty, the suspensions
-        are ``left`` and ``right``. Without such bodies it is ``front`` or ``rear`` for the foremost and the last
-        tyres, or the beginning of the names of the tyres or of their wheels.
-    body : str, optional
-        Body to clamp; by default ``chassis``, or else the body to which most elements of the axle are attached.
-    steering : str, optional
-        Joint that steers; by default the only prismatic ``guide`` or revolute ``steering`` of the axle, if
-        any.
-    wheels : sequence of str
-        Bodies of the wheels, instead of the search by `name`.
-    radius : float, optional
-        Distance from the centres of the wheels to the road, m; by default that of the markers, or of the tyres.
-
-    Raises
-    ------
-    InputError
-        If a suspension, its markers or a named part is missing in the scene.
+    `name`: prefix of the suspensions ``name.left`` and ``name.right`` or of ``name.upright``; if empty, the suspensions
+    are ``left`` and ``right``. Without such bodies it is ``front`` or ``rear`` for the foremost and the last tyres, or
+    the beginning of the names of the tyres or of their wheels. `body`: body to clamp; by default ``chassis``, or else
+    the body to which most elements of the axle are attached. `steering`: joint that steers; by default the only
+    prismatic ``guide`` or revolute ``steering`` of the axle, if any. `wheels`: bodies of the wheels, instead of the
+    search by `name`. `radius`: distance from the centres of the wheels to the road, m; by default that of the markers,
+    or of the tyres.
     """
     start = f"{name}." if name else ""
     if radius is not None and not (isinstance(radius, Real) and 0 < radius < np.inf):

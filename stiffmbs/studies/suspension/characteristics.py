@@ -214,15 +214,11 @@ def _support(pose: Pose, hub: Hub) -> dict[str, float]:
     drive = on_carrier if vehicle.outboard_drive else on_body
     found = {"brake_angle": DEG * np.arctan(brake), "drive_angle": DEG * np.arctan(drive)}
     if vehicle.wheelbase and vehicle.height and vehicle.front is not None:
-        braking, driving = (
-            100 * share * slope * vehicle.wheelbase / vehicle.height
-            for share, slope in ((vehicle.brake_share, brake), (vehicle.drive_share, drive))
-        )
-        found |= (
-            {"anti_dive": braking, "anti_lift": driving}
-            if vehicle.front
-            else {"anti_lift": -braking, "anti_squat": -driving}
-        )
+        names, sign = (("anti_dive", "anti_lift"), 100) if vehicle.front else (("anti_lift", "anti_squat"), -100)
+        parts = vehicle.brake_share * brake, vehicle.drive_share * drive
+        found |= {
+            name: sign * part * vehicle.wheelbase / vehicle.height for name, part in zip(names, parts, strict=True)
+        }
     return found
 
 

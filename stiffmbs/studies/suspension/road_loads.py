@@ -12,7 +12,7 @@ from ...elements.spatial.elastic import Elastic
 from ...errors import InputError
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND
-from ...results.marker_motion import Motions
+from ...results.marker_motion import Measures, dot
 from ...results.solution import Solution
 
 COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")
@@ -84,7 +84,8 @@ def road_loads(model: Runnable, cases: Mapping[str, Solution]) -> RoadLoads:
 
 def _in_own_axes(model: ModelData, names: list[str], case: str, solution: Solution) -> dict[str, np.ndarray]:
     found: dict[str, np.ndarray] = {}
-    motions = Motions(model, solution, len(solution.time))
+    counters: dict[str, np.ndarray] = {}
+    measures = Measures(model, solution.__getitem__, counters.__getitem__, np)
     for name in names:
         marker = model.forces[name].j  # type: ignore[attr-defined]
         needed = [f"{name}.{part}" for part in COMPONENTS]
@@ -92,10 +93,10 @@ def _in_own_axes(model: ModelData, names: list[str], case: str, solution: Soluti
         for channel in needed:
             if channel not in solution:
                 raise InputError(f"{case}: found no channel '{channel}', expected a run of this model")
-        motion = motions.of(marker)
+        axes = measures.marker(marker).axes
         for kind in "ft":
-            vector = np.stack([solution[f"{name}.{kind}{axis}"] for axis in "xyz"], axis=1)
-            found |= {f"{name}.{kind}{axis}": part for axis, part in zip("xyz", motion.along(vector).T, strict=True)}
+            x, y, z = (solution[f"{name}.{kind}{axis}"] for axis in "xyz")
+            found |= {f"{name}.{kind}{axis}": dot(own, (x, y, z)) for axis, own in zip("xyz", axes, strict=True)}
     return found
 
 

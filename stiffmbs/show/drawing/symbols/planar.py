@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 
 from .. import solids
-from ..draft import Draft, Site, Symbol, at_both, at_first
+from ..draft import Draft, Piece, Site, Symbol, at_both, at_each, at_first
 from ..scene_graph import Line, Role
 from . import profiles
 from .shared import COMMON, arc_arrow, arrow, curve, drives_a_displacement, hatched, is_damped, upright
@@ -18,12 +19,14 @@ def _front(site: Site, d: Draft, layer: float = 1.0) -> Site:
     return site.at((0, 0, layer * d.front))
 
 
-def _pin(d: Draft, site: Site, radius: float = 0.5) -> None:
-    ring = solids.circle(radius * d.u)
-    d.put(_front(site, d), "joint", solids.disc(radius * d.u), Line(ring, 1.3))
+def pin(radius: float = 0.5) -> Piece:
+    """Return a disc; its radius in units of symbols."""
+    return lambda d, i, _: d.put(
+        _front(i, d), "joint", solids.disc(radius * d.u), Line(solids.circle(radius * d.u), 1.3)
+    )
 
 
-def _support(d: Draft) -> None:
+def support(d: Draft, *_: Site) -> None:
     """Triangle on hatched ground under a pin."""
     site = d.grounded()
     if site is None:
@@ -48,22 +51,13 @@ def _anchor(d: Draft, other: Site) -> None:
     d.put(_front(site.along_ground().with_axes(axes), d, 0), "ground", *hatched(d.u, 1.2, 0.0))
 
 
-@at_first
-def revolute(d: Draft, i: Site) -> None:
-    """A pin."""
-    _support(d)
-    _pin(d, i)
-
-
-@at_both
-def prismatic(d: Draft, i: Site, j: Site) -> None:
-    """A block between two guides."""
+def slider(d: Draft, i: Site, _: Site) -> None:
+    """A block in the color of its body."""
     block = solids.rectangle(4.4 * d.u, 2.4 * d.u)
     d.put(_front(i, d, 0.15), "body", solids.flat(block), solids.outline(block), color=d.colors.get(i.body, ""))
-    _guides(d, i, j, 1.2)
 
 
-def _guides(d: Draft, i: Site, j: Site, half: float) -> None:
+def guides(d: Draft, i: Site, j: Site, half: float = 0.5) -> None:
     """Lines on both sides along the axis of j at the position of i; hatched outside on ground."""
     start = float(j.turned[:, 0] @ (i.in_ground - j.in_ground))
     length = 0.3 * d.size
@@ -77,51 +71,28 @@ def _guides(d: Draft, i: Site, j: Site, half: float) -> None:
             d.put(j, "ground", *strokes)
 
 
-@at_both
-def point_on_line(d: Draft, i: Site, j: Site) -> None:
-    """A pin in a slot."""
-    _guides(d, i, j, 0.5)
-    _pin(d, i, 0.45)
-
-
-@at_both
-def point_on_curve(d: Draft, i: Site, j: Site) -> None:
-    """A pin on a curve."""
-    curve(d, j)
-    _pin(d, i, 0.4)
-
-
-@at_first
-def fixed(d: Draft, i: Site) -> None:
+def square(d: Draft, i: Site, _: Site) -> None:
     """A filled square."""
     d.put(_front(i, d), "rubber", solids.flat(solids.rectangle(0.9 * d.u, 0.9 * d.u)))
-    _support(d)
 
 
-@at_both
-def distance(d: Draft, i: Site, j: Site) -> None:
-    """A rod with a pin at each end."""
-    _support(d)
+def rod(d: Draft, i: Site, j: Site) -> None:
+    """A rod."""
     d.stretch(_front(i, d), _front(j, d), "joint", *profiles.bar(0.14 * d.u))
-    for site in (i, j):
-        _pin(d, site, 0.32)
 
 
-@at_first
-def drive(d: Draft, i: Site) -> None:
+def drive(d: Draft, i: Site, j: Site) -> None:
     """An arrow around a driven angle, or along a driven displacement."""
-    site = d.j or i
     if drives_a_displacement(d):
-        along = site.turned[:, 0]
+        along = j.turned[:, 0]
         above = i.along_ground().at(1.9 * d.u * np.array([-along[1], along[0], 0.0]))
         d.put(_front(above, d), "drive", *arrow(along, 3 * d.u, 0.9 * d.u))
         return
     arc = arc_arrow(1.35 * d.u, -0.1 * np.pi, 1.25 * np.pi, 0.6 * d.u)
-    holder = site if site.on_ground else i
+    holder = j if j.on_ground else i
     d.put(_front(holder.along_ground(), d), "drive", *arc)
 
 
-@at_both
 def spring_damper(d: Draft, i: Site, j: Site) -> None:
     """A zigzag, and a dashpot next to it."""
     _anchor(d, j if i.on_ground else i)
@@ -132,15 +103,11 @@ def spring_damper(d: Draft, i: Site, j: Site) -> None:
         d.stretch(*ends, "force", *profiles.damper(0.45 * d.u, -shift), width=1.1)
 
 
-@at_both
-def bushing(d: Draft, i: Site, j: Site) -> None:
-    """A ring of rubber about a pin."""
-    _support(d)
+def rubber(d: Draft, _: Site, j: Site) -> None:
+    """A ring of rubber."""
     d.put(_front(j, d, 0.9), "rubber", solids.disc(0.95 * d.u), Line(solids.circle(0.95 * d.u), 1.2))
-    _pin(d, i, 0.42)
 
 
-@at_both
 def contact(d: Draft, i: Site, j: Site) -> None:
     """Circle about i, and the line or circle that it touches."""
     e = d.element
@@ -149,7 +116,7 @@ def contact(d: Draft, i: Site, j: Site) -> None:
         spoke = Line(np.array([[0.6 * e.radius, 0, 0], [e.radius, 0, 0]]))
         d.put(_front(i, d, -0.15), "body", solids.flat(ring[:-1]), Line(ring), spoke, color=d.colors.get(i.body, ""))
     else:
-        _pin(d, i, 0.2)
+        pin(0.2)(d, i, j)
     role: Role = "ground" if j.on_ground else "joint"
     if e.surface == "line":
         start = float(j.turned[:, 0] @ (i.in_ground - j.in_ground))
@@ -161,6 +128,14 @@ def contact(d: Draft, i: Site, j: Site) -> None:
 
 SYMBOLS: Mapping[str, Symbol] = {
     **COMMON,
-    "revolute": revolute, "prismatic": prismatic, "fixed": fixed, "distance": distance, "point_on_line": point_on_line,
-    "point_on_curve": point_on_curve, "drive": drive, "spring_damper": spring_damper, "bushing": bushing, "contact": contact,
-}  # fmt: skip
+    "revolute": at_first(support, pin()),
+    "prismatic": at_both(slider, partial(guides, half=1.2)),
+    "fixed": at_first(square, support),
+    "distance": at_both(support, rod, at_each(pin(0.32))),
+    "point_on_line": at_both(guides, pin(0.45)),
+    "point_on_curve": at_both(curve, pin(0.4)),
+    "drive": at_first(drive),
+    "spring_damper": at_both(spring_damper),
+    "bushing": at_both(support, rubber, pin(0.42)),
+    "contact": at_both(contact),
+}

@@ -13,8 +13,8 @@ from ....reading.formula.formula import Formula
 from ....reading.formula.text import FormulaError
 from ....reading.formula.value import formula_value
 from .. import solids
-from ..draft import Draft, Site, Symbol, at_both, at_first
-from ..scene_graph import Line
+from ..draft import Draft, Piece, Site, Symbol, at_both, at_first
+from ..scene_graph import Line, Role
 from ..solids import axes_along
 from . import profiles
 
@@ -23,7 +23,7 @@ FAR_OFF = 0.1
 """Distance of a torque's marker from the centre of mass, relative to the mechanism, above which it is ignored."""
 
 
-def ground(d: Draft) -> None:
+def ground(d: Draft, *_: Site) -> None:
     """Hatched line, or plate, under a point of the ground."""
     site = d.grounded()
     if site is not None:
@@ -76,8 +76,7 @@ def components(values: Any) -> np.ndarray | None:
     return found / np.linalg.norm(found) if np.linalg.norm(found) > 0 else None
 
 
-@at_first
-def force(d: Draft, i: Site) -> None:
+def force(d: Draft, i: Site, _: Site) -> None:
     """Arrow at the point, in the direction of the force if that is constant."""
     direction = components(d.element.force)
     if direction is None:
@@ -87,21 +86,23 @@ def force(d: Draft, i: Site) -> None:
     d.put(site.at(-5 * d.u * direction), "force", *arrow(direction, 4.3 * d.u, 1.1 * d.u))
 
 
-@at_first
-def torque(d: Draft, i: Site) -> None:
+def torque(d: Draft, i: Site, _: Site) -> None:
     """Arrow around the point, or around the centre of mass if far away: a torque has no point of application."""
     site = replace(i, point=np.zeros(3)) if np.linalg.norm(i.point) > FAR_OFF * d.size else i
     d.put(site, "force", *arc_arrow(1.7 * d.u, -0.6 * TURN, 0.12 * TURN, 0.7 * d.u))
 
 
-@at_both
-def line_force(d: Draft, i: Site, j: Site) -> None:
+def stretched(role: Role, *lines: object, **strokes: Any) -> Piece:
+    """Return profiles from the first marker to the second."""
+    return lambda d, i, j: d.stretch(i, j, role, *lines, **strokes)
+
+
+def two_headed(d: Draft, i: Site, j: Site) -> None:
     """A line with two heads."""
     d.stretch(i, j, "force", *profiles.arrows(0.6 * d.u))
 
 
-@at_first
-def spiral(d: Draft, i: Site) -> None:
+def spiral(d: Draft, i: Site, _: Site) -> None:
     """A clock spring about z."""
     angles = np.linspace(0, 2.5 * TURN, 60)
     radius = np.linspace(0.5, 1.5, 60) * d.u
@@ -116,8 +117,7 @@ def coupling(d: Draft) -> None:
         d.stretch(one, other, "drive", profiles.straight(), dashed=True)
 
 
-@at_first
-def rubbing(d: Draft, i: Site) -> None:
+def rubbing(d: Draft, i: Site, _: Site) -> None:
     """Short strokes at sliding surfaces."""
     places = (-0.8, -0.4, 0.0, 0.4, 0.8)
     d.put(i, "force", *(Line(np.array([[x - 0.2, -1.5, 0], [x + 0.2, -1.1, 0]]) * d.u, 1.2) for x in places))
@@ -136,8 +136,7 @@ def drives_a_displacement(d: Draft) -> bool:
     return bool(name.coordinate_of(d.joints[name.joint][0]) == "displacement")
 
 
-@at_first
-def any_joint(d: Draft, i: Site) -> None:
+def any_joint(d: Draft, i: Site, _: Site) -> None:
     """Diamond at the point of the joint's reaction."""
     diamond = solids.circle(0.5 * d.u, corners=4)[:-1]
     d.put(i, "joint", solids.flat(diamond), solids.outline(diamond))
@@ -145,8 +144,7 @@ def any_joint(d: Draft, i: Site) -> None:
         d.stretch(i, d.j, "joint", profiles.straight(), dashed=True)
 
 
-@at_first
-def any_force(d: Draft, i: Site) -> None:
+def any_force(d: Draft, i: Site, _: Site) -> None:
     """A dashed line between the markers, or a diamond at a single marker."""
     if d.j is not None and np.linalg.norm(i.in_ground - d.j.in_ground) > d.u:
         d.stretch(i, d.j, "force", *profiles.arrows(0.5 * d.u), dashed=True)
@@ -154,7 +152,7 @@ def any_force(d: Draft, i: Site) -> None:
         d.put(i, "force", solids.outline(solids.circle(0.6 * d.u, corners=4)[:-1], 1.5))
 
 
-def curve(d: Draft, j: Site) -> None:
+def curve(d: Draft, _: Site, j: Site) -> None:
     """Curve on which a point stays, in the axes of marker j."""
     try:
         d.put(j, "joint", Line(_along_y(d) if d.element.y is not None else _around(d), 1.6))
@@ -212,7 +210,8 @@ def rack_and_pinion(d: Draft) -> None:
 
 
 COMMON: Mapping[str, Symbol] = {
-    "gear": gear, "rack_and_pinion": rack_and_pinion, "coupler": coupling, "torsion_spring": spiral, "line_force": line_force,
-    "force": force, "torque": torque, "joint_friction": rubbing, "joint": any_joint, "any_force": any_force,
+    "gear": gear, "rack_and_pinion": rack_and_pinion, "coupler": coupling, "torsion_spring": at_first(spiral),
+    "line_force": at_both(two_headed), "force": at_first(force), "torque": at_first(torque), "joint_friction": at_first(rubbing),
+    "joint": at_first(any_joint), "any_force": at_first(any_force),
 }  # fmt: skip
 """Symbols by kind, in the plane and in space."""

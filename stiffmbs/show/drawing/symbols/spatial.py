@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import solids
-from ..draft import Draft, Site, Symbol, at_both, at_first
+from ..draft import Draft, Piece, Site, Symbol, at_both, at_each, at_first, at_other
 from ..scene_graph import Line, Solid
 from ..solids import axes_along
 from . import profiles
-from .shared import COMMON, arc_arrow, arrow, curve, drives_a_displacement, ground, is_damped
+from .shared import COMMON, arc_arrow, arrow, curve, drives_a_displacement, ground, is_damped, stretched
 
 DARK = "#707070"
 
@@ -22,14 +22,19 @@ def shape(d: Draft, site: Site, solid: Solid, color: str = "") -> None:
     d.put(site, "joint", solids.edged(solid), color=color)
 
 
-def pin(d: Draft, site: Site, radius: float = 0.45, length: float = 2.0) -> None:
-    """Draw a cylinder along z; sizes in units of symbols."""
-    shape(d, site, solids.cylinder(radius * d.u, length * d.u, 16))
+def pin(radius: float = 0.45, length: float = 2.0) -> Piece:
+    """Return a cylinder along z; sizes in units of symbols."""
+    return lambda d, i, _: shape(d, i, solids.cylinder(radius * d.u, length * d.u, 16))
 
 
-def ball(d: Draft, site: Site, radius: float = 0.6) -> None:
-    """Draw a ball; its radius in units of symbols."""
-    d.put(site, "joint", solids.sphere(radius * d.u))
+def ball(radius: float = 0.6) -> Piece:
+    """Return a ball; its radius in units of symbols."""
+    return lambda d, i, _: d.put(i, "joint", solids.sphere(radius * d.u))
+
+
+def box(x: float, y: float, z: float, color: str = "") -> Piece:
+    """Return a block; sizes in units of symbols."""
+    return lambda d, i, _: shape(d, i, solids.box((x * d.u, y * d.u, z * d.u)), color)
 
 
 def rail(d: Draft, i: Site, j: Site) -> None:
@@ -40,54 +45,39 @@ def rail(d: Draft, i: Site, j: Site) -> None:
     d.put(j, "ground" if j.on_ground else "joint", Line(ends, 1.8))
 
 
-def plate(d: Draft, j: Site, half: float = 3.0) -> None:
+def plate(d: Draft, _: Site, j: Site, half: float = 3.0) -> None:
     """Plane on which i stays: the x-y plane of j."""
     square = solids.rectangle(2 * half * d.u, 2 * half * d.u)
     diagonals = (Line(square[[k, k + 2]], 0.5) for k in (0, 1))
     d.put(j, "ground" if j.on_ground else "joint", solids.outline(square), *diagonals)
 
 
-@at_both
 def spring_damper(d: Draft, i: Site, j: Site) -> None:
     """A coil, and a dashpot in it."""
-    ground(d)
     d.stretch(i, j, "force", profiles.coil(0.7 * d.u), width=1.2)
     if is_damped(d):
         d.stretch(i, j, "force", *profiles.damper(0.35 * d.u), width=1.1)
 
 
-@at_both
-def bushing(d: Draft, i: Site, j: Site) -> None:
-    """A sleeve of rubber about a pin."""
-    ground(d)
-    rubber = solids.cylinder(0.8 * d.u, 1.1 * d.u, 18)
-    d.put(j, "rubber", solids.edged(rubber))
-    pin(d, i, 0.35, 1.8)
+def rubber(d: Draft, _: Site, j: Site) -> None:
+    """A sleeve of rubber."""
+    d.put(j, "rubber", solids.edged(solids.cylinder(0.8 * d.u, 1.1 * d.u, 18)))
 
 
-@at_both
-def beam(d: Draft, i: Site, j: Site) -> None:
-    """A thick elastic line."""
-    d.stretch(j, i, "force", profiles.straight(), width=3.0)
-
-
-@at_both
-def elastic(d: Draft, i: Site, j: Site) -> None:
-    """A dashed line between the markers, with springs in all directions."""
-    d.stretch(j, i, "force", profiles.straight(), width=1.5, dashed=True)
+def springs(d: Draft, _: Site, j: Site) -> None:
+    """Springs in all directions."""
     shape(d, j, solids.cylinder(0.6 * d.u, 0.8 * d.u, 16), DARK)
 
 
-@at_both
 def contact(d: Draft, i: Site, j: Site) -> None:
     """Ball about i, and the plane or ball that it touches."""
     e = d.element
     if e.radius:
         d.put(i, "body", solids.sphere(e.radius, 20), color=d.colors.get(i.body, ""))
     else:
-        ball(d, i, 0.3)
+        ball(0.3)(d, i, j)
     if getattr(e, "surface", "plane") == "plane":
-        plate(d, j, 0.25 * d.size / d.u)
+        plate(d, i, j, 0.25 * d.size / d.u)
     elif e.surface_radius:
         rings = (axes_along(np.eye(3)[k]) for k in range(3))
         ring = solids.circle(e.surface_radius, corners=48)
@@ -115,8 +105,7 @@ def _coefficient(properties: object, name: str) -> float | None:
     return float(value) if isinstance(value, float | int) else None
 
 
-@at_first
-def wheel(d: Draft, i: Site) -> None:
+def wheel(d: Draft, i: Site, _: Site) -> None:
     """A tyre on a rim with spokes, about the y axis of the marker."""
     radius = radius_of(d.element)
     if not radius:
@@ -154,136 +143,68 @@ def lathe(profile: np.ndarray, corners: int) -> Solid:
     return Solid(np.vstack(rings), faces)
 
 
-@at_first
-def revolute(d: Draft, i: Site) -> None:
-    """A pin along z."""
-    ground(d)
-    pin(d, i)
-
-
-@at_first
-def spherical(d: Draft, i: Site) -> None:
-    """A ball."""
-    ground(d)
-    ball(d, i)
-
-
-@at_both
-def universal(d: Draft, i: Site, j: Site) -> None:
-    """A cross: an arm along the z of each marker."""
-    ground(d)
-    for site in (i, j):
-        pin(d, site, 0.28, 2.2)
-
-
-@at_first
-def constant_velocity(d: Draft, i: Site) -> None:
-    """A ball in a ring about the shaft."""
-    ground(d)
-    ball(d, i)
+def ring(d: Draft, i: Site, _: Site) -> None:
+    """A ring about the shaft."""
     d.put(i, "joint", Line(solids.circle(0.85 * d.u), 2.0))
 
 
-@at_both
-def prismatic(d: Draft, i: Site, j: Site) -> None:
-    """A block on a rail."""
-    rail(d, i, j)
+def slider(d: Draft, i: Site, _: Site) -> None:
+    """A block in the color of its body."""
     block = solids.box((1.8 * d.u, 1.8 * d.u, 3.2 * d.u))
     d.put(i, "body", solids.edged(block), color=d.colors.get(i.body, ""))
 
 
-@at_both
-def cylindrical(d: Draft, i: Site, j: Site) -> None:
-    """A sleeve on a rail."""
-    rail(d, i, j)
-    pin(d, i, 0.7, 2.6)
-
-
-@at_both
-def screw(d: Draft, i: Site, j: Site) -> None:
-    """A sleeve on a thread."""
-    cylindrical(d)
+def thread(d: Draft, _: Site, j: Site) -> None:
+    """A thread about z."""
     turns = np.linspace(-4, 4, 120)
-    thread = np.column_stack([np.cos(2 * math.pi * turns), np.sin(2 * math.pi * turns), turns]) * (0.35, 0.35, 0.8)
-    d.put(j, "joint", Line(thread * d.u, 1.0))
+    points = np.column_stack([np.cos(2 * math.pi * turns), np.sin(2 * math.pi * turns), turns]) * (0.35, 0.35, 0.8)
+    d.put(j, "joint", Line(points * d.u, 1.0))
 
 
-@at_both
-def planar(d: Draft, i: Site, j: Site) -> None:
-    """A block on a plane."""
-    plate(d, j)
-    shape(d, i, solids.box((1.4 * d.u, 1.4 * d.u, 0.6 * d.u)))
+def axis(d: Draft, i: Site, _: Site) -> None:
+    """A constrained direction, without its point."""
+    d.put(i, "drive", *arrow(np.array([0.0, 0.0, 1.0]), 2.2 * d.u, 0.6 * d.u))
 
 
-@at_both
-def point_on_plane(d: Draft, i: Site, j: Site) -> None:
-    """A ball on a plane."""
-    plate(d, j)
-    ball(d, i, 0.45)
-
-
-@at_both
-def point_on_line(d: Draft, i: Site, j: Site) -> None:
-    """A ball on a line."""
-    rail(d, i, j)
-    ball(d, i, 0.45)
-
-
-@at_both
-def point_on_curve(d: Draft, i: Site, j: Site) -> None:
-    """A ball on a curve."""
-    curve(d, j)
-    ball(d, i, 0.4)
-
-
-@at_first
-def fixed(d: Draft, i: Site) -> None:
-    """A small dark cube."""
-    ground(d)
-    shape(d, i, solids.box((0.8 * d.u,) * 3), DARK)
-
-
-@at_both
-def directions(d: Draft, i: Site, j: Site) -> None:
-    """Axes with constrained directions, without their points."""
-    for site in (i, j):
-        d.put(site, "drive", *arrow(np.array([0.0, 0.0, 1.0]), 2.2 * d.u, 0.6 * d.u))
-
-
-@at_both
-def distance(d: Draft, i: Site, j: Site) -> None:
-    """A rod with a ball at each end."""
-    ground(d)
-    d.stretch(i, j, "joint", profiles.straight(), width=2.2)
-    for site in (i, j):
-        ball(d, site, 0.38)
-
-
-@at_both
-def revolute_spherical(d: Draft, i: Site, j: Site) -> None:
-    """A rod from a ball at i to a pin at j."""
-    ground(d)
-    d.stretch(i, j, "joint", profiles.straight(), width=2.2)
-    ball(d, i, 0.5)
-    pin(d, j)
-
-
-@at_first
-def drive(d: Draft, i: Site) -> None:
+def drive(d: Draft, i: Site, j: Site) -> None:
     """An arrow around a driven angle, or along a driven displacement."""
-    site = d.j if d.j is not None and d.j.on_ground else i
+    site = j if j.on_ground else i
     if drives_a_displacement(d):
         d.put(site.at((1.4 * d.u, 0, 0)), "drive", *arrow(np.array([0.0, 0.0, 1.0]), 3.5 * d.u, 0.9 * d.u))
     else:
         d.put(site, "drive", *arc_arrow(1.5 * d.u, 0, 1.5 * math.pi, 0.7 * d.u))
 
 
+rod = stretched("joint", profiles.straight(), width=2.2)
+directions, touching, on_curve = at_both(at_each(axis)), at_both(contact), at_both(curve, ball(0.4))
 SYMBOLS: Mapping[str, Symbol] = {
     **COMMON,
-    "revolute": revolute, "spherical": spherical, "universal": universal, "constant_velocity": constant_velocity,
-    "prismatic": prismatic, "cylindrical": cylindrical, "screw": screw, "thread": screw, "planar": planar,
-    "point_on_plane": point_on_plane, "point_on_line": point_on_line, "point_on_curve": point_on_curve, "tangent_to_curve": point_on_curve,
-    "fixed": fixed, "parallel": directions, "perpendicular": directions, "orientation": directions, "distance": distance,
-    "revolute_spherical": revolute_spherical, "drive": drive, "spring_damper": spring_damper, "bushing": bushing, "beam": beam,
-    "field": elastic, "contact": contact, "sphere_contact": contact, "road_contact": contact, "tyre": wheel,
-}  # fmt: skip
+    "revolute": at_first(ground, pin()),
+    "spherical": at_first(ground, ball()),
+    "universal": at_both(ground, at_each(pin(0.28, 2.2))),
+    "constant_velocity": at_first(ground, ball(), ring),
+    "prismatic": at_both(rail, slider),
+    "cylindrical": at_both(rail, pin(0.7, 2.6)),
+    "screw": at_both(rail, pin(0.7, 2.6), thread),
+    "thread": at_both(rail, pin(0.7, 2.6), thread),
+    "planar": at_both(plate, box(1.4, 1.4, 0.6)),
+    "point_on_plane": at_both(plate, ball(0.45)),
+    "point_on_line": at_both(rail, ball(0.45)),
+    "point_on_curve": on_curve,
+    "tangent_to_curve": on_curve,
+    "fixed": at_first(ground, box(0.8, 0.8, 0.8, DARK)),
+    "parallel": directions,
+    "perpendicular": directions,
+    "orientation": directions,
+    "distance": at_both(ground, rod, at_each(ball(0.38))),
+    "revolute_spherical": at_both(ground, rod, ball(0.5), at_other(pin())),
+    "drive": at_first(drive),
+    "spring_damper": at_both(ground, spring_damper),
+    "bushing": at_both(ground, rubber, pin(0.35, 1.8)),
+    "beam": at_both(at_other(stretched("force", profiles.straight(), width=3.0))),
+    "field": at_both(at_other(stretched("force", profiles.straight(), width=1.5, dashed=True)), springs),
+    "contact": touching,
+    "sphere_contact": touching,
+    "road_contact": touching,
+    "tyre": at_first(wheel),
+}
