@@ -146,6 +146,8 @@ class Enclosure:
         added = tuple(total(a, b) for a, b in zip(long, short, strict=False))
         return Enclosure((*added, *long[len(short) :]), self.order)
 
+    __radd__ = __add__
+
     def __sub__(self, other: Operand) -> Enclosure:
         return self + -other
 
@@ -162,6 +164,8 @@ class Enclosure:
             found.append(total(*(product(x, y) for x, y in pairs)))
         return Enclosure(tuple(found), self.order)
 
+    __rmul__ = __mul__
+
     def __truediv__(self, other: Operand) -> Enclosure:
         return self * (other**-1.0 if isinstance(other, Enclosure) else np.float64(1.0) / other)
 
@@ -173,14 +177,8 @@ class Enclosure:
         range_of = power_range if power == int(power) else real_power_range
         return self.composed(lambda k: scaled(real_binomial(power, k), range_of(self.value, power - k)))
 
-    def __radd__(self, other: Operand) -> Enclosure:
-        return self + other
-
     def __rsub__(self, other: Operand) -> Enclosure:
         return -self + other
-
-    def __rmul__(self, other: Operand) -> Enclosure:
-        return self * other
 
     def __rtruediv__(self, other: Operand) -> Enclosure:
         return self**-1.0 * other
