@@ -249,9 +249,8 @@ def _classes_in(shape: Shape) -> Iterator[type]:
 
 def _files(elements: list[type]) -> list[str]:
     """Return digests of the files of shipped classes, and of the functions that their equations may call."""
-    return [
-        _content(file) for file in (*(_file(element.__module__) for element in elements), *sorted(_helpers(elements)))
-    ]
+    called = set().union(*(_called_by(module) for module in {element.__module__ for element in elements}))
+    return [_content(file) for file in (*(_file(element.__module__) for element in elements), *sorted(called))]
 
 
 @cache
@@ -270,12 +269,6 @@ def _equations(kind: Kind) -> list[str]:
     from .symbolic.stated import text_of
 
     return [text_of(kind)]
-
-
-def _helpers(elements: list[type]) -> set[Path]:
-    """Return the files of functions and classes that elements' equations may call: members of their modules from this
-    package, and imports inside functions of their modules and of these members' modules."""
-    return set().union(*(_called_by(module) for module in {element.__module__ for element in elements}))
 
 
 @cache

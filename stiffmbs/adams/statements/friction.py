@@ -61,7 +61,7 @@ def _static(found: Arguments, _: Units) -> float:
 def _friction_velocity(found: Arguments, _: Units) -> float:
     slow, factor = (found.positive(name) or usual for name, usual in (_SLOW, _FACTOR))
     if factor <= 1:
-        raise found.fault("found TRANSITION_VELOCITY_COEFFICIENT = {factor:g}, expected a number above 1")
+        raise found.fault(f"found TRANSITION_VELOCITY_COEFFICIENT = {factor:g}, expected a number above 1")
     return slow * factor
 
 

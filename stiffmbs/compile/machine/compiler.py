@@ -197,6 +197,9 @@ def _new_target(level: int) -> llvm.TargetMachine:
     )
 
 
+_emitter = cache(_new_target)
+
+
 @cache
 def _engine() -> llvm.ExecutionEngine:
     """Return the engine that holds all compiled code of this process (it owns its target machine)."""
@@ -206,11 +209,6 @@ def _engine() -> llvm.ExecutionEngine:
     module = llvm.parse_assembly("")
     module.triple = llvm.get_process_triple()
     return llvm.create_mcjit_compiler(module, target)
-
-
-@cache
-def _emitter(level: int) -> llvm.TargetMachine:
-    return _new_target(level)
 
 
 def _object_code(source: _Source, prefix: str) -> bytes:
