@@ -283,11 +283,6 @@ class System:
         """Number of event functions and limits, the first values of the set ``event_function`` before law arguments."""
         return self.first_limit + sum(group.count * group.entries["limit"] for group in self.groups)
 
-    @property
-    def has_limits(self) -> bool:
-        """True if a force law has a limit of validity."""
-        return self.n_event_functions > self.first_limit
-
     @cached_property
     def turning(self) -> np.ndarray:
         """Indices of the coordinates that are angles; empty in space."""

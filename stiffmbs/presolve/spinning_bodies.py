@@ -154,22 +154,15 @@ def _demands(element: Element, model: Compilable) -> Iterator[tuple[MarkerRefere
             if owner in model.joints:
                 referred.append(owner)
             else:
-                yield MarkerReference(body=owner), _seen_in_coordinate(coordinate), False
+                seen = {"w": coordinate[1:], "q": REFUSED}.get(coordinate[0], BODY)  # wx requires the spin axis x
+                yield MarkerReference(body=owner), seen, False
         for measure, (i, j, *axes) in formula.measures():
-            yield from ((marker, _seen_in_measure(measure), False) for marker in (i, j))
+            # an angle forbids spin, and an angular velocity needs no point
+            seen = {"a": REFUSED, "w": BODY}.get(measure[0], POINT)
+            yield from ((marker, seen, False) for marker in (i, j))
             yield from ((marker, REFUSED, False) for marker in axes)
     for joint in referred:
         yield from ((marker, REFUSED, False) for _, marker in model.joints[joint].parts(MarkerReference))
-
-
-def _seen_in_coordinate(name: str) -> str:
-    """Return the requirement of a body coordinate or velocity in a formula; wx requires the spin axis x."""
-    return name[1] if name[0] == "w" else REFUSED if name[0] == "q" else BODY
-
-
-def _seen_in_measure(name: str) -> str:
-    """Return the requirement of a measure on its markers: an angle forbids spin, an angular velocity needs no point."""
-    return REFUSED if name[0] == "a" else BODY if name[0] == "w" else POINT
 
 
 def _axis(body: object, demands: Sequence[_Demand], turns: np.ndarray, size: float) -> str:

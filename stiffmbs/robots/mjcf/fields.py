@@ -147,17 +147,12 @@ def model_fields(spec: mujoco.MjSpec, model: RequestedModel) -> Iterator[Fields[
             if kind not in defaults:
                 yield Fields(kind, element.name or "one without a name", {"": 1})
             elif element.id >= 0 and getattr(element, "active", True):
-                fields = Fields(kind, _label(kind, element), _values(element), defaults[kind])
+                fields = Fields(kind, element.name or f"{kind}_{element.id}", _values(element), defaults[kind])
                 _request(fields, kind, element.id, model)
                 yield fields
     options = Fields("option", "", _values(spec.option), defaults["option"])
     _request(options, "option", 0, model)
     yield options
-
-
-def _label(kind: str, element: Any) -> str:
-    name: str = element.name
-    return name or f"{kind}_{element.id}"
 
 
 def _request(fields: Fields[object], kind: str, ident: int, model: RequestedModel) -> None:
