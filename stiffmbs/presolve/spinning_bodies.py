@@ -130,15 +130,15 @@ class _Demand(NamedTuple):
         """Return True if the body may spin about a principal axis."""
         if self.what in (REFUSED, BODY):
             return self.what == BODY
-        off_axis = np.abs(np.delete(np.array(self.placed.point), axis)).max()
-        on_axis = self.what.startswith(ALONG) or off_axis <= PRESOLVE.alike * size
-        return bool(on_axis and (self.what == POINT or self._tilt(axis) <= PRESOLVE.alike))
-
-    def _tilt(self, axis: int) -> float:
         from ..elements.spatial.orientation import matrix
 
-        along = matrix(self.placed.orientation)[:, AXES.index(self.what[-1])]
-        return float(np.abs(np.delete(along, axis)).max())
+        off_axis = np.abs(np.delete(np.array(self.placed.point), axis)).max()
+        if not (self.what.startswith(ALONG) or off_axis <= PRESOLVE.alike * size):
+            return False
+        if self.what == POINT:
+            return True
+        tilt = np.abs(np.delete(matrix(self.placed.orientation)[:, AXES.index(self.what[-1])], axis)).max()
+        return bool(tilt <= PRESOLVE.alike)
 
 
 def _demands(element: Element, model: Compilable) -> Iterator[tuple[MarkerReference, str, bool]]:
