@@ -9,12 +9,13 @@ unchanged. Constraints and the angular momentum, which are differentiated by tim
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.kind import Compilable
-from ..elements.element import Element, Joint
+from ..compile.kind import ChangedModel, Compilable
+from ..elements.element import Element
 from ..elements.states.equation import StateName
 from ..elements.states.state import StateValue
 from ..reading.formula.formula import Formula
@@ -27,7 +28,8 @@ ANGLE = "spin_angle"
 """Suffix of a body's name for the name of its state."""
 
 
-class SpinningBodies(NamedTuple):
+@dataclass(frozen=True)
+class SpinningBodies(ChangedModel):
     """Model with quaternions that exclude the spin of some bodies.
 
     `model`: as described, or with merged bodies. `axes`: principal axis of the spin of each of these bodies, ``x``,
@@ -38,35 +40,13 @@ class SpinningBodies(NamedTuple):
     axes: Mapping[str, str]
 
     @property
-    def dimensions(self) -> int:
-        """Dimensions of the model."""
-        return self.model.dimensions
-
-    @property
     def bodies(self) -> Mapping[str, object]:
         """All bodies by name."""
         return self.model.bodies
 
-    @property
-    def joints(self) -> Mapping[str, Joint]:
-        """All joints by name."""
-        return self.model.joints
-
-    def joint_at_initial_pose(self, name: str) -> Joint:
-        """Return a joint of the model."""
-        return self.model.joint_at_initial_pose(name)
-
-    def state_outputs(self) -> Mapping[str, Formula]:
-        """Return the outputs that formulas use by a name."""
-        return self.model.state_outputs()
-
     def state_values(self) -> dict[str, StateValue]:
         """Return the values of the states of the model, and of the spin angles, which start at zero."""
         return {**self.model.state_values(), **{name_of_angle(body): StateValue(None, 0.0, 1.0) for body in self.axes}}
-
-    def size(self) -> float:
-        """Return the size of the model, m."""
-        return self.model.size()
 
     def carried(self, marker: object) -> tuple[str, object]:
         """Return the body that carries a marker, and the marker's placement on it."""
