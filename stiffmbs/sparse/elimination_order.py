@@ -86,8 +86,10 @@ def order_by_blocks(system: System) -> EliminationOrder:
     }
     coupled: list[tuple[int, int]] = []
     for name in COUPLING:
-        term, (row, column) = system.term("tangent", name), TERM_AXES[name]
-        coupled += sorted({*zip(blocks[row][term.row].tolist(), blocks[column][term.column].tolist(), strict=True)})
+        term, axes = system.term("tangent", name), TERM_AXES[name]
+        coupled += sorted(
+            {*zip(blocks[axes[0]][term.row].tolist(), blocks[axes[1]][term.column].tolist(), strict=True)}
+        )
     parts = [np.arange(start, end) for start, end in pairwise(np.cumsum([0, *sizes]).tolist())]
     return _ordered(parts, coupled, sizes, n_bodies + n_states)
 

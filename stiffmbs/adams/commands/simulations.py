@@ -50,22 +50,13 @@ class Simulation:
         """Return duration, output and solver of the run."""
         if not self.takes_time:
             return {}
-        length = self.length(start)
-        solver = {"solver": "kinematic"} if self.kind == KINEMATICS else {}
-        return {"duration": length * units.time, **self._output(length, self.between_outputs(length), units), **solver}
+        return {"duration": self.length(start) * units.time, **self.settings_up_to_its_end(units)}
 
     def settings_up_to_its_end(self, units: Units) -> dict[str, object]:
         """Return output and solver of the run, independent of its start."""
         steps = {"points": round(self.steps) + 1} if self.steps else {}
         output = {"output": self.interval * units.time} if self.interval else steps
         return output | ({"solver": "kinematic"} if self.kind == KINEMATICS else {})
-
-    def _output(self, length: float, interval: float | None, units: Units) -> dict[str, object]:
-        if interval is None:
-            return {}
-        if self.interval:
-            return {"output": self.interval * units.time}
-        return {"points": round(length / interval) + 1}
 
     def fault(self, reason: str) -> DatasetFault:
         """Return the error for a simulation that is not supported."""

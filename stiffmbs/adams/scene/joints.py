@@ -50,7 +50,7 @@ def joints(mechanism: Mechanism, translation: Translation) -> dict[str, object]:
 
 def held(mechanism: Mechanism) -> dict[str, object]:
     """Return orientation joints that hold point masses."""
-    found = {}
+    found: dict[str, object] = {}
     for part in mechanism.moving:
         if part.point:
             axes = mechanism.center(part).within(part.frame).axes
