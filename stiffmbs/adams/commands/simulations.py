@@ -62,10 +62,6 @@ class Simulation:
         """Return the error for a simulation that is not supported."""
         return DatasetFault(self.line, "SIMULATE", reason)
 
-    def between_outputs(self, length: float) -> float | None:
-        """Return the output interval; None if none is given."""
-        return self.interval or (length / self.steps if self.steps else None)
-
 
 def read_simulation(command: Statement) -> Simulation:
     """Read a SIMULATE command. Raises DatasetFault if it cannot be read, or has no end."""
@@ -92,7 +88,7 @@ def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, object
         if not simulation.takes_time or simulation.kind == STATICS:
             return None
         length = simulation.length(time)
-        between.append(simulation.between_outputs(length))
+        between.append(simulation.interval or (length / simulation.steps if simulation.steps else None))
         time += length
     alike = all(
         (simulation.kind == KINEMATICS) == (first.kind == KINEMATICS) and _same(interval, between[0])

@@ -23,14 +23,6 @@ def node(nodes, k):
 
 
 @compiled
-def matrix_product(A, B, C):
-    """Compute C = A B of 3x3 matrices."""
-    for i in range(3):
-        for j in range(3):
-            C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j]
-
-
-@compiled
 def place_in_plane(placed, q, turn, u, to):
     """Compute the values of a node from its marker's point, angle, cosine and sine, and its body's q, turn and u."""
     of = node_view(to)
@@ -76,7 +68,9 @@ def finish(to):
     """Compute the marker's axes, point and twist."""
     of = node_view(to)
     x = room(3)
-    matrix_product(of.R, of.C, of.A)
+    for i in range(3):
+        for j in range(3):
+            of.A[3 * i + j] = of.R[3 * i] * of.C[j] + of.R[3 * i + 1] * of.C[3 + j] + of.R[3 * i + 2] * of.C[6 + j]
     times(of.R, of.point, x)
     for i in range(3):
         of.origin[i] += x[i]
