@@ -39,7 +39,13 @@ def followed(
         name for name, joint in scene.get("joints", {}).items() if joint.get("position") in scene.get("states", ())
     ]
     if integrated and any(segment.simulation.kind == KINEMATICS for segment in segments):
-        found = followed([_by_dynamics(segment) for segment in segments], described, read, source)
+        dynamics = [
+            replace(segment, simulation=replace(segment.simulation, kind="DYNAMICS"))
+            if segment.simulation.kind == KINEMATICS
+            else segment
+            for segment in segments
+        ]
+        found = followed(dynamics, described, read, source)
         note = f"{', '.join(integrated)}: integrals without a formula; KINEMATICS is solved as DYNAMICS"
         return found | {"notes": [*found["notes"], note]}
     first = segments[0].simulation
@@ -57,13 +63,6 @@ def followed(
         notes = [f"duration and output are those of {source}"]
         return {"run": whole | _in_si(over_time[0], units), **start, "notes": notes}
     return _staged(segments, described, read, source, watched)
-
-
-def _by_dynamics(segment: Segment) -> Segment:
-    """Return a segment whose kinematic simulation is a dynamic one."""
-    simulation = segment.simulation
-    kind = "DYNAMICS" if simulation.kind == KINEMATICS else simulation.kind
-    return replace(segment, simulation=replace(simulation, kind=kind))
 
 
 def _staged(

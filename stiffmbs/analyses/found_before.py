@@ -18,7 +18,7 @@ import numpy as np
 
 from ..cache.installed import installed_version
 from ..cache.source_files import versions_within
-from ..compile.machine.cache import own_directory
+from ..compile.machine.cache import own_folder
 from ..model.files.scenes_read_before import ScenePickler
 from ..model.model_data import ModelData
 from ..model.scene import Scene
@@ -82,4 +82,4 @@ def _solver() -> bytes:
     """Return the dependencies of the rounding of a start: files, libraries, threads, compiler, processor."""
     threads = os.cpu_count(), *map(os.environ.get, ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"))
     libraries = np.__version__, installed_version("scipy"), installed_version("sympy")
-    return repr(([*versions_within(str(PACKAGE))], threads, libraries, own_directory().name)).encode()
+    return repr(([*versions_within(str(PACKAGE))], threads, libraries, own_folder().path.name)).encode()

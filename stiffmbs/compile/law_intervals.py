@@ -107,7 +107,9 @@ def _intervals_of(system: System) -> Intervals:
         turns,
         np.divide(2 * np.pi, period[turns], out=np.ones(len(turns)), where=period[turns] > 0),
         np.array(
-            [_has_kinks(breakpoints, overlap, period) for _, breakpoints, overlap, period in found], dtype=np.int64
+            # a law departs from its tangent immediately at a breakpoint
+            [np.any((o > 0) & (o < 4 * BARELY * _narrower(breakpoints, turn))) for _, breakpoints, o, turn in found],
+            dtype=np.int64,
         ),
         int(np.count_nonzero(counts)),
     )
@@ -151,11 +153,6 @@ def _of_table(data: bytes) -> tuple[np.ndarray, np.ndarray, float]:
     period = float(knots[-1] - knots[0]) if numbers[1] else 0.0
     at = np.array(starts if period else [*starts, count - 1])
     return knots[at], _overlaps(numbers, at, _narrower(knots[at], period)), period
-
-
-def _has_kinks(breakpoints: np.ndarray, overlap: np.ndarray, period: float) -> bool:
-    """Return True if a law departs from its tangent immediately at a breakpoint."""
-    return bool(np.any((overlap > 0) & (overlap < 4 * BARELY * _narrower(breakpoints, period))))
 
 
 def _overlaps(numbers: np.ndarray, at: np.ndarray, narrower: np.ndarray) -> np.ndarray:

@@ -106,13 +106,13 @@ def _record_of(kind: Kind, place: Description) -> KindRecord:
     with uncollected():
         record = _derived(kind)
     if entry:
-        store.write(entry, json.dumps(asdict(record)).encode())
+        store.own_folder().write(entry, json.dumps(asdict(record)).encode())
     return record
 
 
 def _read(entry: str) -> KindRecord | None:
     """Return a record from the cache; None if missing or unreadable."""
-    stored = store.read(entry)
+    stored = store.own_folder().read(entry)
     try:
         return None if stored is None else KindRecord(**json.loads(stored))
     except (ValueError, TypeError):
@@ -138,7 +138,9 @@ def kernel_of(kind: Kind, term_set: str, place: str = "") -> Compiled | None:
     if source is None:
         return None
     has_loops = hasattr(kind.element, "compiled_terms") or any(call in source for call in CALLS_WITH_LOOPS)
-    return compiled_source(source, "kernel", KERNEL_SIGNATURE, with_place(kind, place), FULL if has_loops else SHORT)
+    return compiled_source(
+        source, "kernel", KERNEL_SIGNATURE, Description(with_place(kind, place)), FULL if has_loops else SHORT
+    )
 
 
 def compile_usual(kind: Kind) -> None:
@@ -150,14 +152,14 @@ def compile_usual(kind: Kind) -> None:
 
 def _rare_source(kind: Kind, term_set: str) -> str:
     entry = _entry(kind, term_set)
-    stored = store.read(entry) if entry else None
+    stored = store.own_folder().read(entry) if entry else None
     if stored is not None:
         return stored.decode()
     from .symbolic.generate import kernel_source  # loads SymPy
 
     source = kernel_source(term_set, _terms(kind), "kernel")
     if entry:
-        store.write(entry, source.encode())
+        store.own_folder().write(entry, source.encode())
     return source
 
 
@@ -249,9 +251,8 @@ def _classes_in(shape: Shape) -> Iterator[type]:
 
 def _files(elements: list[type]) -> list[str]:
     """Return digests of the files of shipped classes, and of the functions that their equations may call."""
-    return [
-        _content(file) for file in (*(_file(element.__module__) for element in elements), *sorted(_helpers(elements)))
-    ]
+    called = set().union(*(_called_by(module) for module in {element.__module__ for element in elements}))
+    return [_content(file) for file in (*(_file(element.__module__) for element in elements), *sorted(called))]
 
 
 @cache
@@ -270,12 +271,6 @@ def _equations(kind: Kind) -> list[str]:
     from .symbolic.stated import text_of
 
     return [text_of(kind)]
-
-
-def _helpers(elements: list[type]) -> set[Path]:
-    """Return the files of functions and classes that elements' equations may call: members of their modules from this
-    package, and imports inside functions of their modules and of these members' modules."""
-    return set().union(*(_called_by(module) for module in {element.__module__ for element in elements}))
 
 
 @cache

@@ -6,14 +6,13 @@ equation and coordinate of each.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..elements.element import Element
 from ..reading.formula.formula import Formula
 from .bodies import BodyKind
 from .group import Group
@@ -244,25 +243,11 @@ class System:
 
     def n_values(self, term_set: str) -> int:
         """Return the number of kernel values of a set; constants follow them."""
-        return self._numbers_of_values[term_set]
-
-    @cached_property
-    def _numbers_of_values(self) -> dict[str, int]:
-        return {
-            term_set: sum(group.count * group.entries[term] for group in self.groups for term in terms)
-            for term_set, terms in TERM_SETS.items()
-        }
+        return sum(group.count * group.entries[term] for group in self.groups for term in TERM_SETS[term_set])
 
     def n_operations(self, term_set: str) -> int:
         """Return the number of arithmetic operations in the kernels of a set, for cost estimates."""
-        return self._numbers_of_operations[term_set]
-
-    @cached_property
-    def _numbers_of_operations(self) -> dict[str, int]:
-        return {
-            term_set: sum(group.count * group.record.n_operations(term_set) for group in self.groups)
-            for term_set in ("acceleration", "tangent")
-        }
+        return sum(group.count * group.record.n_operations(term_set) for group in self.groups)
 
     @cached_property
     def reported(self) -> dict[str, int]:
@@ -297,11 +282,6 @@ class System:
     def n_event_functions(self) -> int:
         """Number of event functions and limits, the first values of the set ``event_function`` before law arguments."""
         return self.first_limit + sum(group.count * group.entries["limit"] for group in self.groups)
-
-    @property
-    def has_limits(self) -> bool:
-        """True if a force law has a limit of validity."""
-        return self.n_event_functions > self.first_limit
 
     @cached_property
     def turning(self) -> np.ndarray:
@@ -342,12 +322,6 @@ class System:
     def kernel(self, term_set: str, group: Group, place: str = "") -> Compiled | None:
         """Return the compiled kernel of a group for a set, or None; `place` as for `kernel_of`."""
         return kernel_of(group.kind, term_set, place)
-
-    def elements_with_inputs(self) -> Iterator[Element]:
-        """Yield the elements that may have formulas of time or tables."""
-        for group in self.groups:
-            if group.has_inputs:
-                yield from group.elements
 
     def turned(self, term_set: str) -> np.ndarray:
         """Return the first coordinate of each body whose shared orientation values the kernels of a set read."""

@@ -176,7 +176,8 @@ class Dynamics:
 
     def take_input_features(self, other: Dynamics) -> None:
         """Copy the features of inputs from another system if both contain the identical elements with inputs."""
-        own, others = ([*dynamics.system.elements_with_inputs()] for dynamics in (self, other))
+        systems = self.system, other.system
+        own, others = ([e for group in s.groups if group.has_inputs for e in group.elements] for s in systems)
         if len(own) == len(others) and all(one is another for one, another in zip(own, others, strict=True)):
             self._features, self._input_end = other._features, other._input_end
 

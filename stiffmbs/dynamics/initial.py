@@ -170,22 +170,16 @@ def _violation_sentence(dynamics: Dynamics, t: float) -> str:
 
 
 def _dependent_sentence(dynamics: Dynamics) -> str:
+    from scipy.linalg import qr
+
     state, system = dynamics.state, dynamics.system
     solved_for = np.flatnonzero(system.active)
-    jacobian = state.matrix("motion", "J")[solved_for]
-    joint, equation = system.equations[solved_for[_most_dependent_row(jacobian)]]
+    *_, order = qr(state.matrix("motion", "J")[solved_for].T, mode="economic", pivoting=True)
+    joint, equation = system.equations[solved_for[order[-1]]]
     return (
         f"the constraint equations are dependent at the start: joint '{joint}' (equation {equation}) is "
         "redundant with other joints, so its reaction is not unique"
     )
-
-
-def _most_dependent_row(jacobian: np.ndarray) -> int:
-    """Return the last row in the pivot order of QR of the transposed matrix."""
-    from scipy.linalg import qr
-
-    *_, order = qr(jacobian.T, mode="economic", pivoting=True)
-    return int(order[-1])
 
 
 def _undefined_sentence(dynamics: Dynamics, t: float) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator
+from dataclasses import dataclass
 from importlib import import_module
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
-from ..elements.element import Element, Joint
+from ..compile.kind import ChangedModel
+from ..elements.element import Element
 from ..elements.states.state import StateValue
 from ..model.model_data import ModelData
 from ..reading.formula.formula import Formula
@@ -18,7 +20,8 @@ FIXED = "fixed"
 """Kind of fixed joints."""
 
 
-class MergedBodies(NamedTuple):
+@dataclass(frozen=True)
+class MergedBodies(ChangedModel):
     """Model with merged bodies in place of those connected by fixed joints.
 
     - `model`: as described.
@@ -32,31 +35,9 @@ class MergedBodies(NamedTuple):
     members: dict[str, tuple[str, Any]]
     joints_left_out: tuple[str, ...]
 
-    @property
-    def dimensions(self) -> int:
-        """Dimensions of the model."""
-        return self.model.dimensions
-
-    @property
-    def joints(self) -> dict[str, Joint]:
-        """All joints by name."""
-        return self.model.joints
-
-    def joint_at_initial_pose(self, name: str) -> Joint:
-        """Return a joint of the model."""
-        return self.model.joint_at_initial_pose(name)
-
-    def state_outputs(self) -> dict[str, Formula]:
-        """Return the outputs that formulas use by a name."""
-        return self.model.state_outputs()
-
     def state_values(self) -> dict[str, StateValue]:
         """Return the values of all states."""
         return self.model.state_values()
-
-    def size(self) -> float:
-        """Return the size of the model as described, m."""
-        return self.model.size()
 
     def spin_axes(self) -> dict[str, str]:
         """Return no axes."""

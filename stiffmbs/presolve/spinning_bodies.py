@@ -9,12 +9,13 @@ unchanged. Constraints and the angular momentum, which are differentiated by tim
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.kind import Compilable
-from ..elements.element import Element, Joint
+from ..compile.kind import ChangedModel, Compilable
+from ..elements.element import Element
 from ..elements.states.equation import StateName
 from ..elements.states.state import StateValue
 from ..reading.formula.formula import Formula
@@ -27,7 +28,8 @@ ANGLE = "spin_angle"
 """Suffix of a body's name for the name of its state."""
 
 
-class SpinningBodies(NamedTuple):
+@dataclass(frozen=True)
+class SpinningBodies(ChangedModel):
     """Model with quaternions that exclude the spin of some bodies.
 
     `model`: as described, or with merged bodies. `axes`: principal axis of the spin of each of these bodies, ``x``,
@@ -38,35 +40,13 @@ class SpinningBodies(NamedTuple):
     axes: Mapping[str, str]
 
     @property
-    def dimensions(self) -> int:
-        """Dimensions of the model."""
-        return self.model.dimensions
-
-    @property
     def bodies(self) -> Mapping[str, object]:
         """All bodies by name."""
         return self.model.bodies
 
-    @property
-    def joints(self) -> Mapping[str, Joint]:
-        """All joints by name."""
-        return self.model.joints
-
-    def joint_at_initial_pose(self, name: str) -> Joint:
-        """Return a joint of the model."""
-        return self.model.joint_at_initial_pose(name)
-
-    def state_outputs(self) -> Mapping[str, Formula]:
-        """Return the outputs that formulas use by a name."""
-        return self.model.state_outputs()
-
     def state_values(self) -> dict[str, StateValue]:
         """Return the values of the states of the model, and of the spin angles, which start at zero."""
         return {**self.model.state_values(), **{name_of_angle(body): StateValue(None, 0.0, 1.0) for body in self.axes}}
-
-    def size(self) -> float:
-        """Return the size of the model, m."""
-        return self.model.size()
 
     def carried(self, marker: object) -> tuple[str, object]:
         """Return the body that carries a marker, and the marker's placement on it."""
@@ -130,15 +110,15 @@ class _Demand(NamedTuple):
         """Return True if the body may spin about a principal axis."""
         if self.what in (REFUSED, BODY):
             return self.what == BODY
-        off_axis = np.abs(np.delete(np.array(self.placed.point), axis)).max()
-        on_axis = self.what.startswith(ALONG) or off_axis <= PRESOLVE.alike * size
-        return bool(on_axis and (self.what == POINT or self._tilt(axis) <= PRESOLVE.alike))
-
-    def _tilt(self, axis: int) -> float:
         from ..elements.spatial.orientation import matrix
 
-        along = matrix(self.placed.orientation)[:, AXES.index(self.what[-1])]
-        return float(np.abs(np.delete(along, axis)).max())
+        off_axis = np.abs(np.delete(np.array(self.placed.point), axis)).max()
+        if not (self.what.startswith(ALONG) or off_axis <= PRESOLVE.alike * size):
+            return False
+        if self.what == POINT:
+            return True
+        tilt = np.abs(np.delete(matrix(self.placed.orientation)[:, AXES.index(self.what[-1])], axis)).max()
+        return bool(tilt <= PRESOLVE.alike)
 
 
 def _demands(element: Element, model: Compilable) -> Iterator[tuple[MarkerReference, str, bool]]:
@@ -154,22 +134,15 @@ def _demands(element: Element, model: Compilable) -> Iterator[tuple[MarkerRefere
             if owner in model.joints:
                 referred.append(owner)
             else:
-                yield MarkerReference(body=owner), _seen_in_coordinate(coordinate), False
+                seen = {"w": coordinate[1:], "q": REFUSED}.get(coordinate[0], BODY)  # wx requires the spin axis x
+                yield MarkerReference(body=owner), seen, False
         for measure, (i, j, *axes) in formula.measures():
-            yield from ((marker, _seen_in_measure(measure), False) for marker in (i, j))
+            # an angle forbids spin, and an angular velocity needs no point
+            seen = {"a": REFUSED, "w": BODY}.get(measure[0], POINT)
+            yield from ((marker, seen, False) for marker in (i, j))
             yield from ((marker, REFUSED, False) for marker in axes)
     for joint in referred:
         yield from ((marker, REFUSED, False) for _, marker in model.joints[joint].parts(MarkerReference))
-
-
-def _seen_in_coordinate(name: str) -> str:
-    """Return the requirement of a body coordinate or velocity in a formula; wx requires the spin axis x."""
-    return name[1] if name[0] == "w" else REFUSED if name[0] == "q" else BODY
-
-
-def _seen_in_measure(name: str) -> str:
-    """Return the requirement of a measure on its markers: an angle forbids spin, an angular velocity needs no point."""
-    return REFUSED if name[0] == "a" else BODY if name[0] == "w" else POINT
 
 
 def _axis(body: object, demands: Sequence[_Demand], turns: np.ndarray, size: float) -> str:

@@ -59,15 +59,10 @@ def _preference(found: LoopRank, order: Sequence[str], holonomic: np.ndarray) ->
 
 
 def _least_shares(spaces: Sequence[np.ndarray]) -> np.ndarray:
-    """Return each row's smallest share in the null spaces."""
-    least: np.ndarray = np.min([_shares(space) for space in spaces], axis=0)
+    """Return each row's smallest share in the null spaces, relative to the largest in each."""
+    norms = [np.linalg.norm(space, axis=1) for space in spaces]
+    least: np.ndarray = np.min([each / max(each.max(), REDUNDANCY.takes_part) for each in norms], axis=0)
     return least
-
-
-def _shares(space: np.ndarray) -> np.ndarray:
-    """Return each row's share in a null space, relative to the largest."""
-    norms = np.linalg.norm(space, axis=1)
-    return norms / max(norms.max(), REDUNDANCY.takes_part)
 
 
 def _without(space: np.ndarray, row: int) -> np.ndarray:

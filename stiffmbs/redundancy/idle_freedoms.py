@@ -39,8 +39,9 @@ def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
     """
     system, state = dynamics.system, dynamics.state
     around = _joints_around(system)
-    for body in _held_by_functions(system):  # a formula with zero slope here may hold the body elsewhere
-        around.pop(body, None)
+    J = system.term("motion", "J")
+    for column in J.column[by_functions(system)[J.row]]:  # a formula with zero slope here may hold the body elsewhere
+        around.pop(int(column) // system.of_body.n_u, None)
     for group in system.groups:
         if group.entries["inertia"]:  # of flexible bodies, whose coordinates are coupled by elasticity and inertia
             for body in group.bodies.ravel().tolist():
@@ -72,19 +73,16 @@ def _joints_around(system: System) -> dict[int, dict[str, set[int]]]:
     return around
 
 
-def _held_by_functions(system: System) -> set[int]:
-    """Return the bodies in constraints with formulas or tables."""
-    J = system.term("motion", "J")
-    return set((J.column[by_functions(system)[J.row]] // system.of_body.n_u).tolist())
-
-
 def _classified(
     dynamics: Dynamics, body: int, free: np.ndarray, joints: dict[str, set[int]], t: float
 ) -> IdleFreedom | None:
     """Return the idle freedom of a body, or None if it is connected to a single other body or held by forces."""
     system = dynamics.system
     elastic = stiffnesses(dynamics.state, t).get(body, {})
-    others = _others_of_forces(system)
+    forces = (group for group in system.groups if not group.record.n_equations)
+    others = {
+        name: {*bodies} for group in forces for name, bodies in zip(group.names, group.bodies.tolist(), strict=True)
+    }
     by_joints = set[int]().union(*joints.values())
     by_forces = set[int]().union(*(others[name] - {body} for name in elastic))
     if len(by_joints | by_forces) < 2:
@@ -110,12 +108,6 @@ def _held(dynamics: Dynamics, body: int, free: np.ndarray, t: float) -> tuple[li
         names = list(dict.fromkeys([*names, *more]))
         state.q[:] = q
     return names, loose
-
-
-def _others_of_forces(system: System) -> dict[str, set[int]]:
-    """Return the bodies on which each force acts or depends, including the ground."""
-    groups = (group for group in system.groups if not group.record.n_equations)
-    return {name: set(bodies) for g in groups for name, bodies in zip(g.names, g.bodies.tolist(), strict=True)}
 
 
 def _free_motions(dynamics: Dynamics, bodies: list[int], t: float) -> Iterator[tuple[int, np.ndarray]]:

@@ -59,22 +59,17 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     rank = max(int(np.sum(s > max(REDUNDANCY.dependent, REDUNDANCY.by_gap * gap))) for s in asked)
     least = max(float(s[rank - 1]) for s in asked) if rank else 0.0
     start_rank = int(np.sum(values[0][:rank] > REDUNDANCY.sound * least))
-    general = [k for k, s in enumerate(values) if _is_general(s, rank, least, k == 0 or any(s is own for own in asked))]
-    null_spaces = [(poses[k], _last(decomposed[k][1], count - rank)) for k in general]
+    null_spaces = [
+        (poses[k], vectors[:, vectors.shape[1] - (count - rank) :])
+        for k, (s, vectors) in enumerate(decomposed)
+        if (k == 0 or any(s is own for own in asked)) and np.sum(s > REDUNDANCY.sound * least) == rank
+    ]
     return LoopRank(equations, start, rank, start_rank, least, null_spaces)
-
-
-def _last(vectors: np.ndarray, count: int) -> np.ndarray:
-    return vectors[:, vectors.shape[1] - count :]
 
 
 def _clear(values: list[np.ndarray]) -> list[np.ndarray]:
     """Return the singular values of poses that are not nearly singular."""
     return [s for s in values if not np.any((s > REDUNDANCY.dependent) & (s < REDUNDANCY.sound))]
-
-
-def _is_general(values: np.ndarray, rank: int, least: float, asked: bool) -> bool:
-    return asked and int(np.sum(values > REDUNDANCY.sound * least)) == rank
 
 
 def _perturbed(equations: LoopEquations, start: Pose) -> Iterator[Pose]:

@@ -58,7 +58,7 @@ def replacements(
         usable = [[option for kind in kinds for option in of_joint if option.kind == kind] for of_joint in options]
         alone = [(option,) for of_joint in usable for option in of_joint if _does((option,), count)]
         if alone:
-            return [_named(choice) for choice in _one_each(alone)]
+            return [_named(choice) for choice in {c[0].joint: c for c in reversed(alone)}.values()]
         together = next(_together([part for part in usable if part], count), None)
         if together:
             return [_named(together)]
@@ -102,10 +102,6 @@ def _independent(choice: Sequence[_Option]) -> bool:
         if count > len(values) or values[count - 1] < REDUNDANCY.independent_component:
             return False
     return True
-
-
-def _one_each(alone: Sequence[tuple[_Option]]) -> Iterator[tuple[_Option]]:
-    yield from {choice[0].joint: choice for choice in reversed(alone)}.values()
 
 
 def _together(options: Sequence[Sequence[_Option]], count: int) -> Iterator[tuple[_Option, ...]]:

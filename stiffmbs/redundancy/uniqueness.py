@@ -7,11 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compile.group import Group
 from ..compile.quaternions import CONJUGATE, rotated, times
 from ..compile.reactions import reactions
 from ..compile.system import System
-from ..elements.element import Element
 from ..presolve.relations import curved
 from ..reading.formula.formula import Formula
 from ..reading.names import owner_of
@@ -221,18 +219,10 @@ def by_functions(system: System) -> np.ndarray:
     """Return a mask of the rows with formulas or tables of pose or time, except linear ones of the pose."""
     rows = np.zeros(system.n_c, dtype=bool)
     for group in system.groups:
-        if group.record.n_equations and _has_functions(group.elements[0]):  # elements of a group have the same formulas
+        functions = (part for sort in (Formula, Table) for part in group.elements[0].parts(sort))
+        if group.record.n_equations and any(True for _ in functions):  # elements of a group have the same formulas
             last = group.first_row + group.count * group.record.n_equations
-            rows[group.first_row : last] = (curved(system, group) | _timed_or_nonsmooth(group)).ravel()
+            nonholonomic = [True] * (group.record.n_equations - group.record.n_holonomic)
+            timed_or_nonsmooth = np.array([*np.logical_not(group.record.removable), *nonholonomic])
+            rows[group.first_row : last] = (curved(system, group) | timed_or_nonsmooth).ravel()
     return rows
-
-
-def _has_functions(element: Element) -> bool:
-    return any(True for sort in (Formula, Table) for _ in element.parts(sort))
-
-
-def _timed_or_nonsmooth(group: Group) -> np.ndarray:
-    """Return a mask of the equations of an element that depend on time, have breakpoints or are nonholonomic."""
-    found = np.ones(group.record.n_equations, dtype=bool)
-    found[: group.record.n_holonomic] = ~np.array(group.record.removable, dtype=bool)
-    return found

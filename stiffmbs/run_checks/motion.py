@@ -33,7 +33,7 @@ def motion_notes(
         yield from missed_revolutions_sentence(dynamics, rows)
     if dynamics.system.of_body.dimensions == 3 and (angles := joint_angles(dynamics.system)) is not None:
         yield from angles.uncertain(rows)
-    if dynamics.system.has_limits:
+    if dynamics.system.n_event_functions > dynamics.system.first_limit:
         yield from near_limits_sentence(dynamics, rows)
 
 

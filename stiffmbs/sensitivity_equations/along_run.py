@@ -223,59 +223,50 @@ class Touches:
         if not len(resting):
             return
         n, row = self._recorder.equations.n, segment.rows[-1]
+        t, y, least = row[0], row[2 : 2 + n], SENSITIVITIES.noticed * (1.0 + np.abs(row[2 + n :]).max())
         for numbers, dy in zip(self._directions, s, strict=True):
             size = SENSITIVITIES.moved / max(float(np.abs(dy).max()), 1.0)
-            whole, half = (self._bend(row[0], row[2 : 2 + n], dy, numbers, part * size) for part in (1.0, 0.5))
-            if np.any(
-                (half > SENSITIVITIES.kinked * whole)
-                & (whole > SENSITIVITIES.noticed * (1.0 + np.abs(row[2 + n :]).max()))
-            ):
-                name = writer(self._dynamics.system, "event_function", int(resting[0]))
-                raise SolverError(
-                    f"sensitivities: found that '{name}' stays on its breakpoint from t = {segment.first[0]:.9g} s to {row[0]:.9g} s, "
-                    "and that a parameter moves it off: the motion is not differentiable there; expected an event that crosses it or "
-                    "stays clear of it"
+            whole, half = (self._bend(t, y, dy, numbers, part * size) for part in (1.0, 0.5))
+            errors = [self._off_differences(t, y, dy, numbers, part * size) for part in (1.0, 0.5)]
+            if np.any((half > SENSITIVITIES.kinked * whole) & (whole > least)):
+                reason = (
+                    "and that a parameter moves it off: the motion is not differentiable there; expected an event that crosses "
+                    "it or stays clear of it"
                 )
-            off = [self._off_differences(row[0], row[2 : 2 + n], dy, numbers, part * size) for part in (1.0, 0.5)]
-            if np.any(
-                (off[1] > SENSITIVITIES.steady * off[0])
-                & (size * off[0] > SENSITIVITIES.noticed * (1.0 + np.abs(row[2 + n :]).max()))
-            ):
-                name = writer(self._dynamics.system, "event_function", int(resting[0]))
-                raise SolverError(
-                    f"sensitivities: found that '{name}' stays on its breakpoint from t = {segment.first[0]:.9g} s to {row[0]:.9g} s, "
-                    "where the derivatives of its formula are those of neither side; expected one smooth formula instead of several "
-                    "with breakpoints that cancel"
+            elif np.any((errors[1] > SENSITIVITIES.steady * errors[0]) & (size * errors[0] > least)):
+                reason = (
+                    "where the derivatives of its formula are those of neither side; expected one smooth formula instead of "
+                    "several with breakpoints that cancel"
                 )
+            else:
+                continue
+            name = writer(self._dynamics.system, "event_function", int(resting[0]))
+            raise SolverError(
+                f"sensitivities: found that '{name}' stays on its breakpoint from t = {segment.first[0]:.9g} s to {t:.9g} s, {reason}"
+            )
 
     def _off_differences(self, t: float, y: np.ndarray, dy: np.ndarray, numbers: Numbers, size: float) -> np.ndarray:
         """Return the error of the derivatives of forces along a change of state and numbers, beyond rounding of differences."""
-        lam = self._recorder.equations.at["lam"]
-        solved = lam != ABSENT
         before, after = (self._with_numbers(t, y, dy, numbers, part, self._forces) for part in (-size, size))
-        self._take(t, y)
+        self._recorder.take(y, self._dynamics.state)
         direction = Direction(self._dynamics.state, "motion", numbers)
-        direction.q[:], direction.u[:] = self._recorder.split(dy)
-        direction.lam[solved] = dy[lam[solved]]
+        self._recorder.take(dy, direction)
         direction.evaluate(t)
         found = np.concatenate([direction.vector(name) for name in FORCES])
         system, values = self._dynamics.system, self._dynamics.state.values["motion"]
         terms = np.concatenate([system.term("motion", name).source for name in FORCES])
-        of_forces = float(np.max(np.abs(values[terms]), initial=0.0)) / size
-        of_places = (
-            float(np.max(np.abs(direction.values[terms]), initial=0.0)) * (1.0 + np.abs(y).max()) / SENSITIVITIES.moved
-        )
-        rounding = SENSITIVITIES.rounded * (of_forces + of_places)
+        largest, of_values = (float(np.max(np.abs(each[terms]), initial=0.0)) for each in (values, direction.values))
+        rounding = SENSITIVITIES.rounded * (largest / size + of_values * (1.0 + np.abs(y).max()) / SENSITIVITIES.moved)
         return np.maximum(np.abs(found - (after - before) / (2 * size)) - rounding, 0.0)
 
     def _forces(self, t: float, y: np.ndarray) -> np.ndarray:
-        self._take(t, y)
+        self._recorder.take(y, self._dynamics.state)
         self._dynamics.state.evaluate("motion", t)
         return np.concatenate([self._dynamics.state.vector("motion", name) for name in FORCES])
 
     def _bend(self, t: float, y: np.ndarray, dy: np.ndarray, numbers: Numbers, size: float) -> np.ndarray:
         """Return the second difference of the rates along a change of state and numbers."""
-        found = [self._with_numbers(t, y, dy, numbers, part, self._all_rates) for part in (-size, 0.0, size)]
+        found = [self._with_numbers(t, y, dy, numbers, part, self._rates) for part in (-size, 0.0, size)]
         return np.asarray(np.abs(found[0] - 2 * found[1] + found[2]))
 
     def _with_numbers(
@@ -293,27 +284,14 @@ class Touches:
             for g, own in kept.items():
                 groups[g].numbers[:] = own
 
-    def _all_rates(self, t: float, y: np.ndarray) -> np.ndarray:
-        return np.concatenate(list(self._rates(t, y)))
-
-    def _take(self, t: float, y: np.ndarray) -> None:
-        state, lam = self._dynamics.state, self._recorder.equations.at["lam"]
-        solved = lam != ABSENT
-        state.q[:], state.u[:] = self._recorder.split(y)
-        state.lam[solved] = y[lam[solved]]
-
     def _values(self, row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the event functions and their rates at a recorded state."""
-        n, lam = self._recorder.equations.n, self._recorder.equations.at["lam"]
-        y, yp = row[2 : 2 + n], row[2 + n :]
-        self._take(row[0], y)
-        direction, solved = self._by_time, lam != ABSENT
-        direction.q[:], direction.u[:] = self._recorder.split(yp)
-        direction.lam[solved] = yp[lam[solved]]
-        direction.evaluate(row[0], 1.0)
-        return self._dynamics.state.values["event_function"][: self._count].copy(), direction.values[
-            : self._count
-        ].copy()
+        n, rates = self._recorder.equations.n, self._by_time
+        self._recorder.take(row[2 : 2 + n], self._dynamics.state)
+        self._recorder.take(row[2 + n :], rates)
+        rates.evaluate(row[0], 1.0)
+        values = self._dynamics.state.values["event_function"]
+        return values[: self._count].copy(), rates.values[: self._count].copy()
 
     def _between(self, before: np.ndarray, after: np.ndarray, part: float) -> np.ndarray:
         """Return the state within a step, by cubic Hermite interpolation."""
@@ -349,18 +327,17 @@ class Touches:
         return slope
 
     def _value(self, t: float, y: np.ndarray, event: int) -> float:
-        self._take(t, y)
+        self._recorder.take(y, self._dynamics.state)
         self._dynamics.state.evaluate("event_function", t)
         return float(self._dynamics.state.values["event_function"][event])
 
     def _change(self, t: float, y: np.ndarray, dy: np.ndarray, to_zero: float, size: float) -> np.ndarray:
         """Return the difference between the rates on both sides of the breakpoint."""
-        one, other = (np.concatenate(list(self._rates(t, y + (to_zero + side * size) * dy))) for side in (-1, 1))
+        one, other = (self._rates(t, y + (to_zero + side * size) * dy) for side in (-1, 1))
         return np.asarray(np.abs(other - one))
 
-    def _rates(self, t: float, y: np.ndarray) -> Iterator[np.ndarray]:
-        self._take(t, y)
+    def _rates(self, t: float, y: np.ndarray) -> np.ndarray:
+        self._recorder.take(y, self._dynamics.state)
         _, acceleration = self._dynamics.accelerate(t)
-        yield acceleration.copy()
-        first = self._dynamics.system.first_state
-        yield self._dynamics.position_rates(self._dynamics.state.q, self._dynamics.state.u)[first:]
+        q_rates = self._dynamics.position_rates(self._dynamics.state.q, self._dynamics.state.u)
+        return np.concatenate([acceleration, q_rates[self._dynamics.system.first_state :]])

@@ -61,10 +61,7 @@ class BlockSystem:
         moved_q: np.ndarray, moved_u: np.ndarray, moved_t: np.ndarray,
     ) -> Change:  # fmt: skip
         state, system = self._dynamics.state, self._dynamics.system
-        state.q[:], state.u[:] = at
-        status, acceleration = self._dynamics.accelerate(t)
-        if status < 0:
-            raise SolverError(f"sensitivities: no accelerations were found at t = {t:.9g} s: {FAILURES[status]}")
+        acceleration = acceleration_at(self._dynamics, t, *at)
         state.a[:] = acceleration
         algebraic, right = system.algebraic_coordinates, []
         for direction, of_q, of_u, of_t in zip(directions, moved_q, moved_u, moved_t, strict=True):
@@ -93,6 +90,15 @@ class BlockSystem:
             direction.lam[:] = change.lam[k]
             direction.evaluate(t)
         return np.array([direction.values[:n_values] for direction in self._outputs])
+
+
+def acceleration_at(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return u' at a state, which becomes the present one with its multipliers."""
+    dynamics.state.q[:], dynamics.state.u[:] = q, u
+    status, acceleration = dynamics.accelerate(t)
+    if status < 0:
+        raise SolverError(f"sensitivities: no accelerations were found at t = {t:.9g} s: {FAILURES[status]}")
+    return acceleration
 
 
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]

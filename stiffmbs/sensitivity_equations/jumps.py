@@ -20,9 +20,8 @@ from ..compile.directional.source import STATE
 from ..compile.equations import Equations
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
-from ..dynamics.storage import FAILURES
 from ..errors import SolverError
-from .block_system import BlockSystem, saddle_solution
+from .block_system import BlockSystem, acceleration_at, saddle_solution
 from .recorded import SENSITIVITIES, Segment
 
 BreakpointRates = Callable[[float, bool], np.ndarray | None]
@@ -190,13 +189,8 @@ class Jumps:
         return self._state(at.t + ahead, at.q + ahead * q_rates, at.u + ahead * at.acceleration)
 
     def _state(self, t: float, q: np.ndarray, u: np.ndarray) -> State:
-        dynamics = self._dynamics
-        dynamics.state.q[:], dynamics.state.u[:] = q, u
-        status, acceleration = dynamics.accelerate(t)
-        if status < 0:
-            raise SolverError(f"sensitivities: no accelerations were found at t = {t:.9g} s: {FAILURES[status]}")
-        rates = dynamics.position_rates(q, u)
-        return State(t, q, u, rates, acceleration, dynamics.state.lam.copy())
+        acceleration = acceleration_at(self._dynamics, t, q, u)
+        return State(t, q, u, self._dynamics.position_rates(q, u), acceleration, self._dynamics.state.lam.copy())
 
     def _event(self, left: State, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return derivatives of event functions, shape (directions, n), their time derivatives, and their values."""

@@ -8,8 +8,10 @@ from typing import Final
 
 import numpy as np
 
+from ..compile.directional.direction import Direction
 from ..compile.equations import ABSENT
 from ..compile.law_intervals import intervals_of
+from ..compile.state import State
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import ChatteringError, SolverError
@@ -237,13 +239,18 @@ class Recorder(Integrator):
         rows[-1, 0] = t - back
         rows[-1, 2 : 2 + n] = y - back * yp
 
+    def take(self, y: np.ndarray, into: State | Direction) -> None:
+        """Copy a recorded y, or its change, into a state or a direction: coordinates, velocities and solved multipliers."""
+        lam = self.equations.at["lam"]
+        solved = lam != ABSENT
+        into.q[:], into.u[:] = self.split(y)
+        into.lam[solved] = y[lam[solved]]
+
     def _sides(self, segment: Segment, t: float, y: np.ndarray) -> list[int]:
         """Return the sides of the event that ends a segment, and the intervals of tables with kinks, at a state."""
-        state, lam = self.dynamics.state, self.equations.at["lam"]
-        solved = lam != ABSENT
+        state = self.dynamics.state
         with state.unchanged():
-            state.q[:], state.u[:] = self.split(y)
-            state.lam[solved] = y[lam[solved]]
+            self.take(y, state)
             state.evaluate("event_function", t)
             values = state.values["event_function"]
             events = [int(values[event] > 0.0) for event in segment.fired[:1]]

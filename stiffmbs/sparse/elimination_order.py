@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -41,23 +42,30 @@ def elimination_order(equations: Equations) -> EliminationOrder:
     natural = np.concatenate([np.empty(0, dtype=np.int64), *present])
     by_owner = natural[np.argsort(owner[natural], kind="stable")]
     sizes = np.bincount(owner, minlength=n_bodies + len(equations.system.joint_start) - 1)
-    starts = np.concatenate([[0], np.cumsum(sizes)]).tolist()
-    size = sizes.tolist()
-    neighbours: list[set[int]] = [set() for _ in size]
+    parts = [by_owner[start:end] for start, end in pairwise([0, *np.cumsum(sizes).tolist()])]
     rows, columns = equations.pattern
-    pairs = np.sort(owner[rows] * len(size) + owner[columns])
-    for both in pairs[np.diff(pairs, prepend=-1) > 0].tolist():
-        a, b = divmod(both, len(size))
-        if a != b:
+    pairs = np.sort(owner[rows] * len(parts) + owner[columns])
+    coupled = (divmod(both, len(parts)) for both in pairs[np.diff(pairs, prepend=-1) > 0].tolist())
+    return _ordered(parts, coupled, _counted(equations, owner, len(parts)), n_bodies)
+
+
+def _ordered(
+    parts: list[np.ndarray], coupled: Iterable[tuple[int, int]], counted: list[int], n_bodies: int
+) -> EliminationOrder:
+    """Return the order of unknowns in parts, given the pairs of coupled parts; the rest as in `_least_degree`."""
+    sizes = [len(part) for part in parts]
+    neighbours: list[set[int]] = [set() for _ in parts]
+    for a, b in coupled:
+        if a != b and min(a, b) >= 0:
             neighbours[a].add(b)
             neighbours[b].add(a)
-    order, fill, updates = [], 0, 0
-    for node, around in _least_degree(neighbours, _counted(equations, owner, len(size)), n_bodies):
-        order.append(by_owner[starts[node] : starts[node + 1]])
-        height = size[node] + sum(size[other] for other in around)
-        fill += size[node] * height
-        updates += size[node] * height * height
-    return EliminationOrder(np.concatenate([np.empty(0, dtype=np.int64), *order]), fill, updates)
+    order, fill, updates = [np.empty(0, dtype=np.int64)], 0, 0
+    for node, around in _least_degree(neighbours, counted, n_bodies):
+        order.append(parts[node])
+        height = sizes[node] + sum(sizes[other] for other in around)
+        fill += sizes[node] * height
+        updates += sizes[node] * height * height
+    return EliminationOrder(np.concatenate(order), fill, updates)
 
 
 COUPLING = ("f_q", "f_u", "G_lam", "J", "C_x", "rate_q", "rate_u")
@@ -76,22 +84,14 @@ def order_by_blocks(system: System) -> EliminationOrder:
         "q": of_coordinates,
         "c": np.repeat(np.arange(n_bodies + n_states, len(sizes)), np.diff(system.joint_start)),
     }
-    neighbours: list[set[int]] = [set() for _ in sizes]
+    coupled: list[tuple[int, int]] = []
     for name in COUPLING:
         term, axes = system.term("tangent", name), TERM_AXES[name]
-        pairs = zip(blocks[axes[0]][term.row].tolist(), blocks[axes[1]][term.column].tolist(), strict=True)
-        for a, b in sorted({*pairs}):
-            if a != b and min(a, b) >= 0:
-                neighbours[a].add(b)
-                neighbours[b].add(a)
-    starts = np.cumsum([0, *sizes]).tolist()
-    order, fill, updates = [np.empty(0, dtype=np.int64)], 0, 0
-    for node, around in _least_degree(neighbours, sizes, n_bodies + n_states):
-        order.append(np.arange(starts[node], starts[node + 1]))
-        height = sizes[node] + sum(sizes[other] for other in around)
-        fill += sizes[node] * height
-        updates += sizes[node] * height * height
-    return EliminationOrder(np.concatenate(order), fill, updates)
+        coupled += sorted(
+            {*zip(blocks[axes[0]][term.row].tolist(), blocks[axes[1]][term.column].tolist(), strict=True)}
+        )
+    parts = [np.arange(start, end) for start, end in pairwise(np.cumsum([0, *sizes]).tolist())]
+    return _ordered(parts, coupled, sizes, n_bodies + n_states)
 
 
 def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, object]:

@@ -209,6 +209,10 @@ FRICTION/7, JOINT=1, MU_STATIC=0.4, MU_DYNAMIC=0.3, BALL_RADIUS=0.02, FRICTION_T
         ("JOINT=1, MU_STATIC=1, MU_DYNAMIC=-1", "found MU_DYNAMIC = -1, expected a number of zero or more"),
         ("JOINT=1, MU_STATIC=1, MU_DYNAMIC=1, FORMULATION=LUGRE", "found FORMULATION = LUGRE, expected ORIGINAL"),
         ("JOINT=1, MU_STATIC=1, MU_DYNAMIC=1, EFFECT=STICTION", "found EFFECT = STICTION, expected ALL or SLIDING"),
+        (
+            "JOINT=1, MU_STATIC=1, MU_DYNAMIC=1, TRANSITION_VELOCITY_COEFFICIENT=0.5",
+            "found TRANSITION_VELOCITY_COEFFICIENT = 0.5, expected a number above 1",
+        ),
         ("JOINT=1, MU_STATIC=1, MU_DYNAMIC=1, MAX_FRICTION_FORCE=1", "found MAX_FRICTION_FORCE, expected friction without"),
         ("JOINT=1, MU_STATIC=1, MU_DYNAMIC=1, INPUTS=(X)", "found INPUTS = \\(X\\), expected ALL, NONE or PRELOAD"),
     ],

@@ -35,7 +35,7 @@ def test_python_and_file_give_the_same_numbers(examples):
 def test_numbers_are_no_part_of_what_is_compiled(monkeypatch):
     stiffmbs.run(cart_pendulum(), duration=0.01)
     record._record_of.cache_clear()
-    machine._compiled_source.cache_clear()
+    machine.compiled_source.cache_clear()
     monkeypatch.setattr(record, "_derived", lambda kind: pytest.fail("derived again"))
     monkeypatch.setattr(machine, "_object_code", lambda *_: pytest.fail("compiled again"))
     model = cart_pendulum()

@@ -27,40 +27,40 @@ def directory(tmp_path, monkeypatch):
 
 
 def value(source, x):
-    machine._compiled_source.cache_clear()
+    machine.compiled_source.cache_clear()
     return machine.compiled_source(source, "f", "float64(float64)").call(x)
 
 
 def test_an_entry_counts_in_its_own_place_alone(directory):
-    cache.write(NAME, b"content")
-    shutil.copy(cache.own_directory() / NAME, cache.own_directory() / OTHER)
-    assert cache.read(NAME) == b"content"
-    assert cache.read(OTHER) is None
+    cache.own_folder().write(NAME, b"content")
+    shutil.copy(cache.own_folder().path / NAME, cache.own_folder().path / OTHER)
+    assert cache.own_folder().read(NAME) == b"content"
+    assert cache.own_folder().read(OTHER) is None
 
 
 def test_an_entry_of_another_user_s_secret_does_not_count(directory):
-    cache.write(NAME, b"content")
-    entry = (cache.own_directory() / NAME).read_bytes()
+    cache.own_folder().write(NAME, b"content")
+    entry = (cache.own_folder().path / NAME).read_bytes()
     (directory / kept.SECRET).unlink()
-    cache.write(OTHER, b"content")
-    (cache.own_directory() / NAME).write_bytes(entry)
-    assert cache.read(NAME) is None
+    cache.own_folder().write(OTHER, b"content")
+    (cache.own_folder().path / NAME).write_bytes(entry)
+    assert cache.own_folder().read(NAME) is None
 
 
 def test_the_secret_is_for_the_user_alone(directory, monkeypatch):
     before = os.umask(0)
     try:
-        cache.write(NAME, b"content")
+        cache.own_folder().write(NAME, b"content")
     finally:
         os.umask(before)
     secret = directory / kept.SECRET
     assert secret.stat().st_mode & 0o077 == 0
     assert directory.stat().st_mode & 0o077 == 0
     secret.chmod(0o644)
-    assert cache.read(NAME) is None
-    cache.write(NAME, b"content")
+    assert cache.own_folder().read(NAME) is None
+    cache.own_folder().write(NAME, b"content")
     assert secret.stat().st_mode & 0o077 == 0
-    assert cache.read(NAME) == b"content"
+    assert cache.own_folder().read(NAME) == b"content"
 
 
 def link(path):
@@ -88,60 +88,60 @@ UNSOUND = {
 
 @pytest.mark.parametrize(("change", "words"), UNSOUND.values(), ids=UNSOUND.keys())
 def test_what_is_no_file_of_the_user_s_own_is_refused_with_a_note(directory, caplog, change, words):
-    cache.write(NAME, b"content")
-    change(cache.own_directory() / NAME)
-    assert cache.read(NAME) is None
+    cache.own_folder().write(NAME, b"content")
+    change(cache.own_folder().path / NAME)
+    assert cache.own_folder().read(NAME) is None
     assert words in caplog.text
     assert NAME in caplog.text
-    cache.write(NAME, b"anew")
+    cache.own_folder().write(NAME, b"anew")
 
 
 def test_files_and_folders_of_another_user_are_refused(directory, monkeypatch):
-    cache.write(NAME, b"content")
-    entry = cache.own_directory() / NAME
+    cache.own_folder().write(NAME, b"content")
+    entry = cache.own_folder().path / NAME
     monkeypatch.setattr(os, "geteuid", lambda: 4242)
     with pytest.raises(NotOwnError, match="belongs to the user"):
         read_own(entry)
     with pytest.raises(NotOwnError, match="belongs to the user"):
         check_folder(directory)
-    assert cache.read(NAME) is None
+    assert cache.own_folder().read(NAME) is None
 
 
 @pytest.mark.parametrize("which", ["cache", "entries"])
 def test_a_folder_that_others_may_write_is_refused_with_a_note(directory, caplog, which):
-    cache.write(NAME, b"content")
-    (directory if which == "cache" else cache.own_directory()).chmod(0o777)
-    assert cache.read(NAME) is None
+    cache.own_folder().write(NAME, b"content")
+    (directory if which == "cache" else cache.own_folder().path).chmod(0o777)
+    assert cache.own_folder().read(NAME) is None
     assert "others may write to it (mode 777)" in caplog.text
-    cache.write(NAME, b"anew")
+    cache.own_folder().write(NAME, b"anew")
     if which == "cache":  # kept in the user's own cache directory in its place
-        assert cache.read(NAME) == b"anew"
-        assert directory not in cache.own_directory().parents
+        assert cache.own_folder().read(NAME) == b"anew"
+        assert directory not in cache.own_folder().path.parents
         assert value(TWICE, 21.0) == 42.0
 
 
 def test_a_sticky_folder_of_the_user_s_own_serves(directory):
-    cache.write(NAME, b"content")
+    cache.own_folder().write(NAME, b"content")
     directory.chmod(0o1777)
-    assert cache.read(NAME) == b"content"
+    assert cache.own_folder().read(NAME) == b"content"
 
 
 @pytest.mark.long
 def test_code_of_another_function_or_garbage_under_a_right_code_is_compiled_anew(directory):
     assert value(TWICE, 21.0) == 42.0
-    entries = {path.name for path in cache.own_directory().iterdir()}
+    entries = {path.name for path in cache.own_folder().path.iterdir()}
     assert value(THRICE, 21.0) == 63.0
-    name = next(path.name for path in cache.own_directory().iterdir() if path.name not in entries)
-    twice = cache.read(*entries)
+    name = next(path.name for path in cache.own_folder().path.iterdir() if path.name not in entries)
+    twice = cache.own_folder().read(*entries)
     script = (
         "import sys; from stiffmbs.compile.machine.compiler import compiled_source\n"
         f"print(compiled_source({THRICE!r}, 'f', 'float64(float64)').call(21.0))"
     )
     for content in (twice, b"garbage", b"", twice[: len(twice) // 2], b"\x7fELF" + os.urandom(500)):
-        cache.write(name, content)
+        cache.own_folder().write(name, content)
         done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
         assert (done.returncode, done.stdout.strip()) == (0, "63.0"), done.stderr
-        assert cache.read(name) != content
+        assert cache.own_folder().read(name) != content
 
 
 @pytest.mark.long
@@ -157,7 +157,7 @@ def test_a_run_on_a_cache_of_entries_in_each_other_s_places_gives_the_same_numbe
         "--json",
     ]
     first = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    entries = sorted(path for path in cache.own_directory().iterdir())
+    entries = sorted(path for path in cache.own_folder().path.iterdir())
     contents = [entry.read_bytes() for entry in entries]
     for k, entry in enumerate(entries):
         entry.write_bytes(contents[k - 1])
@@ -176,4 +176,4 @@ def test_a_full_disk_costs_nothing_but_the_cache(directory, monkeypatch):
 
     monkeypatch.setattr(os, "replace", full)
     assert value(TWICE, 21.0) == 42.0
-    assert list(cache.own_directory().iterdir()) == []
+    assert list(cache.own_folder().path.iterdir()) == []

@@ -50,9 +50,7 @@ class Simulation:
         """Return duration, output and solver of the run."""
         if not self.takes_time:
             return {}
-        length = self.length(start)
-        solver = {"solver": "kinematic"} if self.kind == KINEMATICS else {}
-        return {"duration": length * units.time, **self._output(length, self.between_outputs(length), units), **solver}
+        return {"duration": self.length(start) * units.time, **self.settings_up_to_its_end(units)}
 
     def settings_up_to_its_end(self, units: Units) -> dict[str, object]:
         """Return output and solver of the run, independent of its start."""
@@ -60,20 +58,9 @@ class Simulation:
         output = {"output": self.interval * units.time} if self.interval else steps
         return output | ({"solver": "kinematic"} if self.kind == KINEMATICS else {})
 
-    def _output(self, length: float, interval: float | None, units: Units) -> dict[str, object]:
-        if interval is None:
-            return {}
-        if self.interval:
-            return {"output": self.interval * units.time}
-        return {"points": round(length / interval) + 1}
-
     def fault(self, reason: str) -> DatasetFault:
         """Return the error for a simulation that is not supported."""
         return DatasetFault(self.line, "SIMULATE", reason)
-
-    def between_outputs(self, length: float) -> float | None:
-        """Return the output interval; None if none is given."""
-        return self.interval or (length / self.steps if self.steps else None)
 
 
 def read_simulation(command: Statement) -> Simulation:
@@ -101,7 +88,7 @@ def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, object
         if not simulation.takes_time or simulation.kind == STATICS:
             return None
         length = simulation.length(time)
-        between.append(simulation.between_outputs(length))
+        between.append(simulation.interval or (length / simulation.steps if simulation.steps else None))
         time += length
     alike = all(
         (simulation.kind == KINEMATICS) == (first.kind == KINEMATICS) and _same(interval, between[0])

@@ -47,7 +47,7 @@ class Curves:
         self._model, self._numbering = model, numbering
         self._curves, self._constraints = itertools.count(1), itertools.count(1)
         self._touching = {names[0]: (body, names) for body, names in touching(model).items()}
-        self._parts_of_a_pair = {name for _, names in self._touching.values() for name in names[1:]}
+        self.parts_of_a_pair = {name for _, names in self._touching.values() for name in names[1:]}
 
     def point(self, joint: Curve[Any]) -> Iterator[str]:
         """Yield the statements of a point that stays on a curve."""
@@ -61,7 +61,7 @@ class Curves:
 
         Raises Refusal if the joint does not belong to such a pair.
         """
-        if name in self._parts_of_a_pair:
+        if name in self.parts_of_a_pair:
             return
         if name not in self._touching:
             raise Refusal("found a joint along one curve, expected the three of a body where two curves touch")
@@ -77,10 +77,6 @@ class Curves:
                 f"{side}RM = {self._numbering.marker(joint.j)}", f"{side}DISPLACEMENT = {numbers(at)}",
             ]  # fmt: skip
         yield statement("CVCV", next(self._constraints), *sides)
-
-    def is_level(self, name: str) -> bool:
-        """Return True if a joint belongs to a curve pair but is not its first."""
-        return name in self._parts_of_a_pair
 
     def _curve(self, joint: Curve[Any]) -> Generator[str, None, int]:
         """Yield the statements of a curve; return its number."""

@@ -126,8 +126,9 @@ class Forces:
 
     @statements.register
     def _bushing(self, force: Bushing) -> Iterator[str]:
-        laws = [name for name in type(force).model_fields if name.startswith("law_")]
-        _refuse_laws(force, *laws)
+        for name in type(force).model_fields:
+            if name.startswith("law_") and getattr(force, name) is not None:
+                raise Refusal(f"found a {name} of a {force.kind}, expected numbers only, or a force with a formula")
         if force.axes != "j":
             raise Refusal("found a bushing with 'axes: ground', expected 'axes: j'")
         K, C = _filled(force.stiffness), _filled(force.damping)
@@ -158,12 +159,6 @@ class Forces:
 def _filled(values: object) -> np.ndarray:
     found: np.ndarray = np.array(values, dtype=float)
     return np.nan_to_num(found, nan=0.0)
-
-
-def _refuse_laws(force: Force, *fields: str) -> None:
-    for field in fields:
-        if getattr(force, field) is not None:
-            raise Refusal(f"found a {field} of a {force.kind}, expected numbers only, or a force with a formula")
 
 
 def _given(values: Mapping[str, float | None]) -> list[str]:

@@ -66,7 +66,7 @@ class Joints:
 
     @statements.register
     def _parallel(self, joint: Parallel, name: str) -> Iterator[str]:
-        if not self._curves.is_level(name):
+        if name not in self._curves.parts_of_a_pair:
             yield statement("JPRIM", self._numbers[name], "PARALLEL_AXES", *self._numbering.ends(joint))
 
     @statements.register

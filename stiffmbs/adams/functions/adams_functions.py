@@ -84,14 +84,6 @@ def _sign(a: ast.expr, b: ast.expr) -> ast.expr:
     return product(call("abs", a), call("sign", b))
 
 
-def _dim(a: ast.expr, b: ast.expr) -> ast.expr:
-    return call("max", difference(a, b), ZERO)
-
-
-def _log10(x: ast.expr) -> ast.expr:
-    return quotient(call("log", x), number(math.log(10)))
-
-
 ADAMS_FUNCTIONS: dict[str, Callable[..., ast.expr]] = {
     "SHF": _shf,
     "POLY": _poly,
@@ -103,6 +95,6 @@ ADAMS_FUNCTIONS: dict[str, Callable[..., ast.expr]] = {
     "IMPACT": _impact,
     "BISTOP": _bistop,
     "SIGN": _sign,
-    "DIM": _dim,
-    "LOG10": _log10,
+    "DIM": lambda a, b: call("max", difference(a, b), ZERO),
+    "LOG10": lambda x: quotient(call("log", x), number(math.log(10))),
 }

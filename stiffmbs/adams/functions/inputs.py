@@ -6,10 +6,9 @@ VARIABLE is an expression keeps it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from itertools import chain
 from typing import TYPE_CHECKING
 
-from ..statements.systems import Plant
 from .expression import constant
 
 if TYPE_CHECKING:
@@ -27,7 +26,8 @@ def input_values(dataset: Dataset) -> dict[str, float]:
     Raises DatasetFault if an input or output is not a VARIABLE.
     """
     found = {}
-    for plant in _plants(dataset):
+    plants = (dataset.statements.get(keyword, {}).values() for keyword in PLANTS.values())
+    for plant in chain.from_iterable(plants):
         for ident in plant.variables:
             variable = dataset.variables.get(ident)
             if variable is None:
@@ -58,8 +58,3 @@ def evaluated_name(mechanism: Mechanism, ident: int, function: Function) -> str:
     name = f"SENVAL_{ident}"
     mechanism.inputs.setdefault(name, 0.0)
     return name
-
-
-def _plants(dataset: Dataset) -> Iterator[Plant]:
-    for keyword in PLANTS.values():
-        yield from dataset.statements.get(keyword, {}).values()

@@ -79,7 +79,6 @@ class Translation:
         """Return an expression as the syntax tree of a formula."""
 
         def translate(node: ast.expr) -> ast.expr:
-            """Return a node as the node of a formula."""
             match node:
                 case ast.BinOp(left, op, right):
                     return ast.BinOp(translate(left), op, translate(right))

@@ -34,7 +34,7 @@ def _body(mechanism: Mechanism, part: Part) -> dict[str, object]:
     initial = mechanism.center(part).within(part.frame)
     body: dict[str, object] = {
         "mass": plain(part.mass),
-        **_any_moments(mechanism, part),
+        **({"any_moments": True} if _breaks_triangle(mechanism, part) else {}),
         "inertia": _inertia(mechanism, part),
         **_pose("position", initial),
     }
@@ -116,10 +116,6 @@ def _tensor(mechanism: Mechanism, part: Part) -> np.ndarray:
     if not np.all(np.isfinite(tensor)):
         raise part.fault("found moments of inertia about CM above 1e308 kg m^2, expected finite values")
     return tensor
-
-
-def _any_moments(mechanism: Mechanism, part: Part) -> dict[str, object]:
-    return {"any_moments": True} if _breaks_triangle(mechanism, part) else {}
 
 
 def _breaks_triangle(mechanism: Mechanism, part: Part) -> bool:

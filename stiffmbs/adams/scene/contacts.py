@@ -108,20 +108,20 @@ def _law(contact: Contact, units: Units) -> dict[str, float]:
     return {name: plain(value) for name, value in law.items()}
 
 
-def contacts(mechanism: Mechanism, translation: Translation) -> dict[str, object]:
+def contacts(translation: Translation) -> dict[str, object]:
     """Return the forces of all contacts by name."""
-    pairs = [pair for contact in mechanism.dataset.contacts.values() for pair in contact.of_pairs()]
-    return of_each(pairs, lambda contact: _made(contact, mechanism, translation))
+    pairs = [pair for contact in translation.mechanism.dataset.contacts.values() for pair in contact.of_pairs()]
+    return of_each(pairs, lambda contact: _made(contact, translation))
 
 
-def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> dict[str, object]:
-    first, second = (_shape(contact, ident, mechanism) for ident in contact.pairs[0])
+def _made(contact: Contact, translation: Translation) -> dict[str, object]:
+    first, second = (_shape(contact, ident, translation.mechanism) for ident in contact.pairs[0])
     if (first.sort, second.sort) == (SPHERE, SPHERE) and not contact.friction:
-        return _of_spheres(contact, first, second, mechanism, translation)
+        return _of_spheres(contact, first, second, translation)
     if {first.sort, second.sort} == {SPHERE, PLANE}:
-        sphere, plane = (first, second) if first.sort == SPHERE else (second, first)
-        return _on_plane(contact, sphere, plane, mechanism, translation)
-    return {contact.name: between_solids(contact, first, second, mechanism)}
+        sphere, plane = sorted((first, second), key=lambda shape: shape.sort == PLANE)
+        return _on_plane(contact, sphere, plane, translation)
+    return {contact.name: between_solids(contact, first, second, translation.mechanism)}
 
 
 def swapped(contact: Contact, mechanism: Mechanism) -> bool:
@@ -147,21 +147,18 @@ def _impact(contact: Contact, gap: str, rate: str) -> str:
     )
 
 
-def _of_spheres(
-    contact: Contact, one: Shape, other: Shape, mechanism: Mechanism, translation: Translation
-) -> dict[str, object]:
-    i, j = (mechanism.place(shape.marker, contact, "CM").reference for shape in (one, other))
+def _of_spheres(contact: Contact, one: Shape, other: Shape, translation: Translation) -> dict[str, object]:
+    i, j = (translation.mechanism.place(shape.marker, contact, "CM").reference for shape in (one, other))
     ends = f"({one.marker}, {other.marker})"
     law = _impact(contact, f"DM{ends} - {one.sizes[0] + other.sizes[0]!r}", f"VR{ends}")
     force = translation.law(law, contact)
     return {contact.name: {"type": "line_force", "i": i, "j": j, "force": force}}
 
 
-def _on_plane(
-    contact: Contact, sphere: Shape, plane: Shape, mechanism: Mechanism, translation: Translation
-) -> dict[str, object]:
+def _on_plane(contact: Contact, sphere: Shape, plane: Shape, translation: Translation) -> dict[str, object]:
     """Return the force in the axes of the plane's marker, whose z axis is the outward normal."""
-    center, other = mechanism.place(sphere.marker, contact, "CM"), mechanism.place(plane.marker, contact, "RM")
+    place = translation.mechanism.place
+    center, other = place(sphere.marker, contact, "CM"), place(plane.marker, contact, "RM")
     i, j, r = sphere.marker, plane.marker, sphere.sizes[0]
     normal = _impact(contact, f"DZ({i},{j},{j}) - {r!r}", f"VZ({i},{j},{j},{j})")
     ends: dict[str, object] = {"i": center.reference, "j": other.body, "frame": other.reference}

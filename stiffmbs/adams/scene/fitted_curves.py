@@ -72,7 +72,11 @@ def fitted_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism
     frame = _plane(points, closed)
     seen = (points - frame.point) @ frame.axes
     flat = np.max(np.abs(seen[:, 2])) <= PRECISION * np.max(np.ptp(points, axis=0))
-    arguments, values, off = _round(user, seen) if closed else _across_its_chord(user, seen)
+    if not closed and np.any(np.diff(seen[:, 0]) <= 0):
+        raise user.fault(
+            "found an open curve that turns back between its first and last point, expected one that advances along its chord"
+        )
+    arguments, values, off = _round(user, seen) if closed else seen.T
     return FittedCurve(owner, frame, closed, arguments, values, None if flat else off)
 
 
@@ -128,15 +132,6 @@ def _across(x: np.ndarray) -> np.ndarray:
     across = np.cross(x, IDENTITY[int(np.argmax(sizes <= np.min(sizes) + PRECISION * np.max(sizes)))])
     found: np.ndarray = across / np.linalg.norm(across)
     return found
-
-
-def _across_its_chord(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return x, y and z of the points."""
-    if np.any(np.diff(seen[:, 0]) <= 0):
-        raise user.fault(
-            "found an open curve that turns back between its first and last point, expected one that advances along its chord"
-        )
-    return seen[:, 0], seen[:, 1], seen[:, 2]
 
 
 def _round(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

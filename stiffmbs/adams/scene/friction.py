@@ -21,12 +21,9 @@ from .relations import initial_displacement
 AXES = "XYZ"
 
 
-def frictions(mechanism: Mechanism, translation: Translation) -> dict[str, object]:
+def frictions(translation: Translation) -> dict[str, object]:
     """Return the friction forces and torques by name, except those of deactivated joints."""
-    return of_each(
-        _acting(mechanism),
-        lambda friction: _FrictionLaw(friction, _joint(friction, mechanism), mechanism, translation).made(),
-    )
+    return of_each(_acting(translation.mechanism), lambda friction: _FrictionLaw(friction, translation).made())
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:
@@ -68,10 +65,9 @@ ARMS = {"UNIVERSAL": "ZZ", "HOOKE": "XY"}
 class _FrictionLaw:
     """Friction law of one joint as Adams function expressions."""
 
-    def __init__(self, friction: JointFriction, joint: Joint, mechanism: Mechanism, translation: Translation) -> None:
-        self._f, self._joint, self._mechanism, self._translation = friction, joint, mechanism, translation
-        i, j = mechanism.ends(joint)
-        self._places = i, j
+    def __init__(self, friction: JointFriction, translation: Translation) -> None:
+        self._f, self._translation, self._joint = friction, translation, _joint(friction, translation.mechanism)
+        i, j = self._places = translation.mechanism.ends(self._joint)
         self._ends = {"i": i.reference, "j": j.body}
 
     def made(self) -> dict[str, object]:
@@ -171,8 +167,7 @@ class _FrictionLaw:
         f = self._f
         if not f.growth:
             return repr(f.overlap)
-        length = self._mechanism.dataset.units.length
-        first = initial_displacement(TRANSLATIONAL, *self._places) / length
+        first = initial_displacement(TRANSLATIONAL, *self._places) / self._translation.units.length
         direction = f"(DZ({self._joint.i},{self._joint.j},{self._joint.j}) - ({first!r}))"
         return f"({f.overlap!r} {'+' if f.growth > 0 else '-'} {direction})"
 
@@ -194,8 +189,7 @@ class _FrictionLaw:
         return self._root(letter, AXES.replace(axis, ""), along or self._joint.j)
 
     def _root(self, letter: str, axes: str, along: int) -> str:
-        units = self._mechanism.dataset.units
-        tiny = TINY / units.of(force=1, length=1 if letter == "T" else 0) ** 2
+        tiny = TINY / self._translation.force_unit(letter) ** 2
         return f"SQRT({' + '.join(f'{self._part(letter, axis, along)}**2' for axis in axes)} + {tiny!r})"
 
     def _force(self, laws: list[str | None], name: str) -> dict[str, object]:

@@ -11,7 +11,6 @@ from ...reading.formula.text import parse
 from ..functions.acting import rod
 from ..functions.translate import ANGULAR_VELOCITIES, VELOCITIES, Translation
 from ..statements.constraints import GeneralConstraint, Joint, Primitive
-from ..statements.geometry import Frame
 from ..statements.text import of_each
 from .mechanism import Mechanism, Place
 from .racks import rolling
@@ -51,19 +50,14 @@ def joints(mechanism: Mechanism, translation: Translation) -> dict[str, object]:
 
 def held(mechanism: Mechanism) -> dict[str, object]:
     """Return orientation joints that hold point masses."""
-    return {
-        f"{part.name}_axes": {
-            "type": "orientation", "i": part.name, "j": _on_ground(mechanism.center(part).within(part.frame)),
-        }
-        for part in mechanism.moving
-        if part.point
-    }  # fmt: skip
-
-
-def _on_ground(frame: Frame) -> object:
-    if np.array_equal(frame.axes, np.eye(3)):
-        return "ground"
-    return {"body": "ground", "orientation": quaternion(frame.axes)}
+    found: dict[str, object] = {}
+    for part in mechanism.moving:
+        if part.point:
+            axes = mechanism.center(part).within(part.frame).axes
+            turned = not np.array_equal(axes, np.eye(3))
+            ground = {"body": "ground", "orientation": quaternion(axes)} if turned else "ground"
+            found[f"{part.name}_axes"] = {"type": "orientation", "i": part.name, "j": ground}
+    return found
 
 
 def _joint(joint: Primitive, mechanism: Mechanism) -> dict[str, object]:

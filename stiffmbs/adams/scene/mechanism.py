@@ -63,7 +63,10 @@ class Mechanism:
         self.states: dict[str, Content] = {}
         # Smallest non-zero mass of the parts, kg.
         self.least = min((part.mass for part in dataset.parts if part.mass > 0), default=0.0)
-        self.parts = {(part.keyword, part.ident): self._weighed(part) for part in dataset.parts}
+        self.parts = {(part.keyword, part.ident): part for part in dataset.parts}
+        for key, part in self.parts.items():
+            if not part.ground and part.mass == 0:  # Adams allows none where joints make it irrelevant
+                self.parts[key] = replace(part, mass=MASSLESS * self.least)
         grounds = [part for part in dataset.parts if part.ground]
         if len(grounds) > 1:
             raise grounds[1].fault(f"found a second GROUND, expected one ({grounds[0].label})")
@@ -73,10 +76,6 @@ class Mechanism:
                 raise marker.fault(f"found {kind} = {ident}, expected the number of a {kind} of the dataset")
         for part in self.moving:
             self._check(part)
-
-    def _weighed(self, part: Part) -> Part:
-        """Return the part, with a small mass if it has none, which Adams allows where joints make it irrelevant."""
-        return part if part.ground or part.mass != 0 else replace(part, mass=MASSLESS * self.least)
 
     def _check(self, part: Part) -> None:
         if not part.mass > 0:

@@ -58,8 +58,8 @@ def scene(dataset: Dataset) -> dict[str, object]:
         ("states", partial(states, translation)),
         ("states", lambda: mechanism.states),
         ("forces", Forces(mechanism, translation).all),
-        ("forces", partial(contacts, mechanism, translation)),
-        ("forces", partial(frictions, mechanism, translation)),
+        ("forces", partial(contacts, translation)),
+        ("forces", partial(frictions, translation)),
     ]
     made = of_each(enumerate(makers), lambda numbered: {str(numbered[0]): numbered[1][1]()})
     sections: dict[str, dict[str, object]] = {"joints": {}, "states": {}, "forces": {}}

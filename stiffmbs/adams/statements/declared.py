@@ -124,7 +124,7 @@ def expressions(*names: str) -> tuple[Function | None, ...]:
     return read_by(lambda found, _: tuple(read_function(found, name) for name in names), *names, expressions=True)
 
 
-def named_words(found: Arguments, name: str, usual: str) -> Iterator[str]:
+def named_words(found: Arguments, name: str) -> Iterator[str]:
     """Yield the words of an argument such as ``(PRELOAD:REACTION_FORCE)`` in capitals."""
-    text = (found.text(name) or usual).strip(" ()").upper()
+    text = (found.text(name) or "ALL").strip(" ()").upper()
     yield from (word.strip() for word in text.replace(",", ":").split(":"))

@@ -50,7 +50,7 @@ def _word_of(name: str, meanings: dict[str, Meaning]) -> Meaning:
 
 def _static(found: Arguments, _: Units) -> float:
     """Return the static coefficient: the dynamic one if sliding is the only effect."""
-    words = {*named_words(found, "EFFECT", "ALL")}
+    words = {*named_words(found, "EFFECT")}
     both = len(words) == 2 and all(
         any(word and name.startswith(word) for word in words) for name in ("STICTION", "SLIDING")
     )
@@ -61,13 +61,13 @@ def _static(found: Arguments, _: Units) -> float:
 def _friction_velocity(found: Arguments, _: Units) -> float:
     slow, factor = (found.positive(name) or usual for name, usual in (_SLOW, _FACTOR))
     if factor <= 1:
-        raise found.fault("found TRANSITION_VELOCITY_COEFFICIENT = {factor:g}, expected a number above 1")
+        raise found.fault(f"found TRANSITION_VELOCITY_COEFFICIENT = {factor:g}, expected a number above 1")
     return slow * factor
 
 
 def _inputs(found: Arguments, _: Units) -> frozenset[str]:
     asked: set[str] = set()
-    for word in named_words(found, "INPUTS", "ALL"):
+    for word in named_words(found, "INPUTS"):
         if word == "ALL":
             asked |= {*INPUTS}
         elif word != "NONE":

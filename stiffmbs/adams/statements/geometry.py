@@ -45,7 +45,7 @@ def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length
     if angles is not None and given:
         raise found.fault(f"found REULER and {given[0]}, expected one or the other", given[0])
     if angles is not None:
-        return Frame(point, euler_313(*angles))
+        return Frame(point, _turned(angles[0], 2) @ _turned(angles[1], 0) @ _turned(angles[2], 2))
     offsets = {name: np.array(found.numbers(name, 3)) * length - point for name in given}
     for name, offset in offsets.items():
         if not np.linalg.norm(offset) > 0:
@@ -59,19 +59,11 @@ def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length
     return Frame(point, axes)
 
 
-def euler_313(psi: float, theta: float, phi: float) -> np.ndarray:
-    """Return the axes after rotations about z, the new x and the new z."""
-    return _about_z(psi) @ _about_x(theta) @ _about_z(phi)
-
-
-def _about_z(angle: float) -> np.ndarray:
-    c, s = _cos_and_sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _about_x(angle: float) -> np.ndarray:
-    c, s = _cos_and_sin(angle)
-    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+def _turned(angle: float, about: int) -> np.ndarray:
+    """Return axes rotated about one of their own by an angle."""
+    axes, (i, j), (c, s) = np.eye(3), ((about + 1) % 3, (about + 2) % 3), _cos_and_sin(angle)
+    axes[i, i], axes[i, j], axes[j, i], axes[j, j] = c, -s, s, c
+    return axes
 
 
 def _cos_and_sin(angle: float) -> tuple[float, float]:

@@ -184,11 +184,8 @@ def _pieces(text: str, numbers: list[int]) -> Iterator[Subsystem]:
 def _piece(text: str, numbers: list[int], on_new_line: bool, ended: bool) -> Iterator[Subsystem]:
     """Yield one part with joined continuation lines and its line, unless it is empty."""
     before = len(text) - len(text.lstrip())
-    joined = re.sub(r"\s+", " ", _without_line_commas(text)).strip()
+    # the comma of a continuation line is kept between two values
+    kept = _TWO_VALUES.sub(lambda found: found[0].replace(_LINE_COMMA, ","), text).replace(_LINE_COMMA, " ")
+    joined = re.sub(r"\s+", " ", kept).strip()
     if joined or ended:
         yield Subsystem(joined, numbers[min(before, len(numbers) - 1)], on_new_line, ended)
-
-
-def _without_line_commas(text: str) -> str:
-    """Join the lines of a function; the comma of a continuation line is kept between two values."""
-    return _TWO_VALUES.sub(lambda found: found[0].replace(_LINE_COMMA, ","), text).replace(_LINE_COMMA, " ")

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..kind import Kind, with_place
-from ..machine.compiler import Compiled, compiled_source
+from ..machine.compiler import Compiled, Description, compiled_source
 from ..machine.layout import packed
 from ..machine.native.tables import DIRECTION
 from ..machine.routines import Routine
@@ -61,7 +61,7 @@ def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Com
         line.endswith("] = 0.0") for line in found.splitlines() if line.lstrip().startswith("value[")
     ):
         return None
-    return compiled_source(found, "kernel", SIGNATURE, f"{name}, derivatives")
+    return compiled_source(found, "kernel", SIGNATURE, Description(f"{name}, derivatives"))
 
 
 @dataclass

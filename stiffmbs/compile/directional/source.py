@@ -95,20 +95,16 @@ class _Forward:
             case ast.Div():
                 return (a - Part(node) * b) / y
             case ast.Pow():
-                return y * x ** _one_less(right) * a + Part(node) * called("log", x) * b
+                try:
+                    one_less = number(ast.literal_eval(right) - 1)  # integer powers become products
+                except ValueError:
+                    one_less = y - number(1.0)
+                return y * x**one_less * a + Part(node) * called("log", x) * b
         raise _without_rule(node)
 
 
 def _without_rule(node: ast.expr) -> InputError:
     return InputError(f"found '{ast.unparse(node)}' in an equation, which has no rule of differentiation here")
-
-
-def _one_less(exponent: ast.expr) -> Part:
-    """Return the exponent minus one, as a literal if possible: integer powers become products."""
-    try:
-        return number(ast.literal_eval(exponent) - 1)
-    except ValueError:
-        return Part(exponent) - number(1.0)
 
 
 @dataclass(frozen=True)
@@ -245,18 +241,10 @@ def _common_normal(arguments: Parts, moved: Parts) -> Part:
     return sum((slope * part for slope, part in zip(slopes, moved[1:], strict=True)), ZERO)
 
 
-def _common_normal_slope(arguments: Parts, moved: Parts) -> Part:
-    return _refuse(moved[2:], "a contact of solids whose second derivatives are needed, expected another contact")
-
-
 def _refuse(moved: Parts, found: str) -> Part:
     """Return zero, or refuse arguments that change."""
     if any(moved):
         raise InputError(f"found {found}")
-    return ZERO
-
-
-def _none(arguments: Parts, moved: Parts) -> Part:
     return ZERO
 
 
@@ -278,8 +266,11 @@ RULES: dict[str, Rule] = {
     "abs": _smooth(_of("sign")),
     "atan2": _atan2, "continuous_angle": _atan2, "chosen": _chosen, "inside": _inside,
     "greater": _extreme(True), "less": _extreme(False), "step": _step("step"), "step5": _step("step5"),
-    "sign": _none, "copysign": _none, "floor": _none, "int": _none,
+    **dict.fromkeys(("sign", "copysign", "floor", "int"), lambda arguments, moved: ZERO),
     "spline": _spline, "rotation_vector": _rotation_vector, "python_call": _python_call,
-    "common_normal": _common_normal, "common_normal_slope": _common_normal_slope,
+    "common_normal": _common_normal,
+    "common_normal_slope": lambda arguments, moved: _refuse(
+        moved[2:], "a contact of solids whose second derivatives are needed, expected another contact"
+    ),
 }  # fmt: skip
 """Rules by name of the kernel function."""

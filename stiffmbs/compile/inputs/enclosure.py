@@ -74,11 +74,6 @@ def real_power_range(x: Range, power: float) -> Range:
     return np.array([ends.min(axis=0), ends.max(axis=0)])
 
 
-def real_binomial(n: float, k: int) -> float:
-    """Return the binomial coefficient n over k."""
-    return float(np.prod([(n - i) / (i + 1) for i in range(k)]))
-
-
 def wave(x: Range, top: float) -> Range:
     """Return the range of the cosine wave with a maximum at `top`."""
     ends = np.cos(x - top)
@@ -146,6 +141,8 @@ class Enclosure:
         added = tuple(total(a, b) for a, b in zip(long, short, strict=False))
         return Enclosure((*added, *long[len(short) :]), self.order)
 
+    __radd__ = __add__
+
     def __sub__(self, other: Operand) -> Enclosure:
         return self + -other
 
@@ -162,6 +159,8 @@ class Enclosure:
             found.append(total(*(product(x, y) for x, y in pairs)))
         return Enclosure(tuple(found), self.order)
 
+    __rmul__ = __mul__
+
     def __truediv__(self, other: Operand) -> Enclosure:
         return self * (other**-1.0 if isinstance(other, Enclosure) else np.float64(1.0) / other)
 
@@ -171,16 +170,11 @@ class Enclosure:
                 return exp(log(self) * power)
             power = float(power.value[0, 0])
         range_of = power_range if power == int(power) else real_power_range
-        return self.composed(lambda k: scaled(real_binomial(power, k), range_of(self.value, power - k)))
-
-    def __radd__(self, other: Operand) -> Enclosure:
-        return self + other
+        binomials = [float(np.prod([(power - i) / (i + 1) for i in range(k)])) for k in range(4)]
+        return self.composed(lambda k: scaled(binomials[k], range_of(self.value, power - k)))
 
     def __rsub__(self, other: Operand) -> Enclosure:
         return -self + other
-
-    def __rmul__(self, other: Operand) -> Enclosure:
-        return self * other
 
     def __rtruediv__(self, other: Operand) -> Enclosure:
         return self**-1.0 * other
@@ -270,7 +264,6 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
     """Return min or max: one argument where ranges are disjoint, else with the hull of both slopes."""
 
     def pair(a: Enclosure, b: Enclosure) -> Enclosure:
-        """Return the extremum of two enclosures."""
         low, high = (a, b) if greatest else (b, a)
         value = np.maximum(a.value, b.value) if greatest else np.minimum(a.value, b.value)
         open_one = unbounded(value, a.order, hull(a.slope, b.slope))
@@ -278,7 +271,6 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
         return settled.where((a.value[1] <= b.value[0]) | (b.value[1] <= a.value[0]), open_one)
 
     def of(*parts: Operand) -> Enclosure:
-        """Return the extremum of enclosures and numbers, at least one of them an enclosure."""
         known = next(part for part in parts if isinstance(part, Enclosure))
         chosen, *others = (known.constant(part) for part in parts)
         for other in others:

@@ -153,17 +153,16 @@ def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.nd
 
     `start`, `end`: s.
     """
-    found = np.concatenate([np.empty(0), *(times for each in inputs for times in _of_input(each, start, end))])
-    found = np.sort(found[(found > start) & (found < end)])
+    found = [np.empty(0)]
+    for each in inputs:
+        try:
+            found += _passages(each, start, end)
+        except TooMany as error:
+            raise InputError(f"'{each.text}': {error}") from None
+    times = np.concatenate(found)
+    times = np.sort(times[(times > start) & (times < end)])
     apart = SHORTEST_STRETCH * max(abs(start), abs(end), np.finfo(float).tiny)
-    return found[np.diff(found, prepend=-np.inf) > apart]
-
-
-def _of_input(given: Input, start: float, end: float) -> Iterator[np.ndarray]:
-    try:
-        yield from _passages(given, start, end)
-    except TooMany as error:
-        raise InputError(f"'{given.text}': {error}") from None
+    return times[np.diff(times, prepend=-np.inf) > apart]
 
 
 def _passages(given: Input, start: float, end: float) -> Iterator[np.ndarray]:

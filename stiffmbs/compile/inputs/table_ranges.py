@@ -82,7 +82,6 @@ class TableRanges:
         beyond = (b <= x[0]) | (a >= x[-1])
 
         def outer(k: int) -> Range:
-            """Return the range of the k-th Taylor coefficient of the table."""
             found = hull(self._of_pieces(first, z_first, k), self._of_pieces(last, z_last, k))
             between = np.flatnonzero(last > first + 1)
             found[:, between] = hull(found[:, between], _hulls(self._whole[k], first[between] + 1, last[between]))

@@ -6,7 +6,6 @@ Entries of one package version on one kind of machine share a folder.
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 
 from ...cache.entries import Folder, digest, tag_of
 
@@ -17,13 +16,8 @@ RECORD, KERNEL, ROUTINE = "record", "kernel", "routine"
 FOLDER = "entries"
 
 
-def own_directory() -> Path:
-    """Return the folder of entries of this package version on this machine."""
-    return _own().path
-
-
 @cache
-def _own() -> Folder:
+def own_folder() -> Folder:
     """Return the folder for this package, processor and LLVM version."""
     import llvmlite
     import llvmlite.binding as llvm
@@ -44,13 +38,3 @@ def _own() -> Folder:
 def name_of(kind: str, *parts: str) -> str:
     """Return the entry name of a source."""
     return f"{kind}-{digest(*parts)}"
-
-
-def read(name: str) -> bytes | None:
-    """Return the content of an entry; see `Folder.read`."""
-    return _own().read(name)
-
-
-def write(name: str, content: bytes) -> None:
-    """Store an entry; see `Folder.write`."""
-    _own().write(name, content)

@@ -11,7 +11,7 @@ from ...cache.entries import PART, SECRET, cache_directory
 from ...flexible_bodies.reduced import BODY, folder_of_bodies
 from ...model.files.scenes_read_before import SCENE
 from ...reading.files.read_before import FILE, folder_of_files
-from .cache import FOLDER, KERNEL, RECORD, ROUTINE, own_directory
+from .cache import FOLDER, KERNEL, RECORD, ROUTINE, own_folder
 
 KINDS = (RECORD, KERNEL, ROUTINE, FILE, SCENE, BODY)
 OTHERS = "other"
@@ -30,7 +30,7 @@ class Stored:
 
 def stored() -> dict[str, Stored]:
     """Return the cache contents by kind; `OTHERS` are entries unused by this version on this machine."""
-    folders = (own_directory(), folder_of_files().path, folder_of_bodies().path)
+    folders = (own_folder().path, folder_of_files().path, folder_of_bodies().path)
     sizes: dict[str, list[int]] = {kind: [] for kind in (*KINDS, OTHERS)}
     for path in _files():
         kind = path.name.partition("-")[0]

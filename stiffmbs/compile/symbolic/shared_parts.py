@@ -318,7 +318,9 @@ class _Writer:
                 return text.removeprefix(" + ") if text.startswith(" + ") else f"-{text.removeprefix(' - ')}"
         below = [node for node in parts if self._inline.get(node) == INVERSE] if kind == PRODUCT else [k]
         above = [self._factor(node) for node in parts if node not in below] if kind == PRODUCT else []
-        return "*".join(above or ["1.0"]) + "".join(f"/{self._divisor(node)}" for node in below)
+        divisors = (node for inverse in below for node in self._parts(inverse))
+        parentheses = (f"({self._texts[node]})" if node in self._inline else self._texts[node] for node in divisors)
+        return "/".join(["*".join(above or ["1.0"]), *parentheses])
 
     def _argument(self, name: re.Match[str]) -> str:
         """Return an argument of a call, within it if it is used nowhere else, so that only the selected case is computed."""
@@ -329,10 +331,6 @@ class _Writer:
         """Return a node as a factor of a product."""
         text = self._texts[node]
         return f"({text})" if self._inline.get(node) == SUM else text
-
-    def _divisor(self, inverse: int) -> str:
-        (node,) = self._parts(inverse)
-        return f"({self._texts[node]})" if node in self._inline else self._texts[node]
 
     def _scaled(self, factor: Number, node: int) -> str:
         """Return a term."""

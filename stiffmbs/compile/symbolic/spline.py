@@ -98,7 +98,6 @@ def python_law(address: sp.Symbol, read: Callable[[object], sp.Expr]) -> Callabl
     """Return the function called by equations: ``e.law(x, y)`` for one value, ``e.law(x, y, count=3)`` for a list."""
 
     def law(*arguments: object, count: int | None = None) -> Any:
-        """Return the values of the function as symbolic calls."""
         if not arguments:
             raise InputError("found a Python function without arguments, expected one at least")
         given = [read(argument) for argument in arguments]

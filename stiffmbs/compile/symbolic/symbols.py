@@ -90,11 +90,6 @@ class Symbols:
             frozenset((e.t, *self.numbers, *of_bodies, *e.states, *self.pressed, *counters)) | e.derivatives.defined()
         )
 
-    def note_event_function(self, breakpoint: sp.Expr) -> None:
-        """Record an event function if it depends on the state."""
-        if self.element.in_state(breakpoint) and breakpoint not in self.event_functions:
-            self.event_functions.append(breakpoint)
-
     def note_law(self, argument: sp.Expr, name: str, table: sp.Symbol | None = None) -> None:
         """Record the argument of a table or function with narrow features if it depends on the state."""
         law = Law(argument, (name, 0 if table is None else self.numbers.index(table)))
@@ -201,10 +196,7 @@ class _Builder:
         pressed = self.reactions(name, reactions)
 
         def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
-            """Return the function from names to symbols."""
-
             def value(word: str) -> sp.Expr:
-                """Return the symbol or expression of a name."""
                 owner, _, coordinate = word.partition(".")
                 if coordinate:
                     return self.frames[int(owner[1:])].coordinate(coordinate)
@@ -223,7 +215,6 @@ class _Builder:
         tree = ast.parse(text, mode="eval").body
 
         def function(*variables: sp.Expr) -> sp.Expr:
-            """Return the formula for given variables."""
             functions = self.functions() | tables
             expression = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
             if expression.has(sp.Abs):  # SymPy turns sqrt(x^2) into Abs
@@ -254,15 +245,14 @@ class _Builder:
         """Return the functions of formulas; those with breakpoints record them if they depend on the state."""
 
         def noting(name: str, function: FormulaFunction) -> Any:
-            """Return a function that records its breakpoints or its law."""
-
             def turning(argument: sp.Expr) -> sp.Expr:
                 self.symbols.note_law(argument, "turn")
                 return SMOOTH[name](argument)
 
             def called(*arguments: sp.Expr) -> sp.Expr:
                 for breakpoint in _breakpoints(function, arguments):
-                    self.symbols.note_event_function(breakpoint)
+                    if self.symbols.element.in_state(breakpoint) and breakpoint not in self.symbols.event_functions:
+                        self.symbols.event_functions.append(breakpoint)
                 return getattr(nonsmooth, function.symbolic)(*arguments)
 
             return turning if function.turns else SMOOTH.get(name, called)

@@ -188,7 +188,10 @@ def pin_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, obj
     if not pins or sum(joints.sizes) < system.n_c or not np.array_equal(np.sort(gamma.row), np.arange(system.n_c)):
         return None
     adjacent = [(k, later) for k, below in enumerate(joints.below) for later in below]
-    meeting = [_shared(pins[k], pins[later]) for k, later in adjacent]
+    meeting = [
+        [(a, b) for a, own in enumerate(pins[k]) for b, side in enumerate(pins[later]) if own.body == side.body]
+        for k, later in adjacent
+    ]
     if max(map(len, meeting), default=0) > 1:
         return None
     mass, number = system.mass.reshape(-1, 3), {both: m for m, both in enumerate(adjacent)}
@@ -233,10 +236,6 @@ def _side(body: int, *equations: dict[int, int]) -> Side | None:
         return None
     (first, after_first), (second, after_second) = (entries.values() for entries in equations)
     return Side(body, first, second) if (after_first, after_second) == (first + 1, second + 1) else None
-
-
-def _shared(pin: list[Side], other: list[Side]) -> list[tuple[int, int]]:
-    return [(a, b) for a, own in enumerate(pin) for b, side in enumerate(other) if own.body == side.body]
 
 
 def _rows(joints: Joints, pins: list[list[Side]], gamma: np.ndarray, ground: int) -> Iterator[Pin]:

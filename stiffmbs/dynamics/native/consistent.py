@@ -128,13 +128,6 @@ def _closed_or_as_before(r, s, m, t, tolerance):
 
 
 @compiled
-def _by_lu(s, m, t, tolerance, most):
-    """Project q and u by the block systems; 0 or a negative status."""
-    status = to_position_constraints(s, m, t, tolerance, most)
-    return status if status < 0 else to_velocity_constraints(s, m, t)
-
-
-@compiled
 def to_constraints(s, m, t, tolerance, most):
     """Project q and u of a state near the constraints, for which the constraint terms of the set ``motion`` were computed.
 
@@ -145,4 +138,5 @@ def to_constraints(s, m, t, tolerance, most):
             return 1
         if _factored(m, t) and _closed_or_as_before(eliminated_view(m.eliminated), s, m, t, tolerance):
             return 1
-    return _by_lu(s, m, t, tolerance, most)
+    status = to_position_constraints(s, m, t, tolerance, most)
+    return status if status < 0 else to_velocity_constraints(s, m, t)

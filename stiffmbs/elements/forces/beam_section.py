@@ -103,7 +103,7 @@ class _Form:
             if name in CALLS:
                 module, function, arguments = CALLS[name]
                 found.append(
-                    (name, f"{module} import {function}", f"{function}({arguments.format(to=to[name], **words)})")
+                    (name, f"beams.{module} import {function}", f"{function}({arguments.format(to=to[name], **words)})")
                 )
         return found
 
@@ -140,7 +140,7 @@ class _Form:
         for name, _, call in calls:
             size = len(self.patterns[name])
             lines += [f"    {call}", f"    add_times({size}, weight, found, {to[name]})"]
-        imports = ["along import move, step_size", "dual import add_times, clear"]
+        imports = ["beams.along import move, step_size", "vectors import add_times, clear"]
         arguments = ", number_d, t_d, q_d, turn_d, u_d, a_d, lam_d, mu_d"
         return self.kernel(
             [f"    {name} = room({size})" for name, size in rooms.items()], calls, arguments, lines, imports
@@ -154,7 +154,7 @@ class _Form:
         modules = dict.fromkeys([*imports, *(module for _, module, _ in calls)])
         lines = [
             f"from {NATIVE}.access import room, shifted",
-            *(f"from {NATIVE}.beams.{module}" for module in modules),
+            *(f"from {NATIVE}.{module}" for module in modules),
             "", "",
             f"def kernel(count, index, number, t, q, turn, u, a, lam, mu, place, value{arguments}):",
             f"    slots = room({len(self.slots)})  # of the nodes among the bodies, whose turn[0:9] is read",

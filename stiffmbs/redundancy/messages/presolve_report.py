@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -112,18 +112,16 @@ def structure_notes(redundancy: Redundancy, subsystems: Sequence[Subsystem], dyn
 
 
 def _found(redundancy: Redundancy, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> StructureNotes:
-    return StructureNotes(
-        (*_redundant(redundancy), *unconnected_sentence(dynamics.system)),
-        tuple(presolve_sentences(dynamics.system, subsystems, dynamics)),
-        redundancy.not_unique,
-    )
-
-
-def _redundant(redundancy: Redundancy) -> Iterator[str]:
+    redundant: Iterable[str] = ()
     if redundancy.rank_results:
         from .redundancy import note_sentences
 
-        yield from note_sentences(redundancy)
+        redundant = note_sentences(redundancy)
+    return StructureNotes(
+        (*redundant, *unconnected_sentence(dynamics.system)),
+        tuple(presolve_sentences(dynamics.system, subsystems, dynamics)),
+        redundancy.not_unique,
+    )
 
 
 def unconnected_sentence(system: System) -> Iterator[str]:

@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Sequence
 
-from ...compile.system import System
 from ...errors import AssemblyError
-from ..inconsistent_constraints import Inconsistency, LoopRankResult
 from ..overconstraint import Overconstraint, listed, overconstraints
 from ..parameters import REDUNDANCY
 from ..redundancy import Redundancy
@@ -60,15 +58,13 @@ def inconsistency_sentences(redundancy: Redundancy) -> Iterator[str]:
     """Yield a sentence on contradicting equations for each loop that has some."""
     for rank_result in redundancy.rank_results:
         for inconsistency in rank_result.inconsistencies[:1]:
-            yield _inconsistency_sentence(redundancy.system, rank_result, inconsistency)
-
-
-def _inconsistency_sentence(system: System, rank_result: LoopRankResult, inconsistency: Inconsistency) -> str:
-    joint, equation = system.equations[rank_result.rank.equations.loop.rows[inconsistency.row]]
-    others = listed([name for name in inconsistency.joints if name != joint])
-    against = f"joint '{joint}' (equation {equation}) contradicts {others or 'itself'}"
-    where = "positions differ" if inconsistency.level == "position" else "velocities differ"
-    return f"the scene cannot be assembled: {against} at t = {inconsistency.t:.6g} s, {where} (by {inconsistency.gap})"
+            joint, equation = redundancy.system.equations[rank_result.rank.equations.loop.rows[inconsistency.row]]
+            others = listed([name for name in inconsistency.joints if name != joint])
+            differ = "positions" if inconsistency.level == "position" else "velocities"
+            yield (
+                f"the scene cannot be assembled: joint '{joint}' (equation {equation}) contradicts {others or 'itself'} "
+                f"at t = {inconsistency.t:.6g} s, {differ} differ (by {inconsistency.gap})"
+            )
 
 
 def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
@@ -141,7 +137,7 @@ def channel_words(parts: Sequence[Indeterminate]) -> str:
 def directed_words(parts: Sequence[Indeterminate]) -> Iterator[str]:
     """Yield the constant directions of indeterminate forces and torques."""
     in_plane = [
-        f"of {part.element} at {_degrees(direction.vector):.4g} deg of {direction.axes}"
+        f"of {part.element} at {round(math.degrees(math.atan2(*direction.vector[::-1])), 4) % 180:.4g} deg of {direction.axes}"
         for part in parts
         for direction in part.directions if len(direction.vector) == 2
     ]  # fmt: skip
@@ -156,12 +152,6 @@ def directed_words(parts: Sequence[Indeterminate]) -> Iterator[str]:
         where = f"{'perpendicular to' if direction.across else 'along'} {_axis(direction.vector)} of {direction.axes}"
         other = "along it" if direction.across else "perpendicular to it"
         yield f"only {direction.quantity}s of {listed(elements)} {where}; {other} they are unique"
-
-
-def _degrees(vector: Sequence[float]) -> float:
-    """Return the angle of a direction in the plane, in [0, 180) deg."""
-    angle = round(math.degrees(math.atan2(vector[1], vector[0])), 4)
-    return angle % 180
 
 
 def _axis(vector: Sequence[float]) -> str:

@@ -146,22 +146,13 @@ def model_fields(spec: mujoco.MjSpec, model: RequestedModel) -> Iterator[Fields[
         for element in getattr(spec, several, ()):
             if kind not in defaults:
                 yield Fields(kind, element.name or "one without a name", {"": 1})
-            elif element.id >= 0 and not _is_inactive(element):
-                fields = Fields(kind, _label(kind, element), _values(element), defaults[kind])
+            elif element.id >= 0 and getattr(element, "active", True):
+                fields = Fields(kind, element.name or f"{kind}_{element.id}", _values(element), defaults[kind])
                 _request(fields, kind, element.id, model)
                 yield fields
     options = Fields("option", "", _values(spec.option), defaults["option"])
     _request(options, "option", 0, model)
     yield options
-
-
-def _is_inactive(element: object) -> bool:
-    return not getattr(element, "active", True)
-
-
-def _label(kind: str, element: Any) -> str:
-    name: str = element.name
-    return name or f"{kind}_{element.id}"
 
 
 def _request(fields: Fields[object], kind: str, ident: int, model: RequestedModel) -> None:

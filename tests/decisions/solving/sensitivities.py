@@ -6,7 +6,6 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.compile.equations import ABSENT
 from stiffmbs.errors import SolverError
 from stiffmbs.sensitivity_equations import along_run, jumps
 from stiffmbs.sensitivity_equations.along_run import Touches
@@ -168,11 +167,11 @@ def error_of_derivatives(derivative):
         values=np.zeros(1),
     )  # fmt: skip
     own = Record(
-        _recorder=Record(equations=Record(at={"lam": np.array([ABSENT])}), split=lambda dy: (dy, dy)),
+        _recorder=Record(take=nothing),
         _dynamics=Record(
             state=Record(values={"motion": np.ones(1)}), system=Record(term=lambda *_: Record(source=np.array([0])))
         ),
-        _with_numbers=lambda *_: np.zeros(2), _take=nothing, _forces=None,
+        _with_numbers=lambda *_: np.zeros(2), _forces=None,
     )  # fmt: skip
     with patch.object(along_run, "Direction", lambda *_: direction):
         return Touches._off_differences(own, 0.0, np.zeros(1), np.zeros(1), None, 1.0)[0]

@@ -45,7 +45,6 @@ def by_case(
     """
 
     def lower(code: Code, case: Operand, *arguments: Operand) -> None:
-        """Branch by case, and call the built-in function with its literals."""
         end, number = code.name("done"), code.integer(case)
         for k, (wanted, literals) in enumerate(cases.items(), start=1):
             here, other = code.name("case"), code.name("other")
@@ -146,7 +145,6 @@ def add_pair_products(
         ]
 
         def add(at_a: Value, at_b: Value, parts: Sequence[tuple[Value, int]] = parts) -> None:
-            """Add the products of an entry of each row of a and a row of b."""
             line = loaded(code, width, code.item(b, at_b).text)
             for total, shift in parts:
                 number = code.load(code.item(a, plus(code, at_a, shift)))
@@ -199,7 +197,6 @@ def _change(
     sums = [_kept(code, loaded(code, width, place)) for place in places]
 
     def add(at_a: Value, at_b: Value) -> None:
-        """Add the products of a column of a and a row of b."""
         line = loaded(code, width, code.item(b[0], at_b).text)
         for i, total in enumerate(sums):
             number = code.load(code.item(a[0], plus(code, at_a, i)))

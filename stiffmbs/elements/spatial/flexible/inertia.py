@@ -136,7 +136,7 @@ class _Form:
         for name in smooth:
             lines += [f"    {line}" for line in self._calls([name], moved, {name: "found"})]
             lines.append(f"    add_times({len(self.patterns[name])}, weight, found, {name})")
-        imports = "beams.along import move", "beams.dual import add_times"
+        imports = "beams.along import move", "vectors import add_times"
         return self._kernel(", number_d, t_d, q_d, turn_d, u_d, a_d, lam_d, mu_d", lines, imports)
 
     def _to(self, places: Mapping[str, int]) -> dict[str, str]:

@@ -81,20 +81,6 @@ def add_cross(s, v, M):
 
 
 @compiled
-def clear(n, a):
-    """Set n numbers to zero."""
-    for i in range(n):
-        a[i] = 0.0
-
-
-@compiled
-def add_times(n, s, a, b):
-    """Add s a to b, for n numbers."""
-    for i in range(n):
-        b[i] += s * a[i]
-
-
-@compiled
 def of_screws(M, to):
     """Compute the 6x6 matrix, by rows, of a matrix from screws (theta, u) to screws."""
     for i in range(3):

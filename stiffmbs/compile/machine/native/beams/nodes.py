@@ -7,17 +7,10 @@ with P = T(xi)^-1 and Q = -T(-xi)^-1. Twists are (omega, v), and wrenches (m, n)
 from math import cos, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
-from stiffmbs.compile.machine.native.beams.dual import clear, of_screws, set_number
-from stiffmbs.compile.machine.native.beams.screws import (
-    number,
-    of_inverse,
-    rotated_back,
-    square,
-    square_rate,
-    tangent,
-    translation,
-)
+from stiffmbs.compile.machine.native.beams.dual import of_screws
+from stiffmbs.compile.machine.native.beams.screws import of_inverse, square, tangent
 from stiffmbs.compile.machine.native.rotation_vector import rotation_vector
+from stiffmbs.compile.machine.native.vectors import clear, cross, times, transposed_times
 from stiffmbs.elements.forces.beam_layout import NODE, OF_NODE
 
 node_view = parts_of("BeamNode", NODE)
@@ -27,14 +20,6 @@ node_view = parts_of("BeamNode", NODE)
 def node(nodes, k):
     """Return the values of a node."""
     return shifted(nodes, OF_NODE * k)
-
-
-@compiled
-def matrix_product(A, B, C):
-    """Compute C = A B of 3x3 matrices."""
-    for i in range(3):
-        for j in range(3):
-            C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j]
 
 
 @compiled
@@ -83,15 +68,18 @@ def finish(to):
     """Compute the marker's axes, point and twist."""
     of = node_view(to)
     x = room(3)
-    matrix_product(of.R, of.C, of.A)
     for i in range(3):
-        of.origin[i] += of.R[3 * i] * of.point[0] + of.R[3 * i + 1] * of.point[1] + of.R[3 * i + 2] * of.point[2]
-    rotated_back(of.R, of.v, of.carried)
+        for j in range(3):
+            of.A[3 * i + j] = of.R[3 * i] * of.C[j] + of.R[3 * i + 1] * of.C[3 + j] + of.R[3 * i + 2] * of.C[6 + j]
+    times(of.R, of.point, x)
+    for i in range(3):
+        of.origin[i] += x[i]
+    transposed_times(of.R, of.v, of.carried)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         x[i] = of.carried[i] + of.w[j] * of.point[k] - of.w[k] * of.point[j]
-    rotated_back(of.C, of.w, of.twist)
-    rotated_back(of.C, x, shifted(of.twist, 3))
+    transposed_times(of.C, of.w, of.twist)
+    transposed_times(of.C, x, shifted(of.twist, 3))
 
 
 @compiled
@@ -99,7 +87,7 @@ def relative_screw(space, orders, reference, to):
     """Compute the screw of a node from the reference, P, Q, and the margin to a rotation of 270 degrees."""
     of = node_view(to)
     m = node_view(reference)
-    d, x = room(3), room(3)
+    d, x, y = room(3), room(3), room(3)
     if space == 1:
         h = 0.0
         for i in range(4):
@@ -115,23 +103,24 @@ def relative_screw(space, orders, reference, to):
         of.margin[0] = cos(0.5 * of.screw[2]) + sqrt(0.5)
     for i in range(3):
         x[i] = of.origin[i] - m.origin[i]
-    rotated_back(m.A, x, d)
+    transposed_times(m.A, x, d)
     of_inverse(square(of.screw), orders, of.inverse)
-    translation(of.screw, of.inverse[0], d, shifted(of.screw, 3))
+    # u = d - theta x d/2 + e theta x (theta x d) of the displacement d
+    cross(of.screw, d, x)
+    cross(of.screw, x, y)
+    for i in range(3):
+        of.screw[3 + i] = d[i] - 0.5 * x[i] + of.inverse[0] * y[i]
 
 
 @compiled
 def relative_tangents(to):
     """Compute P and Q of a node."""
     of = node_view(to)
-    M, half, factor = room(18), room(2), room(2)
-    theta = of.screw
-    number(of.inverse, 0, 1.0, square_rate(theta), factor)
-    set_number(half, -0.5, 0.0)
-    tangent(theta, half, factor, M)
+    M, half = room(18), room(2)
+    half[0], half[1] = -0.5, 0.0
+    tangent(of.screw, half, 1.0, of.inverse, M)
     of_screws(M, of.P)
-    set_number(half, 0.5, 0.0)
-    tangent(theta, half, factor, M)
+    tangent(of.screw, half, -1.0, of.inverse, M)
     of_screws(M, of.Q)
     for i in range(36):
         of.Q[i] = -of.Q[i]

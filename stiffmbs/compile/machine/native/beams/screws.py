@@ -11,12 +11,12 @@ from stiffmbs.compile.machine.native.beams.dual import (
     add_diagonal,
     add_outer,
     add_scaled,
-    clear,
     cross,
     dot,
     product,
     set_number,
 )
+from stiffmbs.compile.machine.native.vectors import clear
 
 TERMS = 18
 """Largest number of terms of the series in x, for angles up to 3/2 pi; the last is below 1e-16 of the sum."""
@@ -86,10 +86,12 @@ def square_rate(theta):
 
 
 @compiled
-def tangent(theta, beta, gamma, M):
-    """Compute the matrix N = 1 - beta theta~ + gamma (theta theta^T - theta^2)."""
+def tangent(theta, b, factor, c, M):
+    """Compute the matrix N = 1 - beta theta~ + gamma (theta theta^T - theta^2) for beta = factor b(x) and gamma = c(x)."""
     clear(18, M)
-    s, one = room(2), room(2)
+    beta, gamma, s, one, rate = room(2), room(2), room(2), room(2), square_rate(theta)
+    number(b, 0, factor, rate, beta)
+    number(c, 0, 1.0, rate, gamma)
     set_number(one, 1.0, 0.0)
     add_diagonal(one, M)
     product(beta, one, -1.0, s)
@@ -101,13 +103,15 @@ def tangent(theta, beta, gamma, M):
 
 
 @compiled
-def tangent_slope(theta, v, beta, beta_x, gamma, gamma_x, M):
-    """Compute the derivative of N v by theta, with the derivatives of beta and gamma by x."""
+def tangent_slope(theta, v, b, factor, c, M):
+    """Compute the derivative of N v by theta (`tangent`)."""
     clear(18, M)
-    s, x, y = room(2), room(2), room(6)
+    beta, gamma, s, x, y, rate = room(2), room(2), room(2), room(2), room(6), square_rate(theta)
+    number(b, 0, factor, rate, beta)
+    number(c, 0, 1.0, rate, gamma)
     add_cross(beta, v, M)
     cross(theta, v, y)
-    set_number(s, -2.0 * beta_x[0], -2.0 * beta_x[1])
+    number(b, 1, -2.0 * factor, rate, s)
     add_outer(s, y, theta, M)
     add_outer(gamma, theta, v, M)
     dot(theta, v, s)
@@ -120,7 +124,7 @@ def tangent_slope(theta, v, beta, beta_x, gamma, gamma_x, M):
     dot(theta, theta, x)
     set_number(s, -x[0], -x[1])
     add_scaled(s, v, y)
-    set_number(s, 2.0 * gamma_x[0], 2.0 * gamma_x[1])
+    number(c, 1, 2.0, rate, s)
     add_outer(s, y, theta, M)
 
 
@@ -167,24 +171,3 @@ def second_slope(theta, w, v, b, c, rate, M):
     number(c, 2, 4.0, rate, s)
     product(s, r, 1.0, s)
     add_outer(s, theta, theta, M)
-
-
-@compiled
-def rotated_back(A, x, y):
-    """Compute y = A^T x for a matrix by rows."""
-    for i in range(3):
-        y[i] = A[i] * x[0] + A[3 + i] * x[1] + A[6 + i] * x[2]
-
-
-@compiled
-def translation(theta, e, d, u):
-    """Compute u of the screw of a displacement d with the rotation vector theta: u = d - theta x d/2 + e theta x (theta x d)."""
-    x, y = room(3), room(3)
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        x[i] = theta[j] * d[k] - theta[k] * d[j]
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        y[i] = theta[j] * x[k] - theta[k] * x[j]
-    for i in range(3):
-        u[i] = d[i] - 0.5 * x[i] + e * y[i]

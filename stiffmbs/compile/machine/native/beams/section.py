@@ -7,7 +7,7 @@ section's forces: three translations and rotations, in the plane two and one.
 """
 
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
-from stiffmbs.compile.machine.native.beams.dual import clear, of_screws
+from stiffmbs.compile.machine.native.beams.dual import of_screws
 from stiffmbs.compile.machine.native.beams.nodes import (
     node,
     node_view,
@@ -16,7 +16,8 @@ from stiffmbs.compile.machine.native.beams.nodes import (
     relative_screw,
     relative_tangents,
 )
-from stiffmbs.compile.machine.native.beams.screws import number, series, square, square_rate, tangent, tangent_slope
+from stiffmbs.compile.machine.native.beams.screws import series, square, tangent, tangent_slope
+from stiffmbs.compile.machine.native.vectors import clear, cross, times
 from stiffmbs.elements.forces.beam_layout import OF_NODE, SCREW
 
 MOST = 5
@@ -62,34 +63,27 @@ def component(space, i):
 
 
 @compiled
-def interpolate(n, reference, nodes, values, from_, to):
-    """Compute the screw and its slope, (xi, xi'), from six values of each node at a place in it."""
+def interpolate(n, reference, values, of_nodes, step, to):
+    """Compute the screw and its slope, (xi, xi'), or their rates, from six values of each node, `step` numbers apart."""
     clear(12, to)
     for k in range(n):
         if k != reference:
-            own = shifted(node(nodes, k), from_)
             for i in range(6):
-                to[i] += values[k] * own[i]
-                to[6 + i] += values[n + k] * own[i]
+                to[i] += values[k] * of_nodes[step * k + i]
+                to[6 + i] += values[n + k] * of_nodes[step * k + i]
 
 
 @compiled
 def strain_slopes(curve, B):
     """Compute the derivatives (6, 12) of the strain T(xi) xi' by xi and xi'."""
-    b, c, first, second, M, E = room(4), room(4), room(2), room(2), room(18), room(36)
-    first_x, second_x = room(2), room(2)
-    rate = square_rate(curve)
+    b, c, M, E = room(4), room(4), room(18), room(36)
     series(square(curve), 0, 2, b)
     series(square(curve), 1, 2, c)
-    number(b, 0, 1.0, rate, first)
-    number(b, 1, 1.0, rate, first_x)
-    number(c, 0, 1.0, rate, second)
-    number(c, 1, 1.0, rate, second_x)
     for part in range(2):
         if part == 0:
-            tangent_slope(curve, shifted(curve, 6), first, first_x, second, second_x, M)
+            tangent_slope(curve, shifted(curve, 6), b, 1.0, c, M)
         else:
-            tangent(curve, first, second, M)
+            tangent(curve, b, 1.0, c, M)
         of_screws(M, E)
         for i in range(6):
             for j in range(6):
@@ -148,23 +142,12 @@ def screw_rates(n, reference, nodes, rates):
 
 
 @compiled
-def interpolated_rates(n, reference, values, rates, to):
-    """Compute the rates of (xi, xi') from those of the nodes' screws."""
-    clear(12, to)
-    for k in range(n):
-        if k != reference:
-            for i in range(6):
-                to[i] += values[k] * rates[6 * k + i]
-                to[6 + i] += values[n + k] * rates[6 * k + i]
-
-
-@compiled
 def section_state(space, damped, orders, n, slots, numbers, index, q, turn, u, nodes, curve, B, rates, stress):
     """Compute the nodes, (xi, xi'), the strain's derivatives and rate, and the stress; return the reference node."""
     reference = place_nodes(space, orders, n, slots, numbers, index, q, turn, u, nodes)
     of_section = law(space, n, numbers)
     found, of_nodes = room(6), room(COLUMNS)
-    interpolate(n, reference, nodes, of_section, SCREW, curve)
+    interpolate(n, reference, of_section, shifted(nodes, SCREW), OF_NODE, curve)
     strain_slopes(curve, B)
     strain(space, n, of_section, curve, B, found)
     clear(6, stress)
@@ -175,7 +158,7 @@ def section_state(space, damped, orders, n, slots, numbers, index, q, turn, u, n
             relative_tangents(node(nodes, k))
     if damped == 1:
         screw_rates(n, reference, nodes, of_nodes)
-        interpolated_rates(n, reference, of_section, of_nodes, rates)
+        interpolate(n, reference, of_section, of_nodes, 6, rates)
         strain_rate(space, B, rates, found)
         stiffness_times(space, n, of_section, found, damping(space, n, of_section), stress)
     return reference
@@ -222,13 +205,12 @@ def add_forces(space, damped, n, slots, numbers, index, q, turn, u, f):
         of = node_view(node(nodes, k))
         wrench = shifted(wrenches, 6 * k)
         to = shifted(f, (6 if space == 1 else 3) * int(slots[k]))
+        times(of.C, shifted(wrench, 3), x)
+        times(of.C, wrench, y)
+        cross(of.point, x, z)
         for i in range(3):
-            x[i] = of.C[3 * i] * wrench[3] + of.C[3 * i + 1] * wrench[4] + of.C[3 * i + 2] * wrench[5]
-            y[i] = of.C[3 * i] * wrench[0] + of.C[3 * i + 1] * wrench[1] + of.C[3 * i + 2] * wrench[2]
-        for i in range(3):
-            j, l = (i + 1) % 3, (i + 2) % 3
-            y[i] += of.point[j] * x[l] - of.point[l] * x[j]
-            z[i] = of.R[3 * i] * x[0] + of.R[3 * i + 1] * x[1] + of.R[3 * i + 2] * x[2]
+            y[i] += z[i]
+        times(of.R, x, z)
         if space == 1:
             for i in range(3):
                 to[i] -= z[i]

@@ -5,16 +5,9 @@ those by rotations about the axes of a body.
 """
 
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
-from stiffmbs.compile.machine.native.beams.dual import clear, of_screws, of_wrenches, set_number
+from stiffmbs.compile.machine.native.beams.dual import of_screws, of_wrenches
 from stiffmbs.compile.machine.native.beams.nodes import node, node_view
-from stiffmbs.compile.machine.native.beams.screws import (
-    number,
-    second_slope,
-    series,
-    square,
-    square_rate,
-    tangent_slope,
-)
+from stiffmbs.compile.machine.native.beams.screws import second_slope, series, square, square_rate, tangent_slope
 from stiffmbs.compile.machine.native.beams.section import (
     COLUMNS,
     NODES,
@@ -24,6 +17,7 @@ from stiffmbs.compile.machine.native.beams.section import (
     node_wrenches,
     section_state,
 )
+from stiffmbs.compile.machine.native.vectors import clear, times, transposed_times
 
 SIX_ROWS, TWELVE_ROWS, ALL_ROWS = 6 * COLUMNS, 12 * COLUMNS, COLUMNS * COLUMNS
 """Lengths of matrices with a column for each velocity."""
@@ -49,10 +43,10 @@ def body_map(space, of_node, Y):
 
 
 @compiled
-def add_product(space, rows, width, slot, M, Y, to):
+def add_product(space, width, slot, M, Y, to):
     """Add M Y to the columns of a body in a matrix of six rows."""
     per = 6 if space == 1 else 3
-    for i in range(rows):
+    for i in range(6):
         for c in range(per):
             x = 0.0
             for j in range(6):
@@ -93,8 +87,8 @@ def screw_slopes(space, n, width, reference, slots, nodes, maps, D):
         if k != reference:
             of = node_view(node(nodes, k))
             to = shifted(D, 6 * width * k)
-            add_product(space, 6, width, int(slots[k]), of.P, shifted(maps, 36 * k), to)
-            add_product(space, 6, width, m, of.Q, shifted(maps, 36 * reference), to)
+            add_product(space, width, int(slots[k]), of.P, shifted(maps, 36 * k), to)
+            add_product(space, width, m, of.Q, shifted(maps, 36 * reference), to)
 
 
 @compiled
@@ -125,20 +119,14 @@ def second_derivatives(space, n, law, curve, B, stress, W):
 def add_curvature(curve, w, W):
     """Add the second derivatives of w . T xi' by (xi, xi') for a wrench w = (n, m) to a matrix (12, 12)."""
     b, c, M, H = room(4), room(4), room(18), room(36)
-    first, first_x, second, second_x = room(2), room(2), room(2), room(2)
-    rate = square_rate(curve)
     series(square(curve), 0, 3, b)
     series(square(curve), 1, 3, c)
-    second_slope(curve, w, shifted(curve, 6), b, c, rate, M)
+    second_slope(curve, w, shifted(curve, 6), b, c, square_rate(curve), M)
     of_wrenches(M, 1.0, H)
     for i in range(6):
         for j in range(6):
             W[12 * i + j] += H[6 * i + j]
-    number(b, 0, -1.0, rate, first)
-    number(b, 1, -1.0, rate, first_x)
-    number(c, 0, 1.0, rate, second)
-    number(c, 1, 1.0, rate, second_x)
-    tangent_slope(curve, w, first, first_x, second, second_x, M)
+    tangent_slope(curve, w, b, -1.0, c, M)
     of_wrenches(M, 1.0, H)
     for i in range(6):
         for j in range(6):
@@ -149,22 +137,18 @@ def add_curvature(curve, w, W):
 @compiled
 def add_node_slopes(space, n, width, reference, slots, nodes, maps, D, own, K):
     """Add the derivatives of the nodes' wrenches for constant efforts on the screws."""
-    M, S, G, g = room(18), room(36), room(SIX_ROWS), room(6)
-    half, half_x, factor, factor_x = room(2), room(2), room(2), room(2)
-    set_number(half_x, 0.0, 0.0)
+    M, S, G, g, half = room(18), room(36), room(SIX_ROWS), room(6), room(3)
+    half[0], half[1], half[2] = 0.5, 0.0, 0.0
     for k in range(n):
         if k != reference:
             of = node_view(node(nodes, k))
-            theta = of.screw
-            number(of.inverse, 0, 1.0, square_rate(theta), factor)
-            number(of.inverse, 1, 1.0, square_rate(theta), factor_x)
             for i in range(3):
                 g[i] = own[6 * k + 3 + i]
                 g[3 + i] = own[6 * k + i]
             for part in range(2):
-                set_number(half, 0.5 - part, 0.0)
-                tangent_slope(theta, g, half, half_x, factor, factor_x, M)
-                of_wrenches(M, 1.0 - 2.0 * part, S)
+                sign = 1.0 - 2.0 * part
+                tangent_slope(of.screw, g, half, sign, of.inverse, M)
+                of_wrenches(M, sign, S)
                 clear(6 * width, G)
                 product_of(6, 6, width, S, shifted(D, 6 * width * k), 1.0, G)
                 to = k if part == 0 else reference
@@ -179,9 +163,7 @@ def add_turned_wrenches(space, n, width, slots, nodes, wrenches, K):
     for k in range(n):
         of = node_view(node(nodes, k))
         slot = int(slots[k])
-        for i in range(3):
-            x[i] = of.C[3 * i] * wrenches[6 * k + 3] + of.C[3 * i + 1] * wrenches[6 * k + 4]
-            x[i] += of.C[3 * i + 2] * wrenches[6 * k + 5]
+        times(of.C, shifted(wrenches, 6 * k + 3), x)
         for c in range(3 if space == 1 else 1):
             about = c if space == 1 else 2
             j, l = (about + 1) % 3, (about + 2) % 3
@@ -195,8 +177,7 @@ def add_turned_wrenches(space, n, width, slots, nodes, wrenches, K):
 def rate_slopes(space, n, width, reference, slots, law, nodes, maps, D, X, curve, B, rates, V):
     """Compute the derivatives (6, width) of the strain's rate by the pose at constant velocities."""
     d = 6 if space == 1 else 3
-    M, S, unit = room(18), room(36), room(6)
-    half, half_x, factor, factor_x = room(2), room(2), room(2), room(2)
+    M, S, unit, half = room(18), room(36), room(6), room(3)
     W, T, Z, G = room(144), room(12), room(TWELVE_ROWS), room(SIX_ROWS)
     clear(6 * width, V)
     for i in range(d):
@@ -210,21 +191,18 @@ def rate_slopes(space, n, width, reference, slots, law, nodes, maps, D, X, curve
                 T[c] += rates[a] * W[12 * a + c]
         product_of(1, 12, width, T, X, 1.0, shifted(V, width * i))
     clear(12 * width, Z)
-    set_number(half_x, 0.0, 0.0)
+    half[0], half[1], half[2] = -0.5, 0.0, 0.0
     for k in range(n):
         if k != reference:
             of = node_view(node(nodes, k))
-            theta = of.screw
-            number(of.inverse, 0, 1.0, square_rate(theta), factor)
-            number(of.inverse, 1, 1.0, square_rate(theta), factor_x)
             clear(6 * width, G)
             for part in range(2):
-                set_number(half, part - 0.5, 0.0)
+                sign = 1.0 - 2.0 * part
                 of_part = k if part == 0 else reference
                 twist = node_view(node(nodes, of_part)).twist
-                tangent_slope(theta, twist, half, half_x, factor, factor_x, M)
+                tangent_slope(of.screw, twist, half, sign, of.inverse, M)
                 of_screws(M, S)
-                product_of(6, 6, width, S, shifted(D, 6 * width * k), 1.0 - 2.0 * part, G)
+                product_of(6, 6, width, S, shifted(D, 6 * width * k), sign, G)
                 add_turned(space, width, slots, of_part, nodes, shifted(of.P, 36 * part), G)
             for i in range(6):
                 for c in range(width):
@@ -245,8 +223,7 @@ def add_turned(space, width, slots, k, nodes, P, G):
         j, l = (about + 1) % 3, (about + 2) % 3
         # carried x e_about, in the axes of the body
         x[about], x[j], x[l] = 0.0, of.carried[l], -of.carried[j]
-        for i in range(3):
-            y[i] = of.C[i] * x[0] + of.C[3 + i] * x[1] + of.C[6 + i] * x[2]
+        transposed_times(of.C, x, y)
         for i in range(6):
             at = width * i + per * int(slots[k]) + (3 + c if space == 1 else 2)
             G[at] += P[6 * i + 3] * y[0] + P[6 * i + 4] * y[1] + P[6 * i + 5] * y[2]

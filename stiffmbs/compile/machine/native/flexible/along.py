@@ -16,7 +16,6 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     STIFFNESS,
     along,
     body_view,
-    clear,
     combine,
     coordinate,
     coupling,
@@ -27,6 +26,7 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     velocity,
     width,
 )
+from stiffmbs.compile.machine.native.vectors import clear
 
 
 @compiled

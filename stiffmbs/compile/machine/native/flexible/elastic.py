@@ -12,9 +12,7 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     add_rows,
     along,
     body_view,
-    clear,
     combine,
-    copy,
     coupling,
     elastic,
     of_modes,
@@ -23,6 +21,8 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     stretches,
     width,
 )
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.vectors import clear
 
 
 @compiled
@@ -45,7 +45,7 @@ def strains(n, number, work):
     """Compute p and Gamma_i y."""
     y, p, factors = elastic(n, work, 0), elastic(n, work, 2), elastic(n, work, 7)
     stretch(n, number, y, stretched(n, work, 0))
-    copy(width(n), y, p)
+    copied(p, y, width(n))
     for i in range(rank(number)):
         factors[i] = 0.5 * along(n, stretched(n, work, i), y)
     combine(n, rank(number), factors, 1, shape(n, number, 0), p)
@@ -55,7 +55,7 @@ def strains(n, number, work):
 def strain_rates(n, number, work):
     """Compute p' after `strains`."""
     rate, dp, factors = elastic(n, work, 1), elastic(n, work, 3), elastic(n, work, 7)
-    copy(width(n), rate, dp)
+    copied(dp, rate, width(n))
     for i in range(rank(number)):
         factors[i] = along(n, stretched(n, work, i), rate)
     combine(n, rank(number), factors, 1, shape(n, number, 0), dp)
@@ -88,7 +88,7 @@ def elastic_forces(n, number, work):
         e[k] = stiffness[k] * p[k] + damping[k] * dp[k]
     add_coupling(n, number, p, 0, e)
     add_coupling(n, number, dp, 1, e)
-    copy(width(n), e, x)
+    copied(x, e, width(n))
     pull(n, number, x, work)
     return x
 

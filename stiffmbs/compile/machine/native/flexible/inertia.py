@@ -14,10 +14,7 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     by_coordinates,
     by_velocities,
     centrifugal,
-    clear,
     combine,
-    cross,
-    dot,
     elastic,
     modal_mass,
     moment_of_rotation,
@@ -25,10 +22,9 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     moments_view,
     of_modes,
     rigid_momentum,
-    times,
-    transposed_times,
     width,
 )
+from stiffmbs.compile.machine.native.vectors import clear, cross, dot, times, transposed_times
 
 
 @compiled

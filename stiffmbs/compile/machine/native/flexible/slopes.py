@@ -19,10 +19,8 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     by_coordinates,
     by_velocities,
     centrifugal,
-    clear,
     column,
     combine,
-    cross,
     elastic,
     inertia_by_mode,
     moment_of_rotation,
@@ -31,10 +29,9 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     pairs,
     rigid_momentum,
     take_acceleration_sums,
-    times,
-    transposed_times,
     width,
 )
+from stiffmbs.compile.machine.native.vectors import clear, cross, times, transposed_times
 
 
 @compiled

@@ -20,7 +20,9 @@ Those by accelerations are of D_k. Last are the moments of `moments_view`.
 from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
+from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, spread, sum_of
+from stiffmbs.compile.machine.native.vectors import clear, cross
 from stiffmbs.elements.spatial.flexible.layout import (
     BODY,
     COUPLINGS,
@@ -104,54 +106,12 @@ def velocity(index, k):
 
 
 @compiled
-def cross(a, b, c):
-    """Compute c = a x b."""
-    c[0] = a[1] * b[2] - a[2] * b[1]
-    c[1] = a[2] * b[0] - a[0] * b[2]
-    c[2] = a[0] * b[1] - a[1] * b[0]
-
-
-@compiled
-def times(M, x, y):
-    """Compute y = M x."""
-    for i in range(3):
-        y[i] = M[3 * i] * x[0] + M[3 * i + 1] * x[1] + M[3 * i + 2] * x[2]
-
-
-@compiled
-def transposed_times(M, x, y):
-    """Compute y = M^T x."""
-    for i in range(3):
-        y[i] = M[i] * x[0] + M[3 + i] * x[1] + M[6 + i] * x[2]
-
-
-@compiled
-def dot(a, b):
-    """Return a . b."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@compiled
 def along(n, a, b):
     """Return the product of two rows."""
     total = spread(0.0)
     for k in range(0, n, 4):
         total = plus_product(total, quad(a, k), quad(b, k))
     return sum_of(total)
-
-
-@compiled
-def clear(count, to):
-    """Set some numbers to zero."""
-    for j in range(count):
-        to[j] = 0.0
-
-
-@compiled
-def copy(count, of, to):
-    """Copy some numbers."""
-    for j in range(count):
-        to[j] = of[j]
 
 
 @compiled
@@ -221,7 +181,7 @@ def take_sums(n, number, index, q, u, work):
         y[k] = q[coordinate(index, k)]
         rate[k] = u[velocity(index, k)]
     of_q, of_u = by_coordinates(n, work, 0), by_velocities(n, work, 0)
-    copy(BY_COORDINATE * row, of_modes(n, number, 0), of_q)
+    copied(of_q, of_modes(n, number, 0), BY_COORDINATE * row)
     clear(BY_VELOCITY * row, of_u)
     for l in range(0, n, 3):
         rows = pairs(n, number, l)
