@@ -50,6 +50,7 @@ class LineSpring(Spring, Generic[M]):
     kind = "spring_damper"
     reflected = {}
     symmetric_with = {"i": "point", "j": "point"}
+    spin_conditions = {"i": "point", "j": "point"}
     forms = (
         {"stiffness": ..., "damping": ..., "free_length": ...},
         {"spring_law": {"table": [[0, 0], [1, 1]]}, "damping": ...},
@@ -71,9 +72,6 @@ class LineSpring(Spring, Generic[M]):
                 "found both of its points in the same place, where its force has no direction, expected them apart or "
                 "neither free_length nor preload"
             )
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "point", "j": "point"}
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:

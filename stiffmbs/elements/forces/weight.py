@@ -20,13 +20,11 @@ class Weight(Force):
     """
 
     kind = ""
+    spin_conditions = {"i": "body"}
 
     i: MarkerReference
     mass: si.Mass
     gravity: tuple[si.Acceleration, ...]
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "body"}
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:

@@ -16,12 +16,10 @@ class Rod(Pair[M], Generic[M]):
     """Base of the planar and the spatial distance joint."""
 
     kind = "distance"
+    spin_conditions = {"i": "point", "j": "point"}
     equations: ClassVar[tuple[str, ...]] = ("length",)
 
     length: Annotated[float, Measured("length", above=0)] = Field(description="L, from point to point, m")
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "point", "j": "point"}
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:

@@ -86,6 +86,7 @@ class Tyre(Force):
     channels = CHANNELS
     may_keep_energy = False
     reflected = {"j": "z"}
+    spin_conditions = {"i": "y"}
 
     i: Marker = Field(description="centre of the wheel, its y axis the spin axis, to the left of the heading")
     j: Marker | None = Field(
@@ -112,9 +113,6 @@ class Tyre(Force):
     def cams(self) -> Envelope | None:
         """Return the cams of the enveloping contact, or None."""
         return self.envelope
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "y"}
 
     def mounted_side(self) -> tuple[object, float, tuple[str, ...]]:
         """Return the data of the tyre, 1 or -1 for a mirrored one, and what differs between left and right tyres."""

@@ -23,12 +23,10 @@ class GyroscopicTorque(Force):
 
     kind = ""
     turns = True
+    spin_conditions = {"i": "body"}
 
     i: MarkerReference
     moments: tuple[si.Inertia, si.Inertia, si.Inertia]
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "body"}
 
     @classmethod
     def powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:

@@ -11,7 +11,7 @@ from ...element import Expr, Symbolic
 from ...initial_pose import InitialPose
 from ..branches import initially_twisted
 from ..marker import Marker
-from ..primitives import COINCIDE, SpatialJoint, coincide
+from ..primitives import COINCIDE, SpatialJoint
 
 if TYPE_CHECKING:
     from ....model.model_data import ModelData
@@ -32,7 +32,7 @@ class ConstantVelocity(SpatialJoint):
     """
 
     kind = "constant_velocity"
-    equations = (*COINCIDE, "twist")
+    equations = (*COINCIDE.rows, "twist")
 
     i: Marker = Field(description="marker of the first shaft, z along it; the reaction is reported on it")
     j: Marker = Field(description="marker of the second shaft, z along it")
@@ -52,4 +52,4 @@ class ConstantVelocity(SpatialJoint):
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:
         first, second = e.i.x.dot(e.j.y), e.i.y.dot(e.j.x)
-        return [*coincide(e.i, e.j), first - second if e.axes == "same" else first + second]
+        return [*COINCIDE.residuals(e.i, e.j), first - second if e.axes == "same" else first + second]

@@ -30,7 +30,7 @@ class PointOnCurve(Curve[Marker]):
     point cannot lift off. This is Adams' PTCV.
     """
 
-    equations = (*Curve.equations, *IN_PLANE)
+    equations = (*Curve.equations, *IN_PLANE.rows)
     forms = (*Curve.forms, {"y": SLOT, "z": SLOT}, {"radius": CAM, "height": CAM})
 
     z: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from ...element import Expr, Symbolic
+from ...element import Symbolic
 from ...forces.friction import Loads, magnitude
-from ..branches import initially_apart
-from ..primitives import ALIGN, COINCIDE, SpatialJoint, align, coincide
+from ..primitives import ALIGN, COINCIDE, SpatialJoint
 
 
 class Revolute(SpatialJoint):
@@ -20,18 +17,10 @@ class Revolute(SpatialJoint):
 
     kind = "revolute"
     symmetric_with = {"i": "z", "j": "z"}
-    equations = (*COINCIDE, *ALIGN)
+    spin_conditions = {"i": "z", "j": "z"}
+    conditions = COINCIDE, ALIGN
     coordinates = ("angle",)
-    transmits = ("fx", "fy", "fz", "tx", "ty")
     elastic = "bushing"
-    initially: ClassVar = staticmethod(initially_apart)
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "z", "j": "z"}
-
-    @staticmethod
-    def position(e: Symbolic) -> list[Expr]:
-        return [*coincide(e.i, e.j), *align(e.i, e.j)]
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:

@@ -21,7 +21,7 @@ class TangentToCurve(Curve[Marker]):
     """
 
     kind = "tangent_to_curve"
-    equations = (*Curve.equations, *IN_PLANE, "tangent")
+    equations = (*Curve.equations, *IN_PLANE.rows, "tangent")
 
     @staticmethod
     def position(e: Symbolic) -> Sequence[Expr]:
