@@ -10,7 +10,7 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
 
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
 from ..reading.fields import Described, sentence
 from ..reading.files.quoted import written
@@ -170,26 +170,7 @@ class UpTo(Described):
 class FlexibleBody(Described):
     """Flexible body: a finite element model with interfaces, reduced by the Hurty-Craig-Bampton method.
 
-    Parameters
-    ----------
-    mesh : str, optional
-        Mesh of solid elements; it needs a material.
-    matrices : str or mapping, optional
-        NumPy archive with nodes, K and M, or files of finite element programs.
-    units : Units
-        Units of the file.
-    material : Material, optional
-    thickness : Thickness, optional
-        Stretch of a mesh along its thickness.
-    interfaces : mapping of str to InterfaceOfNodes
-    modes : int or UpTo
-        Normal modes with all interfaces held.
-    mass : float, optional
-        Stated mass, kg, compared with that of the model.
-    stiffening : bool or str
-        Geometric stiffening, which needs a mesh; ``auto`` for every body with a mesh.
-    residual_modes : bool
-        True for the static displacements under uniform accelerations, as a static correction of few normal modes.
+    A mesh needs a material; its elements are solids.
     """
 
     mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
@@ -273,7 +254,7 @@ class FlexibleBody(Described):
             rows = None if files.rows is None else folder / files.rows
             names = files.stiffness_name, files.mass_name
             return from_files(stiffness, mass, nodes, rows, names, *units)
-        try:
+        with prefixed(f"{self.files[0]}: "):
             if self.matrices is not None:
                 from .matrices import from_archive
 
@@ -286,8 +267,6 @@ class FlexibleBody(Described):
                 folder / self.files[0], units[0], material.E, material.nu, material.density,
                 (lambda nodes: nodes) if stretch is None else (lambda nodes: stretch.moved(nodes, nodes, stretch.scale)),
             )  # fmt: skip
-        except InputError as error:
-            raise InputError(f"{self.files[0]}: {error}") from None
 
 
 def content_of_file(path: Path) -> bytes:

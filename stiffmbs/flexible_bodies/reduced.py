@@ -29,16 +29,7 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     """Return the reduced body, from the cache if its description and its files are unchanged.
 
     The shapes of a mesh's modes do not depend on Young's modulus and density: it is reduced once for all their values.
-
-    Parameters
-    ----------
-    body : FlexibleBody
-    folder : Path
-        Folder of relative file names.
-
-    Raises
-    ------
-    InputError
+    `folder`: folder of relative file names. Raises InputError.
     """
     modulus, density = (body.material.E, body.material.density) if body.material else (1.0, 1.0)
     highest = body.modes.up_to * np.sqrt(density / modulus) if isinstance(body.modes, UpTo) else None

@@ -25,20 +25,12 @@ BodyHandle = TypeVar("BodyHandle", bound=Handle)
 
 
 class Sections(Generic[Data, Body, BodyHandle]):
-    """Parts of a model by section and name.
-
-    Attributes
-    ----------
-    data_type, body_type, handle_type : types
-        Classes of the model data, of its bodies, and of the handles of bodies.
-    kinds : Kinds, Kinds
-        Joints and forces of the family, by kind.
-    """
+    """Parts of a model by section and name."""
 
     data_type: type[Data]
     body_type: type[Body]
     handle_type: type[BodyHandle]
-    kinds: ClassVar[tuple[Kinds, Kinds]]
+    kinds: ClassVar[tuple[Kinds, Kinds]]  # joints and forces of the family, by kind
 
     def __init__(self, name: str, gravity: object) -> None:
         self.name = name

@@ -28,7 +28,7 @@ from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 from ..errors import InputError
 from .did_you_mean import did_you_mean, instead_of
-from .files.quoted import quoted, written
+from .files.quoted import first_line, quoted, written
 from .files.yaml_text import quotes_hint
 from .formula.text import FormulaError
 from .units.quantity import in_si
@@ -57,7 +57,7 @@ class _OneSentence(type(BaseModel)):  # type: ignore[misc]
         try:
             made = super().__new__(mcs, name, *arguments, **options)
         except PydanticUserError as error:
-            raise InputError(f"{name}: {_first_line(error)}") from error
+            raise InputError(f"{name}: {first_line(error)}") from error
         if not made.__pydantic_complete__:
             made.__signature__ = _SignatureWhenAsked()
         return made
@@ -72,11 +72,7 @@ class _OneSentence(type(BaseModel)):  # type: ignore[misc]
         except PydanticError as error:
             raise InputError(f"{cls.__name__}: {sentence(error)}") from None
         except PydanticUserError as error:  # a type that was unknown when the class was defined
-            raise InputError(f"{cls.__name__}: {_first_line(error)}") from error
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).splitlines()[0]
+            raise InputError(f"{cls.__name__}: {first_line(error)}") from error
 
 
 if TYPE_CHECKING:

@@ -241,14 +241,8 @@ def wagner_coefficients(
     that is linear in the coordinates of the section is a curvature. For bending in a plane of symmetry its coefficient
     is the beta of lateral buckling (Trahair, Flexural-Torsional Buckling of Structures, 1993, sec. 17.4).
 
-    Parameters
-    ----------
-    second : (float, float, float)
-        I2, I3 and I23, m^4.
-    third : sequence of two floats
-        Integrals of the coordinates along axes 2 and 3 times the square of the distance from the centroid, m^5.
-    shear_centre : (float, float)
-        From the centroid along axes 2 and 3, m.
+    `second`: I2, I3 and I23, m^4. `third`: integrals of the coordinates along axes 2 and 3 times the square of the
+    distance from the centroid, m^5. `shear_centre`: from the centroid along axes 2 and 3, m.
     """
     (I2, I3, I23), (y, z) = second, shear_centre
     about_2, about_3 = np.linalg.solve([[I2, -I23], [-I23, I3]], [third[1], -third[0]]).tolist()
