@@ -190,16 +190,9 @@ class _Parts:
             mass=reduced.mass - len(reduced.points) * self._share, inertia=self._inertia, center_of_mass=tuple(reduced.centre),
             position=body.position, orientation=body.orientation, velocity=body.velocity, omega=body.omega, any_moments=True,
         )  # fmt: skip
-        fields = {name: getattr(frame, name) for name in Body.model_fields}
-        yield (
-            f"{self._name}.{FRAME}",
-            FloatingFrame(
-                **fields,
-                numbers=_Numbers(self._numbers(frame)),
-                modes=tuple(self._of_modes()),
-                source=(self._body, self._folder),
-            ),
-        )
+        fields: dict[str, object] = {name: getattr(frame, name) for name in Body.model_fields}
+        fields |= {"numbers": _Numbers(self._numbers(frame)), "modes": tuple(self._of_modes())}
+        yield f"{self._name}.{FRAME}", FloatingFrame(**fields, source=(self._body, self._folder))
         for name in self._of_modes():
             yield name, ModalCoordinates(mass=reduced.mass, inertia=(reduced.mass,) * 3)
         for name, point in zip(body.interfaces, reduced.points, strict=True):

@@ -24,15 +24,7 @@ from ..reading.files.yaml_text import Content, read_yaml
 from ..reading.units.units import Quantity
 from .beams.division import beams_read
 from .beams.entries import with_beams
-from .files.expand import (
-    read_parameters,
-    read_tables,
-    refuse_unused_parameters,
-    repeat_entries,
-    replaced_parameters,
-    set_value,
-    unshared,
-)
+from .files import expand
 from .files.stages import WrittenScene, with_held, written_stages
 from .parts.definitions import NAMED
 from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
@@ -120,11 +112,11 @@ def _made_scene(
     found: dict[str, object], changes: Sequence[tuple[str, object]], source: str, line_of: LineOf, folder: Path | None,
     known: Unchanged, kept: WrittenScene | None,
 ) -> Scene:  # fmt: skip
-    found, chosen, changes = chosen_options(unshared(found), changes, source)
+    found, chosen, changes = chosen_options(expand.unshared(found), changes, source)
     parts = found.get("parts")
     found, changes = placed_in_use(found, changes)
-    refuse_unused_parameters(found, changes, (*Scene.model_fields, "vehicle", "path"))
-    replaced = replaced_parameters(found, changes)
+    expand.refuse_unused_parameters(found, changes, (*Scene.model_fields, "vehicle", "path"))
+    replaced = expand.replaced_parameters(found, changes)
     names = {section: tuple(part) if isinstance(part := found.get(section), dict) else () for section in OF_ENTRIES}
     in_parts, own = [], []
     for path, value in changes:
@@ -132,7 +124,7 @@ def _made_scene(
         if set_in_instances(path, found.get("use")):
             in_parts.append((path, read))
         else:
-            set_value(found, path, read)
+            expand.set_value(found, path, read)
             own.append(path)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
@@ -156,7 +148,7 @@ def chosen_options(
     """Return a scene with its chosen options merged, the choices for parts, and the other changes."""
     words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
     for path, word in words.items():
-        set_value(found, path, word)
+        expand.set_value(found, path, word)
     with prefixed(f"{source}, "):
         chosen = {"words": words_chosen(found.get(CHOOSE)), "choices": tuple(choices_of(found, OPTIONS))}
         merged = with_chosen(found, chosen["words"], OPTIONS)
@@ -239,11 +231,12 @@ def _validated(
     unchanged: Unchanged,
 ) -> Scene:
     try:
-        parameters = read_parameters(found.get("parameters"), replaced)
+        parameters = expand.read_parameters(found.get("parameters"), replaced)
         found = _with_path(found, parameters)
-        tables = read_tables(found.get("tables"), parameters)
+        tables = expand.read_tables(found.get("tables"), parameters)
         raw = {
-            key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
+            key: expand.repeat_entries(key, value, parameters) if key in SECTIONS else value
+            for key, value in found.items()
         }
         raw = with_beams(raw, parameters)
         variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))

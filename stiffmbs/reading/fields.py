@@ -192,15 +192,20 @@ class Measured:
         return {"anyOf": [{"type": "number", **number, **excluded}, text], "description": f"{self.dimension}, {unit}"}
 
 
+def mapping(found: object, where: str, of: str = "names to entries") -> dict[Any, Any]:
+    """Return a mapping as written. Raises InputError for anything else; `of` are its contents, for the message."""
+    if not isinstance(found, dict):
+        raise InputError(f"{where}: found {written(found)}, expected a mapping of {of}")
+    return found
+
+
 def named_entries(section: str, found: object, values: str) -> Iterator[tuple[str, object]]:
     """Yield the entries of a section of a scene.
 
     `found`: the section as written. `values`: kind of the entries, for messages. Raises InputError if the section is
     not a mapping, or a name is not an identifier.
     """
-    if found is not None and not isinstance(found, dict):
-        raise InputError(f"{section}: found {written(found)}, expected a mapping of names to {values}")
-    for name, entry in (found or {}).items():
+    for name, entry in mapping({} if found is None else found, section, f"names to {values}").items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
             raise InputError(
                 f"{section}: found the name {written(name)}, expected letters, digits and _{quotes_hint(name)}"

@@ -132,30 +132,19 @@ def pressed(e: Symbolic, hand: Expr, turns: bool) -> Touch:
 
     `hand`: -1 for a tyre that is mirrored. `turns`: whether the yaw rate acts on the forces.
     """
-    from sympy import Max, Piecewise
+    from sympy import Max, Piecewise, atan
 
     from ..tyres.deflection_6 import deflection, free_radius
 
     p, contact = e.properties, contact_point(e)
-    contact = replace(
-        contact,
-        **{name: e.variable(getattr(contact, name)) for name in VARIABLES if e.in_state(getattr(contact, name))},
-    )
+    variables = {name: x for name in VARIABLES if e.in_state(x := getattr(contact, name))}
+    contact = replace(contact, **{name: e.variable(x) for name, x in variables.items()})
     free = e.named(free_radius(p, contact.spin))
     closed = e.named(deflection(p, contact.radius, free, contact.camber))
     yaw = e.variable(yaw_rate(e, contact)) if turns else None
     tyre = _Pressed(e, contact, hand, pressure_increment(e), free, yaw)
     load = e.read(Piecewise((Max(tyre.load(), 0), closed > 0), (0, True)))
     slip, tangent, speed, rates = tyre.slip(e.named(load))
-    from sympy import atan
-
-    return Touch(
-        contact,
-        e.named(above_zero(closed)),
-        load,
-        slip,
-        tangent,
-        speed,
-        rates,
-        tyre.turn(e.named(atan(tangent)), speed),
-    )
+    above = e.named(above_zero(closed))
+    turn = tyre.turn(e.named(atan(tangent)), speed)
+    return Touch(contact, above, load, slip, tangent, speed, rates, turn)

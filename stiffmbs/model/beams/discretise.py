@@ -238,20 +238,9 @@ class _Interval:
             screw, slope = shapes @ relative, slopes @ relative / (end - start)
             strain = tangent(adjoint(screw)) @ slope
             unloaded = np.where(np.abs(strain) < 1e-13 * np.linalg.norm(strain), 0.0, strain)
-            K = inverse(compliance)
-            length = float(weight) * (end - start)
-            self.elements.append(
-                Element(
-                    own,
-                    turned,
-                    length,
-                    unloaded,
-                    K,
-                    reference=group.reference,
-                    shapes=shapes,
-                    slopes=slopes / (end - start),
-                )
-            )
+            at_section = {"reference": group.reference, "shapes": shapes, "slopes": slopes / (end - start)}
+            of = own, turned, float(weight) * (end - start), unloaded, inverse(compliance)
+            self.elements.append(Element(*of, **at_section))
 
     def _single(
         self, nodes: list[Node], turned: np.ndarray, ends: tuple[float, float], screw: np.ndarray

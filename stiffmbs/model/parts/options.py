@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean, instead_of
+from ...reading.fields import mapping
 from ...reading.files.quoted import written
 
 if TYPE_CHECKING:
@@ -25,9 +26,7 @@ def choices_of(found: Mapping[str, object], where: str) -> dict[str, Content]:
 
     Raises InputError if they are not a mapping of choices to words to sections.
     """
-    options = found.get(OPTIONS) or {}
-    if not isinstance(options, dict):
-        raise InputError(f"{where}: found {written(options)}, expected a mapping of choices to words")
+    options = mapping(found.get(OPTIONS) or {}, where, "choices to words")
     for name, words in options.items():
         if not isinstance(words, dict) or not words:
             raise InputError(f"{where}.{name}: found {written(words)}, expected a mapping of words to sections")

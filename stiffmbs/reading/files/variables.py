@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Collection, Mapping
 
 from ...errors import InputError, prefixed
-from ..fields import NAME_PATTERN
+from ..fields import named_entries
 from ..formula.nodes import TIME
 from ..formula.text import UNIT, FormulaError
 from ..formula.variables import resolved
 from ..units.units import CONSTANTS, UNITS, Quantity
 from .quoted import written
-from .yaml_text import quotes_hint
 
 
 def read_variables(
@@ -27,16 +25,8 @@ def read_variables(
 
     Raise an InputError if a name is not an identifier or already has a meaning, or a formula cannot be read.
     """
-    if found is None:
-        return {}
-    if not isinstance(found, dict):
-        raise InputError(f"variables: found {written(found)}, expected a mapping of names to formulas")
     formulas: dict[str, str | float] = {}
-    for name, formula in found.items():
-        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
-            raise InputError(
-                f"variables: found the name {written(name)}, expected letters, digits and _{quotes_hint(name)}"
-            )
+    for name, formula in named_entries("variables", found, "formulas"):
         if name in UNITS:
             raise InputError(f"variables.{name}: found the name of a unit, expected another: rename the variable")
         if name in (*CONSTANTS, *parameters, *tables, TIME, UNIT):

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from ....reading.formula.field import ForceOfDeflection, TorqueOfDeflection
 from ...element import Expr, Matrix, Symbolic
-from ...forces.elastic_matrix import stored_with_laws
+from ...forces.elastic_matrix import REFLECTED, stored_with_laws
 from ..elastic import NO_ROW, Connection, Preload, pull_back
 
 
@@ -38,16 +38,9 @@ class Bushing(Connection):
     symmetric_with = {"i": "axes", "j": "axes"}
     forms = ({"stiffness": ..., "damping": ...}, {"stiffness": ..., "damping": ..., "axes": "ground"})
     reflected = {
-        "stiffness": "matrix",
-        "damping": "matrix",
-        "preload": "components",
-        "law_x": "x",
-        "law_y": "y",
-        "law_z": "z",
-        "law_about_x": "about x",
-        "law_about_y": "about y",
-        "law_about_z": "about z",
-    }
+        **REFLECTED, "law_x": "x", "law_y": "y", "law_z": "z",
+        "law_about_x": "about x", "law_about_y": "about y", "law_about_z": "about z",
+    }  # fmt: skip
 
     preload: Preload = Field(NO_ROW, description="force and torque on i without deformation, N and N m")
     law_x: ForceOfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")

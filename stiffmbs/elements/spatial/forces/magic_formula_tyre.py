@@ -203,16 +203,9 @@ class MagicFormulaTyre(Tyre):
         p, hand = e.properties, cls.hand_of(e)
         beyond = e.named(rolling.load - p.FZMAX)
         load = e.named(rolling.load - e.named(above_zero(beyond)))
-        slip: Any = Slip(
-            load,
-            rolling.slip,
-            e.named(hand * rolling.slip_angle),
-            e.named(hand * rolling.camber),
-            e.named(rolling.speed / p.LONGVL),
-            rolling.direction,
-            rolling.friction,
-            pressure_increment(e),
-        )
+        alpha, gamma = e.named(hand * rolling.slip_angle), e.named(hand * rolling.camber)
+        speed, dpi = e.named(rolling.speed / p.LONGVL), pressure_increment(e)
+        slip: Any = Slip(load, rolling.slip, alpha, gamma, speed, rolling.direction, rolling.friction, dpi)
         version = VERSIONS[p.formula]
         if version.is_6:
             turn = None if rolling.turn is None else e.named(hand * rolling.turn)
