@@ -42,6 +42,19 @@ Matrix = Any
 """SymPy column vector or matrix (`sympy.Matrix`)."""
 
 
+class _SymPy:
+    """SymPy, imported on first use: runs with compiled kernels do not load it."""
+
+    def __getattr__(self, name: str) -> Any:
+        import sympy
+
+        return getattr(sympy, name)
+
+
+sp: Any = _SymPy()
+"""Functions of SymPy for equations."""
+
+
 IN_EQUATIONS = frozenset([
     "a", "acceleration", "angle", "angles", "at_extremum", "at_root", "breakpoints", "by", "by_accelerations", "by_q", "by_u", "channel", "common_normal",
     "composed", "coordinate", "coordinates", "counts", "depends", "derivatives", "distance", "frames", "in_state", "integral", "joint_angles",

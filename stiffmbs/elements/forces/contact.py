@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from ...reading.fields import Measured
 from ...reading.marker import Marker
 from ...reading.units import si
-from ..element import Expr, Matrix, Symbolic
+from ..element import Expr, Matrix, Symbolic, sp
 from .friction import Friction
 
 
@@ -43,18 +43,14 @@ class PressedSurfaces(Friction):
     @classmethod
     def pressure(cls, e: Symbolic) -> Expr:
         """Return the normal force N, zero without contact."""
-        from sympy import And, Piecewise
-
         gap = e.named(cls.gap(e))
         damped = e.named(1 - e.dissipation * cls.opening(e))
-        return Piecewise((e.stiffness * (-gap) ** e.exponent * damped, And(gap < 0, damped > 0)), (0, True))
+        return sp.Piecewise((e.stiffness * (-gap) ** e.exponent * damped, sp.And(gap < 0, damped > 0)), (0, True))
 
     @classmethod
     def event_functions(cls, e: Symbolic) -> Sequence[Expr]:
         """Return an expression that is positive while N > 0; dissipation can end N before the surfaces separate."""
-        from sympy import Min
-
-        return (Min(-e.named(cls.gap(e)), 1 - e.dissipation * cls.opening(e)),)
+        return (sp.Min(-e.named(cls.gap(e)), 1 - e.dissipation * cls.opening(e)),)
 
 
 class ContactLaw(PressedSurfaces):
@@ -105,10 +101,8 @@ class ContactLaw(PressedSurfaces):
 
     @classmethod
     def potential(cls, e: Symbolic) -> Expr:
-        from sympy import Piecewise
-
         gap, power = cls.gap(e), e.exponent + 1
-        return Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True))
+        return sp.Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True))
 
 
 class Contact(ContactLaw):

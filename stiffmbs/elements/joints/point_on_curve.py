@@ -15,7 +15,7 @@ from ...reading.formula.formula import Formula
 from ...reading.formula.value import formula_value
 from ...reading.marker import M, Marker
 from ...reading.table import Table
-from ..element import Expr, Joint, Symbolic
+from ..element import Expr, Joint, Symbolic, sp
 from .planar_pair import PlanarPair
 
 TURN = 2 * math.pi
@@ -89,9 +89,7 @@ class PointOnCurve(Curve[Marker]):
         d = e.i.point - e.j.point
         if e.y is not None:
             return [d.dot(e.j.normal) - e.y(d.dot(e.j.axis))]
-        from sympy import atan2
-
-        return [e.distance(e.i.point, e.j.point) - e.radius(atan2(d.dot(e.j.normal), d.dot(e.j.axis)))]
+        return [e.distance(e.i.point, e.j.point) - e.radius(sp.atan2(d.dot(e.j.normal), d.dot(e.j.axis)))]
 
 
 def repeating(law: Formula | Table | None) -> Formula | Table | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pydantic import Field, model_validator
 
 from ...reading.units import si
-from ..element import Expr, Force, Matrix, Symbolic
+from ..element import Expr, Force, Matrix, Symbolic, sp
 from ..roads.envelope import Envelope
 from ..roads.field import AnyRoad
 from ..roads.road import FlatRoad, above_zero
@@ -151,19 +151,15 @@ class Tyre(Force):
     @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Expr) -> Expr:
         """Return the effective rolling radius, m: the unloaded radius less a third of the deflection."""
-        from sympy import Rational
-
-        return cls.unloaded_radius(e) - deflection * Rational(1, 3)
+        return cls.unloaded_radius(e) - deflection * sp.Rational(1, 3)
 
     @classmethod
     def touching(cls, e: Symbolic) -> Touch:
         """Return the contact with its load and slips."""
-        from sympy import Max, Piecewise
-
         contact = contact_point(e)
         closed = e.named(cls.unloaded_radius(e) - contact.radius)
         deflection = e.named(above_zero(closed))
-        load = e.read(Piecewise((Max(cls.carried(e, deflection, -contact.vz), 0), closed > 0), (0, True)))
+        load = e.read(sp.Piecewise((sp.Max(cls.carried(e, deflection, -contact.vz), 0), closed > 0), (0, True)))
         sliding = e.named(contact.vx - e.named(cls.rolling_radius(e, deflection)) * contact.spin)
         slip, tangent, speed = slips(e, contact, sliding, e.slow)
         if not e.own:
@@ -174,10 +170,8 @@ class Tyre(Force):
     @classmethod
     def _acting(cls, e: Symbolic) -> tuple[Expr, Rolling, Expr, Expr]:
         """Return the contact, the arguments of the law, the deflection, and forces and torques with the rim."""
-        from sympy import atan
-
         touch = cls.touching(e)
-        contact, angle = touch.contact, e.named(atan(touch.tangent))
+        contact, angle = touch.contact, e.named(sp.atan(touch.tangent))
         direction = contact.vx / touch.speed
         of = (touch.load, touch.slip, angle, contact.camber, touch.speed, direction, contact.friction, *touch.turn)
         rolling = Rolling(*(e.variable(x) if e.in_state(x) else x for x in map(e.read, of)))

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from ...errors import InputError
@@ -25,7 +26,6 @@ from .names import COMBINED, OF_PAC2002, OF_PRESSURE, OF_THE_FILE, ONE_SIDED, PO
 from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, read_property_file
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import ArrayLike
 
 WITH_TURN_SLIP: Final = 5
@@ -274,8 +274,6 @@ class TyreProperties(Component):
         dict of str to ndarray
             ``longitudinal``, ``lateral`` (N), ``overturning``, ``rolling``, ``aligning`` (N m); arguments broadcast.
         """
-        import numpy as np
-
         load = np.minimum(load, self.coefficients.get("FZMAX", math.inf))
         found = self.steady_state(load, slip, slip_angle, camber, pressure, speed, friction=friction)
         return {name: found[symbol] for name, symbol in WRENCH.items()}

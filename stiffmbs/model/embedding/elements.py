@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import singledispatch
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
 
 from ...elements.element import Element, Joint
 from ...elements.forces.applied import AppliedForce, AppliedTorque
@@ -25,9 +27,6 @@ from ...reading.joint_name import JointName
 from ...reading.python_function import PythonFunction
 from .fields import oriented, plain, same
 from .formulas import QUARTER, TURN, Angles, Written, across, along, turned
-
-if TYPE_CHECKING:
-    import numpy as np
 
 
 @singledispatch

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from ....reading.formula.field import ForceOfMotion, TorqueOfMotion
-from ...element import Expr, Force, Matrix, Symbolic
+from ...element import Expr, Force, Matrix, Symbolic, sp
 from ..marker import Marker
 from ..wrench import Pairs, along_axes, force_at, torque_on
 
@@ -41,10 +41,8 @@ class Applied(Force):
     @staticmethod
     def vector(e: Symbolic, components: tuple[Expr, ...]) -> Matrix:
         """Return components along the element's axes as a vector in ground axes."""
-        from sympy import Matrix
-
         marker = e.i if e.axes == "body" else e.frame
-        return Matrix(components) if marker is None else along_axes(components, marker.axes)
+        return sp.Matrix(components) if marker is None else along_axes(components, marker.axes)
 
 
 class AppliedForce(Applied):

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from ....reading.formula.field import ForceOfDeflection, TorqueOfDeflection
-from ...element import Expr, Matrix, Symbolic
+from ...element import Expr, Matrix, Symbolic, sp
 from ...forces.elastic_matrix import REFLECTED, stored_with_laws
 from ..elastic import NO_ROW, Connection, Preload, pull_back
 
@@ -65,9 +65,7 @@ class Bushing(Connection):
 
     @classmethod
     def frame(cls, e: Symbolic) -> list[Matrix]:
-        from sympy import eye
-
-        return [eye(3)[:, k] for k in range(3)] if e.axes == "ground" else super().frame(e)
+        return [sp.eye(3)[:, k] for k in range(3)] if e.axes == "ground" else super().frame(e)
 
     @classmethod
     def drift(cls, e: Symbolic) -> Matrix:

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from ....reading.units import si
-from ...element import Expr, Symbolic
+from ...element import Expr, Symbolic, sp
 from ...roads.envelope import Envelope
 from ...roads.road import above_zero, magnitude
 from ...tyres.coefficients import PRESSED, AnyProperties, TyreProperties
@@ -232,16 +232,14 @@ def bottomed(e: Symbolic, rim: Any, depth: Expr, camber: Expr) -> tuple[Expr, Ex
     the centre of the penetrated area. MSC Adams/Tire, PAC2002, wheel bottoming. `depth`: penetration of the rim at
     mid-width, m; negative without contact. `camber`: camber, rad; positive if the top leans to the right.
     """
-    from sympy import Float, Piecewise, tan
-
-    slope = e.named(tan(camber))
+    slope = e.named(sp.tan(camber))
     half = e.named(rim.width / 2 * magnitude(slope))
     edge = e.named(above_zero(e.named(depth + half)))
     whole = depth > half
-    mean = e.read(Piecewise((depth, whole), (edge**2 / (4 * half + Float(NO_WIDTH)), True)))
-    part = edge / (2 * half + Float(NO_WIDTH))  # of the width that is in contact
-    of_whole = rim.width**2 * magnitude(slope) / (12 * magnitude(depth) + Float(NO_WIDTH))
-    offset = e.read(Piecewise((of_whole, whole), (rim.width * (3 - 2 * part) / 6, True)))
+    mean = e.read(sp.Piecewise((depth, whole), (edge**2 / (4 * half + sp.Float(NO_WIDTH)), True)))
+    part = edge / (2 * half + sp.Float(NO_WIDTH))  # of the width that is in contact
+    of_whole = rim.width**2 * magnitude(slope) / (12 * magnitude(depth) + sp.Float(NO_WIDTH))
+    offset = e.read(sp.Piecewise((of_whole, whole), (rim.width * (3 - 2 * part) / 6, True)))
     mean, offset = e.named(mean), e.named(offset)
-    force = e.named(e.read(Piecewise((rim.load(mean), mean > 0), (0, True))))
-    return force, -force * offset * slope / (magnitude(slope) + Float(NO_WIDTH))
+    force = e.named(e.read(sp.Piecewise((rim.load(mean), mean > 0), (0, True))))
+    return force, -force * offset * slope / (magnitude(slope) + sp.Float(NO_WIDTH))

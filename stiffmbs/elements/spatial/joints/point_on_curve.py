@@ -10,7 +10,7 @@ from pydantic import Field, field_validator, model_validator
 from ....reading.formula.field import FormulaOf
 from ....reading.formula.formula import Formula
 from ....reading.table import Table
-from ...element import Expr, Symbolic
+from ...element import Expr, Symbolic, sp
 from ...joints.point_on_curve import CAM, SLOT, Curve, repeating
 from ..marker import Marker
 from ..primitives import IN_PLANE, along
@@ -60,7 +60,5 @@ class PointOnCurve(Curve[Marker]):
         x, y, z = e.named([along(e.i, e.j, axis) for axis in (e.j.x, e.j.y, e.j.z)])
         if e.y is not None:
             return [y - e.y(x), z if e.z is None else z - e.z(x)]
-        from sympy import atan2, sqrt
-
-        angle = e.named(atan2(y, x))
-        return [sqrt(x**2 + y**2) - e.radius(angle), z if e.height is None else z - e.height(angle)]
+        angle = e.named(sp.atan2(y, x))
+        return [sp.sqrt(x**2 + y**2) - e.radius(angle), z if e.height is None else z - e.height(angle)]

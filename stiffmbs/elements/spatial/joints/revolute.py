@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...element import Symbolic
+from ...element import Symbolic, sp
 from ...forces.friction import Loads, magnitude
 from ..primitives import ALIGN, COINCIDE, SpatialJoint
 
@@ -25,8 +25,6 @@ class Revolute(SpatialJoint):
     @staticmethod
     def loads(e: Symbolic) -> Loads:
         """Return the force normal to and along the axis, and the moment normal to it."""
-        from sympy import Matrix
-
-        force, z = Matrix(e.lam[:3]), e.j.z
+        force, z = sp.Matrix(e.lam[:3]), e.j.z
         along = force.dot(z)
         return Loads(across=magnitude(*(force - along * z)), thrust=magnitude(along), bending=magnitude(*e.lam[3:]))
