@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..reading.files.files_read import file_beside
 from ..reading.files.quoted import written
 
@@ -48,9 +48,7 @@ def in_file(kind: type, read: Callable[[Path], object], description: str) -> Rea
             return found
         if not isinstance(found, str | Path):
             raise ValueError(f"found {written(found)}, expected the name of a file")
-        try:
+        with prefixed("", InputError, ValueError):
             return read(file_beside(context or {}, found))
-        except InputError as error:
-            raise ValueError(str(error)) from None
 
     return ReadBy(found_in_file, lambda _: {"type": "string", "description": description})

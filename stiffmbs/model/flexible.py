@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeVar
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from ..elements.body import FLEXIBLE
 from ..elements.element import Joint
@@ -25,7 +25,7 @@ from ..errors import InputError, prefixed
 from ..flexible_bodies.description import FlexibleBody
 from ..flexible_bodies.reduced import reduced_body
 from ..flexible_bodies.reduction import ReducedBody
-from ..reading.fields import Described, Measured, sentence
+from ..reading.fields import Described, Measured, located
 from ..reading.files.files_read import FOLDER, Context
 from ..reading.files.yaml_text import Content
 from ..reading.units import si
@@ -90,10 +90,8 @@ def with_flexible_bodies(raw: Content, context: Context) -> dict[str, object]:
         if not isinstance(entry, dict) or entry.get("type") != FLEXIBLE:
             added_bodies[name] = entry
             continue
-        try:
+        with located(f"bodies.{name}"):
             body = SceneFlexibleBody.model_validate(entry, context=dict(context))
-        except ValidationError as error:
-            raise InputError(f"bodies.{name}.{sentence(error)}") from None
         with prefixed(f"bodies.{name}: "):
             reduced = reduced_body(body, Path(context.get(FOLDER) or ""))
         parts = _Parts(name, body, reduced, Path(context.get(FOLDER) or ""))

@@ -13,7 +13,7 @@ from ..elements.body import FLEXIBLE
 from ..elements.roads.field import read_roads
 from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
-from ..reading.fields import sentence
+from ..reading.fields import is_valid, sentence
 from ..reading.files.files_read import FOLDER, record, recorded
 from ..reading.files.include import read_including
 from ..reading.files.own_sources import own_sources
@@ -254,7 +254,7 @@ def _validated(
     try:
         scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
-        if "dimensions" not in raw and _right_in_space(raw, context):
+        if "dimensions" not in raw and is_valid(scene_class(3), raw, context):
             raise _Located("dimensions: found none, expected 3 for bodies in space", ("bodies",)) from None
         message = sentence(error)
         path = message.split(":")[0].split(".")
@@ -299,12 +299,3 @@ def _family(raw: dict[str, object]) -> type[Scene]:
     if found not in (2, 3):
         raise _Located(f"dimensions: found {written(found)}, expected 2 or 3", ("dimensions",))
     return scene_class(found)
-
-
-def _right_in_space(raw: dict[str, object], context: dict[str, object]) -> bool:
-    """Return True if a scene that is invalid in the plane is valid in space."""
-    try:
-        scene_class(3).model_validate(raw, context=context)
-    except PydanticError:
-        return False
-    return True

@@ -90,7 +90,6 @@ class SpatialData(ModelData):
             yield from flexible_inertias(bodies, self.gravity)
 
     def initial_marker(self, marker: MarkerReference) -> InitialSpatialMarker:
-        """Return a marker with numbers, in ground axes, at the initial pose."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return InitialSpatialMarker(np.array(placed.point), matrix(placed.orientation))
@@ -99,7 +98,6 @@ class SpatialData(ModelData):
         return InitialSpatialMarker(point, matrix(product(body.orientation, placed.orientation)))
 
     def carried(self, marker: MarkerReference) -> tuple[str, Placement]:
-        """Return the body that carries a marker, and the placement from its centre of mass in the principal axes."""
         placed = self.place(marker)
         return marker.body, placed if marker.body == GROUND else self.bodies[marker.body].carried(placed)
 

@@ -91,8 +91,6 @@ def with_vehicle(raw: dict[str, object], context: Mapping[str, object]) -> dict[
     `raw`: spatial scene with its parts expanded. `context`: validation context. Raises InputError if the section is
     invalid, or names a body or a tyre that the scene lacks.
     """
-    if raw.get(VEHICLE) is None:
-        return raw
     with located(VEHICLE):
         vehicle = Vehicle.model_validate(raw[VEHICLE], context=context)
     bodies, forces, requests = (mapping(raw.get(name) or {}, name) for name in ("bodies", "forces", "requests"))

@@ -234,6 +234,15 @@ def located(where: str) -> Iterator[None]:
         raise InputError(f"{where}{'.' if begins_with_field else ': '}{message}") from None
 
 
+def is_valid(described: type[Described], found: object, context: Mapping[str, object]) -> bool:
+    """Return True if an entry can be read as a description."""
+    try:
+        described.model_validate(found, context=dict(context))
+    except PydanticError:
+        return False
+    return True
+
+
 def location(parts: tuple[object, ...]) -> str:
     """Return the path of a fault in the form of ``--set``: ``bodies.cart.mass``, without the branches of unions."""
     named = [str(part) for part in parts]

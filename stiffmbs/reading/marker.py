@@ -108,7 +108,6 @@ class Marker(MarkerReference):
     angle: si.Angle = Field(0.0, description="direction of the axis relative to the body's, rad")
 
     def placement(self) -> Placement:
-        """Return the explicit placement on the body."""
         return Placement.model_construct(point=self.point, angle=self.angle)  # checked already
 
 

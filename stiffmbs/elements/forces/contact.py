@@ -20,7 +20,7 @@ class PressedSurfaces(Friction):
     With the penetration delta = -gap > 0 the normal force is N = k delta^n (1 + chi delta'), not negative.
     """
 
-    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^n")
+    stiffness: si.PositiveValue = Field(description="k, N/m^n")
     exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
     dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
 
@@ -93,7 +93,6 @@ class ContactLaw(PressedSurfaces):
 
     @classmethod
     def gap(cls, e: Symbolic) -> Expr:
-        """Return the distance of the surfaces, m; negative for a penetration."""
         outward = cls.outward(e)
         if not outward:
             return (e.i.point - e.j.point).dot(cls.out_of(e)) - e.radius

@@ -63,10 +63,15 @@ class Friction(Force):
 class Loads:
     """Magnitudes of a joint's reaction on the body of marker i, with the force at i's point.
 
-    The axis is that of the joint's coordinate, z of j in space.
+    Attributes
+    ----------
+    across, thrust : Expr
+        Force normal to the axis of the joint's coordinate (z of j in space) and along it, N.
+    bending, torsion : Expr
+        Moment normal to the axis and about it, N m.
     """
 
-    across: Expr = 0  # force normal to the axis, N
-    thrust: Expr = 0  # force along it, N
-    bending: Expr = 0  # moment normal to it, N m
-    torsion: Expr = 0  # moment about it, N m
+    across: Expr = 0
+    thrust: Expr = 0
+    bending: Expr = 0
+    torsion: Expr = 0

@@ -29,7 +29,6 @@ class AnyJointFriction(Friction):
     length: si.PositiveLength | None = Field(None, description="length of a guide or bearing, for its moment, m")
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
-        """Yield the fields that do not fit the joint, each with its message."""
         joint = joints[self.joint.joint]
         if type(joint).loads is Joint.loads:
             *others, last = self.frictional_kinds()

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Generic
+from typing import ClassVar, Generic
 
 from pydantic import Field
 
-from ...reading.fields import Measured
 from ...reading.marker import M, Marker
+from ...reading.units import si
 from ..element import Expr, Symbolic
 from .pair import Pair
 
@@ -19,7 +19,7 @@ class Rod(Pair[M], Generic[M]):
     spin_conditions = {"i": "point", "j": "point"}
     equations: ClassVar[tuple[str, ...]] = ("length",)
 
-    length: Annotated[float, Measured("length", above=0)] = Field(description="L, from point to point, m")
+    length: si.PositiveLength = Field(description="L, from point to point, m")
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from ...reading.table import Table
 from ..element import Expr, Symbolic
 from ..read_by import in_file
@@ -60,10 +60,8 @@ class CrgRoad(Road):
                 f"found {count} heights, {len(self.file.u)} on each of {len(self._columns)} long sections, expected at most "
                 f"{MOST_HEIGHTS}: use fewer sections, or cut the road"
             )
-        try:
+        with prefixed("", InputError, ValueError):
             self._line = self._reference_line()
-        except InputError as error:
-            raise ValueError(str(error)) from None
         return self
 
     @property

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
-from types import MappingProxyType
 from typing import Annotated
 
 from ...reading.did_you_mean import did_you_mean, instead_of
@@ -13,19 +12,17 @@ from ...reading.files.quoted import quoted, written
 from ..read_by import Context, JsonSchema, ReadBy
 from .road import Road
 
-ROADS: Mapping[str, str] = MappingProxyType(
-    {
-        "flat": "road:FlatRoad",
-        "formula": "formula:FormulaRoad",
-        "table": "profile:TableRoad",
-        "grid": "grid:GridRoad",
-        "crg": "crg:CrgRoad",
-        "step": "obstacles:StepRoad",
-        "cosine_bump": "obstacles:CosineBump",
-        "sine_sweep": "obstacles:SineSweep",
-        "iso8608": "iso8608:Iso8608Road",
-    }
-)
+ROADS: Mapping[str, str] = {
+    "flat": "road:FlatRoad",
+    "formula": "formula:FormulaRoad",
+    "table": "profile:TableRoad",
+    "grid": "grid:GridRoad",
+    "crg": "crg:CrgRoad",
+    "step": "obstacles:StepRoad",
+    "cosine_bump": "obstacles:CosineBump",
+    "sine_sweep": "obstacles:SineSweep",
+    "iso8608": "iso8608:Iso8608Road",
+}
 """File and class of each kind of road, imported on demand."""
 
 

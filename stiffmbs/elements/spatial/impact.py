@@ -44,7 +44,7 @@ class Impact(Force):
 
     i: Marker
     j: Marker
-    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^e")
+    stiffness: si.PositiveValue = Field(description="k, N/m^e")
     exponent: Annotated[float, Measured("number", at_least=1)] = Field(
         1.5, description="e, exponent of the penetration"
     )

@@ -81,7 +81,6 @@ class SpatialJoint(Pair[Marker]):
 
     @classmethod
     def position(cls, e: Symbolic) -> list[Expr]:
-        """Return the residuals of its conditions."""
         return [residual for condition in cls.conditions for residual in condition.residuals(e.i, e.j)]
 
     @staticmethod

@@ -184,7 +184,6 @@ class Tyre(Force):
 
     @classmethod
     def rates(cls, e: Symbolic) -> Sequence[Expr]:
-        """Return the rates of the contact patch deflections of a tyre with relaxation lengths."""
         return cls.touching(e).rates
 
     @classmethod
@@ -201,6 +200,5 @@ class Tyre(Force):
 
     @classmethod
     def measured(cls, e: Symbolic) -> list[Expr]:
-        """Return the values of `channels`, in order."""
         _, rolling, deflection, (fx, fy, normal, mx, my, mz) = cls._acting(e)
         return [fx, fy, normal, mx, my, mz, rolling.slip, rolling.slip_angle, rolling.camber, deflection]

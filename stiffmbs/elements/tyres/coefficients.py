@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.files_read import file_beside
 from ...reading.files.quoted import quoted, written
@@ -216,7 +216,6 @@ class TyreProperties(Component):
         )  # fmt: skip
 
     def in_equations(self) -> dict[str, object]:
-        """Return the names and values that the equations use."""
         own: dict[str, Any] = {
             "ellipse": "" if self.is_combined else "pac2002" if self.of_adams else "limit",
             "belt": self.belt or None, "mode": str(self._slips), "is_mirrored": self.is_mirrored, "side": self.side,
@@ -416,10 +415,8 @@ def _read(found: object, context: Context) -> TyreProperties:
     if isinstance(found, TyreProperties):
         return found
     if isinstance(found, str | Path):
-        try:
+        with prefixed("", InputError, ValueError):
             return TyreProperties.from_file(file_beside(context or {}, found))
-        except InputError as error:
-            raise ValueError(str(error)) from None
     if isinstance(found, dict):
         return TyreProperties.model_validate(found)
     raise ValueError(f"found {written(found)}, expected the name of a property file, or coefficients by name")

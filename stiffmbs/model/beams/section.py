@@ -26,9 +26,6 @@ PRINCIPAL = 1e-6
 """Largest product of inertia of principal axes, relative to the larger second moment."""
 CENTRED = 0.01
 """Largest distance of the shear centre from the plane of motion, relative to the root of the area."""
-Area = Annotated[float, Measured("area", above=0)]
-SecondMoment = Annotated[float, Measured("second moment of area", above=0)]
-Factor = Annotated[float, Measured("number", above=0)]
 
 
 @dataclass(frozen=True)
@@ -253,12 +250,14 @@ class Numbers(Section):
     """Section of any form, by its constants; in the plane I2 and shear3 are those of the plane."""
 
     type: Literal["numbers"] = "numbers"
-    A: Area = Field(description="area, m^2")
-    I2: SecondMoment = Field(description="about axis 2, for bending along the height or in the plane, m^4")
-    I3: SecondMoment | None = Field(None, description="about axis 3, m^4; I2 by default")
-    J: SecondMoment | None = Field(None, description="torsion constant, m^4; I2 + I3 by default, as for a circle")
-    shear2: Factor = Field(1.0, description="shear factor along axis 2")
-    shear3: Factor = Field(1.0, description="shear factor along axis 3, or in the plane")
+    A: si.PositiveArea = Field(description="area, m^2")
+    I2: si.PositiveSecondMoment = Field(description="about axis 2, for bending along the height or in the plane, m^4")
+    I3: si.PositiveSecondMoment | None = Field(None, description="about axis 3, m^4; I2 by default")
+    J: si.PositiveSecondMoment | None = Field(
+        None, description="torsion constant, m^4; I2 + I3 by default, as for a circle"
+    )
+    shear2: si.PositiveNumber = Field(1.0, description="shear factor along axis 2")
+    shear3: si.PositiveNumber = Field(1.0, description="shear factor along axis 3, or in the plane")
     I23: Annotated[float, Measured("second moment of area")] = Field(
         0.0, description="product of inertia, positive where the area is in the first and third quadrant, m^4"
     )
@@ -314,9 +313,9 @@ AnySection = Annotated[Any, one_of("a section such as {type: circle, diameter: 1
 class Material(Described):
     """Linear elastic, isotropic material."""
 
-    E: Annotated[float, Measured("pressure", above=0)] = Field(description="Young's modulus, N/m^2")
+    E: si.PositivePressure = Field(description="Young's modulus, N/m^2")
     nu: Annotated[float, Measured("number", at_least=0, at_most=0.5)] = Field(0.3, description="Poisson's ratio")
-    density: Annotated[float, Measured("density", above=0)] = Field(description="density, kg/m^3")
+    density: si.PositiveDensity = Field(description="density, kg/m^3")
 
     @property
     def G(self) -> float:

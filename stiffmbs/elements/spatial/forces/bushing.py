@@ -11,6 +11,9 @@ from ...element import Expr, Matrix, Symbolic, sp
 from ...forces.elastic_matrix import REFLECTED, stored_with_laws
 from ..elastic import NO_ROW, Connection, Preload, pull_back
 
+Law = ForceOfDeflection | None
+Moment = TorqueOfDeflection | None
+
 
 class Bushing(Connection):
     """Elastic force and torque between two markers in all six components.
@@ -43,18 +46,12 @@ class Bushing(Connection):
     }  # fmt: skip
 
     preload: Preload = Field(NO_ROW, description="force and torque on i without deformation, N and N m")
-    law_x: ForceOfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
-    law_y: ForceOfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
-    law_z: ForceOfDeflection | None = Field(None, description="force against the deformation in z added over s (m), N")
-    law_about_x: TorqueOfDeflection | None = Field(
-        None, description="moment against the rotation about x over s (rad), N m"
-    )
-    law_about_y: TorqueOfDeflection | None = Field(
-        None, description="moment against the rotation about y over s (rad), N m"
-    )
-    law_about_z: TorqueOfDeflection | None = Field(
-        None, description="moment against the rotation about z over s (rad), N m"
-    )
+    law_x: Law = Field(None, description="force against the deformation in x added over s (m), N")
+    law_y: Law = Field(None, description="force against the deformation in y added over s (m), N")
+    law_z: Law = Field(None, description="force against the deformation in z added over s (m), N")
+    law_about_x: Moment = Field(None, description="moment against the rotation about x over s (rad), N m")
+    law_about_y: Moment = Field(None, description="moment against the rotation about y over s (rad), N m")
+    law_about_z: Moment = Field(None, description="moment against the rotation about z over s (rad), N m")
 
     axes: Literal["j", "ground"] = Field("j", description="axes x, y and z of the force: marker j's or the ground's")
 

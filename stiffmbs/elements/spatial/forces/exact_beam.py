@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from ....reading.fields import Measured
 from ....reading.units import si
 from ...element import Expr, Symbolic
 from ...forces.beam_section import BeamSectionLaw
@@ -20,15 +19,18 @@ from ..wrench import Pairs, along_axes, force_at, torque_on
 if TYPE_CHECKING:
     from ....model.model_data import ModelData
 
-_Bending = Annotated[float, Measured("bending stiffness")]
-_Curvature = Annotated[float, Measured("curvature")]
 _Forces = tuple[si.Force | None, si.Force | None, si.Force | None, si.Torque | None, si.Torque | None, si.Torque | None]
 _Moments = tuple[
-    si.Torque | None, si.Torque | None, si.Torque | None, _Bending | None, _Bending | None, _Bending | None
+    si.Torque | None,
+    si.Torque | None,
+    si.Torque | None,
+    si.BendingStiffness | None,
+    si.BendingStiffness | None,
+    si.BendingStiffness | None,
 ]
 SectionStiffness = Annotated[tuple[_Forces, _Forces, _Forces, _Moments, _Moments, _Moments], AS_WRITTEN]
 _Six = tuple[si.Force, si.Force, si.Force, si.Torque, si.Torque, si.Torque]
-_SixMoments = tuple[si.Torque, si.Torque, si.Torque, _Bending, _Bending, _Bending]
+_SixMoments = tuple[si.Torque, si.Torque, si.Torque, si.BendingStiffness, si.BendingStiffness, si.BendingStiffness]
 STRAIGHT: Final = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -72,7 +74,7 @@ class ExactBeam(BeamStrain):
     stiffness: SectionStiffness = Field(
         description="K: EA, GA2, GA3 (N), GJ, EI2, EI3 (N m^2), or a symmetric 6x6 matrix"
     )
-    unloaded: tuple[si.Number, si.Number, si.Number, _Curvature, _Curvature, _Curvature] = Field(
+    unloaded: tuple[si.Number, si.Number, si.Number, si.Curvature, si.Curvature, si.Curvature] = Field(
         STRAIGHT, description="strain without load: 1, 0, 0, and the torsion and curvatures of the axis, rad/m"
     )
     shear_centre: tuple[si.Length, si.Length, si.Length] | None = Field(
@@ -85,7 +87,7 @@ class ExactBeam(BeamStrain):
 
     _six_rows = field_validator("stiffness", mode="before")(six_rows)
     _symmetric = field_validator("stiffness")(check_symmetric)
-    _sparse = field_validator("stiffness", "damping_ratio")(without_zeros)
+    _sparse = field_validator("stiffness")(without_zeros)
 
     @model_validator(mode="after")
     def _with_radius(self) -> Self:
@@ -141,7 +143,7 @@ class BeamSection(BeamSectionLaw):
     nodes: tuple[Marker, ...] = Field(
         description="markers of the nodes, whose axes are tangents", min_length=3, max_length=5
     )
-    unloaded: tuple[si.Number, si.Number, si.Number, _Curvature, _Curvature, _Curvature] = Field(
+    unloaded: tuple[si.Number, si.Number, si.Number, si.Curvature, si.Curvature, si.Curvature] = Field(
         STRAIGHT, description="strain without load: 1, 0, 0, and the torsion and curvatures of the axis, rad/m"
     )
     stiffness: tuple[_Six, _Six, _Six, _SixMoments, _SixMoments, _SixMoments] = Field(

@@ -50,7 +50,6 @@ class FialaTyre(Tyre):
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
-        """Return forces and moments by Fiala's formulas."""
         from ...tyres.fiala import Constants, forces
         from ...tyres.magic_formula import Slip
 

@@ -97,7 +97,6 @@ class MagicFormulaTyre(Tyre):
         return self
 
     def cams(self) -> Envelope | None:
-        """Return the cams of the enveloping contact, given or of the property file."""
         if self.envelope != "file":
             return self.envelope
         if self.properties.envelope is None:
@@ -118,12 +117,10 @@ class MagicFormulaTyre(Tyre):
             yield f"the pressure of {pressure:g} Pa is outside the valid range of its data, {low:g} to {high:g} Pa"
 
     def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
-        """Return the valid ranges of the property file for each quantity, SI units; empty if the file has none."""
         ranges = {name: range for name, range in self.properties.ranges.items() if name != "pressure"}
         return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # no range applies without contact
 
     def mounted_side(self) -> tuple[object, float, tuple[str, ...]]:
-        """Return the properties, the hand, and the coefficients that differ between left and right tyres."""
         return self.properties, float(self.hand_of(self)), self.properties.one_sided
 
     def own_states(self) -> tuple[str, ...]:
@@ -132,7 +129,6 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def touching(cls, e: Symbolic) -> Touch:
-        """Return the contact with its load and slips."""
         if VERSIONS[e.properties.formula].is_6:
             return pressed(e, cls.hand_of(e), cls.takes_turns(e))
         return super().touching(e)
@@ -151,7 +147,6 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def unloaded_radius(e: Symbolic) -> Expr:
-        """Return the unloaded radius, m."""
         return e.properties.UNLOADED_RADIUS
 
     @staticmethod
@@ -164,7 +159,6 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def rim_contact(e: Symbolic, deflection: Expr, contact: ContactPoint) -> tuple[Expr, Expr] | None:
-        """Return the force of the rim and its overturning torque."""
         p, rim = e.properties, e.properties.bottoming
         if rim is None:
             return None
@@ -196,7 +190,6 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
-        """Return forces and moments by the formula of the file."""
         from ...tyres.magic_formula import Slip, of_mode
         from ...tyres.magic_formula_6 import PressedSlip
 

@@ -91,7 +91,6 @@ class SolidImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
-        """Return the single contact."""
         first, second = round_solid(e, e.i_shape, e.i_size), round_solid(e, e.j_shape, e.j_size)
         offset = e.named(seen_from(e.i.point, e.j))
         axes = e.named([own.dot(other) for own in e.j.axes for other in e.i.axes])

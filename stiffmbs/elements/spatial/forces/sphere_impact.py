@@ -72,7 +72,6 @@ class SphereSphereImpact(SphereImpact):
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
-        """Return the vector from the centre of j to that of i, along the axes of j."""
         return e.named(seen_from(e.i.point, e.j))
 
     @classmethod
@@ -98,7 +97,6 @@ class SphereBoxImpact(SphereImpact):
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
-        """Return the vector from the nearest point of the box to the sphere's centre, along the axes of j."""
         at = e.named(seen_from(e.i.point, e.j))
         return e.named(
             [sp.sign(part) * above(abs(part) - size / 2) for part, size in zip(at, (e.x, e.y, e.z), strict=True)]
@@ -120,7 +118,6 @@ class SphereCylinderImpact(SphereImpact):
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
-        """Return the vector from the nearest point of the cylinder to the sphere's centre, along the axes of j."""
         x, y, z = e.named(seen_from(e.i.point, e.j))
         out = e.named(length(x, y))
         across = e.named(above(out - e.cylinder_radius) / out)
