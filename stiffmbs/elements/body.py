@@ -38,13 +38,11 @@ class Body(Described):
 
     mass: si.PositiveMass = Field(description="mass, kg")
     inertia: si.PositiveInertia = Field(description="moment of inertia about the centre of mass, kg m^2")
-    position: tuple[si.Length, si.Length] = Field(
+    position: si.Point2 = Field(
         (0.0, 0.0), description="centre of mass at the start, m; assembly changes it if joints require it"
     )
     angle: si.Angle = Field(0.0, description="angle at the start, rad")
-    velocity: tuple[si.Velocity, si.Velocity] = Field(
-        (0.0, 0.0), description="velocity of the centre of mass at the start, m/s"
-    )
+    velocity: si.Velocity2 = Field((0.0, 0.0), description="velocity of the centre of mass at the start, m/s")
     omega: si.AngularVelocity = Field(0.0, description="angular velocity at the start, rad/s")
     markers: dict[str, Placement] = Field(default_factory=dict, description="named points and directions on the body")
     geometry: PlanarGeometry = Field(

@@ -11,6 +11,7 @@ from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, Vali
 from pydantic_core import CoreSchema, core_schema
 
 from ..errors import InputError, prefixed
+from ..reading.did_you_mean import did_you_mean
 from ..reading.files.files_read import file_beside
 from ..reading.files.quoted import written
 
@@ -37,6 +38,22 @@ class ReadBy:
 
     def __get_pydantic_json_schema__(self, schema: object, handler: GetJsonSchemaHandler) -> JsonSchema:
         return self.schema(lambda kind: handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, [])))
+
+
+def class_of(
+    found: object, kinds: Mapping[str, Any], expected: str = "a mapping of keys to values", more: str = ""
+) -> Any:
+    """Return the class that the ``type`` of an entry selects.
+
+    `expected`, `more`: what an entry is in place of a mapping, and further types, for messages. Raises ValueError.
+    """
+    if not isinstance(found, dict):
+        raise ValueError(f"found {written(found)}, expected {expected}")
+    kind = found.get("type")
+    if not isinstance(kind, str) or kind not in kinds:
+        shown = "no type" if kind is None else f"the type {written(kind)}{did_you_mean(kind, kinds)}"
+        raise ValueError(f"found {shown}, expected one of {', '.join(map(repr, kinds))}{more}")
+    return kinds[kind]
 
 
 def in_file(kind: type, read: Callable[[Path], object], description: str) -> ReadBy:

@@ -14,7 +14,7 @@ import numpy as np
 from ..cache.entries import Folder, digest, tag_of
 from ..cache.source_files import digest_of, python_files
 from ..errors import InputError
-from .description import FlexibleBody, UpTo, content_of_file
+from .description import FlexibleBody, UpTo
 from .reduction import ReducedBody, reduce, rigid_body
 from .second_order import SecondOrder
 
@@ -75,7 +75,7 @@ def folder_of_bodies() -> Folder:
 
 
 def _key(body: FlexibleBody, highest: float | None, folder: Path) -> str:
-    contents = (hashlib.sha256(content_of_file(folder / name)).hexdigest() for name in body.files)
+    contents = (hashlib.sha256(content).hexdigest() for content in body.contents(folder))
     unused = {"stiffening", "mass", "modes"} if highest else {"stiffening", "mass"}
     described = body.model_dump_json(include=FlexibleBody.model_fields.keys() - unused)
     return digest(described, repr(highest), *contents)

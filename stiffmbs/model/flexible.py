@@ -58,10 +58,10 @@ class SceneFlexibleBody(FlexibleBody):
     type: Literal["flexible"] = "flexible"
     position: Point = Field(ORIGIN, description="of the origin of the mesh at the start, m")
     orientation: Orientation = Field(IDENTITY, description="of the axes of the mesh at the start")
-    velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
+    velocity: si.Velocity3 = Field(
         (0.0, 0.0, 0.0), description="velocity of the centre of mass at the start, in ground axes, m/s"
     )
-    omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
+    omega: si.AngularVelocity3 = Field(
         (0.0, 0.0, 0.0), description="angular velocity at the start, in the axes of the mesh, rad/s"
     )
     damping: si.NumberOrZero | Rayleigh | Annotated[tuple[si.NumberOrZero, ...], Field(min_length=1)] = Field(

@@ -178,9 +178,7 @@ class SteadyMotion(Described):
     velocity: tuple[si.Velocity, ...] = Field(
         (), description="of every point in addition to the rotation, in ground axes, m/s: one number for each dimension"
     )
-    rotation: (
-        Literal["found"] | si.AngularVelocity | tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity]
-    ) = Field(
+    rotation: Literal["found"] | si.AngularVelocity | si.AngularVelocity3 = Field(
         0.0,
         description="angular velocity, rad/s: a number in the plane, in space a vector in ground axes, or a number about the direction opposite to gravity; `found` if forces determine it, as for a car that pulls to one side (also if no rotation is given and the forces do not balance on a straight line)",
     )

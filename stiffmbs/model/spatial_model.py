@@ -92,10 +92,10 @@ class SpatialData(ModelData):
     def initial_marker(self, marker: MarkerReference) -> InitialSpatialMarker:
         placed = self.place(marker)
         if marker.body == GROUND:
-            return InitialSpatialMarker(np.array(placed.point), matrix(placed.orientation))
+            return InitialSpatialMarker(np.array(placed.point), *matrix(placed.orientation).T)
         body = self.bodies[marker.body]
         point = np.array(body.position) + rotated(body.orientation, placed.point)
-        return InitialSpatialMarker(point, matrix(product(body.orientation, placed.orientation)))
+        return InitialSpatialMarker(point, *matrix(product(body.orientation, placed.orientation)).T)
 
     def carried(self, marker: MarkerReference) -> tuple[str, Placement]:
         placed = self.place(marker)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, WithJsonSchema, field_validator
 
@@ -20,6 +20,9 @@ SectionStiffness = Annotated[
     tuple[_Forces, _Forces, tuple[si.Torque | None, si.Torque | None, si.BendingStiffness | None]],
     WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3}),
 ]
+Strain = tuple[si.Number, si.Number, si.Curvature]
+_described = "strain without load: 1, 0, and the curvature of the axis, rad/m"
+UNLOADED: Any = Field((1.0, 0.0, 0.0), description=_described)
 
 
 class ExactBeam(BeamStrain):
@@ -57,9 +60,7 @@ class ExactBeam(BeamStrain):
     i: Marker = Field(description="marker at the end, on whose body force and torque are reported")
     j: Marker = Field(description="marker at the beginning")
     stiffness: SectionStiffness = Field(description="K: EA, GA (N), EI (N m^2), or a symmetric 3x3 matrix")
-    unloaded: tuple[si.Number, si.Number, si.Curvature] = Field(
-        (1.0, 0.0, 0.0), description="strain without load: 1, 0, and the curvature of the axis, rad/m"
-    )
+    unloaded: Strain = UNLOADED
 
     _diagonal = field_validator("stiffness", mode="before")(from_diagonal)
     _symmetric = field_validator("stiffness")(check_symmetric)
@@ -95,9 +96,7 @@ class BeamSection(BeamSectionLaw):
     nodes: tuple[Marker, ...] = Field(
         description="markers of the nodes, whose axes are tangents", min_length=3, max_length=5
     )
-    unloaded: tuple[si.Number, si.Number, si.Curvature] = Field(
-        (1.0, 0.0, 0.0), description="strain without load: 1, 0, and the curvature of the axis, rad/m"
-    )
+    unloaded: Strain = UNLOADED
     stiffness: tuple[_Three, _Three, tuple[si.Torque, si.Torque, si.BendingStiffness]] = Field(
         description="K: a symmetric 3x3 matrix of EA, GA (N), EI (N m^2)"
     )

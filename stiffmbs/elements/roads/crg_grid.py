@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import InputError
-from ...reading.files.files_read import content_of
 from ...reading.files.requested import Fields, unused_notes
+from ...reading.files.text_file import file_content
 from .crg_file import CrgHeader, Entry, read_header, read_records
 
 UNITS = {"phi": "rad", "slope": "m/m", "banking": "m/m"}
@@ -49,10 +49,7 @@ def read_crg(path: Path) -> CrgGrid:
     A record's heading and slope apply to the interval before it, as in OpenCRG's library; its banking applies at the
     record. Raises InputError if it cannot be read; the message contains the line.
     """
-    try:
-        content = content_of(path)
-    except OSError as error:
-        raise InputError(f"{path}: the file cannot be read ({error.strerror or error})") from None
+    content = file_content(path, "an OpenCRG file")
     header = read_header(content, path)
     line, sections = _sorted_channels(header, path)
     v = _positions(header, sections, path)

@@ -11,7 +11,7 @@ from ...reading.marker import MarkerReference
 from ...reading.units import si
 from .orientation import IDENTITY, Orientation, matrix
 
-Point = tuple[si.Length, si.Length, si.Length]
+Point = si.Point3
 ORIGIN: Final = (0.0, 0.0, 0.0)
 
 

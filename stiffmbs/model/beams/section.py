@@ -261,8 +261,8 @@ class Numbers(Section):
     I23: Annotated[float, Measured("second moment of area")] = Field(
         0.0, description="product of inertia, positive where the area is in the first and third quadrant, m^4"
     )
-    shear_centre: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="from the centroid along axes 2 and 3, m")
-    wagner: tuple[si.Length, si.Length] = Field(
+    shear_centre: si.Point2 = Field((0.0, 0.0), description="from the centroid along axes 2 and 3, m")
+    wagner: si.Point2 = Field(
         (0.0, 0.0), description="curvature about axes 2 and 3 by torsion over half of its square (Wagner), m"
     )
 
@@ -286,15 +286,12 @@ class Numbers(Section):
         )  # fmt: skip
 
 
-_Point = tuple[si.Length, si.Length]
-
-
 class Drawn(Section):
     """Section drawn by its outline and holes, whose constants follow from finite elements."""
 
     type: Literal["points"] = "points"
-    points: tuple[_Point, ...] = Field(min_length=3, description="outline, along axes 2 and 3 (the height), m")
-    holes: tuple[tuple[_Point, ...], ...] = Field((), description="outlines of holes, m")
+    points: tuple[si.Point2, ...] = Field(min_length=3, description="outline, along axes 2 and 3 (the height), m")
+    holes: tuple[tuple[si.Point2, ...], ...] = Field((), description="outlines of holes, m")
 
     def properties(self, nu: float) -> Properties:
         """See `stiffmbs.model.beams.drawn_section`; the shear factors are those of a Poisson ratio of zero."""

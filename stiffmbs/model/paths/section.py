@@ -17,7 +17,6 @@ from .lanes import STANDARDS, path_through
 
 PATH = "path"
 COURSES = ("points", "circle", "lanes")
-Point2 = tuple[si.Length, si.Length]
 Station = tuple[si.Length, si.Velocity]
 
 
@@ -28,7 +27,7 @@ class Path(Described):
     tables ``path_x path_y path_cos path_sin path_curvature`` over the arc length, for use in formulas.
     """
 
-    points: tuple[Point2, ...] = Field((), description="points of a cubic spline: x and y, m")
+    points: tuple[si.Point2, ...] = Field((), description="points of a cubic spline: x and y, m")
     closed: bool = Field(False, description="whether the spline is a lap that returns to its first point and repeats")
     circle: si.Length | None = Field(None, description="radius of a circle, m, positive to the left")
     entry: si.LengthOrZero = Field(20.0, description="straight line before the circle, m")

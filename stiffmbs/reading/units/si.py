@@ -44,3 +44,9 @@ PositiveSecondMoment = Annotated[float, Measured("second moment of area", above=
 PositiveValue = Annotated[float, Measured("value", above=0)]
 ValueNotZero = Annotated[float, Measured("value", other_than=0)]
 PositiveNumber = Annotated[float, Measured("number", above=0)]
+
+Point2 = tuple[Length, Length]
+Point3 = tuple[Length, Length, Length]
+Velocity2 = tuple[Velocity, Velocity]
+Velocity3 = tuple[Velocity, Velocity, Velocity]
+AngularVelocity3 = tuple[AngularVelocity, AngularVelocity, AngularVelocity]
