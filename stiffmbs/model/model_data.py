@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
@@ -17,7 +17,7 @@ from ..elements.requests.names import OutputNames
 from ..elements.requests.order import dimensions
 from ..elements.requests.output import Output
 from ..elements.states.amount import InputValue, formulas_of_inputs
-from ..elements.states.equation import FormulaOfRate, Reported, SampledUpdate, StateName, own_state
+from ..elements.states.equation import AngleCounter, FormulaOfRate, Reported, SampledUpdate, StateName, own_state
 from ..elements.states.section import AnyState, Scope, check_formula, check_states, names_in_formulas, refuse_loops
 from ..elements.states.state import StateValue
 from ..methods import NotebookMethods
@@ -30,9 +30,6 @@ from ..reading.formula.text import UNIT
 from ..reading.joint_name import JointName
 from ..reading.marker import GROUND, MarkerReference, check_marker
 from ..reading.names import beginnings
-
-if TYPE_CHECKING:
-    from ..elements.states.equation import AngleCounter
 
 RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Generic
+from typing import Generic
 
 from pydantic import Field
 
 from ...reading.formula.field import ForceOfMotion
 from ...reading.marker import M, Marker
 from ..element import Expr, Force, Symbolic
-
-if TYPE_CHECKING:
-    from ..initial_pose import InitialPose
+from ..initial_pose import InitialPose
 
 
 class ForceAlongLine(Force, Generic[M]):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Generic
+from typing import Generic
 
 from pydantic import Field
 
@@ -11,9 +11,7 @@ from ...reading.formula.field import ForceOfDeflection, ForceOfRate, TorqueOfDef
 from ...reading.marker import M
 from ...reading.units import si
 from ..element import Expr, Force, Symbolic
-
-if TYPE_CHECKING:
-    from ..initial_pose import InitialPose
+from ..initial_pose import InitialPose
 
 
 class Spring(Force):

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from ...reading.marker import MarkerReference
 from ...reading.units import si
+from ..body import AnyBody
 from ..element import Expr, Force, Symbolic
-
-if TYPE_CHECKING:
-    from ..body import AnyBody
 
 
 class Weight(Force):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
@@ -16,13 +16,11 @@ from ...reading.formula.names import FormulaNames
 from ...reading.joint_name import JointName
 from ...reading.marker import GROUND, check_marker, listed
 from ...reading.units.units import CONSTANTS, UNITS
+from ..body import AnyBody
+from ..element import Joint
 from ..read_by import Context, JsonSchema, ReadBy
 from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
 from .state import AlgebraicState, SampledState, State, dimension_of_state
-
-if TYPE_CHECKING:
-    from ..body import AnyBody
-    from ..element import Joint
 
 KINDS: dict[str, type[StateEntry]] = {
     "rate": State, "zero": AlgebraicState, "update": SampledState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,

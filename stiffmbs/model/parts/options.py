@@ -7,16 +7,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean, instead_of
 from ...reading.fields import mapping
 from ...reading.files.quoted import written
-
-if TYPE_CHECKING:
-    from ...reading.files.yaml_text import Content
-
+from ...reading.files.yaml_text import Content
 
 OPTIONS, CHOOSE = "options", "choose"
 
