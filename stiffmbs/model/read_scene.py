@@ -32,6 +32,8 @@ from .parts.placed import with_parts
 from .parts.placing import as_written, placed_in_use, set_in_instances
 from .scene import Scene, scene_class
 
+Changes = Sequence[tuple[str, object]]
+"""Values by their paths."""
 LineOf = Callable[[tuple[object, ...]], int | str | None]
 """Function that returns the line in the source of a path of keys."""
 NO_FILES: Mapping[str, str] = MappingProxyType({})
@@ -76,7 +78,7 @@ def read_scene(
 
 def made_scene(
     found: dict[str, object],
-    changes: Sequence[tuple[str, object]],
+    changes: Changes,
     source: str,
     line_of: LineOf,
     folder: Path | None = None,
@@ -100,16 +102,14 @@ def made_scene(
     return scene
 
 
-def read_changed(
-    written: WrittenScene, changes: Sequence[tuple[str, object]], unchanged: Unchanged | None = None
-) -> Scene:
+def read_changed(written: WrittenScene, changes: Changes, unchanged: Unchanged | None = None) -> Scene:
     """Read a scene with other values, without what was validated before; errors as for `made_scene`."""
     content = copy.deepcopy(dict(written.content))
     return made_scene(content, (*written.changes, *changes), written.source, lambda _: None, written.folder, unchanged)
 
 
 def _made_scene(
-    found: dict[str, object], changes: Sequence[tuple[str, object]], source: str, line_of: LineOf, folder: Path | None,
+    found: dict[str, object], changes: Changes, source: str, line_of: LineOf, folder: Path | None,
     known: Unchanged, kept: WrittenScene | None,
 ) -> Scene:  # fmt: skip
     found, chosen, changes = chosen_options(expand.unshared(found), changes, source)
@@ -143,8 +143,8 @@ def _made_scene(
 
 
 def chosen_options(
-    found: dict[str, object], changes: Sequence[tuple[str, object]], source: str
-) -> tuple[dict[str, object], Content, Sequence[tuple[str, object]]]:
+    found: dict[str, object], changes: Changes, source: str
+) -> tuple[dict[str, object], Content, Changes]:
     """Return a scene with its chosen options merged, the choices for parts, and the other changes."""
     words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
     for path, word in words.items():
@@ -195,7 +195,7 @@ def _keep_one_grid(found: dict[str, object], changed: set[str]) -> None:
                 run.pop(name, None)
 
 
-def _place(fault: tuple[object, ...], changes: Sequence[tuple[str, object]], line_of: LineOf) -> str:
+def _place(fault: tuple[object, ...], changes: Changes, line_of: LineOf) -> str:
     """Return the location of a fault, as the beginning of a message: a change, or a line."""
     for path, _ in changes:
         keys = tuple(path.split("."))
@@ -224,11 +224,7 @@ class _Located(Exception):
 
 
 def _validated(
-    found: dict[str, object],
-    replaced: Mapping[str, Quantity],
-    in_parts: Sequence[tuple[str, object]],
-    known: Mapping[str, object],
-    unchanged: Unchanged,
+    found: Content, replaced: Mapping[str, Quantity], in_parts: Changes, known: Content, unchanged: Unchanged
 ) -> Scene:
     try:
         parameters = expand.read_parameters(found.get("parameters"), replaced)

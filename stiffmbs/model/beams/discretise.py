@@ -238,9 +238,10 @@ class _Interval:
             screw, slope = shapes @ relative, slopes @ relative / (end - start)
             strain = tangent(adjoint(screw)) @ slope
             unloaded = np.where(np.abs(strain) < 1e-13 * np.linalg.norm(strain), 0.0, strain)
-            at_section = {"reference": group.reference, "shapes": shapes, "slopes": slopes / (end - start)}
-            of = own, turned, float(weight) * (end - start), unloaded, inverse(compliance)
-            self.elements.append(Element(*of, **at_section))
+            length, slopes = float(weight) * (end - start), slopes / (end - start)
+            at, K = group.reference, inverse(compliance)
+            element = Element(own, turned, length, unloaded, K, reference=at, shapes=shapes, slopes=slopes)
+            self.elements.append(element)
 
     def _single(
         self, nodes: list[Node], turned: np.ndarray, ends: tuple[float, float], screw: np.ndarray

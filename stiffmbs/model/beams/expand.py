@@ -24,12 +24,7 @@ BEAM = "beam"
 
 
 def expand_beams(
-    bodies: dict[str, object],
-    forces: object,
-    parameters: Mapping[str, object],
-    dimensions: object,
-    where: str,
-    instance: str,
+    bodies: Content, forces: object, parameters: Mapping[str, object], dimensions: object, where: str, instance: str
 ) -> tuple[Content, object]:
     """Return the bodies and forces of a scene or part with beams replaced by their nodes and elements.
 

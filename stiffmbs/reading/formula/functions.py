@@ -42,6 +42,7 @@ Breakpoints = tuple[tuple[int, int | None], ...]
 EACH: Breakpoints = ((0, -1),)
 """Breakpoints where the first argument, or the one selected before, equals each of the others."""
 EVERYWHERE = (-math.inf, math.inf)
+Words = Collection[str]
 Rule = Callable[[Sequence[Part], ast.expr], Known]
 """Function from the dimensions of the arguments, and the call for messages, to the dimension of the value."""
 
@@ -175,9 +176,9 @@ def check_functions(
     tree: ast.expr,
     known: Mapping[str, FormulaFunction],
     *,
-    tables: Collection[str] = (),
-    measures: Collection[str] = (),
-    listed: Collection[str] = (),
+    tables: Words = (),
+    measures: Words = (),
+    listed: Words = (),
 ) -> None:
     """Refuse calls of unknown functions, and calls with a wrong number of arguments, by a FormulaError.
 

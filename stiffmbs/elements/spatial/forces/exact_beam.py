@@ -100,7 +100,7 @@ class ExactBeam(BeamStrain):
                 raise ValueError(f"stiffness: found no {name}, expected it with shear_centre or wagner")
         return self
 
-    at_initial_pose = Elastic.at_initial_pose
+    at_initial_pose: ClassVar = Elastic.at_initial_pose
 
     @staticmethod
     def stretching(e: Symbolic, strain: list[Expr]) -> list[Stretch]:

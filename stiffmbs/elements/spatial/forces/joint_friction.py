@@ -56,12 +56,6 @@ class JointFriction(AnyJointFriction):
                 yield field, f"found one for the {joint.kind} joint '{self.joint}', expected none (for {fits} only)"
 
     @classmethod
-    def joints_by_kind(cls) -> Mapping[str, object]:
-        from ..spatial_kinds import JOINTS
-
-        return JOINTS
-
-    @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
         i, j, R, load = e.joint.i, e.joint.j, e.radius, e.joint.loads
         w = e.named(i.omega - j.omega)
