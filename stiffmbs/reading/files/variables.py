@@ -15,13 +15,9 @@ from .quoted import written
 
 
 def read_variables(
-    found: object,
-    parameters: Mapping[str, Quantity],
-    tables: Collection[str],
-    states: object = None,
-    inputs: object = None,
+    found: object, parameters: Mapping[str, Quantity], tables: Collection[str], *sections: object
 ) -> dict[str, ast.expr]:
-    """Return the syntax trees of a scene's variables by name; `states` and `inputs` are sections of the scene.
+    """Return the syntax trees of a scene's variables by name; `sections`, of states and inputs, have other names.
 
     Raise an InputError if a name is not an identifier or already has a meaning, or a formula cannot be read.
     """
@@ -35,5 +31,5 @@ def read_variables(
             raise InputError(f"variables.{name}: found {written(formula)}, expected a formula")
         formulas[name] = formula
     with prefixed("variables.", FormulaError):
-        known = [name for section in (states, inputs) if isinstance(section, dict) for name in section]
+        known = [name for section in sections if isinstance(section, dict) for name in section]
         return resolved(formulas, {*parameters, *CONSTANTS, TIME, *known})

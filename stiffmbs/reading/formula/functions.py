@@ -74,6 +74,9 @@ class FormulaFunction:
         return self.symbolic.startswith("sympy.")
 
 
+Functions = Mapping[str, FormulaFunction]
+
+
 def step_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     """Return Adams' STEP for numbers or arrays: from h0 at x0 to h1 at x1 by a cubic with zero slope at both ends."""
     z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
@@ -173,12 +176,7 @@ IN_FORMULAS = {name: function for name, function in FUNCTIONS.items() if functio
 
 
 def check_functions(
-    tree: ast.expr,
-    known: Mapping[str, FormulaFunction],
-    *,
-    tables: Words = (),
-    measures: Words = (),
-    listed: Words = (),
+    tree: ast.expr, known: Functions, *, tables: Words = (), measures: Words = (), listed: Words = ()
 ) -> None:
     """Refuse calls of unknown functions, and calls with a wrong number of arguments, by a FormulaError.
 

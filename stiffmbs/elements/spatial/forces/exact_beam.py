@@ -19,15 +19,11 @@ from ..wrench import Pairs, along_axes, force_at, torque_on
 if TYPE_CHECKING:
     from ....model.model_data import ModelData
 
-_Forces = tuple[si.Force | None, si.Force | None, si.Force | None, si.Torque | None, si.Torque | None, si.Torque | None]
-_Moments = tuple[
-    si.Torque | None,
-    si.Torque | None,
-    si.Torque | None,
-    si.BendingStiffness | None,
-    si.BendingStiffness | None,
-    si.BendingStiffness | None,
-]
+_F = si.Force | None
+_T = si.Torque | None
+_B = si.BendingStiffness | None
+_Forces = tuple[_F, _F, _F, _T, _T, _T]
+_Moments = tuple[_T, _T, _T, _B, _B, _B]
 SectionStiffness = Annotated[tuple[_Forces, _Forces, _Forces, _Moments, _Moments, _Moments], AS_WRITTEN]
 _Six = tuple[si.Force, si.Force, si.Force, si.Torque, si.Torque, si.Torque]
 _SixMoments = tuple[si.Torque, si.Torque, si.Torque, si.BendingStiffness, si.BendingStiffness, si.BendingStiffness]
