@@ -18,7 +18,6 @@ from .marker import Marker
 
 if TYPE_CHECKING:
     from ...compile.symbolic.spatial_frames import SpatialFrame
-    from ...model.model_data import ModelData
 
 
 def perpendicular(a: Matrix, b: Matrix) -> Expr:
@@ -39,7 +38,7 @@ class Condition:
     residuals: Callable[[SpatialFrame, SpatialFrame], list[Expr]]
     transmits: tuple[str, ...] = ()  # components of its reaction (`Joint.transmits`)
     # yields reasons why markers are drawn too far from the intended one of several solutions
-    initially: Callable[[ModelData, Marker, Marker], Iterator[str]] = lambda model, i, j: iter(())
+    initially: Callable[[InitialPose, Marker, Marker], Iterator[str]] = lambda pose, i, j: iter(())
 
 
 COINCIDE = Condition(("x", "y", "z"), lambda i, j: list(i.point - j.point), ("fx", "fy", "fz"))
@@ -107,4 +106,4 @@ class SpatialJoint(Pair[Marker]):
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
         for condition in self.conditions:
-            yield from condition.initially(pose.model, self.i, self.j)
+            yield from condition.initially(pose, self.i, self.j)

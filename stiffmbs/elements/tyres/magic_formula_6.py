@@ -11,16 +11,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from sympy import Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
+from sympy import Float, atan, cos, exp, pi, sin, sqrt, tan
 
 from ..element import Expr, Symbolic
 from ..roads.road import above_zero, magnitude
 from . import magic_formula as earlier
-from .magic_formula import LEAST_LOAD, Curve, Name, Slip, Torque, at_most_one, magic, sign
+from .magic_formula import LEAST_LOAD, ONE, ZERO, Curve, Name, Slip, Torque, at_most_one, divisor, magic, sign
 
 ROUNDED = Float("1e-3")
 """Width over which the arccosine of 4.104 is rounded at 1, where its slope is infinite."""
-ONE, ZERO = Rational(1), Rational(0)
 LEAST_SPIN = Float("1e-12")
 """Offset of spin torques in divisors, N m."""
 
@@ -101,11 +100,6 @@ def camber_stiffness(p: Symbolic, load: Expr, dpi: Expr, dfz: Expr) -> Expr:
     return load * (p.PKY6 + p.PKY7 * dfz) * (1 + p.PPY5 * dpi) * p.LKYC
 
 
-def divisor(stiffness: Expr) -> Expr:
-    """Return a stiffness to divide by, which is not zero for a tyre without load."""
-    return stiffness + sign(stiffness) * LEAST_LOAD + LEAST_LOAD**2
-
-
 def longitudinal(p: Symbolic, s: PressedSlip, dfz: Expr, spin: Spin, f: Name) -> Curve:
     """Return the force of pure longitudinal slip (4.E9 to 4.E18)."""
     shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX * s.moving)
@@ -153,21 +147,6 @@ def spin_shift(p: Symbolic, s: PressedSlip, dfz: Expr, spin: Spin, thrust: Expr,
     stiffness = thrust / (1 - camber_reduction(p, dfz))
     x = f(stiffness / (C * D * divisor(f(upright)) + LEAST_LOAD**2) * spin.phi)
     return f(D * sin(magic(ONE, x, C, at_most_one(p.PHYP4))) * s.direction)
-
-
-def combined(
-    p: Symbolic, s: PressedSlip, x: Curve, y: Curve, dfz: Expr, spin: Spin, f: Name
-) -> tuple[Expr, Expr, Expr]:
-    """Return Fx, Fy, and the factor G_yk on the side force (4.E50 to 4.E67)."""
-    over_alpha = f((p.RBX1 + p.RBX3 * s.gamma**2) * cos(atan(p.RBX2 * s.kappa)) * p.LXAL)
-    E = at_most_one(p.REX1 + p.REX2 * dfz)
-    fx = f(x.force * earlier.weight(over_alpha, s.alpha, p.RHX1, p.RCX1, f(E), f))
-    over_kappa = f((p.RBY1 + p.RBY4 * s.gamma**2) * cos(atan(p.RBY2 * (s.alpha - p.RBY3))) * p.LYKA)
-    E = at_most_one(p.REY1 + p.REY2 * dfz)
-    lessened = earlier.weight(over_kappa, s.kappa, f(p.RHY1 + p.RHY2 * dfz), p.RCY1, f(E), f)
-    most = y.mu * s.load * (p.RVY1 + p.RVY2 * dfz + p.RVY3 * s.gamma) * cos(atan(p.RVY4 * s.alpha)) * spin.of_fy
-    induced = f(most * sin(p.RVY5 * atan(p.RVY6 * s.kappa)) * p.LVYKA)
-    return fx, f(y.force * lessened + induced), lessened
 
 
 def with_torque(p: Symbolic, s: PressedSlip, y: Curve, lessened: Expr, dfz: Expr, spin: Spin, f: Name) -> Spin:
@@ -250,10 +229,13 @@ def slip_forces(p: Symbolic, s: PressedSlip, f: Name, mode: str, ellipse: str) -
 def _combined(
     p: Symbolic, s: PressedSlip, x: Curve, y: Curve, dfz: Expr, spin: Spin, f: Name, ellipse: str
 ) -> tuple[Expr, Expr, Expr]:
-    if not ellipse:
-        return combined(p, s, x, y, dfz, spin, f)
-    fx, fy, _ = earlier.ELLIPSES[ellipse](s, x, y, f)
-    return fx, fy, fy / divisor(y.force)
+    """Return Fx, Fy, and the factor G_yk on the side force (4.E50 to 4.E67)."""
+    if ellipse:
+        fx, fy, _ = earlier.ELLIPSES[ellipse](s, x, y, f)
+        return fx, fy, fy / divisor(y.force)
+    leaning = p.RBX3 * s.gamma**2, p.RBY4 * s.gamma**2
+    fx, fy, _, lessened = earlier.combined(p, s, x, y, dfz, f, leaning, spin.of_fy)
+    return fx, fy, lessened
 
 
 def wrench(p: Symbolic, s: PressedSlip, f: Name, ellipse: str = "") -> earlier.Forces:

@@ -47,7 +47,7 @@ class ConstantVelocity(SpatialJoint):
         return self.model_copy(update={"axes": "same" if same else "opposite"})
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
-        yield from initially_twisted(pose.model, self.i, self.j, self.at_initial_pose(pose.model).axes == "opposite")
+        yield from initially_twisted(pose, self.i, self.j, self.at_initial_pose(pose.model).axes == "opposite")
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:

@@ -32,7 +32,7 @@ class Screw(Thread):
     angle: ClassVar = staticmethod(SpatialJoint.angle)
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
-        yield from ALIGN.initially(pose.model, self.i, self.j)
+        yield from ALIGN.initially(pose, self.i, self.j)
 
     @classmethod
     def position(cls, e: Symbolic) -> list[Expr]:
