@@ -75,11 +75,8 @@ def _chosen(names: list[str], letter: str, name: str | None) -> str:
     else:
         own = names if len(names) == 1 else [key for key in names if key.upper().startswith(letter)]
     if len(own) != 1:
-        wanted = (
-            f"'{name}'"
-            if name
-            else f"exactly one with a name that begins with {letter}, or its name in the field names"
-        )
+        by_letter = f"exactly one with a name that begins with {letter}, or its name in the field names"
+        wanted = f"'{name}'" if name else by_letter
         raise InputError(f"found the matrices {', '.join(names) or 'none'}, expected {wanted}")
     return own[0]
 

@@ -37,13 +37,8 @@ def scene_schema() -> dict[str, object]:
     from .spatial_scene import SpatialScene
 
     planar: list[type[Described]] = [PlanarBody, PlanarBeam, DistributedLoad, *JOINTS.values(), *FORCES.values()]
-    spatial: list[type[Described]] = [
-        SpatialBody,
-        SpatialBeam,
-        DistributedLoad,
-        *SPATIAL_JOINTS.values(),
-        *SPATIAL_FORCES.values(),
-    ]
+    spatial: list[type[Described]] = [SpatialBody, SpatialBeam, DistributedLoad]
+    spatial += [*SPATIAL_JOINTS.values(), *SPATIAL_FORCES.values()]
     scenes: list[type[Described]] = [PlanarScene, SpatialScene]
     uses: list[type[Described]] = [PlanarUse, SpatialUse]
     found, schema = models_json_schema([(part, "validation") for part in (*scenes, *planar, *spatial, *uses)])

@@ -64,8 +64,6 @@ def enveloped(e: Symbolic, x: Expr, y: Expr, axis: Matrix) -> tuple[Expr, Expr, 
     count = len(heights)
     mean = e.named(sp.Add(*heights.values()) / count)
     pitch = e.named(sp.Add(*(side * height for (side, _), height in heights.items())) * 2 / (count * e.envelope.shift))
-    roll = (
-        sp.Add(*(offset * height for (_, offset), height in heights.items())) / (2 * squares) if len(offsets) > 1 else 0
-    )
-    roll = e.named(roll)
+    moment = sp.Add(*(offset * height for (_, offset), height in heights.items()))
+    roll = e.named(moment / (2 * squares) if len(offsets) > 1 else 0)
     return mean, e.named(pitch * forward[0] - roll * forward[1]), e.named(pitch * forward[1] + roll * forward[0])

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Self
+from typing import Self
 
 from pydantic import Field, field_validator, model_validator
 
-from ....reading.formula.field import FormulaOf
 from ....reading.formula.formula import Formula
 from ....reading.table import Table
 from ...element import Expr, Symbolic, sp
-from ...joints.point_on_curve import CAM, SLOT, Curve, repeating
+from ...joints.point_on_curve import CAM, SLOT, Curve, OfAngle, OfX, repeating
 from ..marker import Marker
 from ..primitives import IN_PLANE, along
 
@@ -33,13 +32,8 @@ class PointOnCurve(Curve[Marker]):
     equations = (*Curve.equations, *IN_PLANE.rows)
     forms = (*Curve.forms, {"y": SLOT, "z": SLOT}, {"radius": CAM, "height": CAM})
 
-    z: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(
-        None, description="Z(x), m, of a slot: a formula of x or a table; by default in the plane"
-    )
-
-    height: Annotated[Formula | Table, FormulaOf(("angle",), ("angle",), "length", time=False, table=True)] | None = (
-        Field(None, description="H(theta), m, of a cam: as its radius; by default in the plane")
-    )
+    z: OfX | None = Field(None, description="Z(x), m, of a slot: a formula of x or a table; by default in the plane")
+    height: OfAngle | None = Field(None, description="H(theta), m, of a cam: as its radius; by default in the plane")
 
     @field_validator("height")
     @classmethod
