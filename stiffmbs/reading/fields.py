@@ -116,22 +116,16 @@ class Described(_Base):
 
     @model_validator(mode="before")
     @classmethod
-    def _no_unknown_key(cls, found: object) -> object:
-        if isinstance(found, dict):
-            known = _keys(cls)
-            for key in found:
-                if key in cls.former_names:
-                    raise ValueError(f"found '{key}', expected its new name '{cls.former_names[key]}'")
-                if key not in known:
-                    raise ValueError(f"found the unknown key '{quoted(key)}'{instead_of(key, known)}{quotes_hint(key)}")
-        return found
-
-    @model_validator(mode="before")
-    @classmethod
-    def _arrays_as_lists(cls, found: object) -> object:
-        """Convert NumPy arrays and numbers to Python objects."""
+    def _of_known_keys(cls, found: object) -> object:
+        """Refuse unknown keys, and convert NumPy arrays and numbers to Python objects."""
         if not isinstance(found, dict):
             return found
+        known = _keys(cls)
+        for key in found:
+            if key in cls.former_names:
+                raise ValueError(f"found '{key}', expected its new name '{cls.former_names[key]}'")
+            if key not in known:
+                raise ValueError(f"found the unknown key '{quoted(key)}'{instead_of(key, known)}{quotes_hint(key)}")
         return {key: value.tolist() if hasattr(value, "tolist") else value for key, value in found.items()}
 
 
@@ -144,17 +138,10 @@ def _keys(described: type[Described]) -> tuple[str, ...]:
 class Measured:
     """Marker of a field as a finite number of a dimension: ``mass: Annotated[float, Measured("mass", above=0)]``.
 
-    Values are in SI units or text with units.
-
-    Parameters
-    ----------
-    dimension : str
-        One of `stiffmbs.reading.units.units.DIMENSIONS`.
-    above, at_least, at_most, other_than : float, optional
-        Bounds, and an excluded value, in SI units.
+    Values are in SI units or text with units, as are the bounds and the excluded value.
     """
 
-    dimension: str
+    dimension: str  # one of `stiffmbs.reading.units.units.DIMENSIONS`
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None

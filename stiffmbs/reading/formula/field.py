@@ -59,24 +59,13 @@ def _without_meaning(text: str, own: Container[str]) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class FormulaOf:
-    """Marker of a formula field: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``.
+    """Marker of a formula field: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``."""
 
-    Parameters
-    ----------
-    variables : tuple of str
-        Names defined by the field.
-    measured_in : tuple of str
-        Their dimensions, of `stiffmbs.reading.units.units.DIMENSIONS`.
-    dimension : str
-        Dimension of the value; `ANY` if unrestricted.
-    time, coordinates, velocities, table, states : bool
-        Permission of t, of body coordinates and measures, of their rates, of a table in place of the formula, and of
-        states without coordinates.
-    """
-
-    variables: tuple[str, ...] = ()
-    measured_in: tuple[str, ...] = ()
-    dimension: str = ANY
+    variables: tuple[str, ...] = ()  # names defined by the field
+    measured_in: tuple[str, ...] = ()  # their dimensions, of `stiffmbs.reading.units.units.DIMENSIONS`
+    dimension: str = ANY  # of the value; `ANY` if unrestricted
+    # permission of t, of body coordinates and measures, of their rates, of a table in place of the formula, and of
+    # states without coordinates
     time: bool = True
     coordinates: bool = False
     velocities: bool = False
