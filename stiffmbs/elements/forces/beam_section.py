@@ -93,10 +93,14 @@ class _Form:
             "space": space, "damped": self.damped, "n": n, "bodies": self.n_bodies, "rest": state, "f_u": to.get("f_u", "value"),
             "state": f"{space}, {self.damped}, {n}, {state}",
         }  # fmt: skip
-        return [
-            (name, f"{module} import {function}", f"{function}({arguments.format(to=to[name], **words)})")
-            for name, (module, function, arguments) in ((name, CALLS[name]) for name in places if name in CALLS)
-        ]
+        found = []
+        for name in places:
+            if name in CALLS:
+                module, function, arguments = CALLS[name]
+                found.append(
+                    (name, f"{module} import {function}", f"{function}({arguments.format(to=to[name], **words)})")
+                )
+        return found
 
     def to(self, places: Mapping[str, int]) -> dict[str, str]:
         """Return the expressions of the pointers to the values of the terms."""
