@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, fields
+from itertools import chain
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from pydantic import Field, field_validator
@@ -37,13 +38,11 @@ class Body(Described):
 
     mass: si.PositiveMass = Field(description="mass, kg")
     inertia: si.PositiveInertia = Field(description="moment of inertia about the centre of mass, kg m^2")
-    position: tuple[si.Length, si.Length] = Field(
+    position: si.Point2 = Field(
         (0.0, 0.0), description="centre of mass at the start, m; assembly changes it if joints require it"
     )
     angle: si.Angle = Field(0.0, description="angle at the start, rad")
-    velocity: tuple[si.Velocity, si.Velocity] = Field(
-        (0.0, 0.0), description="velocity of the centre of mass at the start, m/s"
-    )
+    velocity: si.Velocity2 = Field((0.0, 0.0), description="velocity of the centre of mass at the start, m/s")
     omega: si.AngularVelocity = Field(0.0, description="angular velocity at the start, rad/s")
     markers: dict[str, Placement] = Field(default_factory=dict, description="named points and directions on the body")
     geometry: PlanarGeometry = Field(
@@ -105,30 +104,19 @@ class BodyHandle(Handle):
 
 @dataclass(frozen=True)
 class BodyNumbers:
-    """Initial values and masses of all bodies, concatenated.
+    """Initial values and masses of all bodies, concatenated."""
 
-    `coordinates`, `rates`: described values at the start. `open_rates`: true for each rate that is not given. `masses`:
-    diagonal of the mass matrix.
-    """
-
+    # coordinates, rates: described values at the start
     coordinates: tuple[float, ...]
     rates: tuple[float, ...]
-    open_rates: tuple[bool, ...]
-    masses: tuple[float, ...]
+    open_rates: tuple[bool, ...]  # True for each rate that is not given
+    masses: tuple[float, ...]  # diagonal of the mass matrix
 
 
-def body_numbers(bodies: Iterable[AnyBody]) -> BodyNumbers:
+def body_numbers(bodies: Collection[AnyBody]) -> BodyNumbers:
     """Return the concatenated numbers of the given bodies."""
-    coordinates: list[float] = []
-    rates: list[float] = []
-    open_rates: list[bool] = []
-    masses: list[float] = []
-    for body in bodies:
-        coordinates += body.coordinates()
-        rates += body.rates()
-        open_rates += body.open_rates()
-        masses += body.masses()
-    return BodyNumbers(tuple(coordinates), tuple(rates), tuple(open_rates), tuple(masses))
+    names = (field.name for field in fields(BodyNumbers))
+    return BodyNumbers(*(tuple(chain.from_iterable(getattr(body, name)() for body in bodies)) for name in names))
 
 
 def check_names(names: Iterable[object], what: str) -> None:

@@ -42,6 +42,19 @@ Matrix = Any
 """SymPy column vector or matrix (`sympy.Matrix`)."""
 
 
+class _SymPy:
+    """SymPy, imported on first use: runs with compiled kernels do not load it."""
+
+    def __getattr__(self, name: str) -> Any:
+        import sympy
+
+        return getattr(sympy, name)
+
+
+sp: Any = _SymPy()
+"""Functions of SymPy for equations."""
+
+
 IN_EQUATIONS = frozenset([
     "a", "acceleration", "angle", "angles", "at_extremum", "at_root", "breakpoints", "by", "by_accelerations", "by_q", "by_u", "channel", "common_normal",
     "composed", "coordinate", "coordinates", "counts", "depends", "derivatives", "distance", "frames", "in_state", "integral", "joint_angles",
@@ -133,6 +146,11 @@ class Element(Described):
         to it; ``axes``: all three are. ``along z``: the axis alone. ``body``: none. Fields of `reflected` must have no components
         out of the plane. None: the element is not symmetric about any plane. A subclass with fields or functions of its
         own does not inherit it.
+    spin_conditions : mapping of str to str
+        Markers whose bodies may spin without changing the equations, by field, with the conditions. ``x``, ``y`` or
+        ``z``: the marker's point is on the spin axis, which is parallel to this axis of the marker. ``along x`` and so
+        on: the spin axis is parallel to it, at any distance. ``point``: its point is on the spin axis. ``body``: no
+        condition. A body with any other marker keeps its spin in its quaternion (`stiffmbs.presolve.spinning_bodies`).
     symbol : str
         Kind whose symbol drawings show; by default its own, or a diamond or a dashed line if there is none.
     """
@@ -142,6 +160,7 @@ class Element(Described):
     forms: ClassVar[tuple[Mapping[str, object], ...]] = ({},)
     reflected: ClassVar[dict[str, str] | None] = None
     symmetric_with: ClassVar[dict[str, str] | None] = None
+    spin_conditions: ClassVar[dict[str, str]] = {}
     symbol: ClassVar[str] = ""
 
     type: str = ""
@@ -203,14 +222,8 @@ class Element(Described):
         yield from ()
 
     def spins_with(self) -> dict[str, str]:
-        """Return the markers whose bodies may spin without changing the equations, by field, with the conditions.
-
-        ``x``, ``y`` or ``z``: the marker's point is on the spin axis, which is parallel to this axis of the marker.
-        ``along x`` and so on: the spin axis is parallel to it, at any distance.
-        ``point``: its point is on the spin axis. ``body``: no condition. A body with any other marker keeps its spin in
-        its quaternion (`stiffmbs.presolve.spinning_bodies`).
-        """
-        return {}
+        """Return its `spin_conditions`; none if the values of its fields do not permit a spin."""
+        return self.spin_conditions
 
     def at_initial_pose(self, model: ModelData) -> Self:
         """Return the element with open values taken from the described poses of the bodies."""

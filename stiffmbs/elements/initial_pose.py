@@ -82,25 +82,14 @@ def _drawn(value: object, model: ModelData) -> Any:
 
 @dataclass(frozen=True)
 class InitialSpatialMarker:
-    """Marker with numbers, in ground axes.
-
-    `point` of shape (3,): m. `axes` of shape (3, 3): its unit axes as columns.
-    """
+    """Marker with numbers, in ground axes: its point, m, and its unit axes, each of shape (3,)."""
 
     point: np.ndarray
-    axes: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
 
     @property
-    def x(self) -> np.ndarray:
-        """Its unit x axis, in ground axes."""
-        return self.axes[:, 0]
-
-    @property
-    def y(self) -> np.ndarray:
-        """Its unit y axis, in ground axes."""
-        return self.axes[:, 1]
-
-    @property
-    def z(self) -> np.ndarray:
-        """Its unit z axis, in ground axes."""
-        return self.axes[:, 2]
+    def axes(self) -> np.ndarray:
+        """Its unit axes as columns, shape (3, 3)."""
+        return np.column_stack((self.x, self.y, self.z))

@@ -14,11 +14,9 @@ from types import ModuleType
 from typing import Annotated, Any
 
 from ..errors import InputError
-from ..reading.did_you_mean import did_you_mean
-from ..reading.files.quoted import quoted, written
 from .element import Element
 from .own_elements import REGISTRY, check_class, dimensions_of
-from .read_by import Context, JsonSchema, ReadBy
+from .read_by import Context, JsonSchema, ReadBy, class_of
 
 
 class Kinds(Mapping[str, type[Any]]):
@@ -111,17 +109,8 @@ def any_of(kinds: Kinds) -> Any:
                 check_class(type(found))
             if kinds.fits(found):
                 return found
-        if not isinstance(found, dict):
-            raise ValueError(f"found {written(found)}, expected a mapping of keys to values")
-        if "type" not in found:
-            raise ValueError("found no 'type', expected one that the schema lists (stiffmbs schema)")
-        kind = found["type"]
-        if not isinstance(kind, str) or kind not in kinds:
-            expected = ", ".join(f"'{known}'" for known in kinds)
-            raise ValueError(
-                f"found the type '{quoted(kind)}'{did_you_mean(kind, kinds)}, expected one of {expected}, or a class registered with stiffmbs.register"
-            )
-        return kinds[kind].model_validate(found, context=context)
+        kind = class_of(found, kinds, more=", or a class registered with stiffmbs.register")
+        return kind.model_validate(found, context=context)
 
     def schema(schema_of: Callable[[type[Element]], JsonSchema]) -> JsonSchema:
         """Return the schema of any of the kinds, discriminated by ``type``."""

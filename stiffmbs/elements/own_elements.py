@@ -93,7 +93,7 @@ def register(element: type[Element]) -> type[Element]:
     """
     check_class(element)
     for dimensions in dimensions_of(element):
-        if element.kind in _shipped(dimensions, element):
+        if element.kind in kinds_of(dimensions, _base(element)).shipped:
             raise InputError(
                 f"{element.__name__}: found the kind '{element.kind}', which stiffmbs has, expected another"
             )
@@ -169,12 +169,12 @@ def _base(element: type[Element]) -> type[Element]:
     return Joint if issubclass(element, Joint) else Force
 
 
-def _shipped(dimensions: int, element: type[Element]) -> Any:
-    """Return the kinds of this package in the category of a class."""
+def kinds_of(dimensions: int, base: type[Element]) -> Any:
+    """Return the planar or spatial joints or forces (`base`) by kind."""
     from importlib import import_module
 
     kinds = import_module(".planar_kinds" if dimensions == 2 else ".spatial.spatial_kinds", __package__)
-    return (kinds.JOINTS if issubclass(element, Joint) else kinds.FORCES).shipped
+    return kinds.JOINTS if base is Joint else kinds.FORCES
 
 
 def _installed() -> Iterator[type[Element]]:

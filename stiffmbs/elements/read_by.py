@@ -10,7 +10,8 @@ from typing import Any
 from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
-from ..errors import InputError
+from ..errors import InputError, prefixed
+from ..reading.did_you_mean import did_you_mean
 from ..reading.files.files_read import file_beside
 from ..reading.files.quoted import written
 
@@ -39,6 +40,22 @@ class ReadBy:
         return self.schema(lambda kind: handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, [])))
 
 
+def class_of(
+    found: object, kinds: Mapping[str, Any], expected: str = "a mapping of keys to values", more: str = ""
+) -> Any:
+    """Return the class that the ``type`` of an entry selects.
+
+    `expected`, `more`: what an entry is in place of a mapping, and further types, for messages. Raises ValueError.
+    """
+    if not isinstance(found, dict):
+        raise ValueError(f"found {written(found)}, expected {expected}")
+    kind = found.get("type")
+    if not isinstance(kind, str) or kind not in kinds:
+        shown = "no type" if kind is None else f"the type {written(kind)}{did_you_mean(kind, kinds)}"
+        raise ValueError(f"found {shown}, expected one of {', '.join(map(repr, kinds))}{more}")
+    return kinds[kind]
+
+
 def in_file(kind: type, read: Callable[[Path], object], description: str) -> ReadBy:
     """Return the marker of a field that takes an object, or the name of a file from which it is read."""
 
@@ -48,9 +65,7 @@ def in_file(kind: type, read: Callable[[Path], object], description: str) -> Rea
             return found
         if not isinstance(found, str | Path):
             raise ValueError(f"found {written(found)}, expected the name of a file")
-        try:
+        with prefixed("", InputError, ValueError):
             return read(file_beside(context or {}, found))
-        except InputError as error:
-            raise ValueError(str(error)) from None
 
     return ReadBy(found_in_file, lambda _: {"type": "string", "description": description})

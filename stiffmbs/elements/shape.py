@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo, field_validator
 from pydantic_core import CoreSchema, core_schema
 
-from ..reading.did_you_mean import did_you_mean
 from ..reading.fields import Described
 from ..reading.files.files_read import digest_of_file, file_beside
 from ..reading.files.quoted import quoted, written
 from ..reading.units import si
-from .read_by import Context, ReadBy
+from .read_by import Context, ReadBy, class_of
 
 if TYPE_CHECKING:
     from ..model.parts.frame import Frame
@@ -112,13 +111,7 @@ def one_of(expected: str, *kinds: type[Described]) -> ReadBy:
         """Return the entry validated by the class that its type selects."""
         if isinstance(found, kinds):
             return found
-        if not isinstance(found, dict):
-            raise ValueError(f"found {written(found)}, expected {expected}")
-        kind = found.get("type")
-        if not isinstance(kind, str) or kind not in by_name:
-            shown = "no type" if kind is None else f"the type {written(kind)}{did_you_mean(kind, by_name)}"
-            raise ValueError(f"found {shown}, expected one of {', '.join(by_name)}")
-        return by_name[kind].model_validate(found, context=context)
+        return class_of(found, by_name, expected).model_validate(found, context=context)
 
     return ReadBy(read, lambda schema_of: {"oneOf": [schema_of(kind) for kind in kinds]})
 
@@ -128,7 +121,7 @@ def one_of_shapes(*shapes: type[Shape]) -> ReadBy:
     return one_of("a shape such as {type: sphere, radius: 10 mm}", *shapes)
 
 
-Point = tuple[si.Length, si.Length]
+Point = si.Point2
 
 
 class Polyline(PolylineShape):

@@ -29,21 +29,10 @@ class Front:
 
 
 class Cholesky:
-    """Factors L L^T of a symmetric positive definite matrix with three rows for each node.
+    """Factors L L^T of a symmetric positive definite matrix of shape (3 n, 3 n), with three rows for each node.
 
-    Parameters
-    ----------
-    matrix : csc_array, shape (3 n, 3 n)
-    points : ndarray, shape (n, 3)
-        Positions of the nodes.
+    `points` of shape (n, 3): positions of the nodes. Raises numpy.linalg.LinAlgError if it is not positive definite.
 
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the matrix is not positive definite.
-
-    References
-    ----------
     A. George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10 (1973) 345-363.
     J. W. H. Liu, The multifrontal method for sparse matrix solution, SIAM Review 34 (1992) 82-109.
     """
@@ -118,10 +107,7 @@ def _add_lower(target: np.ndarray, at: np.ndarray, part: np.ndarray) -> None:
 def dissection(matrix: csc_array, points: np.ndarray) -> list[np.ndarray]:
     """Return the nodes in parts, in the order of elimination: a separator of two halves comes after both.
 
-    Parameters
-    ----------
-    matrix : csc_array, shape (3 n, 3 n)
-    points : ndarray, shape (n, 3)
+    `matrix` of shape (3 n, 3 n), `points` of shape (n, 3).
     """
     blocks = matrix.tobsr((3, 3))
     entries = np.ones(len(blocks.indices), dtype=np.int8), blocks.indices, blocks.indptr

@@ -5,29 +5,31 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
+from pydantic import AfterValidator, Field, ValidationError, ValidationInfo, field_validator, model_validator
 
-from ..errors import InputError
+from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
 from ..reading.fields import Described, sentence
 from ..reading.files.quoted import written
+from ..reading.files.text_file import file_content
 from ..reading.units import si
 from .finite_elements import PRECISION, FiniteElements
 from .interfaces import POINT, Interface
 
-Point = tuple[si.Length, si.Length, si.Length]
-Direction = tuple[si.Number, si.Number, si.Number]
-NOT_CYCLES = re.compile(r"\b(rpm|rad|deg|rev)\b")
+Point = si.Point3
 
 
-def not_zero(normal: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Refuse a direction of zero length. Raises ValueError."""
+def _not_zero(normal: tuple[float, float, float]) -> tuple[float, float, float]:
     if not any(normal):
         raise ValueError("found zero, expected a direction")
     return normal
+
+
+Direction = Annotated[tuple[si.Number, si.Number, si.Number], AfterValidator(_not_zero)]
+NOT_CYCLES = re.compile(r"\b(rpm|rad|deg|rev)\b")
 
 
 class Units(Described):
@@ -70,8 +72,6 @@ class Thickness(Described):
     scale: si.PositiveNumber = Field(1.0, description="factor of the thickness")
     normal: Direction = Field(description="direction of the thickness, in the axes of the mesh")
 
-    _not_zero = field_validator("normal")(not_zero)
-
     def moved(self, points: np.ndarray, nodes: np.ndarray, scale: float) -> np.ndarray:
         """Return points stretched by a factor about the middle of the nodes, both of shape (n, 3)."""
         along = np.array(self.normal) / np.linalg.norm(self.normal)
@@ -93,8 +93,6 @@ class Plane(Described):
     point: Point = Field(description="a point of the plane in the coordinates of the mesh, m")
     normal: Direction = Field(description="normal of the plane")
     within: si.PositiveLength | None = Field(None, description="largest distance of a node, m")
-
-    _not_zero = field_validator("normal")(not_zero)
 
 
 class InterfaceOfNodes(Described):
@@ -170,26 +168,7 @@ class UpTo(Described):
 class FlexibleBody(Described):
     """Flexible body: a finite element model with interfaces, reduced by the Hurty-Craig-Bampton method.
 
-    Parameters
-    ----------
-    mesh : str, optional
-        Mesh of solid elements; it needs a material.
-    matrices : str or mapping, optional
-        NumPy archive with nodes, K and M, or files of finite element programs.
-    units : Units
-        Units of the file.
-    material : Material, optional
-    thickness : Thickness, optional
-        Stretch of a mesh along its thickness.
-    interfaces : mapping of str to InterfaceOfNodes
-    modes : int or UpTo
-        Normal modes with all interfaces held.
-    mass : float, optional
-        Stated mass, kg, compared with that of the model.
-    stiffening : bool or str
-        Geometric stiffening, which needs a mesh; ``auto`` for every body with a mesh.
-    residual_modes : bool
-        True for the static displacements under uniform accelerations, as a static correction of few normal modes.
+    A mesh needs a material; its elements are solids.
     """
 
     mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
@@ -265,7 +244,7 @@ class FlexibleBody(Described):
 
     def _read(self, folder: Path) -> FiniteElements:
         units = self.units.length, self.units.mass, self.units.time
-        contents = [content_of_file(folder / name) for name in self.files]
+        contents = self.contents(folder)
         if isinstance(files := self.matrices, Matrices):
             from .matrix_files import from_files
 
@@ -273,7 +252,7 @@ class FlexibleBody(Described):
             rows = None if files.rows is None else folder / files.rows
             names = files.stiffness_name, files.mass_name
             return from_files(stiffness, mass, nodes, rows, names, *units)
-        try:
+        with prefixed(f"{self.files[0]}: "):
             if self.matrices is not None:
                 from .matrices import from_archive
 
@@ -286,17 +265,7 @@ class FlexibleBody(Described):
                 folder / self.files[0], units[0], material.E, material.nu, material.density,
                 (lambda nodes: nodes) if stretch is None else (lambda nodes: stretch.moved(nodes, nodes, stretch.scale)),
             )  # fmt: skip
-        except InputError as error:
-            raise InputError(f"{self.files[0]}: {error}") from None
 
-
-def content_of_file(path: Path) -> bytes:
-    """Return the content of a file. Raises InputError."""
-    from ..reading.files.files_read import content_of
-
-    try:
-        return content_of(path)
-    except FileNotFoundError:
-        raise InputError(f"{path}: found no such file, expected a mesh or matrices") from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: the file cannot be read ({getattr(error, 'strerror', None) or error})") from None
+    def contents(self, folder: Path) -> list[bytes]:
+        """Return the contents of its files. `folder`: folder of relative file names. Raises InputError."""
+        return [file_content(folder / name, "a mesh or matrices") for name in self.files]

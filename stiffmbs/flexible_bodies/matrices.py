@@ -11,7 +11,9 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..errors import InputError
+from ..reading.files.quoted import first_line
 from .finite_elements import FiniteElements
+from .node_files import readable
 
 CELL = re.compile(r"^(tetra|tetra10|hexahedron|hexahedron20|hexahedron27)$|^hex(8|20|27)$|^el$")
 CELL_TYPES = {4: "tetra", 10: "tetra10", 8: "hexahedron", 20: "hexahedron20", 27: "hexahedron27"}
@@ -27,13 +29,9 @@ def from_archive(content: bytes, length: float, mass: float, time: float) -> Fin
     and ``K_indptr``. One-dimensional arrays of integers are groups of nodes, two-dimensional ones elements. `length`,
     `mass`, `time`: units of the file in m, kg and s. Raises InputError.
     """
-    try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-            arrays = dict(archive)
-    except Exception as error:  # of zipfile, zlib and NumPy
-        raise InputError(
-            f"found no NumPy archive ({_line(error)}), expected arrays nodes, K and M (numpy.savez)"
-        ) from None
+    expected = "arrays nodes, K and M (numpy.savez)"
+    with readable("NumPy archive", expected), np.load(io.BytesIO(content), allow_pickle=False) as archive:
+        arrays = dict(archive)
     if (imaginary := next((key for key, array in arrays.items() if np.iscomplexobj(array)), None)) is not None:
         raise InputError(f"{imaginary}: found complex numbers, expected real ones")
     name = next((name for name in NODES if name in arrays), None)
@@ -51,10 +49,6 @@ def from_archive(content: bytes, length: float, mass: float, time: float) -> Fin
         elif array.ndim == 2 and CELL.match(key) and array.shape[1] in CELL_TYPES:
             cells[CELL_TYPES[array.shape[1]]] = _node_numbers(key, array, len(nodes))
     return FiniteElements(nodes * length, stiffness * (mass / time**2), of_mass * mass, groups, cells)
-
-
-def _line(error: Exception) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 def _positions(nodes: np.ndarray) -> np.ndarray:
@@ -92,4 +86,6 @@ def _sparse(letter: str, arrays: Mapping[str, Any]) -> csr_array:
             f"found no array {letter}, expected it dense or as {letter}_data, {letter}_indices and {letter}_indptr"
         ) from None
     except (ValueError, TypeError, IndexError) as error:
-        raise InputError(f"{letter}: found no matrix ({_line(error)}), expected one dense or sparse by rows") from None
+        raise InputError(
+            f"{letter}: found no matrix ({first_line(error)}), expected one dense or sparse by rows"
+        ) from None

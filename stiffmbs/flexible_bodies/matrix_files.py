@@ -10,9 +10,9 @@ import numpy as np
 from scipy.io import mmread
 from scipy.sparse import csr_array, triu
 
-from ..errors import InputError, needs
+from ..errors import InputError, needs, prefixed
 from .finite_elements import FiniteElements
-from .node_files import Nodes, read_nodes, reading
+from .node_files import Nodes, read_nodes, readable
 
 NO_ROTATION = 1e-9
 """Largest entry of the rows of rotations, relative to the largest entry, that is taken as none."""
@@ -26,25 +26,14 @@ def from_files(
 ) -> FiniteElements:  # fmt: skip
     """Return the model of a stiffness matrix, a mass matrix and a list of nodes.
 
-    Parameters
-    ----------
-    stiffness, mass, nodes : Path
-    rows : Path, optional
-        File of CalculiX (.dof) with the node and component of each row.
-    names : tuple of str or None
-        Names of K and M in files with several matrices.
-    length, unit_mass, time : float
-        Units of the files in m, kg and s.
-
-    Raises
-    ------
-    InputError
+    `rows`: file of CalculiX (.dof) with the node and component of each row. `names`: names of K and M in files with
+    several matrices. `length`, `unit_mass`, `time`: units of the files in m, kg and s. Raises InputError.
     """
     found = read_nodes(nodes)
     labels = None if rows is None else _labels_of_calculix(rows)
     placed = []
     for key, path, letter, name in zip(("stiffness", "mass"), (stiffness, mass), "KM", names, strict=True):
-        with reading(key):
+        with prefixed(f"{key}: "):
             matrix, own = _read(path, letter, name)
             placed.append(_placed(matrix, labels if own is None else own, found))
     used = np.unique(placed[0].nonzero()[0] // 3)
@@ -65,13 +54,8 @@ def _read(path: Path, letter: str, name: str | None) -> Found:
     if suffix not in READERS:
         raise InputError(f"found the type '{path.suffix}', expected one of {', '.join(READERS)}")
     kind, read = READERS[suffix]
-    try:
+    with readable(kind, "one that is complete"):
         named, labels = read(path)
-    except (InputError, MemoryError):
-        raise
-    except Exception as error:  # readers raise many types
-        reason = (str(error).splitlines() or [type(error).__name__])[0]
-        raise InputError(f"found no {kind} ({reason}), expected one that is complete") from None
     key = _chosen(list(named), letter, name)
     matrix = csr_array(named[key])
     if np.iscomplexobj(matrix):
@@ -91,11 +75,8 @@ def _chosen(names: list[str], letter: str, name: str | None) -> str:
     else:
         own = names if len(names) == 1 else [key for key in names if key.upper().startswith(letter)]
     if len(own) != 1:
-        wanted = (
-            f"'{name}'"
-            if name
-            else f"exactly one with a name that begins with {letter}, or its name in the field names"
-        )
+        by_letter = f"exactly one with a name that begins with {letter}, or its name in the field names"
+        wanted = f"'{name}'" if name else by_letter
         raise InputError(f"found the matrices {', '.join(names) or 'none'}, expected {wanted}")
     return own[0]
 

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..errors import InputError, needs
+from ..reading.files.quoted import first_line
 from .finite_elements import PRECISION, FiniteElements
 from .mesh_files import for_reader, refuse_ignored, sets_of_sets
 from .solid import Solid
@@ -95,10 +96,7 @@ def _read(path: Path) -> meshio.Mesh:
     except SystemExit:
         reason = said.getvalue().partition("\n")[0] or "unknown format"
     except Exception as error:  # readers raise many types
-        reason = (
-            "reference to the unknown number " * isinstance(error, KeyError)
-            + (str(error).splitlines() or [type(error).__name__])[0]
-        )
+        reason = "reference to the unknown number " * isinstance(error, KeyError) + first_line(error)
     raise InputError(f"found no mesh ({reason}), expected Gmsh .msh, Abaqus .inp, Nastran .bdf, VTK .vtu or .vtk")
 
 
@@ -113,11 +111,7 @@ def _check_volumes(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:
         volume = np.linalg.det(edges)
         scale = np.prod(np.linalg.norm(edges, axis=2), axis=1)
         bad = np.flatnonzero(volume <= FLAT * scale)
-        if len(bad):
-            raise InputError(
-                f"found {len(bad)} inverted or flat elements, the first with nodes "
-                f"{', '.join(map(str, cells[bad[0], : CORNERS[kind]]))}, expected elements of positive volume"
-            )
+        _refuse(bad, "inverted or flat elements", cells[:, : CORNERS[kind]], "elements of positive volume")
 
 
 def _check_repeated(cells: np.ndarray, kind: str) -> None:
@@ -125,10 +119,14 @@ def _check_repeated(cells: np.ndarray, kind: str) -> None:
     corners = np.sort(cells[:, : CORNERS[kind]], axis=1)
     _, first = np.unique(corners, axis=0, return_index=True)
     repeated = np.setdiff1d(np.arange(len(cells)), first)
-    if len(repeated):
+    _refuse(repeated, "elements between the same nodes as others", cells[:, : CORNERS[kind]], "each element once")
+
+
+def _refuse(bad: np.ndarray, what: str, nodes: np.ndarray, expected: str) -> None:
+    """Refuse elements by their numbers, if there are any; the message names the nodes of the first."""
+    if len(bad):
         raise InputError(
-            f"found {len(repeated)} elements between the same nodes as others, the first with nodes "
-            f"{', '.join(map(str, cells[repeated[0], : CORNERS[kind]]))}, expected each element once"
+            f"found {len(bad)} {what}, the first with nodes {', '.join(map(str, nodes[bad[0]]))}, expected {expected}"
         )
 
 
@@ -141,12 +139,9 @@ def _check_jacobians(mesh: skfem.Mesh, element: skfem.Element, order: int, cells
     volumes = np.broadcast_to(np.linalg.det(slopes), (len(cells), places.shape[1]))
     largest = np.abs(volumes).max(axis=1) * np.where(volumes[:, 0] < 0, -1.0, 1.0)  # hexahedra are reflected here
     ratios = volumes / np.where(largest == 0, 1.0, largest)[:, None]
+    expected = "elements of positive volume; are nodes on their edges misplaced?"
     bad = np.flatnonzero(~(ratios > FLAT).all(axis=1))
-    if len(bad):
-        raise InputError(
-            f"found {len(bad)} elements that are inverted or flat in places, the first with nodes "
-            f"{', '.join(map(str, cells[bad[0]]))}, expected elements of positive volume; are nodes on their edges misplaced?"
-        )
+    _refuse(bad, "elements that are inverted or flat in places", cells, expected)
 
 
 def _assembled(

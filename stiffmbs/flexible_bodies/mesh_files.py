@@ -65,12 +65,8 @@ def _check_nastran(text: str) -> None:
                 f"found {card}, a mass besides the elements, expected none: fix a rigid body to an interface"
             )
         if line[:4].upper() == "GRID" or line[:6].upper() == "GRDSET":
-            wide = "*" in line[:8]
-            fields = (
-                line.split(",")
-                if "," in line
-                else [line[:8], line[8:24] if wide else line[8:16], line[24:40] if wide else line[16:24]]
-            )
+            second, third = (24, 40) if "*" in line[:8] else (16, 24)
+            fields = line.split(",") if "," in line else [line[:8], line[8:second], line[second:third]]
             if len(fields) > 2 and fields[2].strip() not in ("", "0"):
                 raise InputError(
                     f"found {fields[0].strip()} {fields[1].strip()} in the coordinate system {fields[2].strip()}, "

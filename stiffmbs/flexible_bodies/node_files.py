@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputError, needs
+from ..errors import InputError, needs, prefixed
+from ..reading.files.quoted import first_line
 from .mesh_files import data_lines
 
 
@@ -27,30 +28,22 @@ class Nodes:
 
 
 @contextmanager
-def reading(key: str) -> Iterator[None]:
-    """Name the key of a file in an error.
-
-    Raises
-    ------
-    InputError
-    """
+def readable(kind: str, expected: str) -> Iterator[None]:
+    """Raise an `InputError` in place of the many types that readers of other packages raise."""
     try:
         yield
-    except InputError as error:
-        raise InputError(f"{key}: {error}") from None
+    except (InputError, MemoryError):
+        raise
+    except Exception as error:
+        raise InputError(f"found no {kind} ({first_line(error)}), expected {expected}") from None
 
 
 def read_nodes(path: Path) -> Nodes:
     """Return the nodes of a file: Nastran, Abaqus or CalculiX, Ansys, or a table. Raises InputError."""
     read = READERS.get(path.suffix.lower(), _table)
-    with reading("nodes"):
-        try:
+    with prefixed("nodes: "):
+        with readable("table", "x, y and z of each node"):
             numbers, points, groups = read(path)
-        except InputError:
-            raise
-        except Exception as error:  # readers raise many types
-            reason = (str(error).splitlines() or [type(error).__name__])[0]
-            raise InputError(f"found no table ({reason}), expected x, y and z of each node") from None
         points = np.asarray(points, dtype=float)
         if points.ndim != 2 or points.shape[1] != 3 or len(points) < 3:
             raise InputError(f"found an array of shape {points.shape}, expected x, y and z of 3 or more nodes")

@@ -14,7 +14,7 @@ import numpy as np
 from ..cache.entries import Folder, digest, tag_of
 from ..cache.source_files import digest_of, python_files
 from ..errors import InputError
-from .description import FlexibleBody, UpTo, content_of_file
+from .description import FlexibleBody, UpTo
 from .reduction import ReducedBody, reduce, rigid_body
 from .second_order import SecondOrder
 
@@ -29,16 +29,7 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     """Return the reduced body, from the cache if its description and its files are unchanged.
 
     The shapes of a mesh's modes do not depend on Young's modulus and density: it is reduced once for all their values.
-
-    Parameters
-    ----------
-    body : FlexibleBody
-    folder : Path
-        Folder of relative file names.
-
-    Raises
-    ------
-    InputError
+    `folder`: folder of relative file names. Raises InputError.
     """
     modulus, density = (body.material.E, body.material.density) if body.material else (1.0, 1.0)
     highest = body.modes.up_to * np.sqrt(density / modulus) if isinstance(body.modes, UpTo) else None
@@ -84,7 +75,7 @@ def folder_of_bodies() -> Folder:
 
 
 def _key(body: FlexibleBody, highest: float | None, folder: Path) -> str:
-    contents = (hashlib.sha256(content_of_file(folder / name)).hexdigest() for name in body.files)
+    contents = (hashlib.sha256(content).hexdigest() for content in body.contents(folder))
     unused = {"stiffening", "mass", "modes"} if highest else {"stiffening", "mass"}
     described = body.model_dump_json(include=FlexibleBody.model_fields.keys() - unused)
     return digest(described, repr(highest), *contents)

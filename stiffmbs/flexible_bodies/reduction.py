@@ -110,20 +110,9 @@ def reduce(
 ) -> ReducedBody:  # fmt: skip
     """Reduce a model to its interfaces and normal modes.
 
-    Parameters
-    ----------
-    model : FiniteElements
-    interfaces : sequence of Interface
-    count : int, optional
-        Number of normal modes with all interfaces held.
-    highest : float, optional
-        Frequency up to which these are kept, Hz, without a count.
-    residual : bool
-        Add the static displacements, with all interfaces held, under the six uniform accelerations of the body.
-
-    Raises
-    ------
-    InputError
+    `count`: number of normal modes with all interfaces held. `highest`: frequency up to which these are kept, Hz, without
+    a count. `residual`: add the static displacements, with all interfaces held, under the six uniform accelerations of
+    the body. Raises InputError.
     """
     check_interfaces(list(interfaces), model)
     mass, centre, inertia = rigid_body(model)

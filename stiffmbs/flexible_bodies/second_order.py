@@ -25,6 +25,7 @@ from scipy.linalg import eigh
 
 from .finite_elements import FiniteElements
 from .interfaces import Interface
+from .solid import InitialStress
 from .static_solver import StaticSolver
 
 LOGGER = logging.getLogger(__name__)
@@ -46,20 +47,10 @@ def second_order(
     model: FiniteElements, interfaces: Sequence[Interface], solver: StaticSolver, static: np.ndarray, held: bool,
     centre: np.ndarray, modes: np.ndarray,
 ) -> SecondOrder:  # fmt: skip
-    """Return the terms of second order of modes in the mean-axes frame.
+    """Return the terms of second order of modes in the mean-axes frame, shape (3 nodes, n).
 
-    Parameters
-    ----------
-    model : FiniteElements
-    interfaces : sequence of Interface
-    solver : StaticSolver
-    static : ndarray, shape (3 nodes, coordinates)
-        Displacements by unit interface coordinates.
-    held : bool
-        True if held interfaces leave the body no rigid motion.
-    centre : ndarray, shape (3,)
-        Centre of mass.
-    modes : ndarray, shape (3 nodes, n)
+    `static` of shape (3 nodes, coordinates): displacements by unit interface coordinates. `held`: true if held
+    interfaces leave the body no rigid motion. `centre` of shape (3,): centre of mass.
     """
     n = modes.shape[1]
     if model.solid is None or n == 0:
@@ -109,7 +100,7 @@ class _WorkOfStress:
     def __init__(self, model: FiniteElements, interfaces: Sequence[Interface], modes: np.ndarray) -> None:
         self._model, self._modes = model, modes
         assert model.solid is not None
-        self._initial_stress = model.solid.initial_stress()
+        self._initial_stress = InitialStress(model.solid)
         self._turning = [
             (each.entries, model.nodes[each.nodes] - each.point, each.mean(model)[3:] @ modes[each.entries])
             for each in interfaces
@@ -119,11 +110,7 @@ class _WorkOfStress:
     def of(self, displacement: np.ndarray, load: np.ndarray | float = 0.0) -> np.ndarray:
         """Return sigma : grad psi_k^T grad psi_l, and the work at turned interfaces of forces there, shape (n, n).
 
-        Parameters
-        ----------
-        displacement : ndarray, shape (3 nodes,)
-            Displacement that causes the stress sigma; its elastic forces and the load act at the interfaces.
-        load : ndarray, shape (3 nodes,), optional
+        The displacement, shape (3 nodes,), causes the stress sigma; its elastic forces and the load act at the interfaces.
         """
         n = self._modes.shape[1]
         by_nodes = self._initial_stress.matrix(displacement)

@@ -74,19 +74,10 @@ class Solid:
         return lame * trace * identity + shear * (strain + strain.swapaxes(0, 1))
 
     def gradients(self, at_nodes: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """Return the gradients of the shape functions and the weights of the points.
+        """Return the gradients of the shape functions, 1/m, and the weights of the points, m^3.
 
-        Parameters
-        ----------
-        at_nodes : bool
-            Take the nodes of each element as points instead of those of the quadrature.
-
-        Returns
-        -------
-        ndarray, shape (nodes of an element, 3, elements, points)
-            1/m.
-        ndarray, shape (elements, points)
-            m^3.
+        Their shapes are (nodes of an element, 3, elements, points) and (elements, points). `at_nodes`: take the nodes of
+        each element as points instead of those of the quadrature.
         """
         basis = self._basis(at_nodes)
         return np.array([basis.basis[k][0].grad for k in range(len(self.nodes))]), basis.dx
@@ -115,31 +106,19 @@ class Solid:
         np.add.at(found, 3 * self.nodes[:, :, None] + np.arange(3), force)
         return found
 
-    def initial_stress(self) -> InitialStress:
-        """Return the matrices of initial stress of this body."""
-        return InitialStress(self, *self.gradients())
-
 
 class InitialStress:
-    """Matrices of initial stress of a body, with gradients and weights from `Solid.gradients`."""
+    """Matrices of initial stress of a body."""
 
-    def __init__(self, solid: Solid, gradients: np.ndarray, weights: np.ndarray) -> None:
-        self._solid, self._gradients, self._weights = solid, gradients, weights
+    def __init__(self, solid: Solid) -> None:
+        self._solid = solid
+        self._gradients, self._weights = solid.gradients()
 
     def matrix(self, displacement: np.ndarray) -> csr_array:
         """Return the integral of grad N_a . sigma . grad N_b by nodes a, b, with the stress of a displacement.
 
-        The matrix applies to each component of displacements. Zienkiewicz & Taylor, The finite element method, volume 2,
-        section on geometric stiffness.
-
-        Parameters
-        ----------
-        displacement : ndarray, shape (3 n,)
-
-        Returns
-        -------
-        csr_array, shape (n, n)
-            N/m.
+        The matrix, N/m, has the shape (n, n) and applies to each component of displacements, shape (3 n,). Zienkiewicz &
+        Taylor, The finite element method, volume 2, section on geometric stiffness.
         """
         at, nodes = self._gradients, self._solid.nodes
         stress = self._solid.stress(self._solid.displacement_gradient(at, displacement)) * self._weights
@@ -151,16 +130,8 @@ class InitialStress:
 class NodePairs:
     """Pairs of nodes that share an element: the entries of the assembled matrices.
 
-    Parameters
-    ----------
-    nodes : ndarray of int, shape (functions, elements)
-        Nodes of the shape functions of the elements.
-
-    Attributes
-    ----------
-    starts : ndarray of int, shape (n + 1,)
-    columns : ndarray of int, shape (pairs,)
-        Second nodes of the pairs, by first nodes (the format CSR).
+    `nodes` of shape (functions, elements): nodes of the shape functions of the elements. `starts`, shape (n + 1,), and
+    `columns`, shape (pairs,): second nodes of the pairs, by first nodes (the format CSR).
     """
 
     def __init__(self, nodes: np.ndarray) -> None:

@@ -36,17 +36,8 @@ class StaticSolver:
     The springs s at three nodes, the columns of E, hold the body that average interfaces alone do not, so that K_s is
     positive definite. Their forces r = s E^T u are further unknowns of the small system for mu and r.
 
-    Parameters
-    ----------
-    model : FiniteElements
-    interfaces : sequence of Interface
-    supports : ndarray, shape (3 n, k)
-        Further functionals of the displacement that are held: those of a body that its interfaces do not hold.
-
-    Raises
-    ------
-    InputError
-        If the stiffness matrix is not positive definite with the interfaces held.
+    `supports` of shape (3 n, k): further functionals of the displacement that are held, those of a body that its
+    interfaces do not hold. Raises InputError if the stiffness matrix is not positive definite with the interfaces held.
     """
 
     def __init__(self, model: FiniteElements, interfaces: Sequence[Interface], supports: np.ndarray) -> None:
@@ -127,17 +118,8 @@ class StaticSolver:
     def normal_modes(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the lowest normal modes with all interfaces held.
 
-        Returns
-        -------
-        ndarray, shape (count,)
-            Squares of the angular frequencies, 1/s^2, in increasing order.
-        ndarray, shape (3 n, count)
-            Displacements with unit modal mass, kg.
-
-        Raises
-        ------
-        InputError
-            If the model has fewer modes.
+        These are the squares of their angular frequencies, 1/s^2, in increasing order, shape (count,), and displacements
+        with unit modal mass, kg, shape (3 n, count). Raises InputError if the model has fewer modes.
         """
         n = len(self.free)
         most = n - len(self._functionals)

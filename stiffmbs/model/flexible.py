@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeVar
 
 import numpy as np
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from ..elements.body import FLEXIBLE
 from ..elements.element import Joint
@@ -25,7 +25,7 @@ from ..errors import InputError, prefixed
 from ..flexible_bodies.description import FlexibleBody
 from ..flexible_bodies.reduced import reduced_body
 from ..flexible_bodies.reduction import ReducedBody
-from ..reading.fields import Described, Measured, sentence
+from ..reading.fields import Described, Measured, located
 from ..reading.files.files_read import FOLDER, Context
 from ..reading.files.yaml_text import Content
 from ..reading.units import si
@@ -58,10 +58,10 @@ class SceneFlexibleBody(FlexibleBody):
     type: Literal["flexible"] = "flexible"
     position: Point = Field(ORIGIN, description="of the origin of the mesh at the start, m")
     orientation: Orientation = Field(IDENTITY, description="of the axes of the mesh at the start")
-    velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
+    velocity: si.Velocity3 = Field(
         (0.0, 0.0, 0.0), description="velocity of the centre of mass at the start, in ground axes, m/s"
     )
-    omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
+    omega: si.AngularVelocity3 = Field(
         (0.0, 0.0, 0.0), description="angular velocity at the start, in the axes of the mesh, rad/s"
     )
     damping: si.NumberOrZero | Rayleigh | Annotated[tuple[si.NumberOrZero, ...], Field(min_length=1)] = Field(
@@ -90,10 +90,8 @@ def with_flexible_bodies(raw: Content, context: Context) -> dict[str, object]:
         if not isinstance(entry, dict) or entry.get("type") != FLEXIBLE:
             added_bodies[name] = entry
             continue
-        try:
+        with located(f"bodies.{name}"):
             body = SceneFlexibleBody.model_validate(entry, context=dict(context))
-        except ValidationError as error:
-            raise InputError(f"bodies.{name}.{sentence(error)}") from None
         with prefixed(f"bodies.{name}: "):
             reduced = reduced_body(body, Path(context.get(FOLDER) or ""))
         parts = _Parts(name, body, reduced, Path(context.get(FOLDER) or ""))
@@ -190,16 +188,9 @@ class _Parts:
             mass=reduced.mass - len(reduced.points) * self._share, inertia=self._inertia, center_of_mass=tuple(reduced.centre),
             position=body.position, orientation=body.orientation, velocity=body.velocity, omega=body.omega, any_moments=True,
         )  # fmt: skip
-        fields = {name: getattr(frame, name) for name in Body.model_fields}
-        yield (
-            f"{self._name}.{FRAME}",
-            FloatingFrame(
-                **fields,
-                numbers=_Numbers(self._numbers(frame)),
-                modes=tuple(self._of_modes()),
-                source=(self._body, self._folder),
-            ),
-        )
+        fields: dict[str, object] = {name: getattr(frame, name) for name in Body.model_fields}
+        fields |= {"numbers": _Numbers(self._numbers(frame)), "modes": tuple(self._of_modes())}
+        yield f"{self._name}.{FRAME}", FloatingFrame(**fields, source=(self._body, self._folder))
         for name in self._of_modes():
             yield name, ModalCoordinates(mass=reduced.mass, inertia=(reduced.mass,) * 3)
         for name, point in zip(body.interfaces, reduced.points, strict=True):

@@ -48,7 +48,6 @@ class PlanarData(ModelData):
         return weights(bodies, self.gravity)
 
     def initial_marker(self, marker: MarkerReference) -> InitialMarker:
-        """Return a marker with numbers, in ground axes, at the initial pose."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return InitialMarker(np.array(placed.point), placed.angle)
@@ -57,7 +56,6 @@ class PlanarData(ModelData):
         return InitialMarker(np.array([x + c * xi - s * eta, y + s * xi + c * eta]), phi + placed.angle)
 
     def carried(self, marker: MarkerReference) -> tuple[str, Placement]:
-        """Return the body that carries a marker, and the placement on it."""
         return marker.body, self.place(marker)
 
 

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from typing import Any, overload
 
 from pydantic import TypeAdapter
-from pydantic import ValidationError as PydanticError
 
 from ..elements.body import LineBody
 from ..elements.element import Force, Joint
@@ -16,8 +15,8 @@ from ..elements.requests.order import dimensions, with_named
 from ..elements.requests.output_field import read_request
 from ..elements.states.amount import InputValue
 from ..elements.states.linear_system import StateEntry
-from ..errors import InputError
-from ..reading.fields import sentence
+from ..errors import InputError, prefixed
+from ..reading.fields import located
 from ..reading.formula.text import FormulaError
 from ..reading.given import Law
 from ..reading.marker import GROUND, MarkerReference
@@ -155,10 +154,8 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
             If the name is taken, or the value is none of these.
         """
         self._check_name(name)
-        try:
+        with located(f"inputs.{name}"):
             self.inputs[name] = TypeAdapter(InputValue).validate_python(value)
-        except PydanticError as error:
-            raise InputError(f"inputs.{name}: {sentence(error)}") from None
 
     def request(self, name: str, formula: Law | Mapping[str, Law]) -> None:
         """Report a formula as a channel of the given name, or several formulas as ``name.component``.
@@ -178,17 +175,13 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         """
         self._check_name(name)
         names = self.data_type.output_names
-        try:
+        with prefixed("", ValueError), prefixed(f"requests.{name}: ", FormulaError):
             read = read_request(names, formula, None)
             added = dict(by_channel({name: read}))
             outputs = ChainMap(added, ByChannel(self.requests))  # type: ignore[arg-type]  # it is only read
             for channel, output in added.items():
                 check_output(f"requests.{channel}", output, self, names, outputs)
             dimensions(with_named(added, outputs))
-        except FormulaError as error:
-            raise InputError(f"requests.{name}: {error}") from None
-        except ValueError as error:
-            raise InputError(str(error)) from None
         self.requests[name] = read
 
     def to_scene(self) -> str:

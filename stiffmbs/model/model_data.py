@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, ClassVar
 
 from pydantic import Field, field_validator, model_validator
 
-from ..elements.body import AnyBody, check_names
+from ..elements.body import check_names
 from ..elements.element import Element, Force, Joint
 from ..elements.initial_pose import InitialPose
 from ..elements.requests.check import by_channel, check_output
@@ -17,22 +17,19 @@ from ..elements.requests.names import OutputNames
 from ..elements.requests.order import dimensions
 from ..elements.requests.output import Output
 from ..elements.states.amount import InputValue, formulas_of_inputs
-from ..elements.states.equation import FormulaOfRate, Reported, SampledUpdate, StateName, own_state
-from ..elements.states.section import AnyState, check_formula, check_states, names_in_formulas, refuse_algebraic_loops
+from ..elements.states.equation import AngleCounter, FormulaOfRate, Reported, SampledUpdate, StateName, own_state
+from ..elements.states.section import AnyState, Scope, check_formula, check_states, names_in_formulas, refuse_loops
 from ..elements.states.state import StateValue
 from ..methods import NotebookMethods
 from ..reading.did_you_mean import instead_of
 from ..reading.fields import Described
 from ..reading.formula.formula import Formula
-from ..reading.formula.names import NAMES, FormulaNames
+from ..reading.formula.names import NAMES
 from ..reading.formula.nodes import TIME
 from ..reading.formula.text import UNIT
 from ..reading.joint_name import JointName
 from ..reading.marker import GROUND, MarkerReference, check_marker
 from ..reading.names import beginnings
-
-if TYPE_CHECKING:
-    from ..elements.states.equation import AngleCounter
 
 RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 
@@ -102,10 +99,8 @@ class ModelData(NotebookMethods, Described):
                 raise ValueError(
                     f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
                 )
-        check_states(
-            self.states, self.bodies, self.markers, self.joints, NAMES[self.dimensions], self.names_in_formulas()
-        )
-        refuse_algebraic_loops(self.state_outputs())
+        check_states(self.states, self._scope())
+        refuse_loops(self.state_outputs())
         placed = {
             f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
         }
@@ -113,11 +108,14 @@ class ModelData(NotebookMethods, Described):
         self.check_requests()
         return self
 
+    def _scope(self) -> Scope:
+        return Scope(self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas())
+
     def check_elements(self, placed: Mapping[str, Element]) -> None:
         """Refuse joints and forces with unknown references, or that cannot act at the initial pose."""
-        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas()
+        scope = self._scope()
         for where, element in placed.items():
-            check_element(where, element, *known)
+            check_element(where, element, scope)
         pose = InitialPose(self)
         for where, element in placed.items():  # requires valid references in all elements
             for reason in element.invalid_placement(pose):
@@ -219,30 +217,17 @@ class ModelData(NotebookMethods, Described):
 def contents(model: Any) -> str:
     """Return a summary of the content of a model or scene."""
     parts = []
-    for section, one in (
-        ("bodies", "body"),
-        ("states", "state"),
-        ("joints", "joint"),
-        ("forces", "force"),
-        ("requests", "request"),
-    ):
-        count = len(getattr(model, section))
+    for section in ("bodies", "states", "joints", "forces", "requests"):
+        count, one = len(getattr(model, section)), "body" if section == "bodies" else section.removesuffix("s")
         parts += [f"{count} {one if count == 1 else section}"] if count or section == "bodies" else []
     return f"'{model.name}': {', '.join(parts)}"
 
 
-def check_element(
-    where: str,
-    element: Element,
-    bodies: Mapping[str, AnyBody],
-    joints: Mapping[str, Joint],
-    on_ground: Mapping[str, object],
-    names: FormulaNames,
-    states: Collection[str],
-) -> None:
+def check_element(where: str, element: Element, scope: Scope) -> None:
     """Refuse an element with an unknown body, marker, joint or coordinate, or between a body and itself."""
     for field, marker in element.markers():
-        check_marker(f"{where}.{field}", marker, bodies, on_ground)
+        check_marker(f"{where}.{field}", marker, scope.bodies, scope.on_ground)
+    joints = scope.joints
     for field, joint in element.parts(JointName):
         owner = joint.rpartition(".")[0]
         if joint.joint not in joints and owner in joints:
@@ -260,7 +245,7 @@ def check_element(
         raise ValueError(f"{where}.{field}: {reason}")
     for field, formula in element.parts(Formula):
         written = type(element).model_fields[field].alias or field
-        check_formula(f"{where}.{written}", formula, bodies, joints, names, states)
+        check_formula(f"{where}.{written}", formula, scope)
     placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]
     if len(placed) > 1 and len(set(placed)) == 1:
         raise ValueError(f"{where}: found '{placed[0]}' on both sides, expected two different bodies")

@@ -13,7 +13,7 @@ from ..elements.body import FLEXIBLE
 from ..elements.roads.field import read_roads
 from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
-from ..reading.fields import sentence
+from ..reading.fields import is_valid, sentence
 from ..reading.files.files_read import FOLDER, record, recorded
 from ..reading.files.include import read_including
 from ..reading.files.own_sources import own_sources
@@ -24,15 +24,7 @@ from ..reading.files.yaml_text import Content, read_yaml
 from ..reading.units.units import Quantity
 from .beams.division import beams_read
 from .beams.entries import with_beams
-from .files.expand import (
-    read_parameters,
-    read_tables,
-    refuse_unused_parameters,
-    repeat_entries,
-    replaced_parameters,
-    set_value,
-    unshared,
-)
+from .files import expand
 from .files.stages import WrittenScene, with_held, written_stages
 from .parts.definitions import NAMED
 from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
@@ -40,6 +32,8 @@ from .parts.placed import with_parts
 from .parts.placing import as_written, placed_in_use, set_in_instances
 from .scene import Scene, scene_class
 
+Changes = Sequence[tuple[str, object]]
+"""Values by their paths."""
 LineOf = Callable[[tuple[object, ...]], int | str | None]
 """Function that returns the line in the source of a path of keys."""
 NO_FILES: Mapping[str, str] = MappingProxyType({})
@@ -84,7 +78,7 @@ def read_scene(
 
 def made_scene(
     found: dict[str, object],
-    changes: Sequence[tuple[str, object]],
+    changes: Changes,
     source: str,
     line_of: LineOf,
     folder: Path | None = None,
@@ -108,23 +102,21 @@ def made_scene(
     return scene
 
 
-def read_changed(
-    written: WrittenScene, changes: Sequence[tuple[str, object]], unchanged: Unchanged | None = None
-) -> Scene:
+def read_changed(written: WrittenScene, changes: Changes, unchanged: Unchanged | None = None) -> Scene:
     """Read a scene with other values, without what was validated before; errors as for `made_scene`."""
     content = copy.deepcopy(dict(written.content))
     return made_scene(content, (*written.changes, *changes), written.source, lambda _: None, written.folder, unchanged)
 
 
 def _made_scene(
-    found: dict[str, object], changes: Sequence[tuple[str, object]], source: str, line_of: LineOf, folder: Path | None,
+    found: dict[str, object], changes: Changes, source: str, line_of: LineOf, folder: Path | None,
     known: Unchanged, kept: WrittenScene | None,
 ) -> Scene:  # fmt: skip
-    found, chosen, changes = chosen_options(unshared(found), changes, source)
+    found, chosen, changes = chosen_options(expand.unshared(found), changes, source)
     parts = found.get("parts")
     found, changes = placed_in_use(found, changes)
-    refuse_unused_parameters(found, changes, (*Scene.model_fields, "vehicle", "path"))
-    replaced = replaced_parameters(found, changes)
+    expand.refuse_unused_parameters(found, changes, (*Scene.model_fields, "vehicle", "path"))
+    replaced = expand.replaced_parameters(found, changes)
     names = {section: tuple(part) if isinstance(part := found.get(section), dict) else () for section in OF_ENTRIES}
     in_parts, own = [], []
     for path, value in changes:
@@ -132,7 +124,7 @@ def _made_scene(
         if set_in_instances(path, found.get("use")):
             in_parts.append((path, read))
         else:
-            set_value(found, path, read)
+            expand.set_value(found, path, read)
             own.append(path)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
@@ -151,12 +143,12 @@ def _made_scene(
 
 
 def chosen_options(
-    found: dict[str, object], changes: Sequence[tuple[str, object]], source: str
-) -> tuple[dict[str, object], Content, Sequence[tuple[str, object]]]:
+    found: dict[str, object], changes: Changes, source: str
+) -> tuple[dict[str, object], Content, Changes]:
     """Return a scene with its chosen options merged, the choices for parts, and the other changes."""
     words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
     for path, word in words.items():
-        set_value(found, path, word)
+        expand.set_value(found, path, word)
     with prefixed(f"{source}, "):
         chosen = {"words": words_chosen(found.get(CHOOSE)), "choices": tuple(choices_of(found, OPTIONS))}
         merged = with_chosen(found, chosen["words"], OPTIONS)
@@ -203,7 +195,7 @@ def _keep_one_grid(found: dict[str, object], changed: set[str]) -> None:
                 run.pop(name, None)
 
 
-def _place(fault: tuple[object, ...], changes: Sequence[tuple[str, object]], line_of: LineOf) -> str:
+def _place(fault: tuple[object, ...], changes: Changes, line_of: LineOf) -> str:
     """Return the location of a fault, as the beginning of a message: a change, or a line."""
     for path, _ in changes:
         keys = tuple(path.split("."))
@@ -232,18 +224,15 @@ class _Located(Exception):
 
 
 def _validated(
-    found: dict[str, object],
-    replaced: Mapping[str, Quantity],
-    in_parts: Sequence[tuple[str, object]],
-    known: Mapping[str, object],
-    unchanged: Unchanged,
+    found: Content, replaced: Mapping[str, Quantity], in_parts: Changes, known: Content, unchanged: Unchanged
 ) -> Scene:
     try:
-        parameters = read_parameters(found.get("parameters"), replaced)
+        parameters = expand.read_parameters(found.get("parameters"), replaced)
         found = _with_path(found, parameters)
-        tables = read_tables(found.get("tables"), parameters)
+        tables = expand.read_tables(found.get("tables"), parameters)
         raw = {
-            key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
+            key: expand.repeat_entries(key, value, parameters) if key in SECTIONS else value
+            for key, value in found.items()
         }
         raw = with_beams(raw, parameters)
         variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
@@ -261,7 +250,7 @@ def _validated(
     try:
         scene = _family(raw).model_validate(raw, context=context)
     except PydanticError as error:
-        if "dimensions" not in raw and _right_in_space(raw, context):
+        if "dimensions" not in raw and is_valid(scene_class(3), raw, context):
             raise _Located("dimensions: found none, expected 3 for bodies in space", ("bodies",)) from None
         message = sentence(error)
         path = message.split(":")[0].split(".")
@@ -306,12 +295,3 @@ def _family(raw: dict[str, object]) -> type[Scene]:
     if found not in (2, 3):
         raise _Located(f"dimensions: found {written(found)}, expected 2 or 3", ("dimensions",))
     return scene_class(found)
-
-
-def _right_in_space(raw: dict[str, object], context: dict[str, object]) -> bool:
-    """Return True if a scene that is invalid in the plane is valid in space."""
-    try:
-        scene_class(3).model_validate(raw, context=context)
-    except PydanticError:
-        return False
-    return True

@@ -37,13 +37,8 @@ def scene_schema() -> dict[str, object]:
     from .spatial_scene import SpatialScene
 
     planar: list[type[Described]] = [PlanarBody, PlanarBeam, DistributedLoad, *JOINTS.values(), *FORCES.values()]
-    spatial: list[type[Described]] = [
-        SpatialBody,
-        SpatialBeam,
-        DistributedLoad,
-        *SPATIAL_JOINTS.values(),
-        *SPATIAL_FORCES.values(),
-    ]
+    spatial: list[type[Described]] = [SpatialBody, SpatialBeam, DistributedLoad]
+    spatial += [*SPATIAL_JOINTS.values(), *SPATIAL_FORCES.values()]
     scenes: list[type[Described]] = [PlanarScene, SpatialScene]
     uses: list[type[Described]] = [PlanarUse, SpatialUse]
     found, schema = models_json_schema([(part, "validation") for part in (*scenes, *planar, *spatial, *uses)])
@@ -85,47 +80,34 @@ def _add_parts(definitions: JsonSchemaValue, scene: JsonSchemaValue, use: JsonSc
     }
     placed = definitions[use["$ref"].rpartition("/")[2]]
     placed["additionalProperties"] = {"type": "string", "description": "a word that the part offers"}
-    used = {"type": "object", "additionalProperties": use, "description": "parts in their places, by name"}
-    words = {"type": "object", "additionalProperties": name}
-    options = {
-        "type": "object",
-        "additionalProperties": {"type": "object", "additionalProperties": {"type": ["object", "null"]}},
-        "description": "alternative sections: choice, alternative, sections",
-    }
+    used = _by_name(use, "parts in their places, by name")
+    branches = _by_name({"type": ["object", "null"]})
+    options = _by_name(branches, "alternative sections: choice, alternative, sections")
     own = {key: whole["properties"][key] for key in KEYS if key in whole["properties"]}
     number = {"anyOf": [{"type": "number"}, name]}
     vector = {"type": "array", "items": number, "minItems": 2, "maxItems": 3, "description": "a point or a direction"}
-    own["parameters"] = {"type": "object", "additionalProperties": {"anyOf": [*number["anyOf"], vector]}}
-    part = {
-        "type": "object",
-        "additionalProperties": False,
-        "properties": {
-            "include": include,
-            "use": used,
-            "mounts": {**words, "description": "further bodies that the part connects to, with their defaults"},
-            "limits": {
-                "type": "object",
-                "additionalProperties": {"enum": [*LIMITS]},
-                "description": "limits of parameters, by name",
-            },
-            OPTIONS: options,
-            **own,
-        },
-    }
+    own["parameters"] = _by_name({"anyOf": [*number["anyOf"], vector]})
+    mounts = _by_name(name, "further bodies that the part connects to, with their defaults")
+    limits = _by_name({"enum": [*LIMITS]}, "limits of parameters, by name")
+    own = {"include": include, "use": used, "mounts": mounts, "limits": limits, OPTIONS: options, **own}
+    part = {"type": "object", "additionalProperties": False, "properties": own}
     placing = {
         "type": "object",
         "properties": {"use": name, **{key: found for key, found in placed["properties"].items() if key != "part"}},
         "required": ["use"],
         "additionalProperties": placed["additionalProperties"],
     }
-    parts = {
-        "type": "object",
-        "additionalProperties": {"anyOf": [part, placing]},
-        "description": "definitions of parts, by name; or instances, with `use` for the name of a part",
-    }
-    chosen = {**words, "description": "the selected alternative of each choice of the scene or its parts"}
+    described = "definitions of parts, by name; or instances, with `use` for the name of a part"
+    parts = _by_name({"anyOf": [part, placing]}, described)
+    chosen = _by_name(name, "the selected alternative of each choice of the scene or its parts")
     whole["properties"] |= {"include": include, "parts": parts, "use": used, OPTIONS: options, CHOOSE: chosen}
     whole["required"] = [key for key in whole["required"] if key != "bodies"]
     if not whole["required"]:
         del whole["required"]
     whole["anyOf"] = [{"required": [key]} for key in ("bodies", "include", "use", "parts")]
+
+
+def _by_name(values: JsonSchemaValue, description: str = "") -> JsonSchemaValue:
+    """Return the schema of a mapping of names to some values."""
+    described = {"description": description} if description else {}
+    return {"type": "object", "additionalProperties": values, **described}

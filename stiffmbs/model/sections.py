@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from typing import Any, ClassVar, Generic, TypeVar
 
 from ..elements.body import AnyBody, check_names
@@ -10,8 +10,8 @@ from ..elements.element import Element, Force, Joint
 from ..elements.kinds import Kinds
 from ..elements.own_elements import check_class
 from ..elements.states.linear_system import StateEntry
-from ..elements.states.section import check_states, names_in_formulas
-from ..errors import InputError
+from ..elements.states.section import Scope, check_states, names_in_formulas
+from ..errors import InputError, prefixed
 from ..reading.did_you_mean import did_you_mean
 from ..reading.fields import Described
 from ..reading.formula.names import NAMES
@@ -25,20 +25,12 @@ BodyHandle = TypeVar("BodyHandle", bound=Handle)
 
 
 class Sections(Generic[Data, Body, BodyHandle]):
-    """Parts of a model by section and name.
-
-    Attributes
-    ----------
-    data_type, body_type, handle_type : types
-        Classes of the model data, of its bodies, and of the handles of bodies.
-    kinds : Kinds, Kinds
-        Joints and forces of the family, by kind.
-    """
+    """Parts of a model by section and name."""
 
     data_type: type[Data]
     body_type: type[Body]
     handle_type: type[BodyHandle]
-    kinds: ClassVar[tuple[Kinds, Kinds]]
+    kinds: ClassVar[tuple[Kinds, Kinds]]  # joints and forces of the family, by kind
 
     def __init__(self, name: str, gravity: object) -> None:
         self.name = name
@@ -82,10 +74,11 @@ class Sections(Generic[Data, Body, BodyHandle]):
         """Change a section; restore it if other parts then refer to missing ones."""
         before = dict(section)
         change()
+        scope = self._scope(self._names())
         try:
             for other, element in (*self.joints.items(), *self.forces.items()):
-                self._check_element(other, element)
-            self._check_states(self.states, self._names())
+                check_element(other, element, scope)
+            check_states(self.states, scope)
             self.data_type.model_construct(**self._content()).check_requests()
         except ValueError as error:
             section.clear()
@@ -103,10 +96,8 @@ class Sections(Generic[Data, Body, BodyHandle]):
 
     @staticmethod
     def _check_spelling(name: object, what: str) -> None:
-        try:
+        with prefixed("", ValueError):
             check_names([name], what)
-        except ValueError as error:
-            raise InputError(str(error)) from None
 
     def _check_name(self, name: str) -> None:
         self._check_spelling(name, "part")
@@ -114,23 +105,17 @@ class Sections(Generic[Data, Body, BodyHandle]):
             raise InputError(f"{name}: found a name that is taken or reserved, expected another")
 
     def _check(self, name: str, part: Described) -> None:
-        try:
+        with prefixed("", ValueError):
             if isinstance(part, Element):
-                self._check_element(name, part)
+                check_element(name, part, self._scope(self._names()))
             if isinstance(part, StateEntry):
-                self._check_states({name: part}, known=None)
-        except ValueError as error:
-            raise InputError(str(error)) from None
-
-    def _check_element(self, name: str, part: Element) -> None:
-        names = NAMES[self._dimensions()]
-        check_element(name, part, self.bodies, self.joints, self.markers, names, self._names())
+                check_states({name: part}, self._scope(None))
 
     def _names(self) -> set[str]:
         return names_in_formulas(self.states) | set(self.inputs)
 
-    def _check_states(self, states: Mapping[str, StateEntry], known: Collection[str] | None) -> None:
-        check_states(states, self.bodies, self.markers, self.joints, NAMES[self._dimensions()], known)
+    def _scope(self, states: Collection[str] | None) -> Scope:
+        return Scope(self.bodies, self.joints, self.markers, NAMES[self._dimensions()], states)
 
     def _content(self) -> dict[str, Any]:
         sections = ("name", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests")

@@ -142,6 +142,7 @@ class RunSettings(Described):
 
     @model_validator(mode="after")
     def _one_grid(self) -> RunSettings:
+        """Refuse two grids of output points, too many points, and spacings below the rounding error of the time."""
         if self.output is not None and self.points is not None:
             raise ValueError("found both 'output' and 'points', expected one of them")
         if isinstance(self.points, int) and self.points < 2:
@@ -151,11 +152,6 @@ class RunSettings(Described):
             raise ValueError(
                 f"found {min(asked, float_info.max):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
             )
-        return self
-
-    @model_validator(mode="after")
-    def _distinguished(self) -> RunSettings:
-        """Refuse output points whose spacing is below the rounding error of the time."""
         if self.duration < SHORTEST:
             raise ValueError(f"duration: found {self.duration:.3g} s, expected {SHORTEST:.0e} s or more")
         count = self.points - 1 if isinstance(self.points, int) else FEWEST_APART
@@ -178,9 +174,7 @@ class SteadyMotion(Described):
     velocity: tuple[si.Velocity, ...] = Field(
         (), description="of every point in addition to the rotation, in ground axes, m/s: one number for each dimension"
     )
-    rotation: (
-        Literal["found"] | si.AngularVelocity | tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity]
-    ) = Field(
+    rotation: Literal["found"] | si.AngularVelocity | si.AngularVelocity3 = Field(
         0.0,
         description="angular velocity, rad/s: a number in the plane, in space a vector in ground axes, or a number about the direction opposite to gravity; `found` if forces determine it, as for a car that pulls to one side (also if no rotation is given and the forces do not balance on a straight line)",
     )

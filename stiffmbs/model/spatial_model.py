@@ -90,16 +90,14 @@ class SpatialData(ModelData):
             yield from flexible_inertias(bodies, self.gravity)
 
     def initial_marker(self, marker: MarkerReference) -> InitialSpatialMarker:
-        """Return a marker with numbers, in ground axes, at the initial pose."""
         placed = self.place(marker)
         if marker.body == GROUND:
-            return InitialSpatialMarker(np.array(placed.point), matrix(placed.orientation))
+            return InitialSpatialMarker(np.array(placed.point), *matrix(placed.orientation).T)
         body = self.bodies[marker.body]
         point = np.array(body.position) + rotated(body.orientation, placed.point)
-        return InitialSpatialMarker(point, matrix(product(body.orientation, placed.orientation)))
+        return InitialSpatialMarker(point, *matrix(product(body.orientation, placed.orientation)).T)
 
     def carried(self, marker: MarkerReference) -> tuple[str, Placement]:
-        """Return the body that carries a marker, and the placement from its centre of mass in the principal axes."""
         placed = self.place(marker)
         return marker.body, placed if marker.body == GROUND else self.bodies[marker.body].carried(placed)
 

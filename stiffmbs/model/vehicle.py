@@ -18,8 +18,7 @@ from ..elements.spatial.spatial_kinds import FORCES
 from ..elements.spatial.tyre import Tyre
 from ..errors import InputError
 from ..reading.did_you_mean import instead_of
-from ..reading.fields import Described, located
-from ..reading.files.quoted import written
+from ..reading.fields import Described, located, mapping
 
 VEHICLE = "vehicle"
 WHOLE = {
@@ -92,11 +91,9 @@ def with_vehicle(raw: dict[str, object], context: Mapping[str, object]) -> dict[
     `raw`: spatial scene with its parts expanded. `context`: validation context. Raises InputError if the section is
     invalid, or names a body or a tyre that the scene lacks.
     """
-    if raw.get(VEHICLE) is None:
-        return raw
     with located(VEHICLE):
         vehicle = Vehicle.model_validate(raw[VEHICLE], context=context)
-    bodies, forces, requests = (_section(raw, name) for name in ("bodies", "forces", "requests"))
+    bodies, forces, requests = (mapping(raw.get(name) or {}, name) for name in ("bodies", "forces", "requests"))
     if vehicle.body not in bodies:
         raise InputError(f"{VEHICLE}.body: found '{vehicle.body}'{instead_of(vehicle.body, bodies)}")
     if VEHICLE in requests:
@@ -156,10 +153,3 @@ def _with_markers(body: object, markers: Mapping[str, object]) -> object:
         placed = {name: Placement.model_validate(marker) for name, marker in markers.items()}
         return body.model_copy(update={"markers": {**own, **placed}})
     return {**body, "markers": {**own, **markers}} if isinstance(body, dict) else body
-
-
-def _section(raw: Mapping[str, object], name: str) -> dict[str, object]:
-    found = raw.get(name) or {}
-    if not isinstance(found, dict):
-        raise InputError(f"{name}: found {written(found)}, expected a mapping of names to entries")
-    return found

@@ -28,7 +28,7 @@ from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 from ..errors import InputError
 from .did_you_mean import did_you_mean, instead_of
-from .files.quoted import quoted, written
+from .files.quoted import first_line, quoted, written
 from .files.yaml_text import quotes_hint
 from .formula.text import FormulaError
 from .units.quantity import in_si
@@ -57,7 +57,7 @@ class _OneSentence(type(BaseModel)):  # type: ignore[misc]
         try:
             made = super().__new__(mcs, name, *arguments, **options)
         except PydanticUserError as error:
-            raise InputError(f"{name}: {_first_line(error)}") from error
+            raise InputError(f"{name}: {first_line(error)}") from error
         if not made.__pydantic_complete__:
             made.__signature__ = _SignatureWhenAsked()
         return made
@@ -72,11 +72,7 @@ class _OneSentence(type(BaseModel)):  # type: ignore[misc]
         except PydanticError as error:
             raise InputError(f"{cls.__name__}: {sentence(error)}") from None
         except PydanticUserError as error:  # a type that was unknown when the class was defined
-            raise InputError(f"{cls.__name__}: {_first_line(error)}") from error
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).splitlines()[0]
+            raise InputError(f"{cls.__name__}: {first_line(error)}") from error
 
 
 if TYPE_CHECKING:
@@ -120,22 +116,16 @@ class Described(_Base):
 
     @model_validator(mode="before")
     @classmethod
-    def _no_unknown_key(cls, found: object) -> object:
-        if isinstance(found, dict):
-            known = _keys(cls)
-            for key in found:
-                if key in cls.former_names:
-                    raise ValueError(f"found '{key}', expected its new name '{cls.former_names[key]}'")
-                if key not in known:
-                    raise ValueError(f"found the unknown key '{quoted(key)}'{instead_of(key, known)}{quotes_hint(key)}")
-        return found
-
-    @model_validator(mode="before")
-    @classmethod
-    def _arrays_as_lists(cls, found: object) -> object:
-        """Convert NumPy arrays and numbers to Python objects."""
+    def _of_known_keys(cls, found: object) -> object:
+        """Refuse unknown keys, and convert NumPy arrays and numbers to Python objects."""
         if not isinstance(found, dict):
             return found
+        known = _keys(cls)
+        for key in found:
+            if key in cls.former_names:
+                raise ValueError(f"found '{key}', expected its new name '{cls.former_names[key]}'")
+            if key not in known:
+                raise ValueError(f"found the unknown key '{quoted(key)}'{instead_of(key, known)}{quotes_hint(key)}")
         return {key: value.tolist() if hasattr(value, "tolist") else value for key, value in found.items()}
 
 
@@ -148,17 +138,10 @@ def _keys(described: type[Described]) -> tuple[str, ...]:
 class Measured:
     """Marker of a field as a finite number of a dimension: ``mass: Annotated[float, Measured("mass", above=0)]``.
 
-    Values are in SI units or text with units.
-
-    Parameters
-    ----------
-    dimension : str
-        One of `stiffmbs.reading.units.units.DIMENSIONS`.
-    above, at_least, at_most, other_than : float, optional
-        Bounds, and an excluded value, in SI units.
+    Values are in SI units or text with units, as are the bounds and the excluded value.
     """
 
-    dimension: str
+    dimension: str  # one of `stiffmbs.reading.units.units.DIMENSIONS`
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None
@@ -196,15 +179,20 @@ class Measured:
         return {"anyOf": [{"type": "number", **number, **excluded}, text], "description": f"{self.dimension}, {unit}"}
 
 
+def mapping(found: object, where: str, of: str = "names to entries") -> dict[Any, Any]:
+    """Return a mapping as written. Raises InputError for anything else; `of` are its contents, for the message."""
+    if not isinstance(found, dict):
+        raise InputError(f"{where}: found {written(found)}, expected a mapping of {of}")
+    return found
+
+
 def named_entries(section: str, found: object, values: str) -> Iterator[tuple[str, object]]:
     """Yield the entries of a section of a scene.
 
     `found`: the section as written. `values`: kind of the entries, for messages. Raises InputError if the section is
     not a mapping, or a name is not an identifier.
     """
-    if found is not None and not isinstance(found, dict):
-        raise InputError(f"{section}: found {written(found)}, expected a mapping of names to {values}")
-    for name, entry in (found or {}).items():
+    for name, entry in mapping({} if found is None else found, section, f"names to {values}").items():
         if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
             raise InputError(
                 f"{section}: found the name {written(name)}, expected letters, digits and _{quotes_hint(name)}"
@@ -231,6 +219,15 @@ def located(where: str) -> Iterator[None]:
         message = sentence(error) if isinstance(error, PydanticError) else str(error)
         begins_with_field = isinstance(error, PydanticError) and " " not in message.partition(":")[0]
         raise InputError(f"{where}{'.' if begins_with_field else ': '}{message}") from None
+
+
+def is_valid(described: type[Described], found: object, context: Mapping[str, object]) -> bool:
+    """Return True if an entry can be read as a description."""
+    try:
+        described.model_validate(found, context=dict(context))
+    except PydanticError:
+        return False
+    return True
 
 
 def location(parts: tuple[object, ...]) -> str:

@@ -30,9 +30,7 @@ _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a b
 class Placement(Described):
     """Position and direction of a named marker on its body."""
 
-    point: tuple[si.Length, si.Length] = Field(
-        (0.0, 0.0), description="position in the body's own axes, from its centre of mass, m"
-    )
+    point: si.Point2 = Field((0.0, 0.0), description="position in the body's own axes, from its centre of mass, m")
     angle: si.Angle = Field(0.0, description="direction of the marker's axis relative to the body's, rad")
 
     def numbers(self) -> tuple[float, ...]:
@@ -104,11 +102,10 @@ class Marker(MarkerReference):
 
     dimensions: ClassVar[Literal[2]] = 2
 
-    point: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="position in the body's own axes, m")
+    point: si.Point2 = Field((0.0, 0.0), description="position in the body's own axes, m")
     angle: si.Angle = Field(0.0, description="direction of the axis relative to the body's, rad")
 
     def placement(self) -> Placement:
-        """Return the explicit placement on the body."""
         return Placement.model_construct(point=self.point, angle=self.angle)  # checked already
 
 

@@ -162,10 +162,8 @@ def _quantities(texts: Sequence[str]) -> list[Quantity]:
 
 def number(text: str) -> float:
     """Read a number, or a quantity with a unit, in SI units; raise an InputError if the text is neither."""
-    try:
+    with prefixed("", FormulaError):
         return quantity(text).value
-    except FormulaError as error:
-        raise InputError(str(error)) from None
 
 
 def _listed(place: str, name: str, given: str) -> Variation:

@@ -190,7 +190,7 @@ def test_faults_are_told_with_their_place(tmp_path, layout, change, old, new, sa
 def test_roads_that_turn_too_far_or_fold_are_refused(tmp_path):
     with pytest.raises(InputError, match="deg off its mean direction"):
         CrgRoad(file=written(tmp_path / "turn.crg", bend=0.1))
-    with pytest.raises(InputError, match=r"nowhere\.crg: the file cannot be read"):
+    with pytest.raises(InputError, match=r"nowhere\.crg: found no such file"):
         CrgRoad(file="nowhere.crg")
 
 

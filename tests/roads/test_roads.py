@@ -187,7 +187,7 @@ def found_text(found):
 @pytest.mark.parametrize(
     ("road", "name", "said"),
     [
-        ("hump", "bumpy", "found the type 'hump' of a road, expected one of 'flat'"),
+        ("hump", "bumpy", "found the type 'hump', expected one of 'flat'"),
         (
             "step, start: 1, length: 0, rise: 1",
             "bumpy",

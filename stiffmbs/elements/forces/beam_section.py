@@ -7,12 +7,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from ...reading.marker import MarkerReference
 from ...reading.units import si
 from ..element import CompiledTerms, Force
-from .beam_strain import BEYOND, DOUBT
+from .beam_strain import BEYOND, DOUBT, DampingRatio
 
 NATIVE = "stiffmbs.compile.machine.native"
 CALLS = {
@@ -44,12 +44,7 @@ class BeamSectionLaw(Force):
     length: si.PositiveLength = Field(description="length of the beam represented by the section, m")
     unloaded: Any
     stiffness: Any
-    damping_ratio: si.TimeOrZero | None = Field(None, description="viscous over elastic stiffness, s")
-
-    @field_validator("damping_ratio")
-    @classmethod
-    def _none_for_zero(cls, found: float | None) -> float | None:
-        return found or None
+    damping_ratio: DampingRatio = Field(None, description="viscous over elastic stiffness, s")
 
     @model_validator(mode="after")
     def _of_nodes(self) -> Any:

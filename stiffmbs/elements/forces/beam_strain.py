@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar, NamedTuple
+from typing import Annotated, ClassVar, NamedTuple
 
-from pydantic import Field, field_validator
+from pydantic import AfterValidator, Field, field_validator
 
 from ...reading.units import si
 from ..element import Expr, Force, Symbolic
 from .elastic_matrix import times
 
 BEYOND = "found its ends rotated by three quarters of a revolution relative to each other, expected less; divide the beam into more elements"
+DampingRatio = Annotated[si.TimeOrZero | None, AfterValidator(lambda found: found or None)]
+"""Damping ratio; None for zero, for which nothing is computed."""
 DOUBT = "rotates its ends by more than half a revolution relative to each other; divide the beam into more elements"
 
 
@@ -33,7 +35,7 @@ class BeamStrain(Force):
     doubt: ClassVar[str] = DOUBT
 
     length: si.PositiveLength = Field(description="L, without load, m")
-    damping_ratio: si.TimeOrZero | None = Field(None, description="viscous over elastic stiffness, s")
+    damping_ratio: DampingRatio = Field(None, description="viscous over elastic stiffness, s")
     bowing: tuple[si.NumberOrZero, ...] | None = Field(
         None, description="b for each shear, so that the axis is stretched by b/2 shear^2: 6/5 for a slender element"
     )

@@ -10,7 +10,7 @@ from ...reading.formula.field import ForceOfDeflection, TorqueOfDeflection
 from ...reading.marker import Marker
 from ...reading.units import si
 from ..element import Expr, Force, Symbolic
-from .elastic_matrix import C, Cc, Ct, K, Kc, Kt, check_symmetric, from_diagonal, stored_with_laws, times
+from .elastic_matrix import REFLECTED, C, Cc, Ct, K, Kc, Kt, check_symmetric, from_diagonal, stored_with_laws, times
 
 _AS_WRITTEN = WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})
 Stiffness = Annotated[tuple[tuple[K, K, Kc], tuple[K, K, Kc], tuple[Kc, Kc, Kt]], _AS_WRITTEN]
@@ -39,14 +39,7 @@ class Bushing(Force):
 
     kind = "bushing"
     forms = ({"stiffness": ..., "damping": ...}, {"stiffness": ..., "damping": ..., "axes": "ground"})
-    reflected = {
-        "stiffness": "matrix",
-        "damping": "matrix",
-        "preload": "components",
-        "law_x": "x",
-        "law_y": "y",
-        "law_angle": "angle",
-    }
+    reflected = {**REFLECTED, "law_x": "x", "law_y": "y", "law_angle": "angle"}
 
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")
     j: Marker = Field(description="marker of the second body, whose direction orients the bushing")

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from ...reading.fields import Measured
 from ...reading.marker import Marker
 from ...reading.units import si
-from ..element import Expr, Matrix, Symbolic
+from ..element import Expr, Matrix, Symbolic, sp
 from .friction import Friction
 
 
@@ -20,7 +20,7 @@ class PressedSurfaces(Friction):
     With the penetration delta = -gap > 0 the normal force is N = k delta^n (1 + chi delta'), not negative.
     """
 
-    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^n")
+    stiffness: si.PositiveValue = Field(description="k, N/m^n")
     exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
     dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
 
@@ -43,18 +43,14 @@ class PressedSurfaces(Friction):
     @classmethod
     def pressure(cls, e: Symbolic) -> Expr:
         """Return the normal force N, zero without contact."""
-        from sympy import And, Piecewise
-
         gap = e.named(cls.gap(e))
         damped = e.named(1 - e.dissipation * cls.opening(e))
-        return Piecewise((e.stiffness * (-gap) ** e.exponent * damped, And(gap < 0, damped > 0)), (0, True))
+        return sp.Piecewise((e.stiffness * (-gap) ** e.exponent * damped, sp.And(gap < 0, damped > 0)), (0, True))
 
     @classmethod
     def event_functions(cls, e: Symbolic) -> Sequence[Expr]:
         """Return an expression that is positive while N > 0; dissipation can end N before the surfaces separate."""
-        from sympy import Min
-
-        return (Min(-e.named(cls.gap(e)), 1 - e.dissipation * cls.opening(e)),)
+        return (sp.Min(-e.named(cls.gap(e)), 1 - e.dissipation * cls.opening(e)),)
 
 
 class ContactLaw(PressedSurfaces):
@@ -97,7 +93,6 @@ class ContactLaw(PressedSurfaces):
 
     @classmethod
     def gap(cls, e: Symbolic) -> Expr:
-        """Return the distance of the surfaces, m; negative for a penetration."""
         outward = cls.outward(e)
         if not outward:
             return (e.i.point - e.j.point).dot(cls.out_of(e)) - e.radius
@@ -105,10 +100,8 @@ class ContactLaw(PressedSurfaces):
 
     @classmethod
     def potential(cls, e: Symbolic) -> Expr:
-        from sympy import Piecewise
-
         gap, power = cls.gap(e), e.exponent + 1
-        return Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True))
+        return sp.Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True))
 
 
 class Contact(ContactLaw):

@@ -17,6 +17,9 @@ Cc = si.CouplingDamping | None
 Ct = si.TorsionalDamping | None
 """Entries of stiffness and damping matrices: of forces, of coupling, of torques."""
 
+REFLECTED = {"stiffness": "matrix", "damping": "matrix", "preload": "components"}
+"""Transformation of the fields of bushings and fields in a mirror image (`stiffmbs.elements.element.Element`)."""
+
 Rows = Sequence[Sequence[Expr | None]]
 """Rows of a matrix: numbers or symbols; None for uncoupled directions."""
 

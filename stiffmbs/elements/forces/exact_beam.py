@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, WithJsonSchema, field_validator
 
-from ...reading.fields import Measured
 from ...reading.marker import Marker
 from ...reading.units import si
 from ..element import Expr, Symbolic
@@ -15,13 +14,15 @@ from .beam_section import BeamSectionLaw
 from .beam_strain import BeamStrain
 from .elastic_matrix import check_symmetric, from_diagonal
 
-_Bending = Annotated[float, Measured("bending stiffness")]
 _Forces = tuple[si.Force | None, si.Force | None, si.Torque | None]
 _Three = tuple[si.Force, si.Force, si.Torque]
 SectionStiffness = Annotated[
-    tuple[_Forces, _Forces, tuple[si.Torque | None, si.Torque | None, _Bending | None]],
+    tuple[_Forces, _Forces, tuple[si.Torque | None, si.Torque | None, si.BendingStiffness | None]],
     WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3}),
 ]
+Strain = tuple[si.Number, si.Number, si.Curvature]
+_described = "strain without load: 1, 0, and the curvature of the axis, rad/m"
+UNLOADED: Any = Field((1.0, 0.0, 0.0), description=_described)
 
 
 class ExactBeam(BeamStrain):
@@ -59,17 +60,10 @@ class ExactBeam(BeamStrain):
     i: Marker = Field(description="marker at the end, on whose body force and torque are reported")
     j: Marker = Field(description="marker at the beginning")
     stiffness: SectionStiffness = Field(description="K: EA, GA (N), EI (N m^2), or a symmetric 3x3 matrix")
-    unloaded: tuple[si.Number, si.Number, Annotated[float, Measured("curvature")]] = Field(
-        (1.0, 0.0, 0.0), description="strain without load: 1, 0, and the curvature of the axis, rad/m"
-    )
+    unloaded: Strain = UNLOADED
 
     _diagonal = field_validator("stiffness", mode="before")(from_diagonal)
     _symmetric = field_validator("stiffness")(check_symmetric)
-
-    @field_validator("damping_ratio")
-    @classmethod
-    def _none_for_zero(cls, found: float | None) -> float | None:
-        return found or None
 
     @classmethod
     def powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
@@ -102,10 +96,8 @@ class BeamSection(BeamSectionLaw):
     nodes: tuple[Marker, ...] = Field(
         description="markers of the nodes, whose axes are tangents", min_length=3, max_length=5
     )
-    unloaded: tuple[si.Number, si.Number, Annotated[float, Measured("curvature")]] = Field(
-        (1.0, 0.0, 0.0), description="strain without load: 1, 0, and the curvature of the axis, rad/m"
-    )
-    stiffness: tuple[_Three, _Three, tuple[si.Torque, si.Torque, _Bending]] = Field(
+    unloaded: Strain = UNLOADED
+    stiffness: tuple[_Three, _Three, tuple[si.Torque, si.Torque, si.BendingStiffness]] = Field(
         description="K: a symmetric 3x3 matrix of EA, GA (N), EI (N m^2)"
     )
 

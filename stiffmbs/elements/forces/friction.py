@@ -9,7 +9,7 @@ from typing import ClassVar
 from pydantic import Field
 
 from ...reading.units import si
-from ..element import Expr, Force, Symbolic
+from ..element import Expr, Force, Symbolic, sp
 
 TINY = 1e-24
 """Offset under the root of a reaction's magnitude, N^2 or N^2 m^2, for a finite derivative at zero."""
@@ -19,9 +19,7 @@ AT_REST = 1e-6
 
 def magnitude(*parts: Expr, tiny: Expr = TINY) -> Expr:
     """Return the magnitude of a vector, with a finite derivative at zero."""
-    from sympy import sqrt
-
-    return sqrt(sum(part**2 for part in parts) + tiny)
+    return sp.sqrt(sum(part**2 for part in parts) + tiny)
 
 
 class Friction(Force):
@@ -57,10 +55,8 @@ class Friction(Force):
     @staticmethod
     def coefficient(e: Symbolic, v: Expr) -> Expr:
         """Return mu at a sliding speed, with the sign of the speed."""
-        from sympy import exp, tanh
-
         peak = e.static_friction - e.friction if e.static_friction is not None else 0
-        return (e.friction + peak * exp(-((v / e.friction_velocity) ** 2))) * tanh(v / e.stiction_velocity)
+        return (e.friction + peak * sp.exp(-((v / e.friction_velocity) ** 2))) * sp.tanh(v / e.stiction_velocity)
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
 from ...reading.joint_name import JointReference
 from ...reading.units import si
 from ..element import Expr, Joint, Matrix, Symbolic
+from ..own_elements import kinds_of
 from .friction import Friction
 
 PIN, GUIDE, SLEEVE, BALL = ("angle",), ("displacement",), ("displacement", "angle"), ()
@@ -29,7 +30,6 @@ class AnyJointFriction(Friction):
     length: si.PositiveLength | None = Field(None, description="length of a guide or bearing, for its moment, m")
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
-        """Yield the fields that do not fit the joint, each with its message."""
         joint = joints[self.joint.joint]
         if type(joint).loads is Joint.loads:
             *others, last = self.frictional_kinds()
@@ -40,16 +40,11 @@ class AnyJointFriction(Friction):
             yield "radius", f"found none for the {joint.kind} joint '{self.joint}', expected the radius of its {part}"
 
     @classmethod
-    def joints_by_kind(cls) -> Mapping[str, Any]:
-        """Return the classes of planar or spatial joints by kind."""
-        raise NotImplementedError
-
-    @classmethod
     def frictional_kinds(cls, *sorts: tuple[str, ...]) -> list[str]:
         """Return the kinds of joints that can have friction, optionally of some categories only."""
         return [
             kind
-            for kind, joint in cls.joints_by_kind().items()
+            for kind, joint in kinds_of(cls.dimensions[0], Joint).items()
             if joint.loads is not Joint.loads and (not sorts or joint.coordinates in sorts)
         ]
 
@@ -77,12 +72,6 @@ class JointFriction(AnyJointFriction):
         {"joint": "slider"},
         {"joint": "slider", "friction": 0.1, "static_friction": 0.2},
     )
-
-    @classmethod
-    def joints_by_kind(cls) -> Mapping[str, object]:
-        from ..planar_kinds import JOINTS
-
-        return JOINTS
 
     @classmethod
     def efforts(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:

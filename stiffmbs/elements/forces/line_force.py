@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Generic
+from typing import Generic
 
 from pydantic import Field
 
 from ...reading.formula.field import ForceOfMotion
 from ...reading.marker import M, Marker
 from ..element import Expr, Force, Symbolic
-
-if TYPE_CHECKING:
-    from ..initial_pose import InitialPose
+from ..initial_pose import InitialPose
 
 
 class ForceAlongLine(Force, Generic[M]):
@@ -21,6 +19,7 @@ class ForceAlongLine(Force, Generic[M]):
     kind = "line_force"
     reflected = {}
     symmetric_with = {"i": "point", "j": "point"}
+    spin_conditions = {"i": "point", "j": "point"}
 
     i: M = Field(description="marker of the first body, on which the force is reported")
     j: M = Field(description="marker of the second body")
@@ -30,9 +29,6 @@ class ForceAlongLine(Force, Generic[M]):
         """Yield an error for coincident points, between which the force has no direction."""
         if pose.at_one_place(self.i, self.j):
             yield "found both of its points in the same place, where its force has no direction, expected them apart"
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "point", "j": "point"}
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:

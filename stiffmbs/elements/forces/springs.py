@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Generic
+from typing import Generic
 
 from pydantic import Field
 
@@ -11,9 +11,7 @@ from ...reading.formula.field import ForceOfDeflection, ForceOfRate, TorqueOfDef
 from ...reading.marker import M
 from ...reading.units import si
 from ..element import Expr, Force, Symbolic
-
-if TYPE_CHECKING:
-    from ..initial_pose import InitialPose
+from ..initial_pose import InitialPose
 
 
 class Spring(Force):
@@ -50,6 +48,7 @@ class LineSpring(Spring, Generic[M]):
     kind = "spring_damper"
     reflected = {}
     symmetric_with = {"i": "point", "j": "point"}
+    spin_conditions = {"i": "point", "j": "point"}
     forms = (
         {"stiffness": ..., "damping": ..., "free_length": ...},
         {"spring_law": {"table": [[0, 0], [1, 1]]}, "damping": ...},
@@ -71,9 +70,6 @@ class LineSpring(Spring, Generic[M]):
                 "found both of its points in the same place, where its force has no direction, expected them apart or "
                 "neither free_length nor preload"
             )
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "point", "j": "point"}
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from ...reading.marker import MarkerReference
 from ...reading.units import si
+from ..body import AnyBody
 from ..element import Expr, Force, Symbolic
-
-if TYPE_CHECKING:
-    from ..body import AnyBody
 
 
 class Weight(Force):
@@ -20,13 +17,11 @@ class Weight(Force):
     """
 
     kind = ""
+    spin_conditions = {"i": "body"}
 
     i: MarkerReference
     mass: si.Mass
     gravity: tuple[si.Acceleration, ...]
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "body"}
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Generic
+from typing import ClassVar, Generic
 
 from pydantic import Field
 
-from ...reading.fields import Measured
 from ...reading.marker import M, Marker
+from ...reading.units import si
 from ..element import Expr, Symbolic
 from .pair import Pair
 
@@ -16,12 +16,10 @@ class Rod(Pair[M], Generic[M]):
     """Base of the planar and the spatial distance joint."""
 
     kind = "distance"
+    spin_conditions = {"i": "point", "j": "point"}
     equations: ClassVar[tuple[str, ...]] = ("length",)
 
-    length: Annotated[float, Measured("length", above=0)] = Field(description="L, from point to point, m")
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "point", "j": "point"}
+    length: si.PositiveLength = Field(description="L, from point to point, m")
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:

@@ -15,7 +15,7 @@ from ...reading.formula.formula import Formula
 from ...reading.formula.value import formula_value
 from ...reading.marker import M, Marker
 from ...reading.table import Table
-from ..element import Expr, Joint, Symbolic
+from ..element import Expr, Joint, Symbolic, sp
 from .planar_pair import PlanarPair
 
 TURN = 2 * math.pi
@@ -26,6 +26,9 @@ CLOSED = 1e-9
 SLOT = {"table": [[0, 0], [1, 0.1], [2, 0]]}
 CAM = {"table": [[0, 0.1], [3, 0.2], [TURN, 0.1]], "ends": "periodic"}
 """Samples of curves."""
+OfX = Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)]
+OfAngle = Annotated[Formula | Table, FormulaOf(("angle",), ("angle",), "length", time=False, table=True)]
+"""Length as a formula or a table of x, m, or of a polar angle, rad."""
 
 
 class Curve(Joint, Generic[M]):
@@ -38,13 +41,9 @@ class Curve(Joint, Generic[M]):
 
     i: M = Field(description="marker of the body with the point, on which the reaction is reported")
     j: M = Field(description="marker in whose axes the curve is given")
-    y: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(
-        None, description="Y(x), m: a formula of x or a table"
-    )
-    radius: Annotated[Formula | Table, FormulaOf(("angle",), ("angle",), "length", time=False, table=True)] | None = (
-        Field(
-            None, description="R(theta), m: a formula of sin(angle) and cos(angle), or a periodic table over one turn"
-        )
+    y: OfX | None = Field(None, description="Y(x), m: a formula of x or a table")
+    radius: OfAngle | None = Field(
+        None, description="R(theta), m: a formula of sin(angle) and cos(angle), or a periodic table over one turn"
     )
 
     @field_validator("radius")
@@ -89,9 +88,7 @@ class PointOnCurve(Curve[Marker]):
         d = e.i.point - e.j.point
         if e.y is not None:
             return [d.dot(e.j.normal) - e.y(d.dot(e.j.axis))]
-        from sympy import atan2
-
-        return [e.distance(e.i.point, e.j.point) - e.radius(atan2(d.dot(e.j.normal), d.dot(e.j.axis)))]
+        return [e.distance(e.i.point, e.j.point) - e.radius(sp.atan2(d.dot(e.j.normal), d.dot(e.j.axis)))]
 
 
 def repeating(law: Formula | Table | None) -> Formula | Table | None:

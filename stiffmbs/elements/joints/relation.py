@@ -40,18 +40,11 @@ class OffsetConstraint(Joint):
 
 
 class Relation(OffsetConstraint):
-    """Base of the joints that relate two joint coordinates; scenes use its subclasses.
+    """Base of the joints that relate two joint coordinates; scenes use its subclasses."""
 
-    Attributes
-    ----------
-    wanted : mapping of str to str
-        Required coordinate, ``angle`` or ``displacement``, of a field, if not every coordinate is possible.
-    carried : bool
-        Whether both joints must have the same body, the carrier, as their marker j.
-    """
-
+    # required coordinate, ``angle`` or ``displacement``, of a field, if not every coordinate is possible
     wanted: ClassVar[Mapping[str, str]] = {}
-    carried: ClassVar[bool] = False
+    carried: ClassVar[bool] = False  # whether both joints must have the same body, the carrier, as their marker j
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
         """Yield joints without the required coordinate, repeated coordinates, and joints without a common carrier."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from ...reading.table import Table
 from ..element import Expr, Symbolic
 from ..read_by import in_file
@@ -16,9 +17,6 @@ from .grid import between_lines
 from .reference_line import ReferenceLine, nearest, reference_line
 from .road import Road
 from .rolling_filter import table_of, through_filter
-
-if TYPE_CHECKING:
-    import numpy as np
 
 MOST_SECTIONS, MOST_HEIGHTS = 32, 400_000
 """Largest number of long sections, and of heights on all of them, in the equations."""
@@ -62,23 +60,17 @@ class CrgRoad(Road):
                 f"found {count} heights, {len(self.file.u)} on each of {len(self._columns)} long sections, expected at most "
                 f"{MOST_HEIGHTS}: use fewer sections, or cut the road"
             )
-        try:
+        with prefixed("", InputError, ValueError):
             self._line = self._reference_line()
-        except InputError as error:
-            raise ValueError(str(error)) from None
         return self
 
     @property
     def _columns(self) -> np.ndarray:
-        import numpy as np
-
         count = len(self.file.v)
         return np.unique(np.round(np.linspace(0, count - 1, min(count, self.sections))).astype(int))
 
     def _at_its_place(self) -> tuple[np.ndarray, np.ndarray, float]:
         """Return x and y of the reference line, m, and the reference level of heights, m."""
-        import numpy as np
-
         x, y = self.file.x, self.file.y
         if self.placed == "file":
             return x, y, 0.0
@@ -88,8 +80,6 @@ class CrgRoad(Road):
 
     def _reference_line(self) -> ReferenceLine | None:
         """Return the reference line if it is curved."""
-        import numpy as np
-
         x, y, _ = self._at_its_place()
         c, s = self._direction()
         across = (y - y[0]) * c - (x - x[0]) * s
@@ -132,8 +122,6 @@ class CrgRoad(Road):
 
     def surface_points(self, most: int) -> np.ndarray:
         """Return points of the road for drawings, m, shape (along, across, 3), at most as many along as given."""
-        import numpy as np
-
         x, y, level = self._at_its_place()
         step = max(1, -(-len(x) // most))
         turn = np.unwrap(np.arctan2(np.gradient(y), np.gradient(x)))[::step]
@@ -159,8 +147,6 @@ class CrgRoad(Road):
 
 def _section(u: np.ndarray, heights: np.ndarray) -> Table:
     """Return the heights of a long section, constant beyond its ends."""
-    import numpy as np
-
     outside = (u[1] - u[0]) * np.arange(1, LEVEL + 1)
     at = np.concatenate([u[0] - outside[::-1], u, u[-1] + outside])
     z = np.concatenate([np.full(LEVEL, heights[0]), heights, np.full(LEVEL, heights[-1])])

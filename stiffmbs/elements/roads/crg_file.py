@@ -10,15 +10,14 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
+
+import numpy as np
 
 from ...errors import InputError
 from ...reading.files.quoted import quoted
 from ...reading.files.requested import Fields
 from ...reading.files.text_file import finite_number
-
-if TYPE_CHECKING:
-    import numpy as np
 
 WIDTH: Final = 72
 """Number of significant characters in a header line."""
@@ -141,8 +140,6 @@ def read_records(content: bytes, header: CrgHeader, path: Path) -> np.ndarray:
     Raises InputError if they contradict the header, or one is not finite; the message contains the line or the
     cross-section.
     """
-    import numpy as np
-
     data = content[header.end :]
     records = _binary(data, header) if header.layout in BINARY else _text(data, header, str(path))
     if len(records) < 2:
@@ -173,8 +170,6 @@ def _name(header: CrgHeader, column: int) -> str:
 
 def _binary(data: bytes, header: CrgHeader) -> np.ndarray:
     """Return binary records; NaN fill the last 80 bytes."""
-    import numpy as np
-
     kind = np.dtype(BINARY[header.layout])
     numbers = np.frombuffer(data, kind, len(data) // kind.itemsize).astype(float)
     count = len(header.channels)
@@ -186,8 +181,6 @@ def _binary(data: bytes, header: CrgHeader) -> np.ndarray:
 
 
 def _text(data: bytes, header: CrgHeader, source: str) -> np.ndarray:
-    import numpy as np
-
     width, count = CHARACTERS[header.layout], len(header.channels)
     in_line = COLUMNS // width
     in_record = -(-count // in_line)

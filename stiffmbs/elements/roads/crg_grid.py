@@ -6,15 +6,13 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ...errors import InputError
-from ...reading.files.files_read import content_of
 from ...reading.files.requested import Fields, unused_notes
+from ...reading.files.text_file import file_content
 from .crg_file import CrgHeader, Entry, read_header, read_records
-
-if TYPE_CHECKING:
-    import numpy as np
 
 UNITS = {"phi": "rad", "slope": "m/m", "banking": "m/m"}
 """Units of the channels of the reference line."""
@@ -51,12 +49,7 @@ def read_crg(path: Path) -> CrgGrid:
     A record's heading and slope apply to the interval before it, as in OpenCRG's library; its banking applies at the
     record. Raises InputError if it cannot be read; the message contains the line.
     """
-    import numpy as np
-
-    try:
-        content = content_of(path)
-    except OSError as error:
-        raise InputError(f"{path}: the file cannot be read ({error.strerror or error})") from None
+    content = file_content(path, "an OpenCRG file")
     header = read_header(content, path)
     line, sections = _sorted_channels(header, path)
     v = _positions(header, sections, path)
@@ -128,8 +121,6 @@ def _check_end(numbers: Mapping[str, float], found: dict[str, float], path: Path
 
 def _summed(steps: np.ndarray) -> np.ndarray:
     """Return the cumulative sums of all steps except the first, which precedes the first record."""
-    import numpy as np
-
     return np.concatenate([[0.0], np.cumsum(steps[1:])])
 
 
@@ -154,8 +145,6 @@ def _sorted_channels(header: CrgHeader, path: Path) -> tuple[dict[str, int], lis
 
 def _positions(header: CrgHeader, sections: list[tuple[int, Entry]], path: Path) -> np.ndarray:
     """Return v of the long sections, which are given individually, or equally spaced."""
-    import numpy as np
-
     placed = [entry.text.startswith("at v =") for _, entry in sections]
     if any(placed) != all(placed):
         entry = sections[placed.index(not placed[0])][1]

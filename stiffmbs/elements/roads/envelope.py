@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import Field
 
 from ...reading.units import si
-from ..element import Component, Expr, Matrix, Symbolic
+from ..element import Component, Expr, Matrix, Symbolic, sp
 from .rolling_filter import Cam
 
 MOST_TRACKS = 20
@@ -48,12 +48,10 @@ def enveloped(e: Symbolic, x: Expr, y: Expr, axis: Matrix) -> tuple[Expr, Expr, 
 
     `x`, `y`: place of the wheel's centre in the axes of the road. `axis`: components of the spin axis along them.
     """
-    from sympy import Add, Rational, sqrt
-
-    size = e.named(sqrt(axis[0] ** 2 + axis[1] ** 2))
+    size = e.named(sp.sqrt(axis[0] ** 2 + axis[1] ** 2))
     forward = e.named(axis[1] / size), e.named(-axis[0] / size)
-    offsets, half = e.envelope.across, e.envelope.shift * Rational(1, 2)
-    squares = Add(*(offset**2 for offset in offsets))
+    offsets, half = e.envelope.across, e.envelope.shift * sp.Rational(1, 2)
+    squares = sp.Add(*(offset**2 for offset in offsets))
     heights = {}
     for side in (1, -1):
         for offset in offsets:
@@ -64,8 +62,8 @@ def enveloped(e: Symbolic, x: Expr, y: Expr, axis: Matrix) -> tuple[Expr, Expr, 
             )
             heights[side, offset] = e.named(e.road.surface(*e.road.place(e, *place)))
     count = len(heights)
-    mean = e.named(Add(*heights.values()) / count)
-    pitch = e.named(Add(*(side * height for (side, _), height in heights.items())) * 2 / (count * e.envelope.shift))
-    roll = Add(*(offset * height for (_, offset), height in heights.items())) / (2 * squares) if len(offsets) > 1 else 0
-    roll = e.named(roll)
+    mean = e.named(sp.Add(*heights.values()) / count)
+    pitch = e.named(sp.Add(*(side * height for (side, _), height in heights.items())) * 2 / (count * e.envelope.shift))
+    moment = sp.Add(*(offset * height for (_, offset), height in heights.items()))
+    roll = e.named(moment / (2 * squares) if len(offsets) > 1 else 0)
     return mean, e.named(pitch * forward[0] - roll * forward[1]), e.named(pitch * forward[1] + roll * forward[0])

@@ -4,34 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
-from types import MappingProxyType
 from typing import Annotated
 
-from ...reading.did_you_mean import did_you_mean, instead_of
+from ...reading.did_you_mean import instead_of
 from ...reading.fields import located, named_entries
-from ...reading.files.quoted import quoted, written
-from ..read_by import Context, JsonSchema, ReadBy
+from ...reading.files.quoted import quoted
+from ..read_by import Context, JsonSchema, ReadBy, class_of
 from .road import Road
 
-ROADS: Mapping[str, str] = MappingProxyType(
-    {
-        "flat": "road:FlatRoad",
-        "formula": "formula:FormulaRoad",
-        "table": "profile:TableRoad",
-        "grid": "grid:GridRoad",
-        "crg": "crg:CrgRoad",
-        "step": "obstacles:StepRoad",
-        "cosine_bump": "obstacles:CosineBump",
-        "sine_sweep": "obstacles:SineSweep",
-        "iso8608": "iso8608:Iso8608Road",
-    }
-)
+ROADS: Mapping[str, str] = {
+    "flat": "road:FlatRoad",
+    "formula": "formula:FormulaRoad",
+    "table": "profile:TableRoad",
+    "grid": "grid:GridRoad",
+    "crg": "crg:CrgRoad",
+    "step": "obstacles:StepRoad",
+    "cosine_bump": "obstacles:CosineBump",
+    "sine_sweep": "obstacles:SineSweep",
+    "iso8608": "iso8608:Iso8608Road",
+}
 """File and class of each kind of road, imported on demand."""
 
 
 def kind_of_road(kind: str) -> type[Road]:
     """Return the class of a kind of road."""
-    file, _, name = ROADS[kind].partition(":")
+    return _imported(ROADS[kind])
+
+
+def _imported(place: str) -> type[Road]:
+    file, _, name = place.partition(":")
     road: type[Road] = getattr(import_module(f".{file}", __package__), name)
     return road
 
@@ -45,15 +46,8 @@ def read_road(found: object, context: Context) -> Road:
         if found not in known:
             raise ValueError(f"found the unknown road '{quoted(found)}'{instead_of(found, known)}")
         return known[found]  # type: ignore[no-any-return]
-    if not isinstance(found, dict):
-        raise ValueError(f"found {written(found)}, expected the name of a road, or a mapping with its type")
-    kind = found.get("type")
-    if not isinstance(kind, str) or kind not in ROADS:
-        expected = ", ".join(f"'{each}'" for each in ROADS)
-        raise ValueError(
-            f"found the type {written(kind)} of a road{did_you_mean(kind, ROADS)}, expected one of {expected}"
-        )
-    return kind_of_road(kind).model_validate(found, context=dict(context or {}))
+    file = class_of(found, ROADS, "the name of a road, or a mapping with its type")
+    return _imported(file).model_validate(found, context=dict(context or {}))
 
 
 def _schema(schema_of: Callable[[type[Road]], JsonSchema]) -> JsonSchema:

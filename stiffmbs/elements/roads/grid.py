@@ -60,13 +60,9 @@ def read_grid(path: Path) -> Grid:
 def _rows(text: str, source: str) -> Iterator[tuple[int, tuple[float, ...]]]:
     for number, line in enumerate(lines(text), start=1):
         content = line.partition("#")[0].strip()
+        words = filter(None, re.split(r"[\s,;]+", content))
         if content:
-            yield (
-                number,
-                tuple(
-                    finite_number(part, f"{source}, line {number}") for part in re.split(r"[\s,;]+", content) if part
-                ),
-            )
+            yield number, tuple(finite_number(word, f"{source}, line {number}") for word in words)
 
 
 def _refuse_disorder(found: list[tuple[int, float]], name: str, path: Path) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from ...reading.table import Table
@@ -14,9 +15,6 @@ from ..element import Expr, Symbolic
 from .profile import two_tracks
 from .road import Road, ramp
 from .rolling_filter import table_of, through_filter
-
-if TYPE_CHECKING:
-    import numpy as np
 
 CLASSES = "ABCDEFGH"
 SMOOTHEST: Final = 16e-6
@@ -99,8 +97,6 @@ class Iso8608Road(Road):
 def _tables(
     roughness: int, seed: int, track: float, length: float, longest: float, shortest: float, coherence: str
 ) -> tuple[Table, Table]:
-    import numpy as np
-
     first, last = max(1, math.ceil(length / longest)), math.floor(length / shortest)
     k = np.arange(first, last + 1)
     n = k / length
@@ -115,8 +111,6 @@ def _tables(
 
 def _coherence(coherence: str, x: np.ndarray) -> np.ndarray:
     """Return the ratio of cross to auto power spectral density of the tracks."""
-    import numpy as np
-
     if coherence == "isotropic":
         from scipy.special import k1
 
@@ -126,8 +120,6 @@ def _coherence(coherence: str, x: np.ndarray) -> np.ndarray:
 
 def _table(waves: np.ndarray, k: np.ndarray, count: int, length: float) -> Table:
     """Return the sum of the real parts of waves of k periods each, at equally spaced points."""
-    import numpy as np
-
     spectrum = np.zeros(count // 2 + 1, dtype=complex)
     spectrum[k] = waves * count / 2
     heights = np.fft.irfft(spectrum, count)

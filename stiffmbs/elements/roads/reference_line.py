@@ -8,15 +8,14 @@ tested before the run.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
 
 from ...errors import InputError
 from ...reading.table import Table
-from ..element import Expr, Symbolic
+from ..element import Expr, Symbolic, sp
 from .rolling_filter import table_of
-
-if TYPE_CHECKING:
-    import numpy as np
 
 FROZEN, FOLLOWED = 4, 2
 """Newton iterations without derivatives, and further iterations, which make derivatives exact up to the third order."""
@@ -55,8 +54,6 @@ def reference_line(u: np.ndarray, x: np.ndarray, y: np.ndarray, v: np.ndarray, s
     messages. Raises InputError if the line turns too far from its mean direction, or the road is wider than a radius of
     curvature.
     """
-    import numpy as np
-
     along = np.array([x[-1] - x[0], y[-1] - y[0]])
     direction = along / max(float(np.hypot(*along)), 1e-300)
     turned = np.abs(np.arctan2(
@@ -80,8 +77,6 @@ def reference_line(u: np.ndarray, x: np.ndarray, y: np.ndarray, v: np.ndarray, s
 
 def _chosen(u: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return the fewest equidistant points whose spline is close to all points."""
-    import numpy as np
-
     stride = 2 ** int(np.log2(max(len(u) // 4, 1)))
     while stride > 1:
         chosen = np.unique(np.append(np.arange(0, len(u) - stride // 2, stride), len(u) - 1))
@@ -100,8 +95,6 @@ def _spline(arguments: np.ndarray, values: np.ndarray) -> Any:
 
 def _try_it(line: ReferenceLine, u: np.ndarray, v: np.ndarray, source: str) -> None:
     """Refuse a road on which Newton's method does not converge everywhere."""
-    import numpy as np
-
     x, y = (_spline(*np.array(table.table).T) for table in (line.x, line.y))
     dx, dy, ddx, ddy = x.derivative(), y.derivative(), x.derivative(2), y.derivative(2)
     across = np.linspace(v[0], v[-1], SAMPLES_ACROSS)
@@ -129,24 +122,20 @@ def _try_it(line: ReferenceLine, u: np.ndarray, v: np.ndarray, source: str) -> N
 
 def nearest(r: Symbolic, e: Symbolic, x: Expr, y: Expr) -> tuple[Expr, Expr]:
     """Return u and v of a point, m; r has the fields of `ReferenceLine.in_equations`."""
-    from sympy import Symbol, sqrt
-
     u = e.named(r.guess(x * r.direction[0] + y * r.direction[1]))
     for _ in range(FROZEN):
         u = e.named(_newton(r, e, u, x, y))
-    held = Symbol(f"held{len(e.meanings)}", real=True)
+    held = sp.Symbol(f"held{len(e.meanings)}", real=True)
     e.derivatives.define(held, {}, u)
     u = held
     for _ in range(FOLLOWED):
         u = e.named(_newton(r, e, u, x, y))
     (at_x, at_y), (dx, dy), _ = _at(r, e, u)
-    return u, e.named(((y - at_y) * dx - (x - at_x) * dy) / sqrt(dx**2 + dy**2))
+    return u, e.named(((y - at_y) * dx - (x - at_x) * dy) / sp.sqrt(dx**2 + dy**2))
 
 
 def _at(r: Symbolic, e: Symbolic, u: Expr) -> list[tuple[Expr, Expr]]:
-    from sympy import Dummy
-
-    s = Dummy("s", real=True)
+    s = sp.Dummy("s", real=True)
     x, y = r.line_x(s), r.line_y(s)
     return [tuple(e.named(each.diff(s, k).subs(s, u)) for each in (x, y)) for k in range(3)]  # type: ignore[misc]
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ast
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
+import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
 from ...reading.fields import typed
@@ -14,12 +15,8 @@ from ...reading.formula.formula import Formula
 from ...reading.formula.value import formula_value
 from ...reading.table import Table
 from ...reading.units import si
-from ..element import Component, Expr, Symbolic
+from ..element import Component, Expr, Symbolic, sp
 from .rolling_filter import Cam
-
-if TYPE_CHECKING:
-    import numpy as np
-
 
 OF_PLACE = ("x", "y"), ("length", "length")
 """Variables of a road's formulas with dimensions: along and across, m."""
@@ -97,8 +94,6 @@ class Road(Component):
 
     def _of_equation(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Return the unfiltered heights by `height`, with functions of arrays for tables and formulas."""
-        import numpy as np
-
         from .rolling_filter import of_arrays
 
         plain = self.model_copy(update={"filter_radius": None})
@@ -174,9 +169,7 @@ def ramp(x: Expr, start: Expr, length: Expr) -> Expr:
     s = (x - start) / length
     if hasattr(s, "clip"):
         return s.clip(0.0, 1.0)
-    from sympy import Max, Min
-
-    return Min(Max(s, 0), 1)
+    return sp.Min(sp.Max(s, 0), 1)
 
 
 def clipped(s: Expr) -> Expr:
@@ -189,16 +182,12 @@ def above_zero(x: Expr) -> Expr:
 
     Name x before if it is a small sum of large terms, because rounding errors would be those of the terms.
     """
-    from sympy import Rational
-
-    return (x + magnitude(x)) * Rational(1, 2)
+    return (x + magnitude(x)) * sp.Rational(1, 2)
 
 
 def magnitude(*parts: Expr) -> Expr:
     """Return the absolute value of a number, or the magnitude of a vector, without an event at zero."""
-    from sympy import Float, sqrt
-
-    return sqrt(sum(part**2 for part in parts) + Float("1e-60"))
+    return sp.sqrt(sum(part**2 for part in parts) + sp.Float("1e-60"))
 
 
 class FlatRoad(Road):

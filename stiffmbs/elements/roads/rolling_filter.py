@@ -11,14 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
+
+import numpy as np
 
 from ...errors import InputError
 from ...reading.formula.formula import Formula
 from ...reading.table import Table
-
-if TYPE_CHECKING:
-    import numpy as np
 
 FINE, COARSE = 50, 20
 """Points per radius, and the fewest on a long road; the errors are then at most R/20000 and R/3200."""
@@ -61,8 +60,6 @@ def _height(shape: Shape) -> float:
 @lru_cache(maxsize=64)
 def rolled(table: Table, shape: Shape) -> Table:
     """Return the filtered heights over x. Raises InputError if the profile is longer than 2000 radii."""
-    import numpy as np
-
     points = np.array(table.table)
     x, centre = _centres(partial(heights_of, table), (points[0, 0], points[-1, 0]), shape)
     _take_in(centre, x, points, shape)
@@ -82,7 +79,6 @@ def _centres(
     heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], shape: Shape
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return positions along an extent, and the height of the centre of the disc or cam there."""
-    import numpy as np
     from scipy.ndimage import grey_dilation
 
     (first, last), radius = extent, _reach(shape)
@@ -105,8 +101,6 @@ def _centres(
 
 def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, shape: Shape) -> None:
     """Raise the centre of the disc or cam where it touches a point of the table between samples."""
-    import numpy as np
-
     radius = _reach(shape)
     ends = np.searchsorted(x, points[:, :1] + np.array([-radius, radius]))
     for (at, height), (begin, end) in zip(points, ends, strict=True):
@@ -115,7 +109,6 @@ def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, shape: Shape
 
 def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
     """Return the heights of the profile, with the extrapolation or periodicity of the equations."""
-    import numpy as np
     from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolator
 
     at, heights = np.array(table.table).T
@@ -156,8 +149,6 @@ def _formula_of_arrays(formula: Formula, *arguments: np.ndarray) -> object:
 
 def _disc(s: np.ndarray, shape: Shape) -> np.ndarray:
     """Return the depth of the shape's lower edge below its centre, m, at horizontal distances."""
-    import numpy as np
-
     if isinstance(shape, Cam):
         part = np.minimum(np.abs(s) / shape.length, 1.0)
         return np.asarray(shape.height * (1 - part**shape.order) ** (1 / shape.order))

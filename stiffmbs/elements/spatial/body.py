@@ -46,10 +46,10 @@ class Body(Described):
         description="position of the body's origin at the start, m; assembly changes the pose if joints require it",
     )
     orientation: Orientation = Field(IDENTITY, description="orientation of the body's own axes at the start")
-    velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
+    velocity: si.Velocity3 = Field(
         (0.0, 0.0, 0.0), description="velocity of the centre of mass at the start, in ground axes, m/s"
     )
-    omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
+    omega: si.AngularVelocity3 = Field(
         (0.0, 0.0, 0.0), description="angular velocity at the start, in the body's own axes, rad/s"
     )
     open: tuple[Literal["velocity", "omega"], ...] = Field(

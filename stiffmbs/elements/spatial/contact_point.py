@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..element import Expr, Matrix, Symbolic
+from ..element import Expr, Matrix, Symbolic, sp
 from ..roads.envelope import enveloped
 from ..roads.road import above_zero, magnitude
 from .wrench import along_axes, seen_from, velocity
@@ -36,8 +36,6 @@ class ContactPoint:
 
 def contact_point(e: Symbolic) -> ContactPoint:
     """Return the contact of the wheel of marker i, whose y axis is its spin axis, with the road of j."""
-    from sympy import asin
-
     centre, axis = e.named(e.i.point), e.named(e.i.y)
     enveloping = e.envelope is not None and not e.road.level
     x, y, below, n = _effective_surface(e, centre, axis) if enveloping else surface(e, centre)
@@ -52,7 +50,7 @@ def contact_point(e: Symbolic) -> ContactPoint:
     arm = e.named(-radius * up)
     spin, v = _motion(e, centre, axis, arm)
     vx, vy, vz = (e.named(v.dot(along)) for along in (forward, left, n))
-    camber, friction = e.named(asin(axis.dot(n))), e.named(e.road.factor(x, y))
+    camber, friction = e.named(sp.asin(axis.dot(n))), e.named(e.road.factor(x, y))
     return ContactPoint(e.named(centre + arm), forward, left, n, radius, camber, vx, vy, vz, spin, friction)
 
 
@@ -78,20 +76,16 @@ def _effective_surface(e: Symbolic, centre: Matrix, axis: Matrix) -> tuple[Expr,
 
 def _plane(e: Symbolic, above: Expr, slopes: list[Expr]) -> tuple[Expr, Matrix]:
     """Return the distance of a point from a plane, given its height above it, and the plane's normal."""
-    from sympy import Matrix, sqrt
-
-    upright = e.named(1 / sqrt(1 + slopes[0] ** 2 + slopes[1] ** 2))
-    components = Matrix([-slopes[0] * upright, -slopes[1] * upright, upright])
+    upright = e.named(1 / sp.sqrt(1 + slopes[0] ** 2 + slopes[1] ** 2))
+    components = sp.Matrix([-slopes[0] * upright, -slopes[1] * upright, upright])
     n = components if e.j is None else along_axes(components, e.j.axes)
     return e.named(above * upright), e.named(n)
 
 
 def _heading(e: Symbolic, axis: Matrix, n: Matrix) -> tuple[Matrix, Matrix]:
     """Return the wheel's heading in the road plane, and the direction in the wheel's plane away from the road."""
-    from sympy import sqrt
-
     across = e.named(axis.cross(n))
-    forward = e.named(across / sqrt(across.dot(across)))
+    forward = e.named(across / sp.sqrt(across.dot(across)))
     return forward, e.named(forward.cross(axis))
 
 
@@ -123,8 +117,6 @@ def yaw_rate(e: Symbolic, contact: ContactPoint) -> Expr:
     With the angular velocity omega = yaw n + tilt x + turns y about the normal, the heading, and the spin axis, which is
     inclined by the camber, the spin is omega y = turns + yaw sin(camber).
     """
-    from sympy import sin
-
     omega = e.named(e.i.omega if e.j is None else e.i.omega - e.j.omega)
-    inclined = e.named(sin(contact.camber))
+    inclined = e.named(sp.sin(contact.camber))
     return e.named((omega.dot(contact.normal) - inclined * contact.spin) / (1 - inclined**2))

@@ -112,11 +112,9 @@ class Elastic(Force):
     def turned(cls, e: Symbolic) -> Expr:
         """Return the rotation, or only the tilt, of marker i relative to marker j."""
         resisted = cls.resisted(e)
-        return (
-            e.shortest_rotation(e.i, e.j, resisted.index(False))
-            if resisted.count(False) == 1
-            else e.relative_rotation(e.i, e.j)
-        )
+        if resisted.count(False) == 1:
+            return e.shortest_rotation(e.i, e.j, resisted.index(False))
+        return e.relative_rotation(e.i, e.j)
 
     @classmethod
     def deformation(cls, e: Symbolic) -> list[Expr]:

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from ...reading.fields import Measured
 from ...reading.units import si
-from ..element import Expr, Force, Matrix, Symbolic
+from ..element import Expr, Force, Matrix, Symbolic, sp
 from ..forces.friction import AT_REST, magnitude
 from .marker import Marker
 from .wrench import Pairs, velocity
@@ -44,7 +44,7 @@ class Impact(Force):
 
     i: Marker
     j: Marker
-    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^e")
+    stiffness: si.PositiveValue = Field(description="k, N/m^e")
     exponent: Annotated[float, Measured("number", at_least=1)] = Field(
         1.5, description="e, exponent of the penetration"
     )
@@ -90,30 +90,24 @@ class Impact(Force):
     @classmethod
     def potential(cls, e: Symbolic) -> Expr:
         """Return the sum of k (-g)^(e+1)/(e+1) over all penetrations."""
-        from sympy import Piecewise
-
         power = e.exponent + 1
         gaps = [e.named(touch.gap) for touch in cls.touches(e)]
-        return sum(Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True)) for gap in gaps)
+        return sum(sp.Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True)) for gap in gaps)
 
     @classmethod
     def event_functions(cls, e: Symbolic) -> Sequence[Expr]:
         """Return each gap, and an expression that is positive while N > 0; damping can interrupt N."""
-        from sympy import Max, Min
-
         found = []
         for touch in cls.touches(e):
             gap, n, point = e.named(touch.gap), e.named(touch.normal), e.named(touch.point)
             rate = (velocity(e, e.i, point) - velocity(e, e.j, point)).dot(n)
-            found += [gap, Min(-gap, _push(e, Max(-gap, 0), rate))]
+            found += [gap, sp.Min(-gap, _push(e, sp.Max(-gap, 0), rate))]
         return tuple(found)
 
 
 def _pressure(e: Symbolic, gap: Expr, rate: Expr) -> Expr:
-    from sympy import Piecewise
-
     force = e.named(_push(e, -gap, rate))
-    return Piecewise((Piecewise((force, force > 0), (0, True)), gap < 0), (0, True))
+    return sp.Piecewise((sp.Piecewise((force, force > 0), (0, True)), gap < 0), (0, True))
 
 
 def _push(e: Symbolic, depth: Expr, rate: Expr) -> Expr:
@@ -130,7 +124,5 @@ def _per_speed(e: Symbolic, sliding: Expr) -> Expr:
 
 def _rising(x: Expr) -> Expr:
     """Return Adams' STEP from 0 at 0 to 1 at 1."""
-    from sympy import Max, Min
-
-    z = Min(Max(x, 0), 1)
+    z = sp.Min(sp.Max(x, 0), 1)
     return z**2 * (3 - 2 * z)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Final, Literal
+from typing import ClassVar, Final, Literal
 
 from pydantic import Field
 
@@ -11,10 +11,7 @@ from ...reading.marker import MarkerReference
 from ...reading.units import si
 from .orientation import IDENTITY, Orientation, matrix
 
-if TYPE_CHECKING:
-    pass
-
-Point = tuple[si.Length, si.Length, si.Length]
+Point = si.Point3
 ORIGIN: Final = (0.0, 0.0, 0.0)
 
 
@@ -44,5 +41,4 @@ class Marker(MarkerReference):
     )
 
     def placement(self) -> Placement:
-        """Return the explicit placement on the body."""
         return Placement.model_construct(point=self.point, orientation=self.orientation)  # checked already

@@ -12,12 +12,11 @@ from collections.abc import Sequence
 from typing import Annotated, Any, Final
 
 import numpy as np
-from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
-from pydantic_core import CoreSchema, core_schema
 
 from ...reading.files.quoted import written
 from ...reading.formula.text import FormulaError
 from ...reading.units.quantity import in_si
+from ..read_by import Context, JsonSchema, ReadBy
 
 Quaternion = tuple[float, float, float, float]
 
@@ -84,51 +83,48 @@ def about(axis: int, angle: float) -> Quaternion:
     return p[0], p[1], p[2], p[3]
 
 
-class OrientationField:
-    """Marker of a field for an orientation: a quaternion, a matrix, Euler angles, or one or two axes."""
-
-    def read(self, found: object, info: ValidationInfo) -> Quaternion:
-        """Return the unit quaternion of an entry of a scene."""
-        parameters = (info.context or {}).get("parameters")
-        match found:
-            case {"euler": sequence, "angles": angles, **others} if not others:
-                return _from_euler(sequence, [in_si(angle, "angle", parameters) for angle in _listed(angles, 3)])
-            case dict() if found and set(found) <= set(AXES):
-                return _from_axes({
-                    name: np.array([in_si(part, "value", parameters) for part in _listed(axis, 3)])
-                    for name, axis in found.items()
-                })  # fmt: skip
-            case list() | tuple() if len(found) == 4:
-                return unit_quaternion([in_si(part, "number", parameters) for part in found])
-            case list() | tuple() if len(found) == 3:
-                return _from_rows([[in_si(part, "number", parameters) for part in _listed(row, 3)] for row in found])
-        raise FormulaError(
-            f"found {written(found)}, expected [w, x, y, z], a 3x3 matrix, {{euler: zxz, angles: [..]}}, or one or two axes "
-            "such as {z: [..], x: [..]}"
-        )
-
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.with_info_plain_validator_function(
-            self.read, serialization=core_schema.plain_serializer_function_ser_schema(lambda value: value)
-        )
-
-    def __get_pydantic_json_schema__(self, schema: object, handler: GetJsonSchemaHandler) -> dict[str, object]:
-        number = {"anyOf": [{"type": "number"}, {"type": "string"}]}
-        three = {"type": "array", "items": number, "minItems": 3, "maxItems": 3}
-        euler = {"euler": {"type": "string", "pattern": "^[xyz]{3}$"}, "angles": three}
-        forms: list[dict[str, object]] = [
-            {"type": "array", "items": number, "minItems": 4, "maxItems": 4, "description": "unit quaternion w, x, y, z"},
-            {"type": "array", "items": three, "minItems": 3, "maxItems": 3, "description": "rotation matrix by rows"},
-            {"type": "object", "properties": euler, "required": ["euler", "angles"], "additionalProperties": False},
-            {
-                "type": "object", "properties": dict.fromkeys(AXES, three), "additionalProperties": False,
-                "minProperties": 1, "maxProperties": 2, "description": "one or two axes, the first one exact",
-            },
-        ]  # fmt: skip
-        return {"anyOf": forms, "description": "orientation"}
+def _read(found: object, context: Context) -> Quaternion:
+    """Return the unit quaternion of an entry of a scene: a quaternion, a matrix, Euler angles, or one or two axes."""
+    parameters = (context or {}).get("parameters")
+    match found:
+        case {"euler": sequence, "angles": angles, **others} if not others:
+            return _from_euler(sequence, [in_si(angle, "angle", parameters) for angle in _listed(angles, 3)])
+        case dict() if found and set(found) <= set(AXES):
+            return _from_axes({
+                name: np.array([in_si(part, "value", parameters) for part in _listed(axis, 3)])
+                for name, axis in found.items()
+            })  # fmt: skip
+        case list() | tuple() if len(found) == 4:
+            return unit_quaternion([in_si(part, "number", parameters) for part in found])
+        case list() | tuple() if len(found) == 3:
+            return _from_rows([[in_si(part, "number", parameters) for part in _listed(row, 3)] for row in found])
+    raise FormulaError(
+        f"found {written(found)}, expected [w, x, y, z], a 3x3 matrix, {{euler: zxz, angles: [..]}}, or one or two axes "
+        "such as {z: [..], x: [..]}"
+    )
 
 
-Orientation = Annotated[Quaternion, OrientationField()]
+def _schema(_: object) -> JsonSchema:
+    number = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+    three = {"type": "array", "items": number, "minItems": 3, "maxItems": 3}
+    euler = {"euler": {"type": "string", "pattern": "^[xyz]{3}$"}, "angles": three}
+    forms: list[dict[str, object]] = [
+        {"type": "array", "items": number, "minItems": 4, "maxItems": 4, "description": "unit quaternion w, x, y, z"},
+        {"type": "array", "items": three, "minItems": 3, "maxItems": 3, "description": "rotation matrix by rows"},
+        {"type": "object", "properties": euler, "required": ["euler", "angles"], "additionalProperties": False},
+        {
+            "type": "object", "properties": dict.fromkeys(AXES, three), "additionalProperties": False,
+            "minProperties": 1, "maxProperties": 2, "description": "one or two axes, the first one exact",
+        },
+    ]  # fmt: skip
+    return {"anyOf": forms, "description": "orientation"}
+
+
+class OrientationField(ReadBy):
+    """Marker of a field for an orientation."""
+
+
+Orientation = Annotated[Quaternion, OrientationField(_read, _schema)]
 """Unit quaternion (w, x, y, z), given directly or by a matrix, by body-fixed Euler angles, or by axes."""
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ..element import Expr, Symbolic
+from ..element import Expr, Symbolic, sp
 from ..roads.road import above_zero
 from .contact_point import ContactPoint, contact_point, slips, yaw_rate
 from .relaxation import lagged
@@ -24,11 +24,9 @@ VARIABLES = ("radius", "camber", "vx", "vy", "vz", "spin", "friction")
 
 def pressure_increment(e: Symbolic) -> Expr:
     """Return dpi, the relative deviation from the nominal pressure; 0 for a tyre without one."""
-    from sympy import Rational
-
     p = e.properties
     if p.NOMPRES is None:
-        return Rational(0)
+        return sp.Rational(0)
     return e.named((p.INFLPRES if e.pressure is None else e.pressure) / p.NOMPRES - 1)
 
 
@@ -66,22 +64,18 @@ class _Pressed:
 
     def turn(self, angle: Expr, speed: Expr) -> tuple[Expr, ...]:
         """Return phi_t and Omega/V, 1/m, of a tyre with turn slip."""
-        from sympy import cos
-
         if self.yaw is None:
             return ()
-        path = self.e.named(cos(angle) / speed)
+        path = self.e.named(sp.cos(angle) / speed)
         return self.e.named(self.yaw * path), self.e.named(self.contact.spin * path)
 
     def forces(self, load: Expr) -> tuple[Expr, Expr]:
         """Return Fx and Fy at a load, in the axes of the file; the load in the formula is limited to FZMAX."""
-        from sympy import atan
-
         from ..tyres.magic_formula_6 import PressedSlip, slip_forces
 
         e, p = self.e, self.e.properties
         slip, tangent, speed, _ = self.slip(load)
-        angle = e.named(atan(tangent))
+        angle = e.named(sp.atan(tangent))
         limited = e.named(load - e.named(above_zero(e.named(load - p.FZMAX))))
         turn = self.turn(angle, speed)
         state = PressedSlip(
@@ -111,9 +105,7 @@ class _Pressed:
 
         Each iteration keeps the ratios of the forces to the load, which depend little on it.
         """
-        from sympy import Float
-
-        e, least = self.e, Float("1e-12")
+        e, least = self.e, sp.Float("1e-12")
 
         def improved(load: Expr) -> Expr:
             pressing = e.named(above_zero(load) + least)
@@ -132,30 +124,17 @@ def pressed(e: Symbolic, hand: Expr, turns: bool) -> Touch:
 
     `hand`: -1 for a tyre that is mirrored. `turns`: whether the yaw rate acts on the forces.
     """
-    from sympy import Max, Piecewise
-
     from ..tyres.deflection_6 import deflection, free_radius
 
     p, contact = e.properties, contact_point(e)
-    contact = replace(
-        contact,
-        **{name: e.variable(getattr(contact, name)) for name in VARIABLES if e.in_state(getattr(contact, name))},
-    )
+    variables = {name: x for name in VARIABLES if e.in_state(x := getattr(contact, name))}
+    contact = replace(contact, **{name: e.variable(x) for name, x in variables.items()})
     free = e.named(free_radius(p, contact.spin))
     closed = e.named(deflection(p, contact.radius, free, contact.camber))
     yaw = e.variable(yaw_rate(e, contact)) if turns else None
     tyre = _Pressed(e, contact, hand, pressure_increment(e), free, yaw)
-    load = e.read(Piecewise((Max(tyre.load(), 0), closed > 0), (0, True)))
+    load = e.read(sp.Piecewise((sp.Max(tyre.load(), 0), closed > 0), (0, True)))
     slip, tangent, speed, rates = tyre.slip(e.named(load))
-    from sympy import atan
-
-    return Touch(
-        contact,
-        e.named(above_zero(closed)),
-        load,
-        slip,
-        tangent,
-        speed,
-        rates,
-        tyre.turn(e.named(atan(tangent)), speed),
-    )
+    above = e.named(above_zero(closed))
+    turn = tyre.turn(e.named(sp.atan(tangent)), speed)
+    return Touch(contact, above, load, slip, tangent, speed, rates, turn)

@@ -6,35 +6,18 @@ Dynamics of Mechanical Systems (1989), section 9.4; Nikravesh (1988), section 7.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from ..element import Expr, Matrix, Symbolic
 from ..initial_pose import InitialPose
 from ..joints.pair import Pair
+from .branches import initially_aligned, initially_apart, initially_rotated
 from .marker import Marker
 
 if TYPE_CHECKING:
     from ...compile.symbolic.spatial_frames import SpatialFrame
-    from ...model.model_data import ModelData
-
-COINCIDE = ("x", "y", "z")
-"""Rows of `coincide`, along the ground axes."""
-ACROSS = ("z_across_z",)
-"""Row of `perpendicular` for the z axes."""
-ALIGN = ("x_across_z", "y_across_z")
-"""Rows of `align`: marker i's x and y are perpendicular to marker j's z."""
-ORIENT = ("x_across_y", "y_across_z", "z_across_x")
-"""Rows of `orient`: marker i's x is perpendicular to marker j's y, and so on."""
-IN_PLANE = ("along_z",)
-"""Row of `along` for the z axis of marker j."""
-ON_AXIS = ("along_x", "along_y")
-"""Rows of `on_axis`, along the x and y axes of marker j."""
-
-
-def coincide(i: SpatialFrame, j: SpatialFrame) -> list[Expr]:
-    """Return the residuals of coincident points."""
-    return list(i.point - j.point)
 
 
 def perpendicular(a: Matrix, b: Matrix) -> Expr:
@@ -47,23 +30,57 @@ def along(i: SpatialFrame, j: SpatialFrame, axis: Matrix) -> Expr:
     return (i.point - j.point).dot(axis)
 
 
-def align(i: SpatialFrame, j: SpatialFrame) -> list[Expr]:
-    """Return the residuals of parallel z axes, with the same or opposite direction as at the start."""
-    return [perpendicular(i.x, j.z), perpendicular(i.y, j.z)]
+@dataclass(frozen=True)
+class Condition:
+    """Condition between two markers, with a name for each of its equations."""
+
+    rows: tuple[str, ...]
+    residuals: Callable[[SpatialFrame, SpatialFrame], list[Expr]]
+    transmits: tuple[str, ...] = ()  # components of its reaction (`Joint.transmits`)
+    # yields reasons why markers are drawn too far from the intended one of several solutions
+    initially: Callable[[InitialPose, Marker, Marker], Iterator[str]] = lambda pose, i, j: iter(())
 
 
-def orient(i: SpatialFrame, j: SpatialFrame) -> list[Expr]:
-    """Return the residuals of parallel axes, which also vanish for half turns about an axis and cyclic permutations."""
-    return [perpendicular(i.x, j.y), perpendicular(i.y, j.z), perpendicular(i.z, j.x)]
-
-
-def on_axis(i: SpatialFrame, j: SpatialFrame) -> list[Expr]:
-    """Return the residuals of i's point on the z axis of j."""
-    return [along(i, j, j.x), along(i, j, j.y)]
+COINCIDE = Condition(("x", "y", "z"), lambda i, j: list(i.point - j.point), ("fx", "fy", "fz"))
+"""Coincident points; rows along the ground axes."""
+ON_AXIS = Condition(("along_x", "along_y"), lambda i, j: [along(i, j, j.x), along(i, j, j.y)], ("fx", "fy"))
+"""Point of i on the z axis of j; rows along the x and y axes of j."""
+IN_PLANE = Condition(("along_z",), lambda i, j: [along(i, j, j.z)], ("fz",))
+"""Point of i in the xy plane of j."""
+ACROSS = Condition(("z_across_z",), lambda i, j: [perpendicular(i.z, j.z)], (), initially_aligned)
+"""Perpendicular z axes."""
+ALIGN = Condition(
+    ("x_across_z", "y_across_z"), lambda i, j: [perpendicular(i.x, j.z), perpendicular(i.y, j.z)], ("tx", "ty"), initially_apart
+)  # fmt: skip
+"""Parallel z axes, with the same or opposite direction as at the start."""
+ORIENT = Condition(
+    ("x_across_y", "y_across_z", "z_across_x"),
+    lambda i, j: [perpendicular(i.x, j.y), perpendicular(i.y, j.z), perpendicular(i.z, j.x)],
+    ("tx", "ty", "tz"),
+    initially_rotated,
+)
+"""Parallel axes; half turns about an axis and cyclic permutations satisfy the equations, too."""
 
 
 class SpatialJoint(Pair[Marker]):
-    """Base of the spatial joints between two markers; a subclass names its coordinates among these."""
+    """Base of the spatial joints between two markers; a subclass names its coordinates among these.
+
+    Its `conditions` give its equations, the components that it transmits, and the check of its initial pose.
+    """
+
+    conditions: ClassVar[tuple[Condition, ...]] = ()
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: object) -> None:
+        """Name the equations and the transmitted components of a new kind by its conditions."""
+        super().__pydantic_init_subclass__(**options)
+        if "conditions" in vars(cls):
+            cls.equations = tuple(row for condition in cls.conditions for row in condition.rows)
+            cls.transmits = tuple(part for condition in cls.conditions for part in condition.transmits)
+
+    @classmethod
+    def position(cls, e: Symbolic) -> list[Expr]:
+        return [residual for condition in cls.conditions for residual in condition.residuals(e.i, e.j)]
 
     @staticmethod
     def angle(e: Symbolic) -> Expr:
@@ -87,10 +104,6 @@ class SpatialJoint(Pair[Marker]):
         """Return the displacement of marker i along the y axis of marker j."""
         return along(e.i, e.j, e.j.y)
 
-    @staticmethod
-    def initially(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
-        """Yield reasons why the initial pose is too far from the intended solution (`stiffmbs.elements.spatial.branches`)."""
-        yield from ()
-
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
-        yield from self.initially(pose.model, self.i, self.j)
+        for condition in self.conditions:
+            yield from condition.initially(pose, self.i, self.j)

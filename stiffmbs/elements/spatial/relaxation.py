@@ -8,7 +8,7 @@ Dynamics (2006), sec. 8.5 and 8.6.
 
 from __future__ import annotations
 
-from ..element import Expr, Symbolic
+from ..element import Expr, Symbolic, sp
 from ..roads.road import above_zero, magnitude
 from .contact_point import ContactPoint
 
@@ -30,15 +30,13 @@ def lagged(
 
     `sliding`: vsx, m/s. `lengths`: longitudinal and lateral relaxation length, m.
     """
-    from sympy import Float
-
-    least = Float(str(LEAST_RELAXATION_LENGTH))
+    least = sp.Float(str(LEAST_RELAXATION_LENGTH))
     along, across = (e.named(least + above_zero(e.named(length - least))) for length in lengths)
     x, y = e.own
     forward = magnitude(contact.vx)
     standing = e.named(above_zero(e.named(1 - forward / e.slow)) ** 2)
     speed = e.named(forward + RENEWED * standing * magnitude(sliding, contact.vy))
-    damping = e.named(Float(str(DAMPING)) * standing)
+    damping = e.named(sp.Float(str(DAMPING)) * standing)
     return (
         e.named((x - damping * sliding) / along),
         e.named((y + damping * contact.vy) / across),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pydantic import Field, model_validator
 
 from ...reading.units import si
-from ..element import Expr, Force, Matrix, Symbolic
+from ..element import Expr, Force, Matrix, Symbolic, sp
 from ..roads.envelope import Envelope
 from ..roads.field import AnyRoad
 from ..roads.road import FlatRoad, above_zero
@@ -86,6 +86,7 @@ class Tyre(Force):
     channels = CHANNELS
     may_keep_energy = False
     reflected = {"j": "z"}
+    spin_conditions = {"i": "y"}
 
     i: Marker = Field(description="centre of the wheel, its y axis the spin axis, to the left of the heading")
     j: Marker | None = Field(
@@ -112,9 +113,6 @@ class Tyre(Force):
     def cams(self) -> Envelope | None:
         """Return the cams of the enveloping contact, or None."""
         return self.envelope
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "y"}
 
     def mounted_side(self) -> tuple[object, float, tuple[str, ...]]:
         """Return the data of the tyre, 1 or -1 for a mirrored one, and what differs between left and right tyres."""
@@ -153,19 +151,15 @@ class Tyre(Force):
     @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Expr) -> Expr:
         """Return the effective rolling radius, m: the unloaded radius less a third of the deflection."""
-        from sympy import Rational
-
-        return cls.unloaded_radius(e) - deflection * Rational(1, 3)
+        return cls.unloaded_radius(e) - deflection * sp.Rational(1, 3)
 
     @classmethod
     def touching(cls, e: Symbolic) -> Touch:
         """Return the contact with its load and slips."""
-        from sympy import Max, Piecewise
-
         contact = contact_point(e)
         closed = e.named(cls.unloaded_radius(e) - contact.radius)
         deflection = e.named(above_zero(closed))
-        load = e.read(Piecewise((Max(cls.carried(e, deflection, -contact.vz), 0), closed > 0), (0, True)))
+        load = e.read(sp.Piecewise((sp.Max(cls.carried(e, deflection, -contact.vz), 0), closed > 0), (0, True)))
         sliding = e.named(contact.vx - e.named(cls.rolling_radius(e, deflection)) * contact.spin)
         slip, tangent, speed = slips(e, contact, sliding, e.slow)
         if not e.own:
@@ -176,10 +170,8 @@ class Tyre(Force):
     @classmethod
     def _acting(cls, e: Symbolic) -> tuple[Expr, Rolling, Expr, Expr]:
         """Return the contact, the arguments of the law, the deflection, and forces and torques with the rim."""
-        from sympy import atan
-
         touch = cls.touching(e)
-        contact, angle = touch.contact, e.named(atan(touch.tangent))
+        contact, angle = touch.contact, e.named(sp.atan(touch.tangent))
         direction = contact.vx / touch.speed
         of = (touch.load, touch.slip, angle, contact.camber, touch.speed, direction, contact.friction, *touch.turn)
         rolling = Rolling(*(e.variable(x) if e.in_state(x) else x for x in map(e.read, of)))
@@ -192,7 +184,6 @@ class Tyre(Force):
 
     @classmethod
     def rates(cls, e: Symbolic) -> Sequence[Expr]:
-        """Return the rates of the contact patch deflections of a tyre with relaxation lengths."""
         return cls.touching(e).rates
 
     @classmethod
@@ -209,6 +200,5 @@ class Tyre(Force):
 
     @classmethod
     def measured(cls, e: Symbolic) -> list[Expr]:
-        """Return the values of `channels`, in order."""
         _, rolling, deflection, (fx, fy, normal, mx, my, mz) = cls._acting(e)
         return [fx, fy, normal, mx, my, mz, rolling.slip, rolling.slip_angle, rolling.camber, deflection]

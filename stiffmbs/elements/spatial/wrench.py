@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..element import Expr, Matrix, Symbolic
+from ..element import Expr, Matrix, Symbolic, sp
 
 if TYPE_CHECKING:
     from ...compile.symbolic.spatial_frames import SpatialFrame
@@ -41,6 +41,4 @@ def along_axes(components: Sequence[Expr], axes: Sequence[Matrix]) -> Matrix:
 
 def seen_from(point: Matrix, marker: SpatialFrame) -> Matrix:
     """Return the components of a point relative to a marker, along its axes."""
-    from sympy import Matrix
-
-    return Matrix([(point - marker.point).dot(axis) for axis in (marker.x, marker.y, marker.z)])
+    return sp.Matrix([(point - marker.point).dot(axis) for axis in (marker.x, marker.y, marker.z)])

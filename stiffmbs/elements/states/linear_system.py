@@ -166,13 +166,11 @@ class LinearSystem(Entry):
         return self
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """Yield its unknowns by full name."""
         start = self.start or (0.0,) * len(self.a)
         for k, (of_states, of_inputs) in enumerate(zip(self.a, self.b, strict=True)):
             yield f"{name}.x{k + 1}", StateValue(self._row(name, of_states, of_inputs), start[k], 1.0)
 
     def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
-        """Yield the rows of y."""
         nothing = (0.0,) * len(self.input)
         names = [f"{name}.{output}" for output in self.outputs_] or [name]
         for k, full in enumerate(names):
@@ -225,7 +223,6 @@ class PID(Entry):
             yield f"{name}.filtered", StateValue(self._sum(rate, (-rate, f"{name}.filtered")), 0.0, 1.0)
 
     def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
-        """Yield the control output."""
         derivative = self.kd / self.filter if self.kd and self.filter is not None else 0.0
         others: list[Weighted] = [(self.ki, f"{name}.integral")] if self.ki else []
         others += [(-derivative, f"{name}.filtered")] if derivative else []

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
@@ -15,13 +16,11 @@ from ...reading.formula.names import FormulaNames
 from ...reading.joint_name import JointName
 from ...reading.marker import GROUND, check_marker, listed
 from ...reading.units.units import CONSTANTS, UNITS
+from ..body import AnyBody
+from ..element import Joint
 from ..read_by import Context, JsonSchema, ReadBy
 from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
 from .state import AlgebraicState, SampledState, State, dimension_of_state
-
-if TYPE_CHECKING:
-    from ..body import AnyBody
-    from ..element import Joint
 
 KINDS: dict[str, type[StateEntry]] = {
     "rate": State, "zero": AlgebraicState, "update": SampledState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
@@ -69,7 +68,7 @@ def names_in_formulas(states: Mapping[str, StateEntry]) -> set[str]:
     return found | {name for name, state in states.items() if any(full == name for full, _ in state.values(name))}
 
 
-def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
+def refuse_loops(outputs: Mapping[str, Formula]) -> None:
     """Refuse outputs in algebraic loops. Raises ValueError."""
     needs = {name: [other for other in formula.states if other in outputs] for name, formula in outputs.items()}
     try:
@@ -92,18 +91,19 @@ def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str,
                 raise InputError(f"{where}.{name}: found a name that {section}.{name} has too, expected another")
 
 
-def check_states(
-    states: Mapping[str, Any],
-    bodies: Mapping[str, AnyBody],
-    on_ground: Mapping[str, object],
-    joints: Mapping[str, Joint],
-    names: FormulaNames,
-    known: Collection[str] | None,
-) -> None:
-    """Refuse states whose names already have a meaning, and formulas with unknown references.
+@dataclass(frozen=True)
+class Scope:
+    """Parts of a model to which its elements and formulas can refer."""
 
-    `known`: all states of the model; None while others can still be added. Raises ValueError.
-    """
+    bodies: Mapping[str, AnyBody]
+    joints: Mapping[str, Joint]
+    on_ground: Mapping[str, object]  # markers
+    names: FormulaNames
+    states: Collection[str] | None  # names of states and inputs; None while others can still be added
+
+
+def check_states(states: Mapping[str, Any], scope: Scope) -> None:
+    """Refuse states whose names already have a meaning, and formulas with unknown references. Raises ValueError."""
     for name, state in states.items():
         if name in UNITS or name in CONSTANTS:
             raise ValueError(f"states.{name}: found the name of a unit or constant, expected another")
@@ -111,32 +111,25 @@ def check_states(
             where = f"states.{name}.{field}"
             for _, markers in formula.measures():
                 for marker in markers:
-                    check_marker(where, marker, bodies, on_ground)
-            check_formula(where, formula, bodies, joints, names, known)
+                    check_marker(where, marker, scope.bodies, scope.on_ground)
+            check_formula(where, formula, scope)
 
 
-def check_formula(
-    where: str,
-    formula: Formula,
-    bodies: Mapping[str, AnyBody],
-    joints: Mapping[str, Joint],
-    names: FormulaNames,
-    states: Collection[str] | None,
-) -> None:
-    """Refuse a formula that names an unknown body, joint or state; the states may be unknown yet."""
+def check_formula(where: str, formula: Formula, scope: Scope) -> None:
+    """Refuse a formula that names an unknown body, joint or state."""
     for body in formula.bodies():
-        if body not in bodies and body not in joints and body != GROUND:
-            near = did_you_mean(body, bodies)
-            raise ValueError(f"{where}: found the unknown body '{body}'{near}, expected {listed(bodies)}")
-    _check_reactions(where, formula, joints)
-    known = formula.states if states is None else states
+        if body not in scope.bodies and body not in scope.joints and body != GROUND:
+            near = did_you_mean(body, scope.bodies)
+            raise ValueError(f"{where}: found the unknown body '{body}'{near}, expected {listed(scope.bodies)}")
+    _check_reactions(where, formula, scope.joints)
+    known = formula.states if scope.states is None else scope.states
     for state in formula.states:
         if state not in known:
             raise ValueError(
                 f"{where}: found the unknown name '{state}'{did_you_mean(state, known)} in '{formula.text}', expected t, a body's "
                 f"coordinate such as cart.x, a parameter or a state ({', '.join(sorted(known)) or 'there is none'})"
             )
-    for reason in names.validation_errors(formula, joints):
+    for reason in scope.names.validation_errors(formula, scope.joints):
         raise ValueError(f"{where}: {reason}")
 
 

@@ -47,6 +47,10 @@ class Entry(Described):
             elif isinstance(value, tuple):
                 yield from ((f"{name}.{k}", part) for k, part in enumerate(value) if isinstance(part, Formula))
 
+    def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
+        """Yield its unknowns by full name."""
+        raise NotImplementedError
+
     def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
         """Yield its outputs by full name; none unless its kind has some, such as a transfer function."""
         yield from ()
@@ -79,7 +83,6 @@ class State(Entry):
         return self
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """Yield its unknowns by full name."""
         yield name, StateValue(self.rate, float(self.start), float(self.scale))
 
 
@@ -107,7 +110,6 @@ class AlgebraicState(Entry):
     )
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """Yield its unknowns by full name."""
         yield name, StateValue(self.zero, float(self.start), float(self.scale), algebraic=True)
 
 
@@ -142,7 +144,6 @@ class SampledState(Entry):
         return self
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """Yield its unknowns by full name."""
         yield name, StateValue(self.update, float(self.start), 1.0, period=self.period, offset=self.offset)
 
 

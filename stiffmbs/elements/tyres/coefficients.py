@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
+import numpy as np
 from pydantic import Field, model_validator
 
-from ...errors import InputError
+from ...errors import InputError, prefixed
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.files_read import file_beside
 from ...reading.files.quoted import quoted, written
@@ -19,29 +20,12 @@ from ...reading.table import Table
 from ..element import Component
 from ..read_by import Context, JsonSchema, ReadBy
 from ..roads.envelope import MOST_TRACKS, Envelope
-from .file_fields import (
-    Bottoming,
-    belt_of,
-    bottoming_of,
-    check_numbers,
-    curve_of,
-    doubts,
-    is_pac2002,
-    mode_of,
-    nominal_load,
-    ranges_of,
-    read_names,
-    relaxation_of,
-    replaced_digits,
-    side_of,
-    version_of,
-    wrong_mode,
-)
-from .names import COMBINED, OF_PAC2002, OF_PRESSURE, OF_THE_FILE, ONE_SIDED, REASONS, TURN_SLIP
+from . import file_fields
+from .file_fields import Bottoming
+from .names import COMBINED, OF_PAC2002, OF_PRESSURE, OF_THE_FILE, ONE_SIDED, POSITIVE, REASONS, TURN_SLIP
 from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, read_property_file
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import ArrayLike
 
 WITH_TURN_SLIP: Final = 5
@@ -90,7 +74,7 @@ class TyreProperties(Component):
             if not self.coefficients[name] and name not in self.formula.may_vanish:
                 raise ValueError(f"found {name} = 0, expected a number other than zero")
         if self.use_mode is not None and not self.formula.has_mode(self.use_mode):
-            raise ValueError(wrong_mode(self.use_mode, self.formula))
+            raise ValueError(file_fields.wrong_mode(self.use_mode, self.formula))
         for name in POSITIVE:
             if self.coefficients.get(name, 1.0) <= 0:
                 raise ValueError(f"found {name} = {self.coefficients[name]:g}, expected a number above zero")
@@ -109,7 +93,7 @@ class TyreProperties(Component):
 
     def _check_stiffness(self) -> None:
         """Refuse a progressive stiffness that the stiffness at the nominal load contradicts (Q_FZ1 of 6.1)."""
-        p = {**self.formula.defaults, **self.coefficients}
+        p = self.numbers
         slope = p["VERTICAL_STIFFNESS"] * p["UNLOADED_RADIUS"] / p["FNOMIN"]
         if slope**2 <= 4 * p["Q_FZ2"]:
             raise ValueError(
@@ -128,15 +112,25 @@ class TyreProperties(Component):
         return VERSIONS[self.version]
 
     @property
+    def numbers(self) -> dict[str, float]:
+        """All numbers by name, with default values."""
+        return {**self.formula.defaults, **self.coefficients}
+
+    def _has(self, names: Iterable[str]) -> bool:
+        """Return True if one of some coefficients is given and not zero."""
+        return any(self.coefficients.get(name, 0.0) for name in names)
+
+    @property
     def is_combined(self) -> bool:
         """True if there are weights of combined slip."""
-        return any(self.coefficients.get(name, 0.0) for name in COMBINED)
+        return self._has(COMBINED)
 
     @property
     def has_lengths(self) -> bool:
         """True if there are relaxation lengths, or the stiffnesses of 6.1 that give them."""
-        given = [self.coefficients.get(name, 0.0) for name in self.names_of_lengths]
-        return min(given) > 0 if self.formula.is_6 else any(given)
+        if self.formula.is_6:
+            return min(self.coefficients.get(name, 0.0) for name in self.names_of_lengths) > 0
+        return self._has(self.names_of_lengths)
 
     @property
     def names_of_lengths(self) -> tuple[str, str]:
@@ -163,7 +157,7 @@ class TyreProperties(Component):
     @property
     def has_turn_slip(self) -> bool:
         """True if there are coefficients of turn slip."""
-        return self.formula.is_6 and any(self.coefficients.get(name, 0.0) for name in TURN_SLIP)
+        return self.formula.is_6 and self._has(TURN_SLIP)
 
     @property
     def takes_turn_slip(self) -> bool:
@@ -186,12 +180,12 @@ class TyreProperties(Component):
     @property
     def nominal_load(self) -> float:
         """FNOMIN, N, or of a Fiala tyre the load at a usual deflection."""
-        return nominal_load(self.coefficients)
+        return file_fields.nominal_load(self.coefficients)
 
     @property
     def nominal_pressure(self) -> float | None:
         """Inflation pressure of the file, Pa; None for a tyre that does not depend on it."""
-        numbers = {**self.formula.defaults, **self.coefficients}
+        numbers = self.numbers
         if self.formula.is_6:
             return numbers["INFLPRES"] or numbers["NOMPRES"]
         return numbers.get("IP", numbers["IP_NOM"]) if "IP_NOM" in numbers else None
@@ -209,7 +203,7 @@ class TyreProperties(Component):
     @property
     def envelope(self) -> Envelope | None:
         """Cams of the enveloping contact by ELLIPS_SHIFT to ELLIPS_NWIDTH, for the contact patch at the nominal load."""
-        p = SimpleNamespace(**{**self.formula.defaults, **self.coefficients})
+        p = SimpleNamespace(**self.numbers)
         if not self.formula.is_6 or min(p.ELLIPS_SHIFT, p.ELLIPS_LENGTH, p.ELLIPS_HEIGHT, p.Q_RA1) <= 0:
             return None
         from .deflection_6 import contact_patch
@@ -222,13 +216,12 @@ class TyreProperties(Component):
         )  # fmt: skip
 
     def in_equations(self) -> dict[str, object]:
-        """Return the names and values that the equations use."""
         own: dict[str, Any] = {
             "ellipse": "" if self.is_combined else "pac2002" if self.of_adams else "limit",
             "belt": self.belt or None, "mode": str(self._slips), "is_mirrored": self.is_mirrored, "side": self.side,
             "deflection_load": self.deflection_load, "bottoming": self.bottoming, "formula": self.version,
         }  # fmt: skip
-        numbers = {"NOMPRES": None, **self.formula.defaults, **self.coefficients, **own}
+        numbers = {"NOMPRES": None, **self.numbers, **own}
         if self.has_pressure:
             numbers["INFLPRES"] = self.nominal_pressure
         if "IP_NOM" in numbers:
@@ -242,7 +235,7 @@ class TyreProperties(Component):
             missing = ", ".join(self.names_of_lengths)
             yield f"USE_MODE = {self.use_mode} asks for relaxation lengths, and there are none ({missing}): slips are those of the steady state"
         if self.use_mode is not None:
-            yield from replaced_digits(self.use_mode, self.is_transient, self.formula)
+            yield from file_fields.replaced_digits(self.use_mode, self.is_transient, self.formula)
         if self.belt and not self.has_lengths:
             yield "the gyroscopic couple of the belt (QTZ1) needs relaxation lengths, and there are none: it is left out"
         if self.formula.is_magic and not self.is_combined:
@@ -280,8 +273,6 @@ class TyreProperties(Component):
         dict of str to ndarray
             ``longitudinal``, ``lateral`` (N), ``overturning``, ``rolling``, ``aligning`` (N m); arguments broadcast.
         """
-        import numpy as np
-
         load = np.minimum(load, self.coefficients.get("FZMAX", math.inf))
         found = self.steady_state(load, slip, slip_angle, camber, pressure, speed, friction=friction)
         return {name: found[symbol] for name, symbol in WRENCH.items()}
@@ -380,44 +371,29 @@ class TyreProperties(Component):
 
 PRESSED = "a tyre of 6.1 or 6.2, or of PAC2002 with IP_NOM"
 """Tyres that depend on inflation pressure, in messages."""
-POSITIVE = (
-    "FNOMIN",
-    "UNLOADED_RADIUS",
-    "VERTICAL_STIFFNESS",
-    "NOMPRES",
-    "IP",
-    "IP_NOM",
-    "LIP",
-    "CSLIP",
-    "CALPHA",
-    "UMAX",
-)
-"""Numbers above zero."""
-WRENCH = dict(
-    zip(("longitudinal", "lateral", "overturning", "rolling", "aligning"), ("Fx", "Fy", "Mx", "My", "Mz"), strict=True)
-)
+WRENCH = {"longitudinal": "Fx", "lateral": "Fy", "overturning": "Mx", "rolling": "My", "aligning": "Mz"}
 """Symbols of forces and torques by the channels of a tyre."""
 
 
 def _of_file(file: PropertyFile) -> TyreProperties:
-    version, remarks = version_of(file)
+    version, remarks = file_fields.version_of(file)
     formula = VERSIONS[version]
     found = {
         name: file.number(name, formula.dimensions.get(name, ""), formula.home(name))
-        for name in read_names(file, formula)
+        for name in file_fields.read_names(file, formula)
         if name in formula.required or file.entry(name, formula.home(name))
     }
     read = {
-        "coefficients": found, "version": version, "use_mode": mode_of(file, formula), "side": side_of(file),
-        "ranges": dict(ranges_of(file, formula)), "bottoming": bottoming_of(file, formula),
+        "coefficients": found, "version": version, "use_mode": file_fields.mode_of(file, formula), "side": file_fields.side_of(file),
+        "ranges": dict(file_fields.ranges_of(file, formula)), "bottoming": file_fields.bottoming_of(file, formula),
     }  # fmt: skip
     if not formula.is_6:
-        read["deflection_load"] = curve_of(file, "DEFLECTION_LOAD_CURVE")
+        read["deflection_load"] = file_fields.curve_of(file, "DEFLECTION_LOAD_CURVE")
     if version == "5.2":
-        read["belt"] = belt_of(file)
-        read["is_pac2002"] = is_pac2002(file)
+        read["belt"] = file_fields.belt_of(file)
+        read["is_pac2002"] = file_fields.is_pac2002(file)
     if version == "Fiala":
-        for name, length, note in relaxation_of(file, formula, found, read["use_mode"]):
+        for name, length, note in file_fields.relaxation_of(file, formula, found, read["use_mode"]):
             found[name] = length
             remarks += [note] if note else []
     if formula.is_6 and "NOMPRES" not in found:
@@ -425,13 +401,13 @@ def _of_file(file: PropertyFile) -> TyreProperties:
         remarks.append(f"there is no NOMPRES: the coefficients are taken to hold at {found['NOMPRES']:g} Pa")
     for name in OF_THE_FILE:
         file.entry(name)
-    remarks += doubts(file, formula, found)
+    remarks += file_fields.doubts(file, formula, found)
     remarks += unused_notes([*file.sections.values(), file.tables], REASONS)
     try:
         properties = TyreProperties(**read, remarks=tuple(f"{file.source}: {note}" for note in remarks))
     except InputError as error:
         raise InputError(f"{file.source}: {str(error).removeprefix('TyreProperties: ')}") from None
-    check_numbers(file, formula, found)
+    file_fields.check_numbers(file, formula, found)
     return properties
 
 
@@ -439,10 +415,8 @@ def _read(found: object, context: Context) -> TyreProperties:
     if isinstance(found, TyreProperties):
         return found
     if isinstance(found, str | Path):
-        try:
+        with prefixed("", InputError, ValueError):
             return TyreProperties.from_file(file_beside(context or {}, found))
-        except InputError as error:
-            raise ValueError(str(error)) from None
     if isinstance(found, dict):
         return TyreProperties.model_validate(found)
     raise ValueError(f"found {written(found)}, expected the name of a property file, or coefficients by name")

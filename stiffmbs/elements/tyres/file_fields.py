@@ -224,19 +224,9 @@ UNIT_OF = {"": "", "length": "m", "force": "N", "pressure": "Pa", "velocity": "m
 
 
 def check_numbers(file: PropertyFile, formula: Version, found: Mapping[str, float]) -> None:
-    """Refuse numbers of a file in wrong units, and with the signs of other axes.
+    """Refuse numbers of a file, in SI units, that follow from wrong units or from the signs of other axes.
 
-    Parameters
-    ----------
-    file : PropertyFile
-    formula : Version
-    found : mapping of str to float
-        Numbers of the file, SI units.
-
-    Raises
-    ------
-    InputError
-        The message contains the line.
+    Raises InputError; the message contains the line.
     """
     for name, limits in PLAUSIBLE.items():
         if name in found and not (name == "INFLPRES" and found[name] == 0):  # 0 stands for NOMPRES

@@ -20,6 +20,7 @@ from ..element import Symbolic
 from ..roads.road import above_zero, magnitude
 
 Name = Callable[[Expr], Expr]
+ONE, ZERO = Rational(1), Rational(0)
 LEAST_LOAD = Float("1e-12")
 """Offset of loads in divisors, N, for a tyre without contact; it is below rounding for a tyre on the road."""
 
@@ -105,6 +106,11 @@ def at_most_one(x: Expr) -> Expr:
     return 1 - above_zero(1 - x)
 
 
+def divisor(stiffness: Expr) -> Expr:
+    """Return a stiffness to divide by, which is not zero for a tyre without load."""
+    return stiffness + sign(stiffness) * LEAST_LOAD + LEAST_LOAD**2
+
+
 def longitudinal(p: Symbolic, s: Slip, dfz: Expr, f: Name) -> Curve:
     """Return the force of pure longitudinal slip."""
     gamma = s.gamma * p.LGAX
@@ -145,17 +151,22 @@ def weight(b: Expr, slip: Expr, shift: Expr, c: Expr, curvature: Expr, f: Name) 
     return f(cos(magic(b, f(slip + shift), c, curvature)) / cos(magic(b, shift, c, curvature)))
 
 
-def combined(p: Symbolic, s: Slip, x: Curve, y: Curve, dfz: Expr, f: Name) -> tuple[Expr, Expr, Expr]:
-    """Return Fx, Fy, and the lateral force induced by longitudinal slip."""
-    over_alpha = f(p.RBX1 * cos(atan(p.RBX2 * s.kappa)) * p.LXAL)
+def combined(
+    p: Symbolic, s: Slip, x: Curve, y: Curve, dfz: Expr, f: Name, leaning: tuple[Expr, Expr] = (ZERO, ZERO), zeta: Expr = ONE
+) -> tuple[Expr, Expr, Expr, Expr]:  # fmt: skip
+    """Return Fx, Fy, the lateral force induced by longitudinal slip, and the factor G_yk on the side force.
+
+    `leaning`: influence of camber on RBX1 and RBY1. `zeta`: that of turn slip on the induced force.
+    """
+    over_alpha = f((p.RBX1 + leaning[0]) * cos(atan(p.RBX2 * s.kappa)) * p.LXAL)
     E = at_most_one(p.REX1 + p.REX2 * dfz)
     fx = f(x.force * weight(over_alpha, s.alpha, p.RHX1, p.RCX1, f(E), f))
-    over_kappa = f(p.RBY1 * cos(atan(p.RBY2 * (s.alpha - p.RBY3))) * p.LYKA)
+    over_kappa = f((p.RBY1 + leaning[1]) * cos(atan(p.RBY2 * (s.alpha - p.RBY3))) * p.LYKA)
     E = at_most_one(p.REY1 + p.REY2 * dfz)
     lessened = weight(over_kappa, s.kappa, f(p.RHY1 + p.RHY2 * dfz), p.RCY1, f(E), f)
-    most = y.mu * s.load * (p.RVY1 + p.RVY2 * dfz + p.RVY3 * s.gamma) * cos(atan(p.RVY4 * s.alpha))
+    most = y.mu * s.load * (p.RVY1 + p.RVY2 * dfz + p.RVY3 * s.gamma) * cos(atan(p.RVY4 * s.alpha)) * zeta
     induced = f(most * sin(p.RVY5 * atan(p.RVY6 * s.kappa)) * p.LVYKA)
-    return fx, f(y.force * lessened + induced), induced
+    return fx, f(y.force * lessened + induced), induced, lessened
 
 
 def aligning(p: Symbolic, s: Slip, x: Curve, y: Curve, forces: tuple[Expr, Expr, Expr], dfz: Expr, f: Name) -> Torque:
@@ -167,14 +178,10 @@ def aligning(p: Symbolic, s: Slip, x: Curve, y: Curve, forces: tuple[Expr, Expr,
     D = s.load * (p.QDZ1 + p.QDZ2 * dfz) * (1 - p.QPZ1 * s.dpi)
     D = f(D * (1 + p.QDZ3 * gamma + p.QDZ4 * gamma**2) * (R / p.FNOMIN) * p.LTR)
     of_trail = f(s.alpha + p.QHZ1 + p.QHZ2 * dfz + (p.QHZ3 + p.QHZ4 * dfz) * gamma)
-    of_rest = f(s.alpha + y.horizontal + y.vertical / (y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2))
-    E = f(
-        at_most_one(
-            (p.QEZ1 + p.QEZ2 * dfz + p.QEZ3 * dfz**2)
-            * (1 + (p.QEZ4 + p.QEZ5 * gamma) * (2 / pi) * atan(B * p.QCZ1 * of_trail))
-        )
-    )
-    driving = f((x.stiffness / (y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2) * s.kappa) ** 2)
+    of_rest = f(s.alpha + y.horizontal + y.vertical / divisor(y.stiffness))
+    bent = 1 + (p.QEZ4 + p.QEZ5 * gamma) * (2 / pi) * atan(B * p.QCZ1 * of_trail)
+    E = f(at_most_one((p.QEZ1 + p.QEZ2 * dfz + p.QEZ3 * dfz**2) * bent))
+    driving = f((x.stiffness / divisor(y.stiffness) * s.kappa) ** 2)
     straight = cos(s.alpha) * s.direction  # reversed trail when rolling backward
     trail = f(D * cos(magic(B, f(equivalent(of_trail, driving)), p.QCZ1, E)) * straight)
     cambered = (p.QDZ8 + p.QDZ9 * dfz) * (1 + p.QPZ2 * s.dpi) * gamma
@@ -201,7 +208,7 @@ def wrench(p: Symbolic, s: Slip, f: Name, ellipse: str = "") -> Forces:
     """
     dfz = increment(p, s.load, f)
     x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
-    forces = ELLIPSES[ellipse](s, x, y, f) if ellipse else combined(p, s, x, y, dfz, f)
+    forces = ELLIPSES[ellipse](s, x, y, f) if ellipse else combined(p, s, x, y, dfz, f)[:3]
     mx, my = torques(p, s, forces[0], forces[1], f)
     torque = aligning(p, s, x, y, forces, dfz, f)
     return Forces(*forces[:2], mx, my, torque.whole, x, y, torque)
@@ -292,8 +299,7 @@ def within_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Expr, Expr, Ex
     """
     least = Float("1e-60")
     kappa = f(s.kappa + x.horizontal + x.vertical / (x.stiffness + LEAST_LOAD))
-    stiffness = y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2
-    alpha = f(sin(s.alpha + y.horizontal + y.vertical / stiffness))
+    alpha = f(sin(s.alpha + y.horizontal + y.vertical / divisor(y.stiffness)))
     most_x, most_y = x.mu * s.load + LEAST_LOAD, y.mu * s.load + LEAST_LOAD
     along, across = f((x.force - x.vertical) / most_y), f((y.force - y.vertical) / most_x)
     fx = x.force * sqrt((kappa**2 + least) / (kappa**2 + (along * alpha) ** 2 + least))

@@ -11,34 +11,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from sympy import Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
+from sympy import Float, atan, cos, exp, pi, sin, sqrt, tan
 
 from ..element import Expr, Symbolic
 from ..roads.road import above_zero, magnitude
-from .magic_formula import (
-    COMBINED_MODES,
-    ELLIPSES,
-    LEAST_LOAD,
-    OF_MODES,
-    Curve,
-    Forces,
-    Formula,
-    Name,
-    Slip,
-    Torque,
-    at_most_one,
-    equivalent,
-    increment,
-    magic,
-    resistance_of,
-    shaped_overturning,
-    sign,
-    weight,
-)
+from . import magic_formula as earlier
+from .magic_formula import LEAST_LOAD, ONE, ZERO, Curve, Name, Slip, Torque, at_most_one, divisor, magic, sign
 
 ROUNDED = Float("1e-3")
 """Width over which the arccosine of 4.104 is rounded at 1, where its slope is infinite."""
-ONE, ZERO = Rational(1), Rational(0)
 LEAST_SPIN = Float("1e-12")
 """Offset of spin torques in divisors, N m."""
 
@@ -119,11 +100,6 @@ def camber_stiffness(p: Symbolic, load: Expr, dpi: Expr, dfz: Expr) -> Expr:
     return load * (p.PKY6 + p.PKY7 * dfz) * (1 + p.PPY5 * dpi) * p.LKYC
 
 
-def divisor(stiffness: Expr) -> Expr:
-    """Return a stiffness to divide by, which is not zero for a tyre without load."""
-    return stiffness + sign(stiffness) * LEAST_LOAD + LEAST_LOAD**2
-
-
 def longitudinal(p: Symbolic, s: PressedSlip, dfz: Expr, spin: Spin, f: Name) -> Curve:
     """Return the force of pure longitudinal slip (4.E9 to 4.E18)."""
     shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX * s.moving)
@@ -173,21 +149,6 @@ def spin_shift(p: Symbolic, s: PressedSlip, dfz: Expr, spin: Spin, thrust: Expr,
     return f(D * sin(magic(ONE, x, C, at_most_one(p.PHYP4))) * s.direction)
 
 
-def combined(
-    p: Symbolic, s: PressedSlip, x: Curve, y: Curve, dfz: Expr, spin: Spin, f: Name
-) -> tuple[Expr, Expr, Expr]:
-    """Return Fx, Fy, and the factor G_yk on the side force (4.E50 to 4.E67)."""
-    over_alpha = f((p.RBX1 + p.RBX3 * s.gamma**2) * cos(atan(p.RBX2 * s.kappa)) * p.LXAL)
-    E = at_most_one(p.REX1 + p.REX2 * dfz)
-    fx = f(x.force * weight(over_alpha, s.alpha, p.RHX1, p.RCX1, f(E), f))
-    over_kappa = f((p.RBY1 + p.RBY4 * s.gamma**2) * cos(atan(p.RBY2 * (s.alpha - p.RBY3))) * p.LYKA)
-    E = at_most_one(p.REY1 + p.REY2 * dfz)
-    lessened = weight(over_kappa, s.kappa, f(p.RHY1 + p.RHY2 * dfz), p.RCY1, f(E), f)
-    most = y.mu * s.load * (p.RVY1 + p.RVY2 * dfz + p.RVY3 * s.gamma) * cos(atan(p.RVY4 * s.alpha)) * spin.of_fy
-    induced = f(most * sin(p.RVY5 * atan(p.RVY6 * s.kappa)) * p.LVYKA)
-    return fx, f(y.force * lessened + induced), lessened
-
-
 def with_torque(p: Symbolic, s: PressedSlip, y: Curve, lessened: Expr, dfz: Expr, spin: Spin, f: Name) -> Spin:
     """Return the spin with its residual torque and its shape, D_r,phi and zeta_7 (4.93 to 4.99, 4.103, 4.104)."""
     if spin.phi is None:
@@ -224,13 +185,13 @@ def aligning(
     E = f(at_most_one((p.QEZ1 + p.QEZ2 * dfz + p.QEZ3 * dfz**2) * bent))
     driving = f((x.stiffness / divisor(y.stiffness) * s.kappa) ** 2)
     straight = f(cos(s.alpha) * s.direction)
-    trail = f(D * cos(magic(B, f(equivalent(of_trail, driving)), p.QCZ1, E)) * straight)
+    trail = f(D * cos(magic(B, f(earlier.equivalent(of_trail, driving)), p.QCZ1, E)) * straight)
     upright = lateral(p, replace(s, gamma=ZERO, turn=None), dfz, Spin(), f).force
     cambered = (p.QDZ8 + p.QDZ9 * dfz) * (1 + p.PPZ2 * s.dpi) + (p.QDZ10 + p.QDZ11 * dfz) * magnitude(gamma)
     at_rest = (p.QDZ6 + p.QDZ7 * dfz) * p.LRES * spin.of_fy + cambered * gamma * p.LKZC * spin.of_camber
     most = f(s.load * at_rest * R * friction * straight + spin.torque)
     slope = f((p.QBZ9 * stiffer + p.QBZ10 * y.B * y.C) * spin.of_residual)
-    residual = f(most * cos(spin.shape * atan(slope * equivalent(of_rest, driving))))
+    residual = f(most * cos(spin.shape * atan(slope * earlier.equivalent(of_rest, driving))))
     arm = f((p.SSZ1 + p.SSZ2 * fy / p.FNOMIN + (p.SSZ3 + p.SSZ4 * dfz) * gamma) * R * p.LS)
     return Torque(-trail * upright * lessened + residual + arm * fx, trail, residual)
 
@@ -241,7 +202,7 @@ def overturning(p: Symbolic, s: PressedSlip, fy: Expr, f: Name) -> Expr:
     size = magnitude(gamma)
     by_load = (
         p.QSX1 * p.LVMX - p.QSX2 * gamma * (1 + p.PPMX1 * s.dpi) + p.QSX3 * side
-        + shaped_overturning(p, part, side, gamma) - p.QSX12 * gamma * size
+        + earlier.shaped_overturning(p, part, side, gamma) - p.QSX12 * gamma * size
     )  # fmt: skip
     return R * p.LMX * (s.load * by_load + fy * (p.QSX13 + p.QSX14 * size))
 
@@ -250,57 +211,53 @@ def rolling_resistance(p: Symbolic, s: PressedSlip, fx: Expr, f: Name) -> Expr:
     """Return the rolling resistance torque (A48)."""
     part = f(s.load / p.FNOMIN)
     of_load = part * (part + LEAST_LOAD) ** (p.QSY7 - 1)  # with a finite slope at zero load
-    return (
-        -p.UNLOADED_RADIUS
-        * p.FNOMIN
-        * resistance_of(p, s, fx, part)
-        * of_load
-        * (1 + s.dpi) ** p.QSY8
-        * p.LMY
-        * s.direction
-    )
+    upright = p.FNOMIN * earlier.resistance_of(p, s, fx, part) * of_load * (1 + s.dpi) ** p.QSY8
+    return -p.UNLOADED_RADIUS * upright * p.LMY * s.direction
 
 
 def slip_forces(p: Symbolic, s: PressedSlip, f: Name, mode: str, ellipse: str) -> tuple[Expr, Expr]:
     """Return Fx and Fy, as selected by the last digit of USE_MODE."""
-    dfz = increment(p, s.load, f)
+    dfz = earlier.increment(p, s.load, f)
     spin = spin_of(p, s, dfz, f)
     x, y = longitudinal(p, s, dfz, spin, f), lateral(p, s, dfz, spin, f)
-    if mode in COMBINED_MODES:
+    if mode in earlier.COMBINED_MODES:
         return _combined(p, s, x, y, dfz, spin, f, ellipse)[:2]
-    wanted = OF_MODES[mode].split()
+    wanted = earlier.OF_MODES[mode].split()
     return x.force if "fx" in wanted else ZERO, y.force if "fy" in wanted else ZERO
 
 
 def _combined(
     p: Symbolic, s: PressedSlip, x: Curve, y: Curve, dfz: Expr, spin: Spin, f: Name, ellipse: str
 ) -> tuple[Expr, Expr, Expr]:
-    if not ellipse:
-        return combined(p, s, x, y, dfz, spin, f)
-    fx, fy, _ = ELLIPSES[ellipse](s, x, y, f)
-    return fx, fy, fy / divisor(y.force)
+    """Return Fx, Fy, and the factor G_yk on the side force (4.E50 to 4.E67)."""
+    if ellipse:
+        fx, fy, _ = earlier.ELLIPSES[ellipse](s, x, y, f)
+        return fx, fy, fy / divisor(y.force)
+    leaning = p.RBX3 * s.gamma**2, p.RBY4 * s.gamma**2
+    fx, fy, _, lessened = earlier.combined(p, s, x, y, dfz, f, leaning, spin.of_fy)
+    return fx, fy, lessened
 
 
-def wrench(p: Symbolic, s: PressedSlip, f: Name, ellipse: str = "") -> Forces:
+def wrench(p: Symbolic, s: PressedSlip, f: Name, ellipse: str = "") -> earlier.Forces:
     """Return forces and torques of combined slip."""
-    dfz = increment(p, s.load, f)
+    dfz = earlier.increment(p, s.load, f)
     spin = spin_of(p, s, dfz, f)
     x, y = longitudinal(p, s, dfz, spin, f), lateral(p, s, dfz, spin, f)
     forces = _combined(p, s, x, y, dfz, spin, f, ellipse)
     torque = aligning(p, s, x, y, forces, dfz, spin, f)
     fx, fy, _ = forces
-    return Forces(fx, fy, overturning(p, s, fy, f), rolling_resistance(p, s, fx, f), torque.whole, x, y, torque)
+    return earlier.Forces(fx, fy, overturning(p, s, fy, f), rolling_resistance(p, s, fx, f), torque.whole, x, y, torque)
 
 
 def uncombined(p: Symbolic, s: PressedSlip, f: Name) -> tuple[Expr, Expr, Expr, Expr, Expr]:
     """Return Fx, Fy, Mx, My, Mz of separate slips: Fx, My by the longitudinal, the others by the slip angle."""
-    dfz, spin = increment(p, s.load, f), Spin()
+    dfz, spin = earlier.increment(p, s.load, f), Spin()
     x, y = longitudinal(p, s, dfz, spin, f), lateral(p, s, dfz, spin, f)
     torque = aligning(p, replace(s, kappa=ZERO), x, y, (ZERO, y.force, ONE), dfz, spin, f)
     return x.force, y.force, overturning(p, s, y.force, f), rolling_resistance(p, s, x.force, f), torque.whole
 
 
-FORMULA = Formula(wrench, uncombined)
+FORMULA = earlier.Formula(wrench, uncombined)
 """Versions 6.1 and 6.2."""
 
 
@@ -309,7 +266,7 @@ def relaxation_lengths(p: Symbolic, load: Expr, dpi: Expr, gamma: Expr, f: Name)
 
     Besselink, Schmeitz, Pacejka (2010), eq. 17 to 19.
     """
-    dfz = increment(p, load, f)
+    dfz = earlier.increment(p, load, f)
     along = p.LONGITUDINAL_STIFFNESS * (1 + p.PCFX1 * dfz + p.PCFX2 * dfz**2) * (1 + p.PCFX3 * dpi)
     across = p.LATERAL_STIFFNESS * (1 + p.PCFY1 * dfz + p.PCFY2 * dfz**2) * (1 + p.PCFY3 * dpi)
     return (

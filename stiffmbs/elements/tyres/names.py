@@ -85,6 +85,8 @@ RANGES = {
     "pressure": ("PRESMIN", "PRESMAX", "pressure"),
 }  # fmt: skip
 """Limits of the valid ranges of a file, by channel, and their dimension."""
+POSITIVE = _words("FNOMIN UNLOADED_RADIUS VERTICAL_STIFFNESS NOMPRES IP IP_NOM LIP CSLIP CALPHA UMAX")
+"""Numbers above zero."""
 OF_THE_FILE = ("FILE_TYPE", "FILE_VERSION", "FILE_FORMAT")
 """Keys that describe the file itself."""
 REASONS = {

@@ -14,23 +14,7 @@ from ...reading.files.quoted import quoted
 from ...reading.files.requested import Fields
 from ...reading.files.text_file import file_text, finite_number, lines
 from ...reading.units.units import UNITS as SI
-from .names import (
-    AS_BEFORE,
-    COEFFICIENTS,
-    COEFFICIENTS_6,
-    DEFAULT_VALUES,
-    DIMENSIONS,
-    DIMENSIONS_6,
-    FIALA,
-    FIALA_REQUIRED,
-    OF_PAC2002,
-    OF_PRESSURE,
-    PRESSURES,
-    REQUIRED,
-    SCALES,
-    SCALES_6,
-    home,
-)
+from . import names
 
 if TYPE_CHECKING:
     from .magic_formula import Formula
@@ -45,7 +29,7 @@ _NAMES = {
 }  # fmt: skip
 """Names in Adams/Tire of the units of scenes."""
 UNITS = {
-    kind: {name: SI[unit].value for unit, names in units.items() for name in names.split()}
+    kind: {word: SI[unit].value for unit, words in units.items() for word in words.split()}
     for kind, units in _NAMES.items()
 }
 """Units of a file in SI units, by their names in Adams/Tire, case-insensitive."""
@@ -190,7 +174,7 @@ def parse_properties(text: str, source: str) -> PropertyFile:
     if not sections:
         raise InputError(f"{source}: found no KEY = value, expected a file of tyre properties")
     tables = {f"[{name}]": Rows(line, tuple(numbers)) for name, (line, numbers) in rows.items()}
-    found = {name: Fields(f"[{name}]", "", own, DEFAULT_VALUES) for name, own in sections.items()}
+    found = {name: Fields(f"[{name}]", "", own, names.DEFAULT_VALUES) for name, own in sections.items()}
     if "UNITS" in found:
         found["UNITS"].request(*UNITS)  # including unused dimensions
     return PropertyFile(source, found, Fields("table", "", tables))
@@ -229,7 +213,7 @@ class Version:
     dimensions: Mapping[str, str]  # numbers that are neither coefficients nor scale factors, with their dimensions
     defaults: Mapping[str, float]  # default values; numbers without one are required
     largest: tuple[int, int, int]  # largest digits of USE_MODE: contact method, dynamics, slip
-    required: tuple[str, ...] = REQUIRED  # numbers that a tyre must have
+    required: tuple[str, ...] = names.REQUIRED  # numbers that a tyre must have
     may_vanish: tuple[str, ...] = ()  # required numbers that may be zero
     vertical: str = "VERTICAL"  # section of the vertical stiffness and damping
 
@@ -240,7 +224,7 @@ class Version:
 
     def home(self, name: str) -> str:
         """Return the section of a property file that a key belongs to."""
-        section = home(name)
+        section = names.home(name)
         return self.vertical if section == "VERTICAL" else section
 
     def has_mode(self, mode: float) -> bool:
@@ -268,14 +252,14 @@ class Version:
 
 
 _OF_5 = {
-    **dict.fromkeys((*COEFFICIENTS, *OF_PRESSURE, *OF_PAC2002), 0.0), **dict.fromkeys((*SCALES, "LIP"), 1.0), "VERTICAL_DAMPING": 0.0,
-    "BREFF": 0.0, "DREFF": 0.0, "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
+    **dict.fromkeys((*names.COEFFICIENTS, *names.OF_PRESSURE, *names.OF_PAC2002), 0.0),
+    **dict.fromkeys((*names.SCALES, "LIP"), 1.0), "VERTICAL_DAMPING": 0.0, "BREFF": 0.0, "DREFF": 0.0, "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
 }  # fmt: skip
 """Default values; FREFF gives the unloaded radius less a third of the deflection as rolling radius."""
 _OF_6 = {
-    **dict.fromkeys((*COEFFICIENTS_6, *DIMENSIONS_6), 0.0), **dict.fromkeys(SCALES_6, 1.0), "LMUV": 0.0, "FREFF": 1 / 3,
-    "LONGVL": 16.7, "FZMAX": UNLIMITED, "INFLPRES": 0.0, "NOMPRES": NOMINAL_PRESSURE, "Q_RE0": 1.0,
-    "PKY4": AS_BEFORE["PKY4"], "QSY7": AS_BEFORE["QSY7"], "PHYP1": 1.0, "QDRP1": 1.0,
+    **dict.fromkeys((*names.COEFFICIENTS_6, *names.DIMENSIONS_6), 0.0), **dict.fromkeys(names.SCALES_6, 1.0),
+    "LMUV": 0.0, "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "INFLPRES": 0.0, "NOMPRES": NOMINAL_PRESSURE, "Q_RE0": 1.0,
+    "PKY4": names.AS_BEFORE["PKY4"], "QSY7": names.AS_BEFORE["QSY7"], "PHYP1": 1.0, "QDRP1": 1.0,
 }  # fmt: skip
 """Default values; those of omitted coefficients of 6.1 have the effect of MF-Tyre 5.2, INFLPRES = 0 means NOMPRES."""
 _OF_FIALA = {
@@ -285,10 +269,10 @@ _OF_FIALA = {
 VERSIONS = {
     version.name: version
     for version in (
-        Version("5.2", {**DIMENSIONS, **PRESSURES}, _OF_5, (0, 2, 4)),
-        Version("6.1", DIMENSIONS_6, _OF_6, (5, 3, 5)),
-        Version("6.2", DIMENSIONS_6, _OF_6, (5, 3, 5)),
-        Version("Fiala", FIALA, _OF_FIALA, (0, 1, 2), FIALA_REQUIRED, ("WIDTH", "UMIN"), "PARAMETER"),
+        Version("5.2", {**names.DIMENSIONS, **names.PRESSURES}, _OF_5, (0, 2, 4)),
+        Version("6.1", names.DIMENSIONS_6, _OF_6, (5, 3, 5)),
+        Version("6.2", names.DIMENSIONS_6, _OF_6, (5, 3, 5)),
+        Version("Fiala", names.FIALA, _OF_FIALA, (0, 1, 2), names.FIALA_REQUIRED, ("WIDTH", "UMIN"), "PARAMETER"),
     )
 }
 OF_FITTYP = {

@@ -40,6 +40,7 @@ CONTACT = {
 """Least and largest value of the state of the contact, and its unit; of angles by geometry."""
 IN_RANGE = {**CONTACT, "pressure": (*PLAUSIBLE["INFLPRES"], " Pa")}
 """The same with the inflation pressure."""
+OfArray = Callable[[np.ndarray], np.ndarray]
 Numbers = Mapping[str, Any]
 """Numbers of a tyre by the symbols of the Magic Formula, with its version, ellipse of friction and load curve."""
 
@@ -69,8 +70,9 @@ def steady_state(
     forces = {name: np.broadcast_to(x, Fz.shape).astype(float) for name, x in found.items()}
     for name in ("sigma_x", "sigma_y"):
         forces[name] = np.where(np.isfinite(forces[name]), forces[name], 0.0)
-    free = rolled.pop("free")
-    return forces | rolled | _deflected(numbers, Fz, gamma, dpi, rolled["omega"], free, forces)
+    deflected = _deflected(numbers, Fz, gamma, dpi, forces | rolled)
+    del rolled["free"]
+    return forces | rolled | deflected
 
 
 def _check(contact: Sequence[np.ndarray], pressure: np.ndarray | None) -> None:
@@ -114,27 +116,22 @@ def _rolling(
 
 
 def _deflected(
-    numbers: Numbers,
-    Fz: np.ndarray,
-    gamma: np.ndarray,
-    dpi: np.ndarray,
-    omega: np.ndarray,
-    free: np.ndarray,
-    forces: dict[str, np.ndarray],
+    numbers: Numbers, Fz: np.ndarray, gamma: np.ndarray, dpi: np.ndarray, found: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
-    """Return deflection and loaded radius, by iteration on the load for 6.1 and 6.2."""
+    """Return deflection and loaded radius by those of a free tyre and by forces, by iteration for 6.1 and 6.2."""
+    free = found["free"]
     if not VERSIONS[numbers["formula"]].is_6:
         rho = _deflection_at(numbers, Fz, dpi)
         return {"rho": rho, "Rl": free - rho}
     load = _compiled("load", *_key(numbers))
     values = _values(numbers)
 
-    def found(loaded: np.ndarray) -> dict[str, np.ndarray]:
-        return load(*values, loaded, free, omega, dpi, gamma, forces["Fx"], forces["Fy"])
+    def carrying(loaded: np.ndarray) -> dict[str, np.ndarray]:
+        return load(*values, loaded, free, found["omega"], dpi, gamma, found["Fx"], found["Fy"])
 
     Fz = np.maximum(Fz, LEAST_LOAD)
-    Rl = falling_root(lambda loaded: found(loaded)["load"] - Fz, lambda x: found(x)["slope"], 0.0 * free, BEYOND * free)
-    carried = found(Rl)
+    Rl = falling_root(lambda x: carrying(x)["load"] - Fz, lambda x: carrying(x)["slope"], 0.0 * free, BEYOND * free)
+    carried = carrying(Rl)
     Rl = np.where(np.abs(carried["load"] - Fz) < UNCARRIED * (Fz + numbers["FNOMIN"]), Rl, np.nan)
     return {"rho": carried["rho"] + 0 * Rl, "Rl": Rl}
 
@@ -159,12 +156,7 @@ def _deflection_at(numbers: Numbers, Fz: np.ndarray, dpi: np.ndarray) -> np.ndar
     return falling_root(excess, lambda x: -slopes(np.clip(x, at[0], at[-1])), 0 * Fz + min(at[0], 0.0), longest)
 
 
-def falling_root(
-    function: Callable[[np.ndarray], np.ndarray],
-    slope: Callable[[np.ndarray], np.ndarray],
-    low: np.ndarray,
-    high: np.ndarray,
-) -> np.ndarray:
+def falling_root(function: OfArray, slope: OfArray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Return the zeros of decreasing functions within intervals by Newton's method with bisection; high without one."""
     x = (low + high) / 2
     for _ in range(MOST_ITERATIONS):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, cast
+from typing import cast
 
 import numpy as np
 
@@ -13,17 +13,6 @@ NEARLY = 1e-9
 """Relative tolerance for coincident points and parallel directions."""
 ACROSS = 0.1
 """Sine of the angle from the vertical below which the x axis of the ground replaces it as upward direction."""
-
-
-class Piece(Protocol):
-    """Smooth piece of an axis."""
-
-    @property
-    def length(self) -> float:
-        """Arc length, m."""
-
-    def at(self, s: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return point and unit tangent at an arc length."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +56,10 @@ class Arc:
         radius = float(np.linalg.norm(self.first))
         c, sine = np.cos(s / radius), np.sin(s / radius)
         return self.centre + c * self.first + sine * self.second, (c * self.second - sine * self.first) / radius
+
+
+Piece = Straight | Arc
+"""Smooth piece of an axis."""
 
 
 def pieces_through(points: Sequence[np.ndarray]) -> list[Piece]:

@@ -142,10 +142,8 @@ class Beam(LineBody):
                 f"{'start' if start is None else 'end'}: found nothing, expected 'start' and 'end', or 'points'"
             )
         else:
-            where, axis = (
-                "through" if through else "end",
-                [self._in_space(p) for p in (start, through, end) if p is not None],
-            )
+            where = "through" if through else "end"
+            axis = [self._in_space(point) for point in (start, through, end) if point is not None]
         with prefixed(f"{where}: ", ValueError, ValueError):
             return [arc_through(*axis)] if through is not None else pieces_through(axis)
 

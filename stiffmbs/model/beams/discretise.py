@@ -238,20 +238,10 @@ class _Interval:
             screw, slope = shapes @ relative, slopes @ relative / (end - start)
             strain = tangent(adjoint(screw)) @ slope
             unloaded = np.where(np.abs(strain) < 1e-13 * np.linalg.norm(strain), 0.0, strain)
-            K = inverse(compliance)
-            length = float(weight) * (end - start)
-            self.elements.append(
-                Element(
-                    own,
-                    turned,
-                    length,
-                    unloaded,
-                    K,
-                    reference=group.reference,
-                    shapes=shapes,
-                    slopes=slopes / (end - start),
-                )
-            )
+            length, slopes = float(weight) * (end - start), slopes / (end - start)
+            at, K = group.reference, inverse(compliance)
+            element = Element(own, turned, length, unloaded, K, reference=at, shapes=shapes, slopes=slopes)
+            self.elements.append(element)
 
     def _single(
         self, nodes: list[Node], turned: np.ndarray, ends: tuple[float, float], screw: np.ndarray

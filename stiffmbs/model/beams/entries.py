@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from ...reading.files.yaml_text import Content
+
 GROUND_AXES = "ground_axes"
 """Marker of each node with axes parallel to those of the scene or part, for joints to bodies with such axes."""
 LOAD, CONTACT = "distributed_load", "beam_contact"
@@ -11,12 +13,8 @@ LOAD, CONTACT = "distributed_load", "beam_contact"
 
 
 def with_beams(
-    sections: dict[str, object],
-    parameters: Mapping[str, object],
-    dimensions: object = None,
-    part: str = "",
-    instance: str = "",
-) -> dict[str, object]:
+    sections: Content, parameters: Mapping[str, object], dimensions: object = None, part: str = "", instance: str = ""
+) -> Content:
     """Return the sections of a scene or part with beams replaced by their nodes and elements.
 
     The sections are as written, with repeated entries expanded; the dimensions are by default those that they contain.

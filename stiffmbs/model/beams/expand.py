@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pydantic import ValidationError as PydanticError
-
 from ...elements.body import FLEXIBLE, check_names
 from ...errors import InputError, prefixed
 from ...reading.did_you_mean import did_you_mean
-from ...reading.fields import sentence
+from ...reading.fields import is_valid, located
 from ...reading.files.quoted import quoted
 from ...reading.files.yaml_text import Content
 from ..model_data import RESERVED
@@ -26,12 +24,7 @@ BEAM = "beam"
 
 
 def expand_beams(
-    bodies: dict[str, object],
-    forces: object,
-    parameters: Mapping[str, object],
-    dimensions: object,
-    where: str,
-    instance: str,
+    bodies: Content, forces: object, parameters: Mapping[str, object], dimensions: object, where: str, instance: str
 ) -> tuple[Content, object]:
     """Return the bodies and forces of a scene or part with beams replaced by their nodes and elements.
 
@@ -87,10 +80,8 @@ def _loads(name: str, entry: object, lines: Mapping[str, Line], where: str, dime
         return node_contacts(name, entry, lines, where, "sphere_contact" if dimensions == 3 else "contact")
     if kind != LOAD:
         return {name: entry}
-    try:
+    with located(where):
         load = DistributedLoad.model_validate(entry)
-    except PydanticError as error:
-        raise InputError(f"{where}.{sentence(error)}") from None
     return node_forces(name, load, lines, where)
 
 
@@ -102,27 +93,11 @@ def read_beam(entry: Mapping[str, object], parameters: Mapping[str, object], dim
         raise InputError(
             f"{where}.type: found '{quoted(kind)}'{near}, expected {BEAM}, {FLEXIBLE}, or no type for a rigid body"
         )
+    context = {"parameters": parameters}
     try:
-        return (SpatialBeam if dimensions == 3 else PlanarBeam).model_validate(
-            entry, context={"parameters": parameters}
-        )
-    except PydanticError as error:
-        if dimensions != 3 and _right_in_space(entry, parameters):
+        with located(where):
+            return (SpatialBeam if dimensions == 3 else PlanarBeam).model_validate(entry, context=context)
+    except InputError:
+        if dimensions != 3 and is_valid(SpatialBeam, entry, context):
             raise InputError("dimensions: found none, expected 3 for beams in space") from None
-        text = sentence(error)
-        raise InputError(f"{where}{'.' if _begins_with_key(text) else ': '}{text}") from None
-
-
-def _right_in_space(entry: Mapping[str, object], parameters: Mapping[str, object]) -> bool:
-    """Return True if an entry that is invalid in the plane is valid in space."""
-    try:
-        SpatialBeam.model_validate(entry, context={"parameters": parameters})
-    except PydanticError:
-        return False
-    return True
-
-
-def _begins_with_key(text: str) -> bool:
-    """Return True if a message starts with the path of a field."""
-    key, colon, _ = text.partition(":")
-    return bool(colon) and " " not in key
+        raise

@@ -118,15 +118,10 @@ def _force(name: str, element: Element, beam: Beam) -> Content:
         **({"damping_ratio": beam.damping} if beam.damping else {}),
     }  # fmt: skip
     if len(others) == 1:
-        return {
-            "type": "exact_beam",
-            "stiffness": [[part or None for part in row] for row in K],
-            "bowing": _numbers(element.bowing[: len(components) // 3]),
-            **(_of_torsion(element) if any((*element.shear_centre, *element.wagner)) else {}),
-            **common,
-            "i": i,
-            "j": j,
-        }
+        of_pair: Content = {"stiffness": [[part or None for part in row] for row in K]}
+        of_pair["bowing"] = _numbers(element.bowing[: len(components) // 3])
+        torsion = _of_torsion(element) if any((*element.shear_centre, *element.wagner)) else {}
+        return {"type": "exact_beam", **of_pair, **torsion, **common, "i": i, "j": j}
     return {
         "type": "beam_section", "stiffness": K, **common, "nodes": [j, *({"body": body} for body in others)],
         "reference": element.reference, "shapes": _numbers(element.shapes), "slopes": _numbers(element.slopes),

@@ -36,12 +36,8 @@ def of_walls(points: Sequence[tuple[float, float]], thickness: Sequence[float]) 
     there (Timoshenko, Strength of Materials II, 1956, sec. 52). Its moment is that of V at the shear centre, and
     its energy the integral of q^2/(2 G t).
 
-    Parameters
-    ----------
-    points : sequence of (float, float)
-        Corners of the middle lines, from one free edge to the other, along axes 2 and 3, m.
-    thickness : sequence of float
-        Of each wall, m.
+    `points`: corners of the middle lines, from one free edge to the other, along axes 2 and 3, m. `thickness`: of each
+    wall, m.
     """
     corners = np.array(points, dtype=float)
     t, along = np.array(thickness), np.diff(corners, axis=0)

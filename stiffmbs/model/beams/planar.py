@@ -9,8 +9,6 @@ from pydantic import Field
 from ...reading.units import si
 from .beam import Beam, Bending, InertiaPerLength
 
-Point = tuple[si.Length, si.Length]
-
 
 class BeamBody(Beam):
     """Geometrically exact beam in the plane: rigid nodes with lumped mass, joined by elements `exact_beam`.
@@ -21,10 +19,10 @@ class BeamBody(Beam):
 
     dimensions: ClassVar[Literal[2]] = 2
 
-    start: Point | None = Field(None, description="its start, m")
-    end: Point | None = Field(None, description="its end, m")
-    through: Point | None = Field(None, description="a further point of an arc from start to end, m")
-    points: tuple[Point, ...] | None = Field(
+    start: si.Point2 | None = Field(None, description="its start, m")
+    end: si.Point2 | None = Field(None, description="its end, m")
+    through: si.Point2 | None = Field(None, description="a further point of an arc from start to end, m")
+    points: tuple[si.Point2, ...] | None = Field(
         None, min_length=2, description="in place of start and end: corners of straight pieces, rigidly connected, m"
     )
     stiffness: tuple[si.PositiveForce, si.PositiveForce, Bending] | None = Field(
@@ -33,7 +31,5 @@ class BeamBody(Beam):
     inertia_per_length: InertiaPerLength | None = Field(
         None, description="rho I, in place of section and material, kg m"
     )
-    velocity: tuple[si.Velocity, si.Velocity] = Field(
-        (0.0, 0.0), description="of its start point at the start of the run, m/s"
-    )
+    velocity: si.Velocity2 = Field((0.0, 0.0), description="of its start point at the start of the run, m/s")
     omega: si.AngularVelocity = Field(0.0, description="of the whole beam at the start of the run, rad/s")

@@ -26,9 +26,6 @@ PRINCIPAL = 1e-6
 """Largest product of inertia of principal axes, relative to the larger second moment."""
 CENTRED = 0.01
 """Largest distance of the shear centre from the plane of motion, relative to the root of the area."""
-Area = Annotated[float, Measured("area", above=0)]
-SecondMoment = Annotated[float, Measured("second moment of area", above=0)]
-Factor = Annotated[float, Measured("number", above=0)]
 
 
 @dataclass(frozen=True)
@@ -241,14 +238,8 @@ def wagner_coefficients(
     that is linear in the coordinates of the section is a curvature. For bending in a plane of symmetry its coefficient
     is the beta of lateral buckling (Trahair, Flexural-Torsional Buckling of Structures, 1993, sec. 17.4).
 
-    Parameters
-    ----------
-    second : (float, float, float)
-        I2, I3 and I23, m^4.
-    third : sequence of two floats
-        Integrals of the coordinates along axes 2 and 3 times the square of the distance from the centroid, m^5.
-    shear_centre : (float, float)
-        From the centroid along axes 2 and 3, m.
+    `second`: I2, I3 and I23, m^4. `third`: integrals of the coordinates along axes 2 and 3 times the square of the
+    distance from the centroid, m^5. `shear_centre`: from the centroid along axes 2 and 3, m.
     """
     (I2, I3, I23), (y, z) = second, shear_centre
     about_2, about_3 = np.linalg.solve([[I2, -I23], [-I23, I3]], [third[1], -third[0]]).tolist()
@@ -259,17 +250,19 @@ class Numbers(Section):
     """Section of any form, by its constants; in the plane I2 and shear3 are those of the plane."""
 
     type: Literal["numbers"] = "numbers"
-    A: Area = Field(description="area, m^2")
-    I2: SecondMoment = Field(description="about axis 2, for bending along the height or in the plane, m^4")
-    I3: SecondMoment | None = Field(None, description="about axis 3, m^4; I2 by default")
-    J: SecondMoment | None = Field(None, description="torsion constant, m^4; I2 + I3 by default, as for a circle")
-    shear2: Factor = Field(1.0, description="shear factor along axis 2")
-    shear3: Factor = Field(1.0, description="shear factor along axis 3, or in the plane")
+    A: si.PositiveArea = Field(description="area, m^2")
+    I2: si.PositiveSecondMoment = Field(description="about axis 2, for bending along the height or in the plane, m^4")
+    I3: si.PositiveSecondMoment | None = Field(None, description="about axis 3, m^4; I2 by default")
+    J: si.PositiveSecondMoment | None = Field(
+        None, description="torsion constant, m^4; I2 + I3 by default, as for a circle"
+    )
+    shear2: si.PositiveNumber = Field(1.0, description="shear factor along axis 2")
+    shear3: si.PositiveNumber = Field(1.0, description="shear factor along axis 3, or in the plane")
     I23: Annotated[float, Measured("second moment of area")] = Field(
         0.0, description="product of inertia, positive where the area is in the first and third quadrant, m^4"
     )
-    shear_centre: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="from the centroid along axes 2 and 3, m")
-    wagner: tuple[si.Length, si.Length] = Field(
+    shear_centre: si.Point2 = Field((0.0, 0.0), description="from the centroid along axes 2 and 3, m")
+    wagner: si.Point2 = Field(
         (0.0, 0.0), description="curvature about axes 2 and 3 by torsion over half of its square (Wagner), m"
     )
 
@@ -293,15 +286,12 @@ class Numbers(Section):
         )  # fmt: skip
 
 
-_Point = tuple[si.Length, si.Length]
-
-
 class Drawn(Section):
     """Section drawn by its outline and holes, whose constants follow from finite elements."""
 
     type: Literal["points"] = "points"
-    points: tuple[_Point, ...] = Field(min_length=3, description="outline, along axes 2 and 3 (the height), m")
-    holes: tuple[tuple[_Point, ...], ...] = Field((), description="outlines of holes, m")
+    points: tuple[si.Point2, ...] = Field(min_length=3, description="outline, along axes 2 and 3 (the height), m")
+    holes: tuple[tuple[si.Point2, ...], ...] = Field((), description="outlines of holes, m")
 
     def properties(self, nu: float) -> Properties:
         """See `stiffmbs.model.beams.drawn_section`; the shear factors are those of a Poisson ratio of zero."""
@@ -320,9 +310,9 @@ AnySection = Annotated[Any, one_of("a section such as {type: circle, diameter: 1
 class Material(Described):
     """Linear elastic, isotropic material."""
 
-    E: Annotated[float, Measured("pressure", above=0)] = Field(description="Young's modulus, N/m^2")
+    E: si.PositivePressure = Field(description="Young's modulus, N/m^2")
     nu: Annotated[float, Measured("number", at_least=0, at_most=0.5)] = Field(0.3, description="Poisson's ratio")
-    density: Annotated[float, Measured("density", above=0)] = Field(description="density, kg/m^3")
+    density: si.PositiveDensity = Field(description="density, kg/m^3")
 
     @property
     def G(self) -> float:

@@ -9,8 +9,6 @@ from pydantic import Field
 from ...reading.units import si
 from .beam import Beam, Bending, InertiaPerLength
 
-Point = tuple[si.Length, si.Length, si.Length]
-
 
 class BeamBody(Beam):
     """Geometrically exact beam in space: rigid nodes with lumped mass, joined by elements `exact_beam`.
@@ -21,10 +19,10 @@ class BeamBody(Beam):
 
     dimensions: ClassVar[Literal[3]] = 3
 
-    start: Point | None = Field(None, description="start point, m")
-    end: Point | None = Field(None, description="end point, m")
-    through: Point | None = Field(None, description="a further point of an arc from start to end, m")
-    points: tuple[Point, ...] | None = Field(
+    start: si.Point3 | None = Field(None, description="start point, m")
+    end: si.Point3 | None = Field(None, description="end point, m")
+    through: si.Point3 | None = Field(None, description="a further point of an arc from start to end, m")
+    points: tuple[si.Point3, ...] | None = Field(
         None, min_length=2, description="in place of start and end: corners of straight pieces, rigidly connected, m"
     )
     up: tuple[si.Number, si.Number, si.Number] | None = Field(
@@ -36,9 +34,9 @@ class BeamBody(Beam):
     inertia_per_length: tuple[InertiaPerLength, InertiaPerLength, InertiaPerLength] | None = Field(
         None, description="moments of inertia per length about axes 1, 2, 3, in place of section and material, kg m"
     )
-    velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
+    velocity: si.Velocity3 = Field(
         (0.0, 0.0, 0.0), description="velocity of the start point at the start of the run, m/s"
     )
-    omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
+    omega: si.AngularVelocity3 = Field(
         (0.0, 0.0, 0.0), description="angular velocity of the whole beam at the start of the run, rad/s"
     )

@@ -51,14 +51,8 @@ def bowing(K: np.ndarray, section: np.ndarray, shear_centre: tuple[float, float]
     Without bowing, elements under a tension above 12 EI/L^2 would fold. The shear of a thick element is real, and does
     not stretch it: b is 6/5 times the square of the part of its compliance that stands for bending.
 
-    Parameters
-    ----------
-    K : ndarray, shape (6, 6)
-        Stiffness of the element.
-    section : ndarray, shape (6, 6)
-        That of its cross section.
-    shear_centre : (float, float)
-        From the centroid, along axes 2 and 3 of the element, m.
+    `K`, `section`: stiffness of the element and of its cross section, shape (6, 6). `shear_centre`: from the centroid,
+    along axes 2 and 3 of the element, m.
     """
     y, z = shear_centre
     shears = np.eye(6)[1:3]

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import singledispatch
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
 
 from ...elements.element import Element, Joint
 from ...elements.forces.applied import AppliedForce, AppliedTorque
@@ -25,9 +27,6 @@ from ...reading.joint_name import JointName
 from ...reading.python_function import PythonFunction
 from .fields import oriented, plain, same
 from .formulas import QUARTER, TURN, Angles, Written, across, along, turned
-
-if TYPE_CHECKING:
-    import numpy as np
 
 
 @singledispatch
@@ -78,16 +77,10 @@ def bushing(element: Bushing, angles: Angles) -> Written:
         raise InputError(
             f"found its markers drawn {math.degrees(initial):.4g} degrees apart, expected less than half a turn in space"
         )
-    law = element.law_angle
-    return same(
-        element,
-        angles,
-        stiffness=_six_by_six(element.stiffness),
-        damping=_six_by_six(element.damping),
-        preload=_six(element.preload, 0) if any(element.preload) else None,
-        law_angle=None,
-        law_about_z=None if law is None else plain(law, angles),
-    )
+    matrices = {name: _six_by_six(getattr(element, name)) for name in ("stiffness", "damping")}
+    preload = _six(element.preload, 0) if any(element.preload) else None
+    law = None if element.law_angle is None else plain(element.law_angle, angles)
+    return same(element, angles, **matrices, preload=preload, law_angle=None, law_about_z=law)
 
 
 def _six(three: Any, nothing: object) -> list[object]:

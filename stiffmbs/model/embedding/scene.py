@@ -35,16 +35,10 @@ def scene_in_space(data: PlanarData) -> Written:
     joints = _elements("joints", data.joints, angles)
     joints |= {_free(f"{body}_in_plane", data): {"type": "planar", "i": body, "j": GROUND} for body in loose(data)}
     requests: Written = {name: request(found, angles) for name, found in data.requests.items()}
-    parts: Written = {
-        "name": data.name,
-        "dimensions": 3,
-        "gravity": [*data.gravity, 0] if any(data.gravity) else None,
-        "states": plain(data.states, angles),
-        "inputs": plain(data.inputs, angles),
-        "joints": joints,
-        "forces": _elements("forces", data.forces, angles),
-        "requests": requests,
-    }
+    gravity = [*data.gravity, 0] if any(data.gravity) else None
+    parts: Written = {"name": data.name, "dimensions": 3, "gravity": gravity, "joints": joints, "requests": requests}
+    parts |= {name: plain(getattr(data, name), angles) for name in ("states", "inputs")}
+    parts["forces"] = _elements("forces", data.forces, angles)
     if isinstance(data, Scene):
         parts |= {
             "parameters": data.written_parameters(),

@@ -6,12 +6,12 @@ import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
 from ...errors import InputError
-from ...reading.fields import Described, Measured
+from ...reading.fields import Described
 from ...reading.files.quoted import quoted
 from ...reading.files.yaml_text import Content, read_yaml
 from ...reading.units import si
@@ -29,7 +29,6 @@ class WrittenScene:
     files: dict[str, str] = field(default_factory=dict, compare=False)
 
 
-Number = Annotated[float, Measured("number")]
 BOUNDS = ("at_least", "at_most", "equals")
 
 
@@ -37,10 +36,10 @@ class Until(Described):
     """Condition that ends a stage or changes its course (Adams: SENSOR)."""
 
     request: str = Field(description="name of the request that is watched over the solver's internal steps")
-    at_least: Number | None = Field(None, description="the stage ends where the value comes to be this or more")
-    at_most: Number | None = Field(None, description="where it comes to be this or less")
-    equals: Number | None = Field(None, description="where it comes to this from either side")
-    within: Annotated[float, Measured("number", at_least=0)] = Field(
+    at_least: si.Number | None = Field(None, description="the stage ends where the value comes to be this or more")
+    at_most: si.Number | None = Field(None, description="where it comes to be this or less")
+    equals: si.Number | None = Field(None, description="where it comes to this from either side")
+    within: si.NumberOrZero = Field(
         0.0,
         description="tolerance for an extremum that does not quite reach `equals`, and the distance by which the value must move back before the condition can be met again",
     )

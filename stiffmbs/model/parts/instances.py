@@ -8,8 +8,7 @@ from typing import Any
 
 from ...elements.body import check_names
 from ...errors import InputError
-from ...reading.fields import located
-from ...reading.files.quoted import written
+from ...reading.fields import located, mapping
 from ...reading.files.yaml_text import Content
 from ...reading.names import MOUNT, beginnings
 from ...reading.units.units import Quantity
@@ -84,9 +83,7 @@ class Instances:
         Raises InputError for a part that does not exist, uses itself, or cannot be read.
         """
         where = f"{outer.where}.use" if outer else "use"
-        if not isinstance(used, dict):
-            raise InputError(f"{where}: found {written(used)}, expected a mapping of names to parts")
-        for name, entry in repeat_entries(where, used, parameters).items():
+        for name, entry in repeat_entries(where, mapping(used, where, "names to parts"), parameters).items():
             _check_name(where, name)
             use, own = self.definitions.use(f"{where}.{name}", entry, parameters)
             above = [*_above(outer)]
@@ -178,9 +175,7 @@ def _check_sections(part: str, sections: Mapping[str, object], inner: Sequence[s
     seen = {**dict.fromkeys(inner, "use"), **dict.fromkeys(vectors, "parameters")}
     for section, entries in sections.items():
         where = f"parts.{part}.{section}"
-        if not isinstance(entries, dict):
-            raise InputError(f"{where}: found {written(entries)}, expected a mapping of names to entries")
-        for name in entries:
+        for name in mapping(entries, where):
             _check_name(where, name)
             if section in NAMED and name in seen:
                 raise InputError(f"{where}.{name}: found a name that {seen[name]}.{name} has too, expected another")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...reading.formula.formula import Formula
@@ -23,21 +23,14 @@ ANGLES = ("ax", "ay", "az")
 Signs = tuple[float, ...]
 
 
+@dataclass
 class MirroredNames(ast.NodeTransformer):
-    """Replace each coordinate and measure by its mirror image: the same, or its negative.
+    """Replace each coordinate and measure by its mirror image: the same, or its negative."""
 
-    `frame`: frame of the part in ground axes. `inside`: returns True if a marker belongs to the part or its mounts.
-    `along_joint`: returns the sign of a joint's coordinate, given the names of both; None if the part has no such
-    joint.
-    """
-
-    def __init__(
-        self,
-        frame: PlanarFrame | SpatialFrame,
-        inside: Callable[[MarkerReference], bool],
-        along_joint: Callable[[str, str], float | None],
-    ) -> None:
-        self.frame, self.inside, self.along_joint = frame, inside, along_joint
+    frame: PlanarFrame | SpatialFrame  # of the part in ground axes
+    inside: Callable[[MarkerReference], bool]  # returns True if a marker belongs to the part or its mounts
+    # returns the sign of a joint's coordinate, given the names of both; None if the part has no such joint
+    along_joint: Callable[[str, str], float | None]
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         """Return a coordinate or velocity with its sign in the mirrored part."""
@@ -123,9 +116,9 @@ def mirrored_law(found: Formula | Table, names: MirroredNames, value: float, arg
     return replace(found, tree=tree, text=text)
 
 
+@dataclass
 class _Negated(ast.NodeTransformer):
-    def __init__(self, variables: tuple[str, ...]) -> None:
-        self.variables = variables
+    variables: tuple[str, ...]
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         return node

@@ -7,15 +7,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean, instead_of
+from ...reading.fields import mapping
 from ...reading.files.quoted import written
-
-if TYPE_CHECKING:
-    from ...reading.files.yaml_text import Content
-
+from ...reading.files.yaml_text import Content
 
 OPTIONS, CHOOSE = "options", "choose"
 
@@ -25,9 +23,7 @@ def choices_of(found: Mapping[str, object], where: str) -> dict[str, Content]:
 
     Raises InputError if they are not a mapping of choices to words to sections.
     """
-    options = found.get(OPTIONS) or {}
-    if not isinstance(options, dict):
-        raise InputError(f"{where}: found {written(options)}, expected a mapping of choices to words")
+    options = mapping(found.get(OPTIONS) or {}, where, "choices to words")
     for name, words in options.items():
         if not isinstance(words, dict) or not words:
             raise InputError(f"{where}.{name}: found {written(words)}, expected a mapping of words to sections")

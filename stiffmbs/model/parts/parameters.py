@@ -7,6 +7,7 @@ from typing import Any
 
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean, instead_of
+from ...reading.fields import mapping
 from ...reading.files.quoted import written
 from ...reading.formula.text import FormulaError
 from ...reading.names import GROUND, MOUNT
@@ -34,9 +35,7 @@ def parameters_of(
     parameters of the definition. `limits`: those of the definition; a value is checked before others follow from it.
     Raises InputError if one is unknown, has a reserved name, is not a number, or is beyond its limit.
     """
-    own = {} if found is None else found
-    if not isinstance(own, dict):
-        raise InputError(f"parts.{use.part}.parameters: found {written(own)}, expected a mapping of names to numbers")
+    own = mapping({} if found is None else found, f"parts.{use.part}.parameters", "names to numbers")
     for name in use.parameters:
         if name not in own:
             known = [*dict.fromkeys(_vector(each, own) for each in own)]

@@ -17,9 +17,8 @@ from ...elements.states.amount import stated_dimension
 from ...elements.states.section import dimensions_of_entry, refuse_other_meanings
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
-from ...reading.fields import Described, sentence
+from ...reading.fields import Described, mapping, sentence
 from ...reading.files.files_read import Context
-from ...reading.files.quoted import written
 from ...reading.files.yaml_text import Content
 from ...reading.formula.dimension import Known
 from ...reading.formula.full_names import with_full_names
@@ -259,10 +258,7 @@ class _Placed:
         """Return a section of the scene, to which parts add entries."""
         if self.raw.get(section) is None:
             self.raw[section] = {}
-        entries: object = self.raw[section]
-        if not isinstance(entries, dict):
-            raise InputError(f"{section}: found {written(entries)}, expected a mapping of names to entries")
-        return entries
+        return mapping(self.raw[section], section)
 
 
 def _on_mounts(element: Element, name: str, mounts: Mapping[str, tuple[str, object]]) -> Element:

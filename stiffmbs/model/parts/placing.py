@@ -29,12 +29,9 @@ def placed_in_use(
             raise InputError(f"use.{name}: found a name that stands in parts too, expected it once")
         used[name] = {"part": entry["use"], **{key: value for key, value in entry.items() if key != "use"}}
     left = {name: entry for name, entry in entries.items() if name not in placing}
+    placed = tuple(f"parts.{name}." for name in placing)
     moved = [
-        (
-            f"use{path.removeprefix('parts')}" if any(path.startswith(f"parts.{name}.") for name in placing) else path,
-            value,
-        )
-        for path, value in changes
+        (f"use{path.removeprefix('parts')}" if path.startswith(placed) else path, value) for path, value in changes
     ]
     return {**found, "parts": left, "use": used}, moved
 

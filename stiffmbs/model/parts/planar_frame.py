@@ -21,7 +21,7 @@ class PlanarUse(Use):
     centre of mass. `mirror`: coordinate of the part's frame, x or y, that changes its sign.
     """
 
-    position: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="of the part's frame on its mount, m")
+    position: si.Point2 = Field((0.0, 0.0), description="of the part's frame on its mount, m")
     angle: si.Angle = Field(0.0, description="of the part's frame on its mount, rad")
     mirror: Literal["x", "y"] | None = Field(
         None, description="the coordinate of the part's frame that changes its sign"

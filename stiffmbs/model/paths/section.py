@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from ...errors import InputError
-from ...reading.fields import Described, Measured, located
+from ...reading.fields import Described, located
 from ...reading.files.yaml_text import Content
 from ...reading.units import si
 from .curves import Curve, circle, curve_through
@@ -17,7 +17,6 @@ from .lanes import STANDARDS, path_through
 
 PATH = "path"
 COURSES = ("points", "circle", "lanes")
-Point2 = tuple[si.Length, si.Length]
 Station = tuple[si.Length, si.Velocity]
 
 
@@ -28,13 +27,11 @@ class Path(Described):
     tables ``path_x path_y path_cos path_sin path_curvature`` over the arc length, for use in formulas.
     """
 
-    points: tuple[Point2, ...] = Field((), description="points of a cubic spline: x and y, m")
+    points: tuple[si.Point2, ...] = Field((), description="points of a cubic spline: x and y, m")
     closed: bool = Field(False, description="whether the spline is a lap that returns to its first point and repeats")
     circle: si.Length | None = Field(None, description="radius of a circle, m, positive to the left")
-    entry: Annotated[float, Measured("length", at_least=0)] = Field(
-        20.0, description="straight line before the circle, m"
-    )
-    transition: Annotated[float, Measured("length", at_least=0)] = Field(
+    entry: si.LengthOrZero = Field(20.0, description="straight line before the circle, m")
+    transition: si.LengthOrZero = Field(
         30.0, description="length over which the curvature grows to that of the circle, m"
     )
     turns: si.PositiveNumber = Field(3.0, description="turns on the circle")
@@ -42,9 +39,7 @@ class Path(Described):
         None, description="the standard whose lanes it leads through"
     )
     width: si.PositiveLength = Field(1.8, description="of the vehicle, which determines the lanes, m")
-    start: Annotated[float, Measured("length", at_least=0)] = Field(
-        30.0, description="straight line before the first lane, m"
-    )
+    start: si.LengthOrZero = Field(30.0, description="straight line before the first lane, m")
     speed: tuple[Station, ...] = Field(
         (), description="speed profile: arc length, m, and speed, m/s; the table path_speed"
     )
@@ -75,8 +70,6 @@ def with_path(raw: dict[str, object], parameters: Mapping[str, object]) -> dict[
 
     Raises InputError if the section is invalid, or a table of the scene has the name of one of its tables.
     """
-    if raw.get(PATH) is None:
-        return raw
     with located(PATH):
         path = Path.model_validate(raw[PATH], context={"parameters": parameters})
     with located(f"{PATH}.points"):

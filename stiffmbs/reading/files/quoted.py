@@ -37,6 +37,11 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join(names[:MOST_LISTED]) + more
 
 
+def first_line(error: object) -> str:
+    """Return the first line of an error's message, or the name of its type if it has none."""
+    return next(iter(str(error).splitlines()), "") or type(error).__name__
+
+
 def _shortened(text: str) -> str:
     if len(text) <= MOST_QUOTED:
         return text

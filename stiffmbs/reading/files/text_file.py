@@ -38,20 +38,24 @@ def file_text(path: str | Path, otherwise: str = "", zero: str = "", expected: s
     replacement of zero bytes; files with zero bytes are refused if it is empty. `expected`: kind of file, for messages.
     Raises InputError if the file cannot be read, is not a regular file, is larger than `LARGEST`, or is not text.
     """
-    source = source_name(path)
-    if str(path) == STANDARD_INPUT and sys.stdin is None:
-        raise InputError(f"{source}: found it closed, expected a scene")
+    content = _standard_input() if str(path) == STANDARD_INPUT else file_content(path, expected)
+    return decoded(content, source_name(path), otherwise, zero)
+
+
+def file_content(path: str | Path, expected: str) -> bytes:
+    """Read a regular file; errors as for `file_text`."""
     try:
-        content = _standard_input() if str(path) == STANDARD_INPUT else content_of(path)
+        return content_of(path)
     except FileNotFoundError:
-        raise InputError(f"{source}: found no such file, expected {expected}") from None
+        raise InputError(f"{path}: found no such file, expected {expected}") from None
     except (OSError, ValueError) as error:  # a name may contain characters that no file system accepts
         reason = getattr(error, "strerror", None) or error
-        raise InputError(f"{quoted(source)}: the file cannot be read ({reason})") from None
-    return decoded(content, source, otherwise, zero)
+        raise InputError(f"{quoted(str(path))}: the file cannot be read ({reason})") from None
 
 
 def _standard_input() -> bytes:
+    if sys.stdin is None:
+        raise InputError(f"{source_name(STANDARD_INPUT)}: found it closed, expected a scene")
     content = sys.stdin.buffer.read(LARGEST + 1)
     if len(content) > LARGEST:
         raise InputError(f"{source_name(STANDARD_INPUT)}: found more than {LARGEST} bytes, expected a scene")

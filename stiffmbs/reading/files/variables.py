@@ -3,40 +3,26 @@
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Collection, Mapping
 
 from ...errors import InputError, prefixed
-from ..fields import NAME_PATTERN
+from ..fields import named_entries
 from ..formula.nodes import TIME
 from ..formula.text import UNIT, FormulaError
 from ..formula.variables import resolved
 from ..units.units import CONSTANTS, UNITS, Quantity
 from .quoted import written
-from .yaml_text import quotes_hint
 
 
 def read_variables(
-    found: object,
-    parameters: Mapping[str, Quantity],
-    tables: Collection[str],
-    states: object = None,
-    inputs: object = None,
+    found: object, parameters: Mapping[str, Quantity], tables: Collection[str], *sections: object
 ) -> dict[str, ast.expr]:
-    """Return the syntax trees of a scene's variables by name; `states` and `inputs` are sections of the scene.
+    """Return the syntax trees of a scene's variables by name; `sections`, of states and inputs, have other names.
 
     Raise an InputError if a name is not an identifier or already has a meaning, or a formula cannot be read.
     """
-    if found is None:
-        return {}
-    if not isinstance(found, dict):
-        raise InputError(f"variables: found {written(found)}, expected a mapping of names to formulas")
     formulas: dict[str, str | float] = {}
-    for name, formula in found.items():
-        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
-            raise InputError(
-                f"variables: found the name {written(name)}, expected letters, digits and _{quotes_hint(name)}"
-            )
+    for name, formula in named_entries("variables", found, "formulas"):
         if name in UNITS:
             raise InputError(f"variables.{name}: found the name of a unit, expected another: rename the variable")
         if name in (*CONSTANTS, *parameters, *tables, TIME, UNIT):
@@ -45,5 +31,5 @@ def read_variables(
             raise InputError(f"variables.{name}: found {written(formula)}, expected a formula")
         formulas[name] = formula
     with prefixed("variables.", FormulaError):
-        known = [name for section in (states, inputs) if isinstance(section, dict) for name in section]
+        known = [name for section in sections if isinstance(section, dict) for name in section]
         return resolved(formulas, {*parameters, *CONSTANTS, TIME, *known})

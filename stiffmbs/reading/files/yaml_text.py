@@ -10,7 +10,7 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ...errors import InputError, prefixed
-from .quoted import quoted
+from .quoted import first_line, quoted
 
 if TYPE_CHECKING:
     from ruamel.yaml.error import MarkedYAMLError
@@ -57,15 +57,11 @@ def _unlocated(error: Exception) -> str:
     """Return the reason of a fault for which the reader gives no line."""
     if "digits" in str(error):
         return "found a whole number of more than 4300 digits, expected a smaller one"
-    return f"found text that is not YAML, or a value that does not fit its tag ({quoted(_first_line(error))})"
+    return f"found text that is not YAML, or a value that does not fit its tag ({quoted(first_line(error))})"
 
 
 def _with_plain_ends(text: str) -> str:
     return _OTHER_ENDS.sub(" ", text)
-
-
-def _first_line(error: Exception) -> str:
-    return next(iter(str(error).split("\n")), "") or type(error).__name__
 
 
 def quotes_hint(key: object) -> str:
@@ -74,7 +70,7 @@ def quotes_hint(key: object) -> str:
 
 
 def _reason(error: MarkedYAMLError) -> str:
-    problem = _first_line(Exception(error.problem or ""))
+    problem = first_line(Exception(error.problem or ""))
     if "duplicate key" in problem:
         key = problem.split('"')[1]
         return f"found the name '{key}' twice, expected each name once{quotes_hint(key)}"

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Collection, Container, Iterator, Mapping
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
@@ -59,24 +59,13 @@ def _without_meaning(text: str, own: Container[str]) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class FormulaOf:
-    """Marker of a formula field: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``.
+    """Marker of a formula field: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``."""
 
-    Parameters
-    ----------
-    variables : tuple of str
-        Names defined by the field.
-    measured_in : tuple of str
-        Their dimensions, of `stiffmbs.reading.units.units.DIMENSIONS`.
-    dimension : str
-        Dimension of the value; `ANY` if unrestricted.
-    time, coordinates, velocities, table, states : bool
-        Permission of t, of body coordinates and measures, of their rates, of a table in place of the formula, and of
-        states without coordinates.
-    """
-
-    variables: tuple[str, ...] = ()
-    measured_in: tuple[str, ...] = ()
-    dimension: str = ANY
+    variables: tuple[str, ...] = ()  # names defined by the field
+    measured_in: tuple[str, ...] = ()  # their dimensions, of `stiffmbs.reading.units.units.DIMENSIONS`
+    dimension: str = ANY  # of the value; `ANY` if unrestricted
+    # permission of t, of body coordinates and measures, of their rates, of a table in place of the formula, and of
+    # states without coordinates
     time: bool = True
     coordinates: bool = False
     velocities: bool = False
@@ -93,16 +82,15 @@ class FormulaOf:
             self._check_table(table)
             return table
         context = info.context or {}
-        parameters, tables, variables = (context.get(key) or {} for key in ("parameters", "tables", "variables"))
         names = names_of(info)
         if info.context is None and (self.coordinates or self.states):  # built in Python, before it belongs to a model
             names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
         known = context.get(READ_BEFORE)
         before = known.get((found, self.variables, self.velocities)) if known and isinstance(found, str) else None
         if before is None:
-            formula = self._made(found, parameters, tables, variables, names)
+            formula = self._made(found, context, names)
         else:
-            formula = self._with_parameters(before, parameters, names)
+            formula = self._with_parameters(before, context.get("parameters") or {}, names)
         self._check(formula, names.inputs)
         return formula
 
@@ -116,14 +104,8 @@ class FormulaOf:
             parameters={name: quantity for name, quantity in used.items() if name in parameters},
         )
 
-    def _made(
-        self,
-        found: object,
-        parameters: Mapping[str, Quantity],
-        tables: Mapping[str, Table],
-        variables: Mapping[str, ast.expr],
-        names: Names,
-    ) -> Formula:
+    def _made(self, found: object, context: Mapping[str, Any], names: Names) -> Formula:
+        parameters, tables, variables = (context.get(key) or {} for key in ("parameters", "tables", "variables"))
         found = formula_text(found, "a formula or a table" if self.table else "a formula")
         named = with_full_names(parse(found), names, TAKERS, self.variables)
         text = text_in_full(found, named, names)
@@ -177,11 +159,7 @@ class FormulaOf:
         raise FormulaError(f"found the unknown name '{name}'{near} in '{quoted(text)}', expected {expected}")
 
     def dimension_of(
-        self,
-        tree: ast.expr,
-        used: Mapping[str, Quantity],
-        tables: Mapping[str, Table],
-        terms: Mapping[str, Known] | None = None,
+        self, tree: ast.expr, used: Mapping[str, Quantity], tables: Mapping[str, Table], terms: Mapping[str, Known]
     ) -> Known:
         """Return the dimension of a formula's value, as `stiffmbs.reading.formula.measured.dimension_within`.
 
@@ -189,7 +167,7 @@ class FormulaOf:
         """
         own = dict(zip(self.variables, map(measured_in, self.measured_in), strict=False))
         columns = {name: table.dimensions for name, table in tables.items()}
-        return dimension_within(tree, used, own | dict(terms or {}), columns)
+        return dimension_within(tree, used, {**own, **terms}, columns)
 
     def _check_table(self, table: Table) -> None:
         argument, value = table.dimensions

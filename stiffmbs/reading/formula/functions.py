@@ -42,6 +42,7 @@ Breakpoints = tuple[tuple[int, int | None], ...]
 EACH: Breakpoints = ((0, -1),)
 """Breakpoints where the first argument, or the one selected before, equals each of the others."""
 EVERYWHERE = (-math.inf, math.inf)
+Words = Collection[str]
 Rule = Callable[[Sequence[Part], ast.expr], Known]
 """Function from the dimensions of the arguments, and the call for messages, to the dimension of the value."""
 
@@ -71,6 +72,9 @@ class FormulaFunction:
     def in_c(self) -> bool:
         """True if kernels call it by its name in the C library."""
         return self.symbolic.startswith("sympy.")
+
+
+Functions = Mapping[str, FormulaFunction]
 
 
 def step_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
@@ -172,12 +176,7 @@ IN_FORMULAS = {name: function for name, function in FUNCTIONS.items() if functio
 
 
 def check_functions(
-    tree: ast.expr,
-    known: Mapping[str, FormulaFunction],
-    *,
-    tables: Collection[str] = (),
-    measures: Collection[str] = (),
-    listed: Collection[str] = (),
+    tree: ast.expr, known: Functions, *, tables: Words = (), measures: Words = (), listed: Words = ()
 ) -> None:
     """Refuse calls of unknown functions, and calls with a wrong number of arguments, by a FormulaError.
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 from ..marker import GROUND, MarkerReference
 from .names import MEASURES, REACTIONS
-from .text import FormulaError
+from .size import FormulaError, children
 
 TIME = "t"
 TAKERS = (*MEASURES, *REACTIONS)
@@ -26,14 +26,7 @@ def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
 
 def parts_of(node: ast.expr) -> list[ast.expr]:
     """Return the child nodes that `reading_order` visits."""
-    match node:
-        case ast.Attribute() | ast.Name() | ast.Constant():
-            return []
-        case ast.BinOp(left, _, right):
-            return [left, right]
-        case ast.Call(_, arguments):
-            return [] if is_named(node) else arguments
-    return [child for child in ast.iter_child_nodes(node) if isinstance(child, ast.expr)]
+    return [] if is_named(node) else children(node)
 
 
 def is_measure(node: ast.AST) -> bool:

@@ -41,10 +41,11 @@ def _levels(tree: ast.expr) -> Iterator[list[ast.expr]]:
     level = [tree]
     while level:
         yield level
-        level = [child for node in level for child in _children(node)]
+        level = [child for node in level for child in children(node)]
 
 
-def _children(node: ast.expr) -> list[ast.expr]:
+def children(node: ast.expr) -> list[ast.expr]:
+    """Return the operands of an operation, or the arguments of a function; none for any other part of a formula."""
     match node:
         case ast.BinOp(left, _, right):
             return [left, right]

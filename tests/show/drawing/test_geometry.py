@@ -84,7 +84,7 @@ def test_a_planar_scene_takes_its_shapes_to_space():
 @pytest.mark.parametrize(
     ("shapes", "words"),
     [
-        ("{type: ball, radius: 1}", "geometry.0: found the type 'ball', expected one of polyline, box"),
+        ("{type: ball, radius: 1}", "geometry.0: found the type 'ball', expected one of 'polyline', 'box'"),
         ("{radius: 1}", "found no type, expected one of"),
         ("{type: sphere, radius: 0}", "expected a length greater than 0 m"),
         ("{type: sphere, radius: 1 kg}", "which is in kg, expected a length"),

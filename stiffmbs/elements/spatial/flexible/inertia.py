@@ -29,6 +29,8 @@ CALLS = {
     "power": "{to}[0] = dissipated_power({n}, {own}, work)",
 }
 """Computation of the terms without their slopes."""
+WORDS = {"own": "own", "gravity": "own", "at": "row, q", "frame": "row, turned", "turned": "turned", "u": "u"}
+"""Arguments of these computations at a state."""
 CHANGES = {
     "f": "add_elastic_change({changed}, {to})",
     "potential": "{to}[0] += energy_change({changed})",
@@ -85,9 +87,8 @@ class _Form:
     def source(self, places: Mapping[str, int]) -> str:
         """Return the source of a kernel with some of the terms, by their places."""
         to, n = self._to(places), self.n
-        words = {"own": "own", "gravity": "own", "at": "row, q", "frame": "row, turned", "turned": "turned", "u": "u"}
         calls = [f"{name} = {to[name]}" for name in places]
-        calls += self._calls(places, words, {name: name for name in places})
+        calls += self._calls(places, WORDS, {name: name for name in places})
         if "f_q" in places:
             calls.append(f"add_force_slopes({n}, own, row, turned, u, work, f_q, f_u)")
         if "inertia_q" in places:
@@ -103,22 +104,9 @@ class _Form:
             "none": 1, "places": 2 * bodies, "q_m": 7 * bodies, "turn_m": 14 * bodies, "u_m": 6 * bodies, "gravity_m": 3,
             "found": size, "changes": 4 * width(n),
         }  # fmt: skip
-        moved = {
-            "own": "own",
-            "gravity": "gravity_m",
-            "at": "places, q_m",
-            "frame": "places, turn_m",
-            "turned": "turn_m",
-            "u": "u_m",
-        }
-        of_numbers = {
-            "own": "own_d",
-            "gravity": "own",
-            "at": "row, q",
-            "frame": "row, turned",
-            "turned": "turned",
-            "u": "u",
-        }
+        of_numbers = WORDS | {"own": "own_d"}
+        moved = WORDS | {"gravity": "gravity_m", "at": "places, q_m", "frame": "places, turn_m"}
+        moved |= {"turned": "turn_m", "u": "u_m"}
         lines = [
             *(f"{name} = room({count})" for name, count in rooms.items()),
             f"own_d = shifted(number_d, row[{2 * bodies}] + int(numbers[0]))",

@@ -19,7 +19,7 @@ class FlexibleInterface(Joint):
     """
 
     kind: ClassVar[str] = "flexible_interface"
-    equations: ClassVar[tuple[str, ...]] = (*COINCIDE, "about_x", "about_y", "about_z")
+    equations: ClassVar[tuple[str, ...]] = (*COINCIDE.rows, "about_x", "about_y", "about_z")
     transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz", "tx", "ty", "tz")
 
     i: Marker = Field(description="marker of the floating frame at the interface")

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from ....reading.formula.field import ForceOfMotion, TorqueOfMotion
-from ...element import Expr, Force, Matrix, Symbolic
+from ...element import Expr, Force, Matrix, Symbolic, sp
 from ..marker import Marker
 from ..wrench import Pairs, along_axes, force_at, torque_on
 
@@ -35,13 +35,14 @@ class Applied(Force):
             raise ValueError("found both 'frame' and 'axes: body', expected one of them")
         return self
 
+    def spins_with(self) -> dict[str, str]:
+        return {} if self.axes == "body" else self.spin_conditions
+
     @staticmethod
     def vector(e: Symbolic, components: tuple[Expr, ...]) -> Matrix:
         """Return components along the element's axes as a vector in ground axes."""
-        from sympy import Matrix
-
         marker = e.i if e.axes == "body" else e.frame
-        return Matrix(components) if marker is None else along_axes(components, marker.axes)
+        return sp.Matrix(components) if marker is None else along_axes(components, marker.axes)
 
 
 class AppliedForce(Applied):
@@ -58,15 +59,13 @@ class AppliedForce(Applied):
 
     kind = "force"
     symmetric_with = {"i": "point", "j": "body", "frame": "body"}
+    spin_conditions = {"i": "point", "j": "body"}
     forms = ({}, {"axes": "body"}, {"j": "b"})
     reflected = {"force": "vector"}
 
     force: tuple[ForceOfMotion, ForceOfMotion, ForceOfMotion] = Field(
         description="components along x, y and z, N: numbers or formulas"
     )
-
-    def spins_with(self) -> dict[str, str]:
-        return {} if self.axes == "body" else {"i": "point", "j": "body"}
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
@@ -93,15 +92,13 @@ class AppliedTorque(Applied):
 
     kind = "torque"
     symmetric_with = {"i": "body", "j": "body", "frame": "body"}
+    spin_conditions = {"i": "body", "j": "body"}
     forms = ({}, {"j": "b"})
     reflected = {"torque": "rotations"}
 
     torque: tuple[TorqueOfMotion, TorqueOfMotion, TorqueOfMotion] = Field(
         description="components along x, y and z, N m: numbers or formulas"
     )
-
-    def spins_with(self) -> dict[str, str]:
-        return {} if self.axes == "body" else {"i": "body", "j": "body"}
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:

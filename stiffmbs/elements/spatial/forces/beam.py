@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 from pydantic import Field, field_validator, model_validator
 
-from ....reading.fields import Measured
 from ....reading.units import si
 from ...element import Expr, Matrix, Symbolic
 from ...forces.elastic_matrix import check_symmetric, stored
 from ..elastic import NO_MATRIX, NO_ROW, Damping, Elastic, pull_back, six_rows, without_zeros
-
-Modulus = Annotated[float, Measured("pressure", above=0)]
-Area = Annotated[float, Measured("area", above=0)]
-SecondMoment = Annotated[float, Measured("second moment of area", above=0)]
 
 
 class Beam(Elastic):
@@ -36,12 +29,12 @@ class Beam(Elastic):
     kind = "beam"
 
     length: si.PositiveLength = Field(description="L, without load, m")
-    young: Modulus = Field(description="E, modulus of elasticity, N/m^2")
-    shear_modulus: Modulus = Field(description="G, N/m^2")
-    area: Area = Field(description="A, area of the cross section, m^2")
-    torsion: SecondMoment = Field(description="Ixx, torsion constant of the cross section, m^4")
-    iyy: SecondMoment = Field(description="second moment of area about y, m^4")
-    izz: SecondMoment = Field(description="second moment of area about z, m^4")
+    young: si.PositivePressure = Field(description="E, modulus of elasticity, N/m^2")
+    shear_modulus: si.PositivePressure = Field(description="G, N/m^2")
+    area: si.PositiveArea = Field(description="A, area of the cross section, m^2")
+    torsion: si.PositiveSecondMoment = Field(description="Ixx, torsion constant of the cross section, m^4")
+    iyy: si.PositiveSecondMoment = Field(description="second moment of area about y, m^4")
+    izz: si.PositiveSecondMoment = Field(description="second moment of area about z, m^4")
     asy: si.NumberOrZero = Field(0.0, description="shear area ratio in y, such as 6/5 for a rectangle; 0: no shear")
     asz: si.NumberOrZero = Field(0.0, description="shear area ratio in z")
     damping_ratio: si.TimeOrZero | None = Field(None, description="C over K, s")
@@ -85,7 +78,6 @@ class Beam(Elastic):
 
     @classmethod
     def viscosity(cls, e: Symbolic) -> Matrix:
-        """Return C, given directly or by its ratio to K."""
         if e.damping_ratio is None:
             return e.damping
         return [[part if part is None else e.damping_ratio * part for part in row] for row in cls.stiffness(e)]

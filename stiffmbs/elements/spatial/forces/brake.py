@@ -60,5 +60,4 @@ class Brake(AxleForce):
 
     @classmethod
     def measured(cls, e: Symbolic) -> list[Expr]:
-        """Return the braking torque."""
         return [cls._of_spin(e)[1]]

@@ -7,9 +7,12 @@ from typing import Literal
 from pydantic import Field
 
 from ....reading.formula.field import ForceOfDeflection, TorqueOfDeflection
-from ...element import Expr, Matrix, Symbolic
-from ...forces.elastic_matrix import stored_with_laws
+from ...element import Expr, Matrix, Symbolic, sp
+from ...forces.elastic_matrix import REFLECTED, stored_with_laws
 from ..elastic import NO_ROW, Connection, Preload, pull_back
+
+Law = ForceOfDeflection | None
+Moment = TorqueOfDeflection | None
 
 
 class Bushing(Connection):
@@ -38,30 +41,17 @@ class Bushing(Connection):
     symmetric_with = {"i": "axes", "j": "axes"}
     forms = ({"stiffness": ..., "damping": ...}, {"stiffness": ..., "damping": ..., "axes": "ground"})
     reflected = {
-        "stiffness": "matrix",
-        "damping": "matrix",
-        "preload": "components",
-        "law_x": "x",
-        "law_y": "y",
-        "law_z": "z",
-        "law_about_x": "about x",
-        "law_about_y": "about y",
-        "law_about_z": "about z",
-    }
+        **REFLECTED, "law_x": "x", "law_y": "y", "law_z": "z",
+        "law_about_x": "about x", "law_about_y": "about y", "law_about_z": "about z",
+    }  # fmt: skip
 
     preload: Preload = Field(NO_ROW, description="force and torque on i without deformation, N and N m")
-    law_x: ForceOfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
-    law_y: ForceOfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
-    law_z: ForceOfDeflection | None = Field(None, description="force against the deformation in z added over s (m), N")
-    law_about_x: TorqueOfDeflection | None = Field(
-        None, description="moment against the rotation about x over s (rad), N m"
-    )
-    law_about_y: TorqueOfDeflection | None = Field(
-        None, description="moment against the rotation about y over s (rad), N m"
-    )
-    law_about_z: TorqueOfDeflection | None = Field(
-        None, description="moment against the rotation about z over s (rad), N m"
-    )
+    law_x: Law = Field(None, description="force against the deformation in x added over s (m), N")
+    law_y: Law = Field(None, description="force against the deformation in y added over s (m), N")
+    law_z: Law = Field(None, description="force against the deformation in z added over s (m), N")
+    law_about_x: Moment = Field(None, description="moment against the rotation about x over s (rad), N m")
+    law_about_y: Moment = Field(None, description="moment against the rotation about y over s (rad), N m")
+    law_about_z: Moment = Field(None, description="moment against the rotation about z over s (rad), N m")
 
     axes: Literal["j", "ground"] = Field("j", description="axes x, y and z of the force: marker j's or the ground's")
 
@@ -72,9 +62,7 @@ class Bushing(Connection):
 
     @classmethod
     def frame(cls, e: Symbolic) -> list[Matrix]:
-        from sympy import eye
-
-        return [eye(3)[:, k] for k in range(3)] if e.axes == "ground" else super().frame(e)
+        return [sp.eye(3)[:, k] for k in range(3)] if e.axes == "ground" else super().frame(e)
 
     @classmethod
     def drift(cls, e: Symbolic) -> Matrix:

@@ -3,33 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from ....reading.fields import Measured
 from ....reading.units import si
 from ...element import Expr, Symbolic
 from ...forces.beam_section import BeamSectionLaw
 from ...forces.beam_strain import BeamStrain, Stretch
 from ...forces.elastic_matrix import check_symmetric
-from ..elastic import AS_WRITTEN, nearest, six_rows, without_zeros
+from ..elastic import AS_WRITTEN, Elastic, nearest, six_rows, without_zeros
 from ..marker import Marker
 from ..wrench import Pairs, along_axes, force_at, torque_on
 
 if TYPE_CHECKING:
     from ....model.model_data import ModelData
 
-_Bending = Annotated[float, Measured("bending stiffness")]
-_Curvature = Annotated[float, Measured("curvature")]
-_Forces = tuple[si.Force | None, si.Force | None, si.Force | None, si.Torque | None, si.Torque | None, si.Torque | None]
-_Moments = tuple[
-    si.Torque | None, si.Torque | None, si.Torque | None, _Bending | None, _Bending | None, _Bending | None
-]
+_F = si.Force | None
+_T = si.Torque | None
+_B = si.BendingStiffness | None
+_Forces = tuple[_F, _F, _F, _T, _T, _T]
+_Moments = tuple[_T, _T, _T, _B, _B, _B]
 SectionStiffness = Annotated[tuple[_Forces, _Forces, _Forces, _Moments, _Moments, _Moments], AS_WRITTEN]
 _Six = tuple[si.Force, si.Force, si.Force, si.Torque, si.Torque, si.Torque]
-_SixMoments = tuple[si.Torque, si.Torque, si.Torque, _Bending, _Bending, _Bending]
-STRAIGHT: Final = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_SixMoments = tuple[si.Torque, si.Torque, si.Torque, si.BendingStiffness, si.BendingStiffness, si.BendingStiffness]
+Strain = tuple[si.Number, si.Number, si.Number, si.Curvature, si.Curvature, si.Curvature]
+UNLOADED: Any = Field(
+    (1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    description="strain without load: 1, 0, 0, and the torsion and curvatures of the axis, rad/m",
+)
 
 
 class ExactBeam(BeamStrain):
@@ -72,20 +74,18 @@ class ExactBeam(BeamStrain):
     stiffness: SectionStiffness = Field(
         description="K: EA, GA2, GA3 (N), GJ, EI2, EI3 (N m^2), or a symmetric 6x6 matrix"
     )
-    unloaded: tuple[si.Number, si.Number, si.Number, _Curvature, _Curvature, _Curvature] = Field(
-        STRAIGHT, description="strain without load: 1, 0, 0, and the torsion and curvatures of the axis, rad/m"
-    )
-    shear_centre: tuple[si.Length, si.Length, si.Length] | None = Field(
+    unloaded: Strain = UNLOADED
+    shear_centre: si.Point3 | None = Field(
         None,
         description="place of the shear centre from the axis, along axes 1, 2, 3 of the section, for the stretch, m",
     )
-    wagner: tuple[si.Length, si.Length, si.Length] | None = Field(
+    wagner: si.Point3 | None = Field(
         None, description="w of the curvatures by torsion, about axes 1, 2, 3 of the section, m"
     )
 
     _six_rows = field_validator("stiffness", mode="before")(six_rows)
     _symmetric = field_validator("stiffness")(check_symmetric)
-    _sparse = field_validator("stiffness", "damping_ratio")(without_zeros)
+    _sparse = field_validator("stiffness")(without_zeros)
 
     @model_validator(mode="after")
     def _with_radius(self) -> Self:
@@ -96,9 +96,7 @@ class ExactBeam(BeamStrain):
                 raise ValueError(f"stiffness: found no {name}, expected it with shear_centre or wagner")
         return self
 
-    def at_initial_pose(self, model: ModelData) -> Self:
-        """Return the element with the sign of marker i's quaternion for an initial rotation below half a turn."""
-        return self.model_copy(update={"i": nearest(model, self.i, self.j)})
+    at_initial_pose: ClassVar = Elastic.at_initial_pose
 
     @staticmethod
     def stretching(e: Symbolic, strain: list[Expr]) -> list[Stretch]:
@@ -141,9 +139,7 @@ class BeamSection(BeamSectionLaw):
     nodes: tuple[Marker, ...] = Field(
         description="markers of the nodes, whose axes are tangents", min_length=3, max_length=5
     )
-    unloaded: tuple[si.Number, si.Number, si.Number, _Curvature, _Curvature, _Curvature] = Field(
-        STRAIGHT, description="strain without load: 1, 0, 0, and the torsion and curvatures of the axis, rad/m"
-    )
+    unloaded: Strain = UNLOADED
     stiffness: tuple[_Six, _Six, _Six, _SixMoments, _SixMoments, _SixMoments] = Field(
         description="K: a symmetric 6x6 matrix of EA, GA2, GA3 (N), GJ, EI2, EI3 (N m^2)"
     )

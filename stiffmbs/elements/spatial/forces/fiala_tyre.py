@@ -50,15 +50,12 @@ class FialaTyre(Tyre):
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
-        """Return forces and moments by Fiala's formulas."""
         from ...tyres.fiala import Constants, forces
         from ...tyres.magic_formula import Slip
 
         constants = Constants(
             e.slip_stiffness, e.cornering_stiffness, e.mu_static, e.mu_sliding, e.width, e.rolling_resistance
         )
-        slip = (
-            getattr(rolling, name)
-            for name in ("load", "slip", "slip_angle", "camber", "speed", "direction", "friction")
-        )
-        return forces(constants, Slip(*slip), e.named).wrench
+        r = rolling
+        slip = Slip(r.load, r.slip, r.slip_angle, r.camber, r.speed, r.direction, r.friction)
+        return forces(constants, slip, e.named).wrench

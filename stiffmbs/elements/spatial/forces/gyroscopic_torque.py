@@ -23,16 +23,13 @@ class GyroscopicTorque(Force):
 
     kind = ""
     turns = True
+    spin_conditions = {"i": "body"}
 
     i: MarkerReference
     moments: tuple[si.Inertia, si.Inertia, si.Inertia]
 
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "body"}
-
     @classmethod
     def powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
-        """Return the three torques on the body's angular velocities."""
         (a, b, c), (p, q, r) = e.moments, e.i.body.u[3:6]
         x, y, z = e.i.body.followed
         return [(z * b * q - y * c * r, p), (x * c * r - z * a * p, q), (y * a * p - x * b * q, r)]

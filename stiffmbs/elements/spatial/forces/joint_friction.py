@@ -48,7 +48,6 @@ class JointFriction(AnyJointFriction):
     )
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
-        """Yield fields that are invalid, also lengths that do not fit the joint's kind, with the reason."""
         yield from super().validation_errors(joints)
         joint = joints[self.joint.joint]
         for field, sorts in (("thrust_radius", (PIN,)), ("torsion_radius", (GUIDE,)), ("length", (PIN, SLEEVE, GUIDE))):
@@ -57,14 +56,7 @@ class JointFriction(AnyJointFriction):
                 yield field, f"found one for the {joint.kind} joint '{self.joint}', expected none (for {fits} only)"
 
     @classmethod
-    def joints_by_kind(cls) -> Mapping[str, object]:
-        from ..spatial_kinds import JOINTS
-
-        return JOINTS
-
-    @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
-        """Return friction forces and torques on the sliding rates."""
         i, j, R, load = e.joint.i, e.joint.j, e.radius, e.joint.loads
         w = e.named(i.omega - j.omega)
         if e.joint.coordinates == BALL:

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from ....reading.units import si
-from ...element import Expr, Symbolic
+from ...element import Expr, Symbolic, sp
 from ...roads.envelope import Envelope
 from ...roads.road import above_zero, magnitude
 from ...tyres.coefficients import PRESSED, AnyProperties, TyreProperties
@@ -97,7 +97,6 @@ class MagicFormulaTyre(Tyre):
         return self
 
     def cams(self) -> Envelope | None:
-        """Return the cams of the enveloping contact, given or of the property file."""
         if self.envelope != "file":
             return self.envelope
         if self.properties.envelope is None:
@@ -118,12 +117,10 @@ class MagicFormulaTyre(Tyre):
             yield f"the pressure of {pressure:g} Pa is outside the valid range of its data, {low:g} to {high:g} Pa"
 
     def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
-        """Return the valid ranges of the property file for each quantity, SI units; empty if the file has none."""
         ranges = {name: range for name, range in self.properties.ranges.items() if name != "pressure"}
         return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # no range applies without contact
 
     def mounted_side(self) -> tuple[object, float, tuple[str, ...]]:
-        """Return the properties, the hand, and the coefficients that differ between left and right tyres."""
         return self.properties, float(self.hand_of(self)), self.properties.one_sided
 
     def own_states(self) -> tuple[str, ...]:
@@ -132,7 +129,6 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def touching(cls, e: Symbolic) -> Touch:
-        """Return the contact with its load and slips."""
         if VERSIONS[e.properties.formula].is_6:
             return pressed(e, cls.hand_of(e), cls.takes_turns(e))
         return super().touching(e)
@@ -151,7 +147,6 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def unloaded_radius(e: Symbolic) -> Expr:
-        """Return the unloaded radius, m."""
         return e.properties.UNLOADED_RADIUS
 
     @staticmethod
@@ -164,7 +159,6 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def rim_contact(e: Symbolic, deflection: Expr, contact: ContactPoint) -> tuple[Expr, Expr] | None:
-        """Return the force of the rim and its overturning torque."""
         p, rim = e.properties, e.properties.bottoming
         if rim is None:
             return None
@@ -196,23 +190,15 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
-        """Return forces and moments by the formula of the file."""
         from ...tyres.magic_formula import Slip, of_mode
         from ...tyres.magic_formula_6 import PressedSlip
 
         p, hand = e.properties, cls.hand_of(e)
         beyond = e.named(rolling.load - p.FZMAX)
         load = e.named(rolling.load - e.named(above_zero(beyond)))
-        slip: Any = Slip(
-            load,
-            rolling.slip,
-            e.named(hand * rolling.slip_angle),
-            e.named(hand * rolling.camber),
-            e.named(rolling.speed / p.LONGVL),
-            rolling.direction,
-            rolling.friction,
-            pressure_increment(e),
-        )
+        alpha, gamma = e.named(hand * rolling.slip_angle), e.named(hand * rolling.camber)
+        speed, dpi = e.named(rolling.speed / p.LONGVL), pressure_increment(e)
+        slip: Any = Slip(load, rolling.slip, alpha, gamma, speed, rolling.direction, rolling.friction, dpi)
         version = VERSIONS[p.formula]
         if version.is_6:
             turn = None if rolling.turn is None else e.named(hand * rolling.turn)
@@ -239,16 +225,14 @@ def bottomed(e: Symbolic, rim: Any, depth: Expr, camber: Expr) -> tuple[Expr, Ex
     the centre of the penetrated area. MSC Adams/Tire, PAC2002, wheel bottoming. `depth`: penetration of the rim at
     mid-width, m; negative without contact. `camber`: camber, rad; positive if the top leans to the right.
     """
-    from sympy import Float, Piecewise, tan
-
-    slope = e.named(tan(camber))
+    slope = e.named(sp.tan(camber))
     half = e.named(rim.width / 2 * magnitude(slope))
     edge = e.named(above_zero(e.named(depth + half)))
     whole = depth > half
-    mean = e.read(Piecewise((depth, whole), (edge**2 / (4 * half + Float(NO_WIDTH)), True)))
-    part = edge / (2 * half + Float(NO_WIDTH))  # of the width that is in contact
-    of_whole = rim.width**2 * magnitude(slope) / (12 * magnitude(depth) + Float(NO_WIDTH))
-    offset = e.read(Piecewise((of_whole, whole), (rim.width * (3 - 2 * part) / 6, True)))
+    mean = e.read(sp.Piecewise((depth, whole), (edge**2 / (4 * half + sp.Float(NO_WIDTH)), True)))
+    part = edge / (2 * half + sp.Float(NO_WIDTH))  # of the width that is in contact
+    of_whole = rim.width**2 * magnitude(slope) / (12 * magnitude(depth) + sp.Float(NO_WIDTH))
+    offset = e.read(sp.Piecewise((of_whole, whole), (rim.width * (3 - 2 * part) / 6, True)))
     mean, offset = e.named(mean), e.named(offset)
-    force = e.named(e.read(Piecewise((rim.load(mean), mean > 0), (0, True))))
-    return force, -force * offset * slope / (magnitude(slope) + Float(NO_WIDTH))
+    force = e.named(e.read(sp.Piecewise((rim.load(mean), mean > 0), (0, True))))
+    return force, -force * offset * slope / (magnitude(slope) + sp.Float(NO_WIDTH))

@@ -7,7 +7,7 @@ from itertools import product
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Symbolic, sp
 from ..impact import Impact, Touch
 from ..marker import Marker
 
@@ -66,11 +66,9 @@ class EllipsoidPlaneImpact(PlaneImpact):
         With the semi-axes as the columns of A, it is A A^T n / |A^T n| below the centre. The centre's distance from the
         plane at contact is |A^T n|.
         """
-        from sympy import sqrt
-
         n = e.j.z
         heights = [e.named(half * axis.dot(n)) for half, axis in ((e.x, e.i.x), (e.y, e.i.y), (e.z, e.i.z))]
-        height = e.named(sqrt(sum(part**2 for part in heights)))
+        height = e.named(sp.sqrt(sum(part**2 for part in heights)))
         up = e.named((e.x * heights[0] * e.i.x + e.y * heights[1] * e.i.y + e.z * heights[2] * e.i.z) / height)
         return [Touch((e.i.point - e.j.point).dot(n) - height, e.i.point - up, n)]
 
@@ -91,11 +89,9 @@ class CylinderPlaneImpact(PlaneImpact):
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
         """Return the contact at the lowest point of each end's rim."""
-        from sympy import sqrt
-
         n, axis = e.j.z, e.i.z
         lean = e.named(axis.dot(n))
-        across = e.named(sqrt(1 - lean**2 + UPRIGHT**2))
+        across = e.named(sp.sqrt(1 - lean**2 + UPRIGHT**2))
         middle = e.named((e.i.point - e.j.point).dot(n) - e.radius * across)
         down = e.named(e.radius * (n - lean * axis) / across)
         return [

@@ -9,7 +9,7 @@ from typing import Literal
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Expr, Matrix, Symbolic
+from ...element import Expr, Matrix, Symbolic, sp
 from ..impact import Impact, Touch
 from ..marker import Marker
 from ..wrench import along_axes, seen_from
@@ -39,22 +39,18 @@ class RoundSolid:
 
     def point(self, e: Symbolic, n: Matrix) -> Matrix:
         """Return the surface point with the normal n, from its centre, along its axes."""
-        from sympy import Matrix
-
         reaches = [e.named(_reach(squares, n)) for squares in self.ellipsoids]
         parts = zip(self.ellipsoids, reaches, strict=True)
         by_part = [
             [square * cosine / reach for square, cosine in zip(squares, n, strict=True)] for squares, reach in parts
         ]
-        return Matrix([sum(along) for along in zip(*by_part, strict=True)])
+        return sp.Matrix([sum(along) for along in zip(*by_part, strict=True)])
 
 
 def round_solid(e: Symbolic, shape: Shape, size: Expr) -> RoundSolid:
     """Return a solid with the given full sizes along its axes; the axis of a cylinder is z."""
-    from sympy import Min
-
     halves = [e.named(whole / 2) for whole in size]
-    least = e.named(Min(*halves))
+    least = e.named(sp.Min(*halves))
     if shape == "ellipsoid":
         return RoundSolid([[half**2 for half in halves]], least)
     edge = e.named(ROUNDING * least)
@@ -67,9 +63,7 @@ def round_solid(e: Symbolic, shape: Shape, size: Expr) -> RoundSolid:
 
 
 def _reach(squares: list[Expr], n: Matrix) -> Expr:
-    from sympy import sqrt
-
-    return sqrt(sum(square * cosine**2 for square, cosine in zip(squares, n, strict=True)))
+    return sp.sqrt(sum(square * cosine**2 for square, cosine in zip(squares, n, strict=True)))
 
 
 class SolidImpact(Impact):
@@ -97,7 +91,6 @@ class SolidImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
-        """Return the single contact."""
         first, second = round_solid(e, e.i_shape, e.i_size), round_solid(e, e.j_shape, e.j_size)
         offset = e.named(seen_from(e.i.point, e.j))
         axes = e.named([own.dot(other) for own in e.j.axes for other in e.i.axes])
@@ -115,9 +108,7 @@ class SolidImpact(Impact):
     @classmethod
     def limits(cls, e: Symbolic) -> Sequence[Expr]:
         """Return an expression that is positive up to a penetration of a quarter of the smallest size."""
-        from sympy import Min
-
-        least = Min(
+        least = sp.Min(
             *(round_solid(e, shape, size).least for shape, size in ((e.i_shape, e.i_size), (e.j_shape, e.j_size)))
         )
         (touch,) = cls.touches(e)

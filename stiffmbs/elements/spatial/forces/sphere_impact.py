@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Expr, Symbolic
+from ...element import Expr, Symbolic, sp
 from ...forces.friction import magnitude
 from ..impact import Impact, Touch
 from ..marker import Marker
@@ -19,9 +19,7 @@ LEAST_DISTANCE = 1e-9
 
 def above(x: Expr) -> Expr:
     """Return max(x, 0)."""
-    from sympy import Max
-
-    return Max(x, 0)
+    return sp.Max(x, 0)
 
 
 def length(*parts: Expr) -> Expr:
@@ -74,7 +72,6 @@ class SphereSphereImpact(SphereImpact):
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
-        """Return the vector from the centre of j to that of i, along the axes of j."""
         return e.named(seen_from(e.i.point, e.j))
 
     @classmethod
@@ -100,12 +97,9 @@ class SphereBoxImpact(SphereImpact):
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
-        """Return the vector from the nearest point of the box to the sphere's centre, along the axes of j."""
-        from sympy import sign
-
         at = e.named(seen_from(e.i.point, e.j))
         return e.named(
-            [sign(part) * above(abs(part) - size / 2) for part, size in zip(at, (e.x, e.y, e.z), strict=True)]
+            [sp.sign(part) * above(abs(part) - size / 2) for part, size in zip(at, (e.x, e.y, e.z), strict=True)]
         )
 
 
@@ -124,10 +118,7 @@ class SphereCylinderImpact(SphereImpact):
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
-        """Return the vector from the nearest point of the cylinder to the sphere's centre, along the axes of j."""
-        from sympy import sign
-
         x, y, z = e.named(seen_from(e.i.point, e.j))
         out = e.named(length(x, y))
         across = e.named(above(out - e.cylinder_radius) / out)
-        return e.named([across * x, across * y, sign(z) * above(abs(z) - e.cylinder_length / 2)])
+        return e.named([across * x, across * y, sp.sign(z) * above(abs(z) - e.cylinder_length / 2)])

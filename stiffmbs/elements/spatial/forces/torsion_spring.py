@@ -26,7 +26,7 @@ class TorsionSpring(AngleSpring[Marker]):
     """
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
-        yield from initially_without_axis(pose.model, self.i, self.j)
+        yield from initially_without_axis(pose, self.i, self.j)
 
     @staticmethod
     def angle(e: Symbolic) -> Expr:

@@ -13,13 +13,12 @@ from ..wrench import Pairs
 class AxleForce(Force):
     """Base of torques on i's body about i's y axis, and the opposite on j's body; scenes use its subclasses."""
 
+    spin_conditions = {"i": "along y", "j": "body"}
+
     i: Marker = Field(description="marker on the wheel, its y axis along the axle, to the left of the heading")
     j: Marker = Field(
         description="body on which the opposite torque acts: the upright outboard, the car's body inboard"
     )
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "along y", "j": "body"}
 
     @staticmethod
     def spin(e: Symbolic) -> Expr:

@@ -11,7 +11,7 @@ from ...element import Expr, Symbolic
 from ...initial_pose import InitialPose
 from ..branches import initially_twisted
 from ..marker import Marker
-from ..primitives import COINCIDE, SpatialJoint, coincide
+from ..primitives import COINCIDE, SpatialJoint
 
 if TYPE_CHECKING:
     from ....model.model_data import ModelData
@@ -32,7 +32,7 @@ class ConstantVelocity(SpatialJoint):
     """
 
     kind = "constant_velocity"
-    equations = (*COINCIDE, "twist")
+    equations = (*COINCIDE.rows, "twist")
 
     i: Marker = Field(description="marker of the first shaft, z along it; the reaction is reported on it")
     j: Marker = Field(description="marker of the second shaft, z along it")
@@ -47,9 +47,9 @@ class ConstantVelocity(SpatialJoint):
         return self.model_copy(update={"axes": "same" if same else "opposite"})
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
-        yield from initially_twisted(pose.model, self.i, self.j, self.at_initial_pose(pose.model).axes == "opposite")
+        yield from initially_twisted(pose, self.i, self.j, self.at_initial_pose(pose.model).axes == "opposite")
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:
         first, second = e.i.x.dot(e.j.y), e.i.y.dot(e.j.x)
-        return [*coincide(e.i, e.j), first - second if e.axes == "same" else first + second]
+        return [*COINCIDE.residuals(e.i, e.j), first - second if e.axes == "same" else first + second]

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from pydantic import Field
 
-from ...element import Expr, Symbolic
+from ...element import Symbolic
 from ...forces.friction import Loads, magnitude
-from ..branches import initially_apart
 from ..marker import Marker
-from ..primitives import ALIGN, ON_AXIS, SpatialJoint, align, on_axis
+from ..primitives import ALIGN, ON_AXIS, SpatialJoint
 
 
 class Cylindrical(SpatialJoint):
@@ -24,20 +21,12 @@ class Cylindrical(SpatialJoint):
 
     kind = "cylindrical"
     symmetric_with = {"i": "z", "j": "z"}
-    equations = (*ON_AXIS, *ALIGN)
+    spin_conditions = {"i": "z", "j": "z"}
+    conditions = ON_AXIS, ALIGN
     coordinates = ("displacement", "angle")
-    transmits = ("fx", "fy", "tx", "ty")
     elastic = "bushing"
-    initially: ClassVar = staticmethod(initially_apart)
 
     j: Marker = Field(description="marker whose z axis is the line of sliding and the axis of rotation")
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "z", "j": "z"}
-
-    @staticmethod
-    def position(e: Symbolic) -> list[Expr]:
-        return [*on_axis(e.i, e.j), *align(e.i, e.j)]
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import ClassVar
-
-from ...element import Expr, Symbolic
-from ..branches import initially_rotated
-from ..primitives import COINCIDE, ORIENT, SpatialJoint, coincide, orient
+from ..primitives import COINCIDE, ORIENT, SpatialJoint
 
 
 class Fixed(SpatialJoint):
@@ -21,11 +16,5 @@ class Fixed(SpatialJoint):
 
     kind = "fixed"
     symmetric_with = {"i": "body", "j": "body"}
-    equations = (*COINCIDE, *ORIENT)
-    transmits = ("fx", "fy", "fz", "tx", "ty", "tz")
+    conditions = COINCIDE, ORIENT
     elastic = "bushing"
-    initially: ClassVar = staticmethod(initially_rotated)
-
-    @staticmethod
-    def position(e: Symbolic) -> Sequence[Expr]:
-        return [*coincide(e.i, e.j), *orient(e.i, e.j)]

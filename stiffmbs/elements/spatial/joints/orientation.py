@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import ClassVar
-
-from ...element import Expr, Symbolic
-from ..branches import initially_rotated
-from ..primitives import ORIENT, SpatialJoint, orient
+from ..primitives import ORIENT, SpatialJoint
 
 
 class Orientation(SpatialJoint):
@@ -23,12 +18,6 @@ class Orientation(SpatialJoint):
 
     kind = "orientation"
     symmetric_with = {"i": "body", "j": "body"}
-    equations = ORIENT
+    conditions = (ORIENT,)
     further_coordinates = ("displacement_x", "displacement_y", "displacement_z")
-    transmits = ("tx", "ty", "tz")
     elastic = "bushing"
-    initially: ClassVar = staticmethod(initially_rotated)
-
-    @staticmethod
-    def position(e: Symbolic) -> Sequence[Expr]:
-        return orient(e.i, e.j)

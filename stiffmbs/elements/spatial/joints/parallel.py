@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from ...element import Expr, Symbolic
-from ..branches import initially_apart
-from ..primitives import ALIGN, SpatialJoint, align
+from ..primitives import ALIGN, SpatialJoint
 
 
 class Parallel(SpatialJoint):
@@ -18,12 +14,6 @@ class Parallel(SpatialJoint):
     """
 
     kind = "parallel"
-    equations = ALIGN
+    conditions = (ALIGN,)
     further_coordinates = ("displacement_x", "displacement_y", "displacement_z", "angle")
-    transmits = ("tx", "ty")
     elastic = "bushing"
-    initially: ClassVar = staticmethod(initially_apart)
-
-    @staticmethod
-    def position(e: Symbolic) -> list[Expr]:
-        return align(e.i, e.j)

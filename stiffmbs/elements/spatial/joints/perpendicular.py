@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from ...element import Expr, Symbolic
-from ..branches import initially_aligned
-from ..primitives import ACROSS, SpatialJoint, perpendicular
+from ..primitives import ACROSS, SpatialJoint
 
 
 class Perpendicular(SpatialJoint):
@@ -18,10 +14,5 @@ class Perpendicular(SpatialJoint):
     """
 
     kind = "perpendicular"
-    equations = ACROSS
+    conditions = (ACROSS,)
     forms = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)
-    initially: ClassVar = staticmethod(initially_aligned)
-
-    @staticmethod
-    def position(e: Symbolic) -> list[Expr]:
-        return [perpendicular(e.i.z, e.j.z)]

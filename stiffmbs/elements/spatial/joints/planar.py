@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 from pydantic import Field
 
-from ...element import Expr, Symbolic
-from ..branches import initially_apart
 from ..marker import Marker
-from ..primitives import ALIGN, IN_PLANE, SpatialJoint, align, along
+from ..primitives import ALIGN, IN_PLANE, SpatialJoint
 
 
 class Planar(SpatialJoint):
@@ -22,14 +18,8 @@ class Planar(SpatialJoint):
     """
 
     kind = "planar"
-    equations = (*IN_PLANE, *ALIGN)
+    conditions = IN_PLANE, ALIGN
     further_coordinates = ("displacement_x", "displacement_y", "angle")
-    transmits = ("fz", "tx", "ty")
     elastic = "bushing"
-    initially: ClassVar = staticmethod(initially_apart)
 
     j: Marker = Field(description="marker whose xy plane is the plane of sliding")
-
-    @staticmethod
-    def position(e: Symbolic) -> list[Expr]:
-        return [along(e.i, e.j, e.j.z), *align(e.i, e.j)]

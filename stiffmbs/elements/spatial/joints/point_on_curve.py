@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Self
+from typing import Self
 
 from pydantic import Field, field_validator, model_validator
 
-from ....reading.formula.field import FormulaOf
 from ....reading.formula.formula import Formula
 from ....reading.table import Table
-from ...element import Expr, Symbolic
-from ...joints.point_on_curve import CAM, SLOT, Curve, repeating
+from ...element import Expr, Symbolic, sp
+from ...joints.point_on_curve import CAM, SLOT, Curve, OfAngle, OfX, repeating
 from ..marker import Marker
 from ..primitives import IN_PLANE, along
 
@@ -30,16 +29,11 @@ class PointOnCurve(Curve[Marker]):
     point cannot lift off. This is Adams' PTCV.
     """
 
-    equations = (*Curve.equations, *IN_PLANE)
+    equations = (*Curve.equations, *IN_PLANE.rows)
     forms = (*Curve.forms, {"y": SLOT, "z": SLOT}, {"radius": CAM, "height": CAM})
 
-    z: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(
-        None, description="Z(x), m, of a slot: a formula of x or a table; by default in the plane"
-    )
-
-    height: Annotated[Formula | Table, FormulaOf(("angle",), ("angle",), "length", time=False, table=True)] | None = (
-        Field(None, description="H(theta), m, of a cam: as its radius; by default in the plane")
-    )
+    z: OfX | None = Field(None, description="Z(x), m, of a slot: a formula of x or a table; by default in the plane")
+    height: OfAngle | None = Field(None, description="H(theta), m, of a cam: as its radius; by default in the plane")
 
     @field_validator("height")
     @classmethod
@@ -60,7 +54,5 @@ class PointOnCurve(Curve[Marker]):
         x, y, z = e.named([along(e.i, e.j, axis) for axis in (e.j.x, e.j.y, e.j.z)])
         if e.y is not None:
             return [y - e.y(x), z if e.z is None else z - e.z(x)]
-        from sympy import atan2, sqrt
-
-        angle = e.named(atan2(y, x))
-        return [sqrt(x**2 + y**2) - e.radius(angle), z if e.height is None else z - e.height(angle)]
+        angle = e.named(sp.atan2(y, x))
+        return [sp.sqrt(x**2 + y**2) - e.radius(angle), z if e.height is None else z - e.height(angle)]

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from ...element import Expr, Symbolic
 from ..marker import Marker
-from ..primitives import ON_AXIS, SpatialJoint, on_axis
+from ..primitives import ON_AXIS, SpatialJoint
 
 
 class PointOnLine(SpatialJoint):
@@ -19,17 +18,10 @@ class PointOnLine(SpatialJoint):
 
     kind = "point_on_line"
     symmetric_with = {"i": "point", "j": "z"}
-    equations = ON_AXIS
+    spin_conditions = {"i": "point"}
+    conditions = (ON_AXIS,)
     coordinates = ("displacement",)
-    transmits = ("fx", "fy")
     elastic = "bushing"
 
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line")
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "point"}
-
-    @staticmethod
-    def position(e: Symbolic) -> list[Expr]:
-        return on_axis(e.i, e.j)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from ...element import Expr, Symbolic
 from ..marker import Marker
-from ..primitives import IN_PLANE, SpatialJoint, along
+from ..primitives import IN_PLANE, SpatialJoint
 
 
 class PointOnPlane(SpatialJoint):
@@ -19,17 +18,10 @@ class PointOnPlane(SpatialJoint):
 
     kind = "point_on_plane"
     symmetric_with = {"i": "point", "j": "z"}
-    equations = IN_PLANE
+    spin_conditions = {"i": "point"}
+    conditions = (IN_PLANE,)
     further_coordinates = ("displacement_x", "displacement_y")
-    transmits = ("fz",)
     elastic = "bushing"
 
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the plane")
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "point"}
-
-    @staticmethod
-    def position(e: Symbolic) -> list[Expr]:
-        return [along(e.i, e.j, e.j.z)]

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from dataclasses import replace
 
 from pydantic import Field
 
-from ...element import Expr, Symbolic
+from ...element import Symbolic
 from ...forces.friction import Loads, magnitude
 from ..branches import initially_askew
 from ..marker import Marker
-from ..primitives import ON_AXIS, ORIENT, SpatialJoint, on_axis, orient
+from ..primitives import ON_AXIS, ORIENT, SpatialJoint
 
 
 class Prismatic(SpatialJoint):
@@ -23,18 +23,12 @@ class Prismatic(SpatialJoint):
 
     kind = "prismatic"
     symmetric_with = {"i": "along z", "j": "along z"}
-    equations = (*ON_AXIS, *ORIENT)
+    conditions = ON_AXIS, replace(ORIENT, initially=initially_askew)
     coordinates = ("displacement",)
-    transmits = ("fx", "fy", "tx", "ty", "tz")
     elastic = "bushing"
-    initially: ClassVar = staticmethod(initially_askew)
 
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line of sliding")
-
-    @staticmethod
-    def position(e: Symbolic) -> list[Expr]:
-        return [*on_axis(e.i, e.j), *orient(e.i, e.j)]
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:

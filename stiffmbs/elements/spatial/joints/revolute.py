@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from ...element import Expr, Symbolic
+from ...element import Symbolic, sp
 from ...forces.friction import Loads, magnitude
-from ..branches import initially_apart
-from ..primitives import ALIGN, COINCIDE, SpatialJoint, align, coincide
+from ..primitives import ALIGN, COINCIDE, SpatialJoint
 
 
 class Revolute(SpatialJoint):
@@ -20,24 +17,14 @@ class Revolute(SpatialJoint):
 
     kind = "revolute"
     symmetric_with = {"i": "z", "j": "z"}
-    equations = (*COINCIDE, *ALIGN)
+    spin_conditions = {"i": "z", "j": "z"}
+    conditions = COINCIDE, ALIGN
     coordinates = ("angle",)
-    transmits = ("fx", "fy", "fz", "tx", "ty")
     elastic = "bushing"
-    initially: ClassVar = staticmethod(initially_apart)
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "z", "j": "z"}
-
-    @staticmethod
-    def position(e: Symbolic) -> list[Expr]:
-        return [*coincide(e.i, e.j), *align(e.i, e.j)]
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:
         """Return the force normal to and along the axis, and the moment normal to it."""
-        from sympy import Matrix
-
-        force, z = Matrix(e.lam[:3]), e.j.z
+        force, z = sp.Matrix(e.lam[:3]), e.j.z
         along = force.dot(z)
         return Loads(across=magnitude(*(force - along * z)), thrust=magnitude(along), bending=magnitude(*e.lam[3:]))

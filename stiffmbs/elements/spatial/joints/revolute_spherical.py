@@ -22,7 +22,7 @@ class RevoluteSpherical(Rod[Marker]):
 
     kind = "revolute_spherical"
     reflected = {}
-    equations = (*Rod.equations, *IN_PLANE)
+    equations = (*Rod.equations, *IN_PLANE.rows)
     further_coordinates = ("angle_1",)
 
     i: Marker = Field(description="marker of the body with the ball, on which the reaction is reported")

@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from ...element import Expr, Symbolic
 from ...initial_pose import InitialPose
-from ..branches import initially_apart
-from ..primitives import ALIGN, ON_AXIS, SpatialJoint, align, on_axis
+from ..primitives import ALIGN, SpatialJoint
+from .cylindrical import Cylindrical
 from .thread import Thread
 
 
@@ -26,14 +26,14 @@ class Screw(Thread):
 
     kind = "screw"
     reflected = {"pitch": "pitch", "offset": "z"}
-    equations = (*ON_AXIS, *ALIGN, *Thread.equations)
+    equations = (*Cylindrical.equations, *Thread.equations)
     coordinates = ("displacement", "angle")
     displacement: ClassVar = staticmethod(SpatialJoint.displacement)
     angle: ClassVar = staticmethod(SpatialJoint.angle)
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
-        yield from initially_apart(pose.model, self.i, self.j)
+        yield from ALIGN.initially(pose, self.i, self.j)
 
     @classmethod
     def position(cls, e: Symbolic) -> list[Expr]:
-        return [*on_axis(e.i, e.j), *align(e.i, e.j), *super().position(e)]
+        return [*Cylindrical.position(e), *super().position(e)]

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from ...element import Expr, Symbolic
+from ...element import Symbolic
 from ...forces.friction import Loads, magnitude
-from ..primitives import COINCIDE, SpatialJoint, coincide
+from ..primitives import COINCIDE, SpatialJoint
 
 
 class Spherical(SpatialJoint):
@@ -19,16 +17,9 @@ class Spherical(SpatialJoint):
 
     kind = "spherical"
     symmetric_with = {"i": "point", "j": "point"}
-    equations = COINCIDE
-    transmits = ("fx", "fy", "fz")
+    spin_conditions = {"i": "point", "j": "point"}
+    conditions = (COINCIDE,)
     elastic = "bushing"
-
-    def spins_with(self) -> dict[str, str]:
-        return {"i": "point", "j": "point"}
-
-    @staticmethod
-    def position(e: Symbolic) -> Sequence[Expr]:
-        return coincide(e.i, e.j)
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...element import Expr, Symbolic
+from ...element import Expr, Symbolic, sp
 from ...joints.point_on_curve import Curve
 from ..marker import Marker
 from ..primitives import IN_PLANE, along, perpendicular
@@ -21,7 +21,7 @@ class TangentToCurve(Curve[Marker]):
     """
 
     kind = "tangent_to_curve"
-    equations = (*Curve.equations, *IN_PLANE, "tangent")
+    equations = (*Curve.equations, *IN_PLANE.rows, "tangent")
 
     @staticmethod
     def position(e: Symbolic) -> Sequence[Expr]:
@@ -35,6 +35,4 @@ class TangentToCurve(Curve[Marker]):
 def _curve(e: Symbolic, x: Expr, y: Expr) -> Expr:
     if e.y is not None:
         return y - e.y(x)
-    from sympy import atan2, sqrt
-
-    return sqrt(x**2 + y**2) - e.radius(atan2(y, x))
+    return sp.sqrt(x**2 + y**2) - e.radius(sp.atan2(y, x))

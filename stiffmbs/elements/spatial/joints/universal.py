@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import ClassVar
-
 from pydantic import Field
 
 from ...element import Expr, Symbolic
-from ..branches import initially_aligned
 from ..marker import Marker
-from ..primitives import ACROSS, COINCIDE, SpatialJoint, coincide, perpendicular
+from ..primitives import ACROSS, COINCIDE, SpatialJoint
 
 
 class Universal(SpatialJoint):
@@ -24,11 +20,9 @@ class Universal(SpatialJoint):
     """
 
     kind = "universal"
-    equations = (*COINCIDE, *ACROSS)
+    conditions = COINCIDE, ACROSS
     further_coordinates = ("angle_1", "angle_2")
-    transmits = ("fx", "fy", "fz")
     forms = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)
-    initially: ClassVar = staticmethod(initially_aligned)
 
     i: Marker = Field(
         description="marker of the first body, z along its arm of the cross; the reaction is reported on it"
@@ -44,7 +38,3 @@ class Universal(SpatialJoint):
     def angle_2(e: Symbolic) -> Expr:
         """Return the angle of marker i about its arm i.z relative to the cross, from j.z to i.x."""
         return e.angle(-e.i.y.dot(e.j.z), e.i.x.dot(e.j.z))
-
-    @staticmethod
-    def position(e: Symbolic) -> Sequence[Expr]:
-        return [*coincide(e.i, e.j), perpendicular(e.i.z, e.j.z)]
