@@ -118,7 +118,7 @@ def slowest_coefficients():
         # differences with sum 1 and first moment m: |1| > converging 4 |m|
         m = 100.0 / (4.0 * hundredths)
         first = (1.0 - m) / 0.8
-        x = collocating(z=np.array([first, 0.0, 1.0 - first]))
+        x = collocating(z=np.array([first, 0.0, 1.0 - first]), x=np.ones(1))
         c = Record(stages=3, weights=[0.0, 1.0, 1.0, 1.0], nodes=[0.2, 0.5, 1.0])
         return steps._unresolved(x, c) == 0.0
 
