@@ -106,6 +106,18 @@ def test_forces_are_as_accurate_at_many_outputs_as_at_few(examples, k_b):
     np.testing.assert_allclose(many["front_bushing.fy"][::50], few["front_bushing.fy"], atol=5e-5 * largest)
 
 
+@pytest.mark.parametrize("stages", [5, 7])
+@pytest.mark.parametrize("rtol", [1e-10, 1e-12])
+def test_forces_within_a_step_are_accurate_at_small_tolerances(stages, rtol):
+    """The polynomial of a step has the order of the estimate, whose tolerance is up to 3000 times the requested one."""
+    model = bar_on_bushing(1e8)
+    exact = stiffmbs.run(model, duration=0.25, points=76, rtol=1e-13, solver="projected")
+    found = stiffmbs.run(model, duration=0.25, points=76, rtol=rtol, solver="radau", stages=stages)
+    largest = np.abs(exact["bearing.fy"]).max()
+    np.testing.assert_allclose(found["bearing.fy"], exact["bearing.fy"], atol=1e-6 * largest)
+    assert not [note for note in found.notes if "interpolated" in note]
+
+
 @pytest.mark.parametrize("formulation", ["SI2", "SI1"])
 def test_outputs_within_a_step_share_corrections_in_mechanisms_with_joints(formulation):
     model = bar_on_bushing(1e7)

@@ -23,7 +23,7 @@ from stiffmbs.solve.radau.native.newton import (
 ROUNDING = 1e-11
 """Relative size of corrections that are rounding."""
 MOST_MOVED, MOST_MOVED_WITHIN = 0.5, 30.0
-"""Largest changes of the state at the end of a step and of states within it, in tolerances."""
+"""Largest changes of the state at the end of a step, in tolerances, and of states within it, in those of the estimate."""
 AGREED, CLOSED, OPEN = range(3)
 FEW = 2
 """Outputs of a step that are corrected one by one."""
@@ -123,6 +123,12 @@ def _corrected(x, c, place, count):
 
 
 @compiled
+def _most_moved_within(c):
+    """Return the largest change of a state within a step, in tolerances: its error is that of the estimate."""
+    return MOST_MOVED_WITHIN * max(1.0, c.relaxed)
+
+
+@compiled
 def _closed_at(x, c, t, place):
     """Close the state at a place; the matrix of the step may be too old for it. Return False if it stays open."""
     for new in range(2):
@@ -131,7 +137,7 @@ def _closed_at(x, c, t, place):
             polynomial_rates(x, place, x.yp_stage)
         if new and not factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True):
             break
-        if closed(x, t, MOST_MOVED_WITHIN) != OPEN:
+        if closed(x, t, _most_moved_within(c)) != OPEN:
             return True
     _corrected(x, c, place, 0)
     return False
@@ -149,7 +155,7 @@ def _find_corrections(x, c):
         correction = shifted(x.corrections, j * x.n_all)
         copied(correction, x.y_stage, x.n_all)
         x.n_corrections = j + 1
-        outcome = closed(x, x.t - (1.0 - place) * x.h_past, MOST_MOVED_WITHIN)
+        outcome = closed(x, x.t - (1.0 - place) * x.h_past, _most_moved_within(c))
         if outcome == OPEN:
             return
         for k in range(x.n_all):
