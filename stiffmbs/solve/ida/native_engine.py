@@ -144,12 +144,17 @@ class NativeEngine:
         ida.look_after(self._order.wait(ida.history.count))
 
     def _ease_newton(self) -> None:
-        """Relax Newton's tolerance after many failures in a call: rounding may prevent its convergence."""
+        """Relax Newton's tolerance after many failures: rounding may prevent its convergence.
+
+        Calls of a few steps are counted together, as those of a simulation.
+        """
         counted = self.ida.counted()
         steps = counted["steps"] - self._counted["steps"]
         failures = counted["convergence_failures"] - self._counted["convergence_failures"]
-        self._counted = counted
-        if failures > NEWTON.many_failures * steps and self._newton < NEWTON.easiest:
+        if steps >= NEWTON.judged:
+            self._counted = counted
+        if failures > NEWTON.many_failures * max(steps, NEWTON.judged) and self._newton < NEWTON.easiest:
+            self._counted = counted
             eased = min(NEWTON.easiest, NEWTON.eased * self._newton)
             self.begin(
                 self.ida.t, self.ida.y.copy(), self.ida.yp.copy(), eased, self._stiffness

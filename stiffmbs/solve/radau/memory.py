@@ -144,6 +144,8 @@ class Radau:
             session.libraries.SUNLinSolInitialize(each.solver)
         number = np.full(len(equations.pattern[0]), -1)
         number[imaginary] = np.arange(len(imaginary))
+        algebraic = np.ones(n)
+        algebraic[equations.pattern[0][imaginary]] = 0.0
         events = functions = system.n_event_functions
         compute = connection.event_functions
         if intervals_of(system).kinks.any():
@@ -151,7 +153,7 @@ class Radau:
         efforts = condensed_efforts(equations)
         n_efforts, n_all = efforts["n_efforts"], n + efforts["n_efforts"]
         values = {
-            "state": connection.state_table, "equations": self._of_equations[0], "array_of": session.libraries.address("N_VGetArrayPointer"), "n": n,
+            "state": connection.state_table, "equations": self._of_equations[0], "array_of": session.libraries.address("N_VGetArrayPointer"), "n": n, "algebraic": algebraic,
             "methods": self._addresses(0), "below": self._addresses(-2), "n_methods": len(self._methods),
             "setup": session.libraries.address("SUNLinSolSetup"),
             "solve": session.libraries.address("SUNLinSolSolve"),

@@ -18,7 +18,7 @@ from tests.solve.test_parameter_thresholds import HALVES, count_while
 def collocating(**fields):
     """Return the record of a method of three stages with one unknown."""
     usual = {
-        **asdict(parameters("radau")), "n": 1, "n_all": 1, "n_tested": 1, "n_efforts": 0, "n_levers": 0, "newton": 0.03, "rtol": 1e-6, "h": 1.0, "t": 0.0,
+        **asdict(parameters("radau")), "n": 1, "n_all": 1, "n_tested": 1, "n_closing": 0, "n_efforts": 0, "n_levers": 0, "newton": 0.03, "rtol": 1e-6, "h": 1.0, "t": 0.0,
         "acting": 0, "current": 0, "iterations": 0, "iterations_taken": 3, "suggested": 0.0, "contraction": 0.0, "left": 0.0, "rejected": 0,
         "h_accepted": 1.0, "h_past": 1.0, "last_error": 1.0, "error_size": 1.0, "rate_kept": 0, "since_change": 0, "n_methods": 2, "method": 0,
         "methods": [], "below": [], "error": np.ones(1), "weight": np.ones(1), "z": np.zeros(3), "misfit": np.ones(1), "yp_stage": np.zeros(1),
@@ -118,7 +118,7 @@ def slowest_coefficients():
         # differences with sum 1 and first moment m: |1| > converging 4 |m|
         m = 100.0 / (4.0 * hundredths)
         first = (1.0 - m) / 0.8
-        x = collocating(z=np.array([first, 0.0, 1.0 - first]))
+        x = collocating(z=np.array([first, 0.0, 1.0 - first]), x=np.ones(1))
         c = Record(stages=3, weights=[0.0, 1.0, 1.0, 1.0], nodes=[0.2, 0.5, 1.0])
         return steps._unresolved(x, c) == 0.0
 

@@ -107,6 +107,12 @@ def add_products(e, values, y, yp, r):
         r[e.r_row[k]] += e.r_factor[k] * values[e.r_source[k]]
     for k in range(e.n_plain, e.n_with_y):
         r[e.r_row[k]] += e.r_factor[k] * values[e.r_source[k]] * y[e.r_operand[k]]
+    add_rate_terms(e, values, yp, r)
+
+
+@compiled
+def add_rate_terms(e, values, yp, r):
+    """Add the terms M y' of the residual."""
     for k in range(e.n_with_y, e.n_with_yp):
         r[e.r_row[k]] += e.r_factor[k] * values[e.r_source[k]] * yp[e.r_operand[k]]
 

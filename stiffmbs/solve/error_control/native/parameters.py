@@ -41,6 +41,8 @@ class NewtonParameters:
     """cj, 1/s, up to which steps are long."""
     many_failures: float = 0.2
     """Fraction of steps with a failed iteration above which its tolerance is relaxed."""
+    judged: int = 20
+    """Least number of steps to which failures are compared, as one step in a call may fail."""
     eased: float = 100.0
     """Factor of that relaxation."""
     easiest: float = 0.33

@@ -23,7 +23,7 @@ from stiffmbs.solve.radau.native.newton import (
 ROUNDING = 1e-11
 """Relative size of corrections that are rounding."""
 MOST_MOVED, MOST_MOVED_WITHIN = 0.5, 30.0
-"""Largest changes of the state at the end of a step and of states within it, in tolerances."""
+"""Largest changes of the state at the end of a step, in tolerances, and of states within it, in those of the estimate."""
 AGREED, CLOSED, OPEN = range(3)
 FEW = 2
 """Outputs of a step that are corrected one by one."""
@@ -31,11 +31,14 @@ FEW = 2
 
 @compiled
 def _defects(x, t):
-    """Compute the negative residuals of joints in `x.b`, with zeros elsewhere, and the misfit of efforts."""
-    if x.n_tested < x.n:
+    """Compute the negative residuals of joints in `x.b`, with zeros elsewhere, and the misfit of efforts.
+
+    Rows with rates, such as constraints of accelerations, do not close joints.
+    """
+    if x.n_closing > 0:
         residual(x, t, x.y_stage, x.yp_stage, x.b, x.misfit)
         for k in range(x.n):
-            x.b[k] = 0.0 if x.weight[k] > 0.0 else -x.b[k]
+            x.b[k] = -x.b[k] if x.weight[k] == 0.0 and x.algebraic[k] > 0.0 else 0.0
         return
     s = state_view(x.state)
     load(s, equations_view(x.equations), x.y_stage, x.yp_stage)
@@ -68,7 +71,7 @@ def closed(x, t, most):
             apart = max(apart, abs(x.misfit[k]))
         if count == 0:
             first = apart
-        if apart <= allowed and (count > 0 or x.n_tested == x.n):
+        if apart <= allowed and (count > 0 or x.n_closing == 0):
             enough = True
             break
         if count > 0:
@@ -83,7 +86,7 @@ def closed(x, t, most):
             x.y_stage[k] += x.d[k]
         size = size_in_tolerances(x, x.d)
         moved += size
-        if count == 0 and x.n_tested < x.n:  # forces change as joints close
+        if count == 0 and x.n_closing > 0:  # forces change as joints close
             for k in range(x.n, x.n_all):
                 first = max(first, abs(x.d[k]))
         if x.closing * apart <= allowed:
@@ -91,7 +94,7 @@ def closed(x, t, most):
             break
     if moved > most or not (enough or x.rtol * size <= ROUNDING):
         return OPEN
-    return AGREED if first <= allowed and (x.n_tested == x.n or moved <= x.newton) else CLOSED
+    return AGREED if first <= allowed and (x.n_closing == 0 or moved <= x.newton) else CLOSED
 
 
 @compiled
@@ -123,15 +126,21 @@ def _corrected(x, c, place, count):
 
 
 @compiled
+def _most_moved_within(c):
+    """Return the largest change of a state within a step, in tolerances: its error is that of the estimate."""
+    return MOST_MOVED_WITHIN * max(1.0, c.relaxed)
+
+
+@compiled
 def _closed_at(x, c, t, place):
     """Close the state at a place; the matrix of the step may be too old for it. Return False if it stays open."""
     for new in range(2):
         _corrected(x, c, place, 0)
-        if new or x.n_tested < x.n:
+        if new or x.n_closing > 0:
             polynomial_rates(x, place, x.yp_stage)
         if new and not factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True):
             break
-        if closed(x, t, MOST_MOVED_WITHIN) != OPEN:
+        if closed(x, t, _most_moved_within(c)) != OPEN:
             return True
     _corrected(x, c, place, 0)
     return False
@@ -144,12 +153,12 @@ def _find_corrections(x, c):
     for j in range(c.n_between):
         place = c.between[j]
         factor = _corrected(x, c, place, j)
-        if x.n_tested < x.n:
+        if x.n_closing > 0:
             polynomial_rates(x, place, x.yp_stage)
         correction = shifted(x.corrections, j * x.n_all)
         copied(correction, x.y_stage, x.n_all)
         x.n_corrections = j + 1
-        outcome = closed(x, x.t - (1.0 - place) * x.h_past, MOST_MOVED_WITHIN)
+        outcome = closed(x, x.t - (1.0 - place) * x.h_past, _most_moved_within(c))
         if outcome == OPEN:
             return
         for k in range(x.n_all):

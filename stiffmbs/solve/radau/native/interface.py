@@ -252,8 +252,10 @@ def set_tolerances(memory, rtol, atol):
     x = radau_view(ints(memory))
     values = _data(x, atol)
     tested = 0
+    x.n_closing = 0
     for k in range(x.n):
         tested += values[k] < EXCLUDED
+        x.n_closing += values[k] >= EXCLUDED and x.algebraic[k] > 0.0
     x.n_tested = max(tested, 1)
     factor = sqrt(float(x.n_tested) / float(x.n))
     x.rtol = rtol * factor

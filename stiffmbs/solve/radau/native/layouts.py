@@ -11,7 +11,7 @@ relative to the requested one. Costs of the matrices of a step and of an iterati
 which matrices are kept."""
 
 RADAU = Layout({
-    "state": INTS, "equations": INTS, "array_of": INT, "n": INT, "n_tested": INT_CELL, "methods": INTS, "n_methods": INT, "below": INTS,
+    "state": INTS, "equations": INTS, "array_of": INT, "n": INT, "n_tested": INT_CELL, "n_closing": INT_CELL, "algebraic": FLOATS, "methods": INTS, "n_methods": INT, "below": INTS,
     "setup": INT, "solve": INT, "solver": INTS, "matrix": INTS, "values": INTS,
     "n_slots": INT, "re_re": INDICES, "im_im": INDICES, "n_imaginary": INT, "imaginary_of": INDICES, "im_re": INDICES, "re_im": INDICES,
     "entries": FLOATS, "n_all": INT, "n_efforts": INT, "acting": INT_CELL, "effort_source": INDICES,
@@ -38,6 +38,8 @@ Efforts of stiff forces, which follow the unknowns in all stages (`n_all` number
 their values; the number of efforts that are unknowns in this step, all or none; their levers and slopes, and both as they were when the matrix was evaluated; misfit of the stored efforts
 in each stage.  Vectors of a linear system, real and complex.  The state y and y' at t; stages and residuals; the polynomial of the last
 step with its beginning; error estimate and inverse tolerances.
+
+Rows without rates have the value 1 in `algebraic`; `n_closing` of these belong to joints.
 
 Cells: tolerances, the requested relative one, part that Newton's iteration may leave; largest and first step, stop
 time; time, next step, last step, methods of both; step size, method and time of the factors, 1 if the matrix belongs to

@@ -3,7 +3,8 @@
 from math import isfinite, sqrt
 from typing import Final
 
-from stiffmbs.compile.machine.native.access import compiled, ints, shifted
+from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view
+from stiffmbs.compile.machine.native.evaluate import add_rate_terms
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
 from stiffmbs.solve.events.native.parameters import INDISTINCT
@@ -72,12 +73,34 @@ def _estimate(x, c, t, h, y):
             x.yp_stage[k] += factor * z[k]
     size = _solved_defect(x, t, y)
     copied(x.error, x.x, x.n)
-    return max(size / c.relaxed, ROUNDING, _unresolved(x, c) if size > 1.0 else 0.0)
+    return max(ROUNDING, _size_of_estimate(x, c, size))
+
+
+@compiled
+def _size_of_estimate(x, c, size):
+    """Return the size of the estimate in `x.x` in its tolerances; `size` is that in the requested ones."""
+    return max(size / c.relaxed, _unresolved(x, c) if size > 1.0 else 0.0)
+
+
+@compiled
+def _filtered(x, c, h):
+    """Return the size of (gamma/h M - f_y)^-1 gamma/h M times the estimate, in its tolerances.
+
+    The estimate of a vibration has a phase, at which the tested velocities may be zero by chance.  This filter turns the
+    phase by arctan(h omega/gamma), and reduces a decaying motion.
+    """
+    e = equations_view(x.equations)
+    for k in range(x.n):
+        x.yp_stage[k] = c.gamma / h * x.error[k]
+        x.b[k] = 0.0
+    add_rate_terms(e, floats(state_view(x.state).values[e.residual_set]), x.yp_stage, x.b)
+    solved_real(x)
+    return _size_of_estimate(x, c, error_norm_view(x.error_norm).repeats * size_in_tolerances(x, x.x))
 
 
 @compiled
 def _unresolved(x, c):
-    """Return the size of the error estimate in unknowns whose polynomial does not converge, in tolerances.
+    """Return the size of the estimate in `x.x` in unknowns whose polynomial does not converge, in tolerances.
 
     Of its coefficients of degrees s, s - 1 and s - 2 in Chebyshev polynomials, the first is not small: the step is long for a
     vibration, which the method damps.
@@ -93,7 +116,7 @@ def _unresolved(x, c):
             second += c.nodes[j] * difference
             third += c.nodes[j] * (c.nodes[j] - 1.0) * difference
         if abs(highest) > x.converging * max(4.0 * abs(second), 16.0 * abs(third)):
-            part = x.error[k] * x.weight[k]
+            part = x.x[k] * x.weight[k]
             total += part * part
     return sqrt(total / x.n_tested)
 
@@ -246,15 +269,21 @@ def _after_failed_iteration(x, outcome, h):
 
 @compiled
 def _error(x, c, h, first):
-    """Return the error of the step in tolerances; a failed estimate is repeated with f at the corrected state."""
+    """Return the error of the step in tolerances.
+
+    After starts and rejected steps, a failed estimate is repeated with f at the corrected state, and one that passes is
+    filtered again: such steps may be long for a vibration that earlier ones have not tested.
+    """
     error = _estimate(x, c, x.t, h, x.y)
-    if error >= 1.0 and (first or x.rejected):
+    if not (first or x.rejected):
+        return error
+    if error >= 1.0:
         copied(x.y_stage, x.error, x.n)
         add_efforts(x, x.y_stage, x.misfit)
         for k in range(x.n_all):
             x.y_stage[k] += x.y[k]
         error = _estimate(x, c, x.t, h, x.y_stage)
-    return error
+    return max(error, _filtered(x, c, h)) if error < 1.0 else error
 
 
 @compiled
