@@ -151,9 +151,9 @@ class NativeEngine:
         counted = self.ida.counted()
         steps = counted["steps"] - self._counted["steps"]
         failures = counted["convergence_failures"] - self._counted["convergence_failures"]
-        if steps >= NEWTON.judged:
+        if steps >= NEWTON.trusted:
             self._counted = counted
-        if failures > NEWTON.many_failures * max(steps, NEWTON.judged) and self._newton < NEWTON.easiest:
+        if failures > NEWTON.many_failures * max(steps, NEWTON.trusted) and self._newton < NEWTON.easiest:
             self._counted = counted
             eased = min(NEWTON.easiest, NEWTON.eased * self._newton)
             self.begin(

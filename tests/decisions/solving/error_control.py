@@ -236,7 +236,6 @@ DECISIONS = {
     "newton.last": corrections_that_are_predicted,
     "newton.long_steps": residual_of_a_short_step,
     "newton.many_failures": lambda: count_while(lambda k: eased(1e-6, k) == 1e-6, range(1000)),
-    "newton.judged": lambda: count_while(lambda k: eased(1e-6, k, 1) == 1e-6, range(1000)),
     "newton.eased": lambda: eased(1e-6),
     "newton.easiest": lambda: eased(0.1),
     "polishing.amplified": lambda: Stiffness(100.0, 0.0).long_step,
@@ -265,7 +264,7 @@ DECISIONS = {
 EXPECTED = {
     "newton.loosest": 0.03, "newton.soft": 0.001, "newton.negligible": 1e-06, "newton.precision": 0.001, "newton.unknown": 20,
     "newton.diverging": 900, "newton.slowest": 100, "newton.trusted": 20, "newton.least": 0.05, "newton.last": 32, "newton.long_steps": 50,
-    "newton.many_failures": 201, "newton.judged": 5, "newton.eased": 0.0001, "newton.easiest": 0.33, "polishing.amplified": 2, "polishing.unbalanced": 3e-07,
+    "newton.many_failures": 201, "newton.eased": 0.0001, "newton.easiest": 0.33, "polishing.amplified": 2, "polishing.unbalanced": 3e-07,
     "polishing.most_corrections": 8, "polishing.slowest": 29, "polishing.rounded_off": 54, "polishing.at_events": 1e9, "error_filter.fades_low": 0.3660323413, "error_filter.fades": 0.64,
     "error_filter.troubled": 8, "error_filter.lasts": 1001, "error_filter.no_estimate": 40, "accumulation.steps_apart": 2,
     "accumulation.halved_apart": 125, "accumulation.faster": 0.001, "accumulated_errors.tolerances": 67, "relaxation.of_positions": 1e-09,

@@ -32,7 +32,7 @@ class NewtonParameters:
     slowest: float = 0.1
     """Rate above which a matrix is replaced."""
     trusted: int = 20
-    """Number of nonlinear solves after which a rate is measured again."""
+    """Number of nonlinear solves after which a rate is measured again, and least number of steps with which failures are compared."""
     least: float = 0.1
     """Least fraction of a measured rate that is attributed to the age of the matrix."""
     last: int = 3
@@ -41,8 +41,6 @@ class NewtonParameters:
     """cj, 1/s, up to which steps are long."""
     many_failures: float = 0.2
     """Fraction of steps with a failed iteration above which its tolerance is relaxed."""
-    judged: int = 20
-    """Least number of steps to which failures are compared, as one step in a call may fail."""
     eased: float = 100.0
     """Factor of that relaxation."""
     easiest: float = 0.33
