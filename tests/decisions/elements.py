@@ -288,9 +288,8 @@ def loaded_radius(root, load=0.0, carried=0.0):
         steady_state, VERSIONS={"6": Record(is_6=True)}, _compiled=lambda *_: lambda *_: values, _key=lambda _: (),
         _values=lambda _: (), falling_root=root,
     ):  # fmt: skip
-        return steady_state._deflected(
-            numbers, np.array([load]), None, None, None, np.ones(1), {"Fx": None, "Fy": None}
-        )["Rl"]
+        found = {"free": np.ones(1), "omega": None, "Fx": None, "Fy": None}
+        return steady_state._deflected(numbers, np.array([load]), None, None, found)["Rl"]
 
 
 def least_load_of_a_search():

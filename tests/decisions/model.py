@@ -237,7 +237,7 @@ def latest_distinguished_run():
 
     def accepts(start):
         run = Record(duration=1.0, points=None, output=None, start=start)
-        return not refused(lambda: RunSettings._distinguished(run))
+        return not refused(lambda: RunSettings._one_grid(run))
 
     return count_while(lambda start: accepts(1e6 * start), DOUBLES)
 
