@@ -191,15 +191,15 @@ def test_a_warm_run_imports_nothing_that_derives_or_compiles(examples, tmp_path,
 
 WARMED = """
 import sys
+from stiffmbs.cache.entries import Folder
 from stiffmbs.compile.record import compile_usual
-from stiffmbs.compile.machine import cache
 from stiffmbs.analyses.warm import routines, usual_kinds
 
-read = cache.read
-def noted(name):
+read = Folder.read
+def noted(folder, name):
     print(name)
-    return read(name)
-cache.read, cache.write = noted, lambda *_: sys.exit("found an entry that was not there")
+    return read(folder, name)
+Folder.read, Folder.write = noted, lambda *_: sys.exit("found an entry that was not there")
 for kind in usual_kinds():
     compile_usual(kind)
 for routine in routines():
