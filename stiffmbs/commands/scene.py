@@ -184,7 +184,7 @@ def refuse_own_input(option: str, scene: str, output: Path | None) -> None:
 
 
 def is_written(path: Path | None, write: Callable[[Path], object]) -> bool:
-    """Write a file if it is requested; if this fails, print the reason and continue."""
+    """Write a file if it is requested; return False, and print the reason, if that fails."""
     try:
         if path is not None:
             write(path)
