@@ -32,6 +32,7 @@ QUICK = r"\$ stiffmbs (run|check|equilibrium|modes|response) "
 """Commands that are run; those that measure take long, and never print the same twice."""
 PLOT = ".. plot::\n"
 OPTION = r"(?m)^ +:[a-z-]+:.*\n"
+IMPORT = r"(?m)^ *from (stiffmbs[\w.]*) import ((?:\w+(?:, )?)+)$"
 NUMBER = r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?"
 LONG = ("around_a_state", "compare", "kinematics_and_compliance", "studies", "tyres_and_roads")
 """Pages whose scenes take seconds to compile."""
@@ -132,6 +133,14 @@ def test_what_a_page_shows_is_true(page, workplace):
                 assert as_expected(text, found), f"{page.name}:{line}: found {found}"
             case "text" if shown is not None:
                 assert as_expected(text, shown), f"{page.name}:{line}: found {shown}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_names_that_a_page_imports_exist(page):
+    for module, names in re.findall(IMPORT, page.read_text(encoding="utf-8")):
+        found = importlib.import_module(module)
+        missing = [name for name in re.findall(r"\w+", names) if not hasattr(found, name)]
+        assert not missing, f"{page.name}: {module} has no {', '.join(missing)}"
 
 
 @pytest.mark.sampled(3)
