@@ -165,6 +165,7 @@ def _by_derivative(function: FormulaFunction) -> Callable[[Enclosure], Enclosure
     tree = cache(partial(parse, function.derivative))
 
     def of(x: Enclosure) -> Enclosure:
+        """Return the Taylor coefficients by those of the derivative."""
         low, high = x.value
         own = Enclosure.of_time(low, high, max(x.order - 1, 0))  # x as an independent variable
         names = {"x": own, "pi": np.pi}

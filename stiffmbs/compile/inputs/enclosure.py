@@ -264,6 +264,7 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
     """Return min or max: one argument where ranges are disjoint, else with the hull of both slopes."""
 
     def pair(a: Enclosure, b: Enclosure) -> Enclosure:
+        """Return the minimum or maximum of two enclosures."""
         low, high = (a, b) if greatest else (b, a)
         value = np.maximum(a.value, b.value) if greatest else np.minimum(a.value, b.value)
         open_one = unbounded(value, a.order, hull(a.slope, b.slope))
@@ -271,6 +272,7 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
         return settled.where((a.value[1] <= b.value[0]) | (b.value[1] <= a.value[0]), open_one)
 
     def of(*parts: Operand) -> Enclosure:
+        """Return the minimum or maximum of all arguments, one after the other."""
         known = next(part for part in parts if isinstance(part, Enclosure))
         chosen, *others = (known.constant(part) for part in parts)
         for other in others:

@@ -82,6 +82,7 @@ class TableRanges:
         beyond = (b <= x[0]) | (a >= x[-1])
 
         def outer(k: int) -> Range:
+            """Return the range of the k-th Taylor coefficient over an interval."""
             found = hull(self._of_pieces(first, z_first, k), self._of_pieces(last, z_last, k))
             between = np.flatnonzero(last > first + 1)
             found[:, between] = hull(found[:, between], _hulls(self._whole[k], first[between] + 1, last[between]))

@@ -98,6 +98,7 @@ def python_law(address: sp.Symbol, read: Callable[[object], sp.Expr]) -> Callabl
     """Return the function called by equations: ``e.law(x, y)`` for one value, ``e.law(x, y, count=3)`` for a list."""
 
     def law(*arguments: object, count: int | None = None) -> Any:
+        """Return the value of the function, or a list of `count` values."""
         if not arguments:
             raise InputError("found a Python function without arguments, expected one at least")
         given = [read(argument) for argument in arguments]

@@ -197,6 +197,7 @@ class _Builder:
 
         def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
             def value(word: str) -> sp.Expr:
+                """Return the expression that a name of the formula stands for."""
                 owner, _, coordinate = word.partition(".")
                 if coordinate:
                     return self.frames[int(owner[1:])].coordinate(coordinate)
@@ -215,6 +216,7 @@ class _Builder:
         tree = ast.parse(text, mode="eval").body
 
         def function(*variables: sp.Expr) -> sp.Expr:
+            """Return the expression of the formula at its variables."""
             functions = self.functions() | tables
             expression = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
             if expression.has(sp.Abs):  # SymPy turns sqrt(x^2) into Abs

@@ -60,6 +60,7 @@ def view_of(name: str, layout: Layout) -> Builtin:
     """Return a function of compiled code that views a table as a record of pointers, numbers and cells."""
 
     def view(code: Code, table: Value) -> Record:
+        """Load the pointers and numbers of a table; its cells are not loaded."""
         fields: dict[str, Value] = {}
         for column, (field, kind) in enumerate(layout.items()):
             place = code.item(table, constant(column))
@@ -77,6 +78,7 @@ def parts_of(name: str, lengths: Mapping[str, int]) -> Builtin:
     """Return a function of compiled code that views memory as a record of consecutive vectors of these lengths."""
 
     def view(code: Code, memory: Value) -> Record:
+        """Return the vectors by name."""
         fields, first = {}, 0
         for field, length in lengths.items():
             fields[field] = shifted.lower(code, memory, constant(first))
@@ -94,6 +96,7 @@ def row_of(kind: type[tuple[int, ...]]) -> Builtin:
     columns: tuple[str, ...] = kind._fields  # type: ignore[attr-defined]
 
     def row(code: Code, rows: Value, number: Operand) -> Record:
+        """Load the integers of a row."""
         start = code.put_value("int", f"mul nsw {code.integer(number).typed}, {len(columns)}")
         first = shifted.lower(code, rows, start)
         items = (code.load(code.item(first, constant(column))) for column in range(len(columns)))

@@ -45,6 +45,7 @@ def by_case(
     """
 
     def lower(code: Code, case: Operand, *arguments: Operand) -> None:
+        """Emit a branch for each case."""
         end, number = code.name("done"), code.integer(case)
         for k, (wanted, literals) in enumerate(cases.items(), start=1):
             here, other = code.name("case"), code.name("other")
