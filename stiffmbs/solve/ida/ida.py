@@ -280,7 +280,7 @@ class NativeIda(Connection):
     def worst(self) -> tuple[int, float]:
         """Return the unknown with the largest estimated error in the last step, and that error in tolerances."""
         errors, weights = (self.answer(name) for name in ("IDAGetEstLocalErrors", "IDAGetErrWeights"))
-        weighted = np.abs(errors) * weights
+        weighted = np.multiply(np.abs(errors), weights, out=np.zeros_like(weights), where=weights > 0)
         k = int(np.argmax(weighted))
         return k, float(weighted[k])
 

@@ -21,9 +21,9 @@ def test_steps_that_rounding_shortens_are_told_by_the_explicit_integrator():
 
 
 def test_auto_leaves_them_to_implicit_steps():
-    solution = stiffmbs.run(nearly_repeated(1e-7), solver="auto", **HOW)
+    solution = stiffmbs.run(nearly_repeated(5e-8), solver="auto", duration=2.0, points=101, rtol=5e-7)
     assert solution.outcome is Outcome.DONE and solution.solver["name"] in ("bdf", "radau")
-    assert swing_error(solution) < 1e-5
+    assert swing_error(solution) < 1e-4
 
 
 @pytest.mark.parametrize("scene", ["andrews", "elastic_bearing", "vehicles/half_car_at_rest", "stick_slip"])

@@ -94,17 +94,21 @@ def _stepped(x):
     The tolerance of the estimate, of order s, is that of smooth solutions. A step over a jump or kink has to stay within
     the part of the requested tolerance that the iteration may leave. Its estimate does not bound its error.
     """
+    following = float("inf")
     for _ in range(LOCATION.most_retaken):
         begin = x.t
         flag = step(x)
         if flag < 0 or x.n_functions == 0:
             return flag
+        x.h = min(x.h, following)
         _event_functions(x, x.t, x.y, x.yp, x.after)
         relaxed = collocation_view(ints(x.methods[x.method_past])).relaxed
         if x.error_size * relaxed <= x.newton:
             return flag
         if _changed(x, x.before, x.after) > 0:
-            h = _root(x, begin, False) * x.h_past / STRETCHED
+            ahead = _root(x, begin, False) * x.h_past
+            h = ahead / STRETCHED
+            following = 2.0 * (ahead - h)
         elif _bent(x, x.before, x.after) > 0:
             part = _root(x, begin, True) * (1.0 + SEARCH.difference)
             if part <= SEARCH.finest or part >= 1.0:

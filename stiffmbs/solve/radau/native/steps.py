@@ -43,10 +43,10 @@ LEAST_ERROR = 1e-2
 
 @compiled
 def set_weights(x):
-    """Compute the inverse tolerances at the state, times the step where the absolute one is negative."""
+    """Compute the inverse tolerances at the state, times the step, if known, where the absolute one is negative."""
     for k in range(x.n):
         atol = x.atol[k]
-        part = 1.0 if atol > 0.0 else x.h
+        part = x.h if atol < 0.0 and x.h > 0.0 else 1.0
         x.weight[k] = part / (x.rtol * abs(x.y[k]) + abs(atol)) if atol < EXCLUDED else 0.0
 
 
@@ -140,7 +140,7 @@ def _estimate_below(x, c, lower, t, h):
 
 @compiled
 def first_step(x):
-    """Return a first step by the rates of the state (Hairer, Norsett, Wanner I, ch. II.4)."""
+    """Return a first step by the rates of the state, the longest of Hairer, Norsett, Wanner I, ch. II.4."""
     if x.first > 0.0:
         return x.first
     of_state = size_in_tolerances(x, x.y)
@@ -148,12 +148,14 @@ def first_step(x):
     if min(of_state, of_rates) <= FIRST_STEP.small:
         return FIRST_STEP.short
     order = collocation_view(ints(x.methods[0])).stages
-    return min(FIRST_STEP.part * of_state / of_rates, (FIRST_STEP.part / of_rates) ** (1.0 / (1.0 + order)))
+    return min(of_state / of_rates, (FIRST_STEP.part / of_rates) ** (1.0 / (1.0 + order)))
 
 
 @compiled
 def _bounded(x, factor):
-    return min(x.largest_factor, max(x.least_factor, factor))
+    """Return the ratio of successive steps within its bounds; the first step, a trial, may be far too short."""
+    largest = x.largest_factor if x.h_accepted > 0.0 else max(x.largest_factor, 1.0 / FIRST_STEP.part)
+    return min(largest, max(x.least_factor, factor))
 
 
 @compiled
@@ -268,22 +270,20 @@ def _after_failed_iteration(x, outcome, h):
 
 
 @compiled
-def _error(x, c, h, first):
+def _error(x, c, h, untested):
     """Return the error of the step in tolerances.
 
-    After starts and rejected steps, a failed estimate is repeated with f at the corrected state, and one that passes is
-    filtered again: such steps may be long for a vibration that earlier ones have not tested.
+    After starts and rejected steps, a failed estimate is repeated with f at the corrected state. That of an untested step, which
+    may be long for a vibration that earlier ones have not tested, is filtered too.
     """
     error = _estimate(x, c, x.t, h, x.y)
-    if not (first or x.rejected):
-        return error
-    if error >= 1.0:
+    if error >= 1.0 and (untested or x.rejected):
         copied(x.y_stage, x.error, x.n)
         add_efforts(x, x.y_stage, x.misfit)
         for k in range(x.n_all):
             x.y_stage[k] += x.y[k]
         error = _estimate(x, c, x.t, h, x.y_stage)
-    return max(error, _filtered(x, c, h)) if error < 1.0 else error
+    return max(error, _filtered(x, c, h)) if untested and error < 1.0 else error
 
 
 @compiled
@@ -330,10 +330,13 @@ def step(x):
     h = _begun(x)
     first = x.h_past == 0.0
     c = collocation_view(ints(x.methods[x.method]))
+    # a vibration of as many radians per stage has been tested
+    tested = x.h_past * c.stages / collocation_view(ints(x.methods[x.method_past])).stages
     while True:
         at_stop = x.stops and x.t + STRETCHED * h >= x.stop
         if at_stop:
             h = x.stop - x.t
+        untested = h > x.keep_high * tested
         if not h > SMALLEST * abs(x.t):
             return ERROR_TEST_FAILED if x.rejected else NO_CONVERGENCE
         x.failures += 1
@@ -345,7 +348,7 @@ def step(x):
         if outcome != CONVERGED:
             h = _after_failed_iteration(x, outcome, h)
             continue
-        error = _error(x, c, h, first)
+        error = _error(x, c, h, untested)
         if not isfinite(error):
             h *= x.after_failure
             continue
@@ -356,7 +359,8 @@ def step(x):
             continue
         x.rejected = 1
         x.error_failures += 1
-        h *= x.least_factor if first and x.failures == 1 else _growth(x, c, error)
+        shorter = h * (x.least_factor if first and x.failures == 1 else _growth(x, c, error))
+        h = max(shorter, tested) if untested else shorter
         x.renewed = 1 if not x.current and x.rate_kept == 0 else 0
     x.error_size = error
     _choose_next(x, c, h, x.h, at_stop)
