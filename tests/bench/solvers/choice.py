@@ -105,7 +105,7 @@ def reference(model: Any, settings: dict[str, Any]) -> tuple[np.ndarray, float] 
     return None
 
 
-def compared(model: Any, settings: dict[str, Any], rtols: list[float]) -> Iterator[Choice]:
+def compared(model: Any, settings: dict[str, Any], given: list[float], rounds: int) -> Iterator[Choice]:
     """Yield the comparison at each tolerance of auto."""
     known = reference(model, settings)
     if known is None:
@@ -113,25 +113,29 @@ def compared(model: Any, settings: dict[str, Any], rtols: list[float]) -> Iterat
     exact, noise = known
     seconds: dict[tuple[str, float], float] = {}
     errors: dict[tuple[str, float], float] = {}
-    tolerances = {name: rtols if name == "auto" else sorted({*TOLERANCES, *rtols}) for name in SOLVERS}
-    for _ in range(ROUNDS):
-        for name, rtol in [(solver, rtol) for solver in SOLVERS for rtol in tolerances[solver]]:
+    for rtol in given:
+        seconds["auto", rtol], found = measured(model, rtol, {**SOLVERS["auto"], **settings}, math.inf, 1)
+        errors["auto", rtol] = float(np.abs(found.q - exact).max()) if found else 0.0
+    rtols = [rtol for rtol in given if noise < RESOLVED * errors["auto", rtol]]
+    tolerances = {name: rtols if name == "auto" else sorted({*TOLERANCES, *rtols}) for name in SOLVERS if rtols}
+    for _ in range(rounds):
+        for name, rtol in [(solver, rtol) for solver in tolerances for rtol in tolerances[solver]]:
             if seconds.get((name, rtol)) == math.inf:
                 continue
             longest = max(1.0, LONGEST * min(seconds.values(), default=math.inf))
-            least, found = measured(model, rtol, {**SOLVERS[name], **settings}, longest, ROUNDS)
+            least, found = measured(model, rtol, {**SOLVERS[name], **settings}, longest, rounds)
             seconds[name, rtol] = min(least, seconds.get((name, rtol), math.inf))
             if found is not None:
                 errors[name, rtol] = float(np.abs(found.q - exact).max())
-    for rtol in rtols:
-        error = errors.get(("auto", rtol), 0.0)
+    for rtol in given:
+        error = errors["auto", rtol]
         best = [
             (value_at_error([(errors[key], seconds[key]) for key in errors if key[0] == name], error), name)
             for name in SOLVERS
             if name != "auto"
         ]
         least, name = min([(value, name) for value, name in best if value is not None], default=(math.inf, ""))
-        yield Choice(rtol, error, seconds["auto", rtol], least, name if noise < RESOLVED * error else "")
+        yield Choice(rtol, error, seconds["auto", rtol], least, name if rtol in rtols else "")
 
 
 def main() -> None:
@@ -144,11 +148,12 @@ def main() -> None:
     parser.add_argument("--damping", nargs="+", default=["0.01", "0.05", "0.2"], help="of cars")
     parser.add_argument("--duration", nargs="+", type=float, help="s; by default 1, 3 and 10, or that of the scene")
     parser.add_argument("--rtol", nargs="+", type=float, default=list(TOLERANCES[1:]))
+    parser.add_argument("--rounds", type=int, default=ROUNDS, help="timings of each solver")
     given = parser.parse_args()
     limit = OF_CARS if given.target in ("half_car", "car") else OF_SCENES
     beyond = []
     for name, model, settings in targets(given.target, given.stiffness, given.damping, given.duration):
-        for choice in compared(model, settings, given.rtol):
+        for choice in compared(model, settings, given.rtol, given.rounds):
             print(f"{name}, {choice}", flush=True)
             if choice.exceeds(limit):
                 beyond.append((choice.ratio, f"{name}, {choice}"))
