@@ -223,7 +223,9 @@ def reach(rtol):
 def masks():
     """Return the sum of the masked steps of events in each step."""
     job = job_of("sliding")
-    masked = MaskedEvents(job.dynamics, SimpleNamespace(refuse=lambda t, found: None))
+    masked = MaskedEvents(
+        job.dynamics, SimpleNamespace(refuse=lambda t, found: None, would_be_many=lambda before, t: True)
+    )
     total = 0
     for steps in range(1, 12):
         masked.note(0.0, job.start.q, job.start.u, steps, [0])
@@ -233,7 +235,9 @@ def masks():
 
 def events_to_a_check_of_the_force():
     job, checks = job_of("sliding"), []
-    masked = MaskedEvents(job.dynamics, SimpleNamespace(refuse=lambda t, found: checks.append(t)))
+    masked = MaskedEvents(
+        job.dynamics, SimpleNamespace(refuse=lambda t, found: checks.append(t), would_be_many=lambda before, t: True)
+    )
     for k in range(12):
         masked.note(float(k), job.start.q, job.start.u, k + 1, [0])
     return min(checks, default=12)

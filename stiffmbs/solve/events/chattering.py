@@ -29,7 +29,7 @@ class ChatteringParameters:
     """Expected further events, steps governed by rounding, or evaluations at which a run is stopped, and steps that
     periodic laws may require."""
     at_least: float = 1e4
-    """Their least number at which growth is considered."""
+    """Their least number at which growth is considered, and at which events in succession may be chattering."""
     least_power: float = 0.8
     largest_power: float = 2.0
     """Bounds of the power of the number of events with which their rate grows in an exponentially driven motion.
@@ -125,6 +125,10 @@ class Chattering:
         growing = CHATTERING.least_power < power < CHATTERING.largest_power
         return self._count * math.exp(min(steady / self._count, 100.0)) if growing else steady
 
+    def would_be_many(self, before: float, t: float) -> bool:
+        """Return True if events at the interval of two times up to the end of the run are many enough to be chattering."""
+        return self._end - t > CHATTERING.at_least * (t - before)
+
     def refuse(self, t: float, event_functions: np.ndarray) -> None:
         """Raise a ChatteringError that names the first of some event functions, if there are any."""
         if len(event_functions):
@@ -167,7 +171,7 @@ class MaskedEvents:
         self._dynamics, self._chattering = dynamics, chattering
         n = dynamics.system.n_event_functions
         self.steps, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-        self._steps, self._quiet = 0, True
+        self._steps, self._last, self._quiet = 0, -math.inf, True
 
     @property
     def any(self) -> bool:
@@ -180,6 +184,7 @@ class MaskedEvents:
         Raises SolverError if a force keeps chattering; names the element.
         """
         since, self._steps = steps - self._steps, steps
+        before, self._last = self._last, t
         if self._quiet and since > MASKING.few_steps:  # none is masked, and the event is not soon after the last
             return
         left_behind = since > MASKING.few_steps * (self.steps + 1)
@@ -189,7 +194,7 @@ class MaskedEvents:
         )
         self._in_succession[again] = np.minimum(self._in_succession[again] + 1, MASKING.most_in_succession)
         telling = again[self._in_succession[again] >= MASKING.telling]
-        if len(telling):
+        if len(telling) and self._chattering.would_be_many(before, t):
             self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
         self.steps = np.where(
             self._in_succession > 1, 2 * MASKING.few_steps ** np.maximum(self._in_succession - 1, 1), 0

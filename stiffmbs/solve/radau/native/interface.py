@@ -95,7 +95,7 @@ def _stepped(x):
     the part of the requested tolerance that the iteration may leave. Its estimate does not bound its error.
     """
     following = float("inf")
-    for _ in range(LOCATION.most_retaken):
+    for retaken in range(LOCATION.most_retaken):
         begin = x.t
         flag = step(x)
         if flag < 0 or x.n_functions == 0:
@@ -116,7 +116,7 @@ def _stepped(x):
             h = part * x.h_past
         else:
             return flag
-        if not h > SMALLEST * abs(begin):
+        if retaken + 1 == LOCATION.most_retaken or not h > SMALLEST / SEARCH.finest * abs(begin):
             return flag
         _step_back(x, begin, h)
     return flag

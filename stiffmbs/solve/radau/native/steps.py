@@ -333,7 +333,7 @@ def step(x):
     # a vibration of as many radians per stage has been tested
     tested = x.h_past * c.stages / collocation_view(ints(x.methods[x.method_past])).stages
     while True:
-        at_stop = x.stops and x.t + STRETCHED * h >= x.stop
+        at_stop = x.stops and x.t + (1.0 if first else STRETCHED) * h >= x.stop
         if at_stop:
             h = x.stop - x.t
         untested = h > x.keep_high * tested
