@@ -48,6 +48,7 @@ class PlanarData(ModelData):
         return weights(bodies, self.gravity)
 
     def initial_marker(self, marker: MarkerReference) -> InitialMarker:
+        """Return the point and angle of a marker in the initial pose."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return InitialMarker(np.array(placed.point), placed.angle)

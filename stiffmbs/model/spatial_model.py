@@ -90,6 +90,7 @@ class SpatialData(ModelData):
             yield from flexible_inertias(bodies, self.gravity)
 
     def initial_marker(self, marker: MarkerReference) -> InitialSpatialMarker:
+        """Return the point and axes of a marker in the initial pose."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return InitialSpatialMarker(np.array(placed.point), *matrix(placed.orientation).T)

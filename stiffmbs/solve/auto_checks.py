@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 import numpy as np
 
 from .auto_choice import Choice, Switch
@@ -48,7 +50,7 @@ class ImplicitCheck:
         self._choice, self._implicit = choice, choice.implicit
         self._counted, self._begun = self._implicit.steps(t), self._implicit.integrator.steps()
         self.rate, self.loss = np.inf, 0.0
-        self._first: Interval | None = None
+        self._intervals: deque[Interval] = deque(maxlen=3)
         self._wait()
 
     def __call__(self, reached: Reached) -> bool:
@@ -64,10 +66,13 @@ class ImplicitCheck:
         return self._wait() > 0.0 or gains
 
     def _gains(self, last: Interval) -> bool:
-        """Return True if the rest of the implicit steps costs less by the decay of their cost, which two intervals show."""
-        first, t = self._first or last, self._counted.time
+        """Return True if the rest of the implicit steps costs less by the decay of their cost in the last three intervals.
+
+        Earlier ones, such as that of the small steps after a start, do not show how it goes on.
+        """
+        self._intervals.append(last)
+        first, t = self._intervals[0], self._counted.time
         remaining = self._choice.remaining(t)
-        self._first = first
         return first is last or cost_ahead(first, last, t, t + remaining) < self._choice.explicit_cost(remaining, 0)
 
     def _wait(self) -> float:

@@ -30,6 +30,7 @@ class AnyJointFriction(Friction):
     length: si.PositiveLength | None = Field(None, description="length of a guide or bearing, for its moment, m")
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        """Yield a joint whose loads are unknown, and a pin or ball without a radius."""
         joint = joints[self.joint.joint]
         if type(joint).loads is Joint.loads:
             *others, last = self.frictional_kinds()

@@ -223,6 +223,7 @@ class PID(Entry):
             yield f"{name}.filtered", StateValue(self._sum(rate, (-rate, f"{name}.filtered")), 0.0, 1.0)
 
     def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
+        """Yield the sum of the proportional, integral and filtered derivative parts."""
         derivative = self.kd / self.filter if self.kd and self.filter is not None else 0.0
         others: list[Weighted] = [(self.ki, f"{name}.integral")] if self.ki else []
         others += [(-derivative, f"{name}.filtered")] if derivative else []

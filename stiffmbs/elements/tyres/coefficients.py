@@ -216,6 +216,7 @@ class TyreProperties(Component):
         )  # fmt: skip
 
     def in_equations(self) -> dict[str, object]:
+        """Return the options of the equations: combined slip, belt, mode, side, deflection, bottoming and version."""
         own: dict[str, Any] = {
             "ellipse": "" if self.is_combined else "pac2002" if self.of_adams else "limit",
             "belt": self.belt or None, "mode": str(self._slips), "is_mirrored": self.is_mirrored, "side": self.side,

@@ -178,6 +178,14 @@ def test_index_3_passes_a_late_start_at_a_tight_tolerance(examples):
     assert found.message == "completed"
 
 
+def test_index_3_names_rounding_where_it_exceeds_the_tolerance(examples):
+    """Rounding of a time of 1e5 s moves the driven crank by several tolerances: half of such runs stop."""
+    scene = stiffmbs.load_scene(examples / "elastic_bearing.yaml")
+    for start in (1e5, 1.06e5, 1.27e5, 1.33e5):
+        found = stiffmbs.run(scene, solver="radau", formulation="I3", rtol=1e-9, start=start)
+        assert found.message == "completed" or "the tolerance is below the rounding of the equations" in found.message
+
+
 def test_a_spinning_top_in_space():
     model = spatial.Model("top", gravity=(0, 0, -9.81))
     tilted = {"euler": "zxz", "angles": [0, 0.6, 0]}

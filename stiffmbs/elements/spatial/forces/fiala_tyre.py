@@ -50,6 +50,7 @@ class FialaTyre(Tyre):
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
+        """Return Fx, Fy, Mx, My, Mz of Fiala's tyre, N and N m."""
         from ...tyres.fiala import Constants, forces
         from ...tyres.magic_formula import Slip
 

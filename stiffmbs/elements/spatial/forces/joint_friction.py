@@ -48,6 +48,7 @@ class JointFriction(AnyJointFriction):
     )
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        """Yield unsuitable joints, and lengths and radii that the joint does not have."""
         yield from super().validation_errors(joints)
         joint = joints[self.joint.joint]
         for field, sorts in (("thrust_radius", (PIN,)), ("torsion_radius", (GUIDE,)), ("length", (PIN, SLEEVE, GUIDE))):
@@ -57,6 +58,7 @@ class JointFriction(AnyJointFriction):
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
+        """Return the friction of the pin, guide, sleeve or ball, with the rates of its motion."""
         i, j, R, load = e.joint.i, e.joint.j, e.radius, e.joint.loads
         w = e.named(i.omega - j.omega)
         if e.joint.coordinates == BALL:

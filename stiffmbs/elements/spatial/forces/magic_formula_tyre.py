@@ -97,6 +97,7 @@ class MagicFormulaTyre(Tyre):
         return self
 
     def cams(self) -> Envelope | None:
+        """Return the given cams, or those of the file."""
         if self.envelope != "file":
             return self.envelope
         if self.properties.envelope is None:
@@ -159,6 +160,7 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def rim_contact(e: Symbolic, deflection: Expr, contact: ContactPoint) -> tuple[Expr, Expr] | None:
+        """Return the rim's normal force, N, and overturning torque, N m, by the properties of bottoming, or None."""
         p, rim = e.properties, e.properties.bottoming
         if rim is None:
             return None
@@ -190,6 +192,7 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
+        """Return Fx, Fy, Mx, My, Mz by the Magic Formula, up to the largest load of the file, N and N m."""
         from ...tyres.magic_formula import Slip, of_mode
         from ...tyres.magic_formula_6 import PressedSlip
 

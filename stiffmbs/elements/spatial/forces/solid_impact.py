@@ -91,6 +91,7 @@ class SolidImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
+        """Return the contact along the common normal of two round solids."""
         first, second = round_solid(e, e.i_shape, e.i_size), round_solid(e, e.j_shape, e.j_size)
         offset = e.named(seen_from(e.i.point, e.j))
         axes = e.named([own.dot(other) for own in e.j.axes for other in e.i.axes])

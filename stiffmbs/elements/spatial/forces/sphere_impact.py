@@ -118,6 +118,7 @@ class SphereCylinderImpact(SphereImpact):
 
     @classmethod
     def offset(cls, e: Symbolic) -> list[Expr]:
+        """Return the vector from the nearest point of the cylinder to the sphere's centre, along the axes of j."""
         x, y, z = e.named(seen_from(e.i.point, e.j))
         out = e.named(length(x, y))
         across = e.named(above(out - e.cylinder_radius) / out)
