@@ -5,8 +5,6 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 
 from ..compile.compile_model import kinds_of
 from ..compile.kind import Kind
@@ -20,6 +18,7 @@ from ..elements.samples import Samples
 from ..model.model import Model
 from ..model.model_builder import ModelBuilder
 from ..presolve.spinning_bodies import AXES, SpinningBodies
+from ..processes import process_pool
 
 
 def warm() -> None:
@@ -28,7 +27,7 @@ def warm() -> None:
     Formulas in a scene form kinds of their own, which are compiled on first use, like code that a single formulation
     uses.
     """
-    with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
+    with process_pool() as processes:
         list(processes.map(compile_usual, usual_kinds()))
     for routine in routines():
         routine.call  # noqa: B018 is loaded by being asked for

@@ -192,17 +192,6 @@ def digest(*parts: str) -> str:
     return hashlib.sha256("\0".join(parts).encode(errors="surrogateescape")).hexdigest()[:40]
 
 
-def code_of(name: str) -> bytes | None:
-    """Return 32 bytes that depend on a name and on the user's secret; None without a trusted cache."""
-    directory = cache_directory()
-    try:
-        directory.mkdir(mode=0o700, parents=True, exist_ok=True)
-        secret = (_secret(directory) or _new_secret(directory)) if _trusted(directory) else None
-    except OSError:
-        return None
-    return None if secret is None else hmac.digest(secret, b"\0" + os.fsencode(name), "sha256")
-
-
 def _secret(directory: Path) -> bytes | None:
     """Return the user's secret, or None if there is none that only the user can read."""
     try:

@@ -10,7 +10,7 @@ import sys
 import threading
 import warnings
 from _thread import interrupt_main
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from enum import IntEnum
 from typing import Any
 
@@ -39,18 +39,21 @@ class Status(IntEnum):
 class Process(click.Group):
     """Group of commands that always ends with an exit status and a message.
 
-    SIGTERM acts like Ctrl-C: a run that has started keeps its results, with exit status 1; otherwise the status is 130.
+    SIGTERM acts like Ctrl-C: a run that has started keeps its results, with exit status 1; otherwise the status is that
+    of a shell: 130 after Ctrl-C, 143 after SIGTERM.
     """
 
     def main(self, *arguments: Any, **options: Any) -> Any:
         """Run the requested command; see `click.Command.main`."""
         closed = _with_standard_files()
-        with _signals(), _no_interrupt_lost(), _escaping(), warnings.catch_warnings():
+        with _signals() as received, _no_interrupt_lost(), _escaping(), warnings.catch_warnings():
             # Overflows are reported in sentences where they have an effect.
             warnings.simplefilter("ignore", RuntimeWarning)
             status = 0
             try:
-                status = _status(lambda: super(Process, self).main(*arguments, **{**options, "standalone_mode": False}))
+                status = _status(
+                    lambda: super(Process, self).main(*arguments, **{**options, "standalone_mode": False}), received
+                )
             finally:
                 written = _flushed(reported=status != 0)
         if closed:
@@ -58,8 +61,8 @@ class Process(click.Group):
         sys.exit(status or (0 if written and not closed else Status.FAILED))
 
 
-def _status(command: Callable[[], object]) -> int:
-    """Return the exit status of a command; print a message on a failure."""
+def _status(command: Callable[[], object], received: Sequence[int]) -> int:
+    """Return the exit status of a command; print a message on a failure. `received`: signals, which grow meanwhile."""
     try:
         ended = command()
     except SystemExit as end:
@@ -73,7 +76,7 @@ def _status(command: Callable[[], object]) -> int:
         return error.exit_code
     except (KeyboardInterrupt, click.Abort):
         _tell("interrupted")
-        return INTERRUPTED
+        return 128 + received[-1] if received else INTERRUPTED
     except MemoryError:
         _tell(TOO_LITTLE_MEMORY)
         return Status.FAILED
@@ -148,15 +151,22 @@ def _escaping() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _signals() -> Iterator[None]:
-    """Let signals interrupt a command; ignore them afterwards, while the process ends."""
+def _signals() -> Iterator[list[int]]:
+    """Let signals interrupt a command, and list them; ignore them afterwards, while the process ends."""
+    received: list[int] = []
     if threading.current_thread() is not threading.main_thread():
-        yield
+        yield received
         return
+
+    def interrupt(number: int, frame: object) -> None:
+        """Record a signal and interrupt the command."""
+        received.append(number)
+        raise KeyboardInterrupt
+
     numbers = [getattr(signal, name) for name in ASKING_TO_END if hasattr(signal, name)]
-    before = [signal.signal(number, signal.default_int_handler) for number in numbers]
+    before = [signal.signal(number, interrupt) for number in numbers]
     try:
-        yield
+        yield received
     finally:
         own = sys.stdout is sys.__stdout__
         for number, handler in zip(numbers, before, strict=True):

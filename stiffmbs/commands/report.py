@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -66,13 +66,13 @@ def report(
             (loads, "Road loads", lambda: road_loads_section(road_loads(loaded, {"run": solution}))),
             (compare, "Solvers compared", lambda: comparison_section(compared(loaded))),
         ]
-        sections = [_section(title, made) for wanted, title, made in asked if wanted]
+        sections, complete = _sections([(title, made) for wanted, title, made in asked if wanted])
         text = "" if scene == STANDARD_INPUT else file_text(scene)
         write_report(path, loaded, solution, text, sections, compared_with)
     for note in solution.notes:
         click.echo(f"note: {note}")
     click.echo(f"report: {path}")
-    sys.exit(0 if solution.outcome.name == "DONE" else Status.FAILED)
+    sys.exit(0 if solution.outcome.name == "DONE" and complete else Status.FAILED)
 
 
 def _of_axle(loaded: Scene, axle: str) -> Section:
@@ -90,11 +90,18 @@ def _run_of(other: str) -> tuple[str, Solution]:
     return Path(other).name, solution
 
 
-def _section(title: str, made: Callable[[], Section]) -> Section:
-    """Return a requested section, or the reason why there is none."""
+def _sections(asked: Sequence[tuple[str, Callable[[], Section]]]) -> tuple[list[Section], bool]:
+    """Return requested sections, or the reasons why there is none, and False if the user interrupted one."""
     from ..show.sections import Section
 
-    try:
-        return made()
-    except StiffmbsError as error:
-        return Section(title, (f"none: {error}",))
+    found: list[Section] = []
+    for title, made in asked:
+        try:
+            found.append(made())
+        except StiffmbsError as error:
+            found.append(Section(title, (f"none: {error}",)))
+        except KeyboardInterrupt:
+            left = [title, *(other for other, _ in asked[len(found) + 1 :])]
+            found += [Section(other, ("not computed: interrupted by the user",)) for other in left]
+            return found, False
+    return found, True

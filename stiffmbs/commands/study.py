@@ -64,10 +64,9 @@ def study(
 def _solved(ready: Study, workers: int, processes: bool, store: Path | None, watch: CaseBar) -> xarray.Dataset:
     if not processes:
         return ready.solve(workers, None, store, watch)
-    from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
+    from ..processes import process_pool
 
-    with ProcessPoolExecutor(workers, get_context("spawn")) as executor:
+    with process_pool(workers) as executor:
         try:
             return ready.solve(workers, executor, store, watch)
         except BaseException:

@@ -5,13 +5,18 @@ No file is served by its path: a page gets the text of its scene, and files of t
 A page of another site may send requests to the loopback interface, and a name of its own may resolve to it (DNS
 rebinding).  So a request counts only with the token of this server in its path, a Host that is this server, and no other
 Origin.  W3C, Content Security Policy Level 3; RFC 6454, section 7.
+
+When the server has ended, another program may bind its port.  So a page first lets the server prove that it knows the
+token, by the code (RFC 2104) of a number that the page has chosen, and only then sends the token and the text.
 """
 
 from __future__ import annotations
 
 import asyncio
 import hashlib
+import hmac
 import json
+import re
 import secrets
 from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import dataclass
@@ -21,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..model.schema import scene_schema
-from ..reading.files.text_file import file_text
+from ..reading.files.text_file import file_content, file_text
 from ..results.files import write_text
 from .worker import STOP
 from .workers import Workers
@@ -36,6 +41,8 @@ if TYPE_CHECKING:
 LARGEST = 4_000_000
 """Largest length of a request, bytes."""
 NAMES = ("127.0.0.1", "localhost")
+CHALLENGE = re.compile(r"/prove/([0-9a-f]{32})")
+"""Path, without the token, by which a page asks the server to prove itself; the group is the page's number."""
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; "
@@ -62,16 +69,15 @@ class Guard:
         """Answer a request, or refuse it with a reason."""
         if scope["type"] != "http":
             return
-        refusal = self._refusal(scope)
+        refusal = self._of_another(scope) or self._proof(scope) or self._refusal(scope)
         if refusal:
             status, reason = refusal
-            await send(
-                {
-                    "type": "http.response.start",
-                    "status": status,
-                    "headers": _headers([(b"content-type", b"text/plain")]),
-                }
-            )
+            head = {
+                "type": "http.response.start",
+                "status": status,
+                "headers": _headers([(b"content-type", b"text/plain")]),
+            }
+            await send(head)
             await send({"type": "http.response.body", "body": reason.encode()})
             return
 
@@ -82,22 +88,36 @@ class Guard:
 
         await self._app(scope, receive, guarded)
 
-    def _refusal(self, scope: Scope) -> tuple[int, str] | None:
-        """Return status and reason for a request that is refused."""
-        heads = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
+    def _of_another(self, scope: Scope) -> tuple[int, str] | None:
+        """Return status and reason for a request of another site."""
+        heads = _heads(scope)
         if heads.get("host", "") not in self._hosts:
             return 403, "refused: the Host is not this server"
         if heads.get("origin", f"http://{heads['host']}") != f"http://{heads['host']}":
             return 403, "refused: the request comes from another site"
         if scope["method"] == "POST" and "origin" not in heads:
             return 403, "refused: a change without an Origin"
-        given = scope["path"].split("/")[1]
+        return None
+
+    def _proof(self, scope: Scope) -> tuple[int, str] | None:
+        """Return the answer to a request for a proof: the code of its number by the token."""
+        asked = CHALLENGE.fullmatch(scope["path"])
+        return (200, hmac.new(self._token.encode(), asked[1].encode(), "sha256").hexdigest()) if asked else None
+
+    def _refusal(self, scope: Scope) -> tuple[int, str] | None:
+        """Return status and reason for a request that is refused."""
+        heads = _heads(scope)
+        given = f"{scope['path']}/".split("/")[1]
         if not secrets.compare_digest(given.encode(), self._token.encode()):
             return 403, "refused: the address needs the token that 'stiffmbs open' printed"
         length = heads.get("content-length", "0")
         if not length.isdigit() or int(length) > LARGEST or "transfer-encoding" in heads:
             return 413, f"refused: more than {LARGEST} bytes"
         return None
+
+
+def _heads(scope: Scope) -> dict[str, str]:
+    return {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
 
 
 def _headers(own: Any) -> list[tuple[bytes, bytes]]:
@@ -147,7 +167,7 @@ class Document:
 
 
 def _digest(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest() if file.exists() else ""
+    return hashlib.sha256(file_content(file, "a scene")).hexdigest() if file.exists() else ""
 
 
 def application(token: str, document: Document, workers: Workers) -> Starlette:
@@ -173,6 +193,9 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
         name = document.file.name if document.file else ""
         return JSONResponse({"text": text, "digest": digest, "name": name, "editable": document.editable})
 
+    async def refused(request: Request, error: Exception) -> Response:
+        return JSONResponse({"message": str(error)}, status_code=409)
+
     async def described(request: Request) -> Response:
         if not schema:
             schema.append(json.dumps(await asyncio.to_thread(scene_schema)).encode())
@@ -195,11 +218,14 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
         """Write the document, unless its file was changed elsewhere."""
         try:
             digest = str(content.get("digest"))
-            if content.get("over") and document.file is not None:
+            if content.get("over") is True and document.file is not None:
                 digest = _digest(document.file)
-            return JSONResponse({"digest": document.save(str(content.get("text", "")), digest)})
-        except InputError as error:
-            return JSONResponse({"message": str(error)}, status_code=409)
+            text = content.get("text")
+            if not isinstance(text, str):
+                raise InputError("found no text, expected that of the scene")
+            return JSONResponse({"digest": document.save(text, digest)})
+        except UnicodeEncodeError as error:
+            return JSONResponse({"message": f"not saved: {error}"}, status_code=409)
         except OSError as error:
             return JSONResponse({"message": f"not saved: {error.strerror or error}"}, status_code=409)
 
@@ -216,7 +242,8 @@ def application(token: str, document: Document, workers: Workers) -> Starlette:
             Route(f"/{token}/job", _posted(job), methods=["POST"]),
             Route(f"/{token}/save", _posted(save), methods=["POST"]),
             Route(f"/{token}/close", _posted(close), methods=["POST"]),
-        ]
+        ],
+        exception_handlers={InputError: refused},
     )
 
 

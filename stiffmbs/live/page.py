@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import base64
 import secrets
 import socket
 import threading
 import webbrowser
 from html import escape
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from ..analyses.job import Runnable, data_of, settings_of
-from ..cache.entries import code_of
 from ..errors import InputError, refuse_missing
 from ..model.model_data import ModelData
 from ..model.model_text import model_text
@@ -20,9 +18,6 @@ from ..reading.files.yaml_text import scene_text
 
 PACKAGES = ("starlette", "uvicorn")
 LOOPBACK = "127.0.0.1"
-FIRST_PORT: Final = 49152
-PORTS: Final = 16384
-"""Dynamic ports (RFC 6335), of which each file has a preferred one, so that a page finds a restarted server."""
 SCENES = (".yaml", ".yml")
 """File suffixes of scenes that can be edited."""
 FRAME_HEIGHT = 760
@@ -149,17 +144,11 @@ def _served(document: Any, data: ModelData | None, port: int, browser: bool) -> 
     from .app import Guard, application
     from .workers import Process, Thread, Workers
 
-    code = code_of(f"live page of {document.file}") if document.file is not None else None
-    token = secrets.token_urlsafe(24) if code is None else base64.urlsafe_b64encode(code[:24]).decode()
-    preferred = FIRST_PORT + int.from_bytes(code[24:]) % PORTS if code is not None and not port else port
+    token = secrets.token_urlsafe(24)  # another one for each start: whoever gets the port later learns nothing of use
     try:
-        listening = _listening(preferred)
+        listening = _listening(port)
     except (OSError, OverflowError) as error:
-        if preferred == port:
-            raise InputError(
-                f"--port {port}: found a port that cannot be used ({error}), expected a free one"
-            ) from None
-        listening = _listening(0)
+        raise InputError(f"--port {port}: found a port that cannot be used ({error}), expected a free one") from None
     number = listening.getsockname()[1]
     loop = asyncio.new_event_loop()
     workers = Workers(lambda: Thread(data, loop) if data is not None else Process(document.file, loop))

@@ -99,7 +99,7 @@ class Worker:
             self._send({**answer, "number": number, "seconds": timed(begun)})
 
     def _answer(self, message: dict[str, object], number: int) -> dict[str, object]:
-        if message.get("allow"):
+        if message.get("allow") is True:
             self._solver.allow()
         reported = time.monotonic()
 

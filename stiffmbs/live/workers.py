@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import queue
 import subprocess
 import sys
 import threading
@@ -62,12 +63,17 @@ class Channel:
             del self._waiting[number]
 
 
+def arguments(file: Path | None) -> list[str]:
+    """Return the arguments of Python for a worker, which imports no module of the current folder."""
+    return ["-P", "-m", f"{__package__}.worker", str(file or "")]
+
+
 class Process:
     """Worker in a separate process. `file`: file of the scene."""
 
     def __init__(self, file: Path | None, loop: asyncio.AbstractEventLoop) -> None:
         self.channel = Channel(loop)
-        command = [sys.executable, "-m", f"{__package__}.worker", str(file or "")]
+        command = [sys.executable, *arguments(file)]
         environment = {
             **os.environ,
             "PYDANTIC_DISABLE_PLUGINS": "__all__",
@@ -77,7 +83,9 @@ class Process:
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8", env=environment,
             start_new_session=True,
         )  # fmt: skip
-        threading.Thread(target=self._listen, daemon=True).start()
+        self._requests: queue.SimpleQueue[str] = queue.SimpleQueue()
+        for loop_of_thread in (self._listen, self._write):
+            threading.Thread(target=loop_of_thread, daemon=True).start()
 
     def _listen(self) -> None:
         assert self._process.stdout is not None
@@ -89,18 +97,24 @@ class Process:
         except RuntimeError:  # the server's loop is closed
             return
 
+    def _write(self) -> None:
+        """Write requests to the process: a thread of its own, as a process that does not read would block the server."""
+        assert self._process.stdin is not None
+        while request := self._requests.get():
+            try:
+                self._process.stdin.write(request)
+                self._process.stdin.flush()
+            except (OSError, ValueError):
+                return  # the process has ended, which its listener reports
+
     def put(self, message: dict[str, object]) -> None:
         """Send a request."""
-        assert self._process.stdin is not None
-        try:
-            self._process.stdin.write(json.dumps(message) + "\n")
-            self._process.stdin.flush()
-        except (OSError, ValueError):
-            self.channel.receive({"status": "ended"})
+        self._requests.put(json.dumps(message) + "\n")
 
     def end(self) -> None:
         """End the process."""
         self._process.kill()
+        self._requests.put("")
 
 
 class Thread:

@@ -1,8 +1,13 @@
 """The server of a page: who may ask it, what it gives away, and what happens when processes end."""
 
+import hmac
 import http.client
 import json
+import os
+import shutil
 import socket
+import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -225,17 +230,80 @@ def test_a_new_file_is_created_by_saving(tmp_path):
         page.close()
 
 
-def test_a_page_opened_again_has_the_same_address_unless_its_port_is_taken(scene, tmp_path):
-    first = stiffmbs.open(scene, browser=False)
-    second = stiffmbs.open(scene, browser=False)
-    second.close()
-    first.close()
-    again = stiffmbs.open(scene, browser=False)
-    again.close()
-    other = tmp_path / "other.yaml"
-    other.write_text(scene.read_text(encoding="utf-8"), encoding="utf-8")
-    elsewhere = stiffmbs.open(other, browser=False)
-    elsewhere.close()
-    assert again.url == first.url
-    assert second.url != first.url and second.url.split("/")[3] == first.url.split("/")[3]
-    assert elsewhere.url.split("/")[3] != first.url.split("/")[3]
+def test_each_start_has_a_new_token(scene):
+    tokens = set()
+    for _ in range(3):
+        page = stiffmbs.open(scene, browser=False)
+        tokens.add(Client(page).token)
+        page.close()
+    assert len(tokens) == 3 and all(len(token) >= 32 for token in tokens)
+
+
+def test_the_server_proves_itself_without_the_token(page):
+    client, number = Client(page), "0123456789abcdef" * 2
+    status, _, proof = client.ask(number, token="prove")
+    assert status == 200 and proof == hmac.new(client.token.encode(), number.encode(), "sha256").hexdigest()
+    for other in ("", "0", number + "0", number.upper(), "../start"):
+        assert client.ask(other, token="prove")[0] in (403, 404)
+    assert client.ask(number, token="prove", Origin="http://evil.example")[0] == 403
+    assert client.ask(number, token="prove", Host="evil.example")[0] == 403
+
+
+def test_odd_requests_are_refused_and_change_nothing(page, scene):
+    client, before = Client(page), scene.read_text()
+    digest = json.loads(client.ask("start")[2])["digest"]
+    for content in (
+        {"digest": digest},
+        {"text": None, "digest": digest},
+        {"text": "\ud800", "digest": digest},
+        {"text": "x", "over": "false"},
+    ):
+        assert client.ask("save", content)[0] == 409
+    assert scene.read_text() == before
+    with socket.create_connection(("127.0.0.1", int(client.host.split(":")[1])), timeout=10) as line:
+        line.sendall(f"OPTIONS * HTTP/1.1\r\nHost: {client.host}\r\nConnection: close\r\n\r\n".encode())
+        assert line.recv(100).split()[1] in (b"400", b"403", b"404")
+    scene.unlink()
+    os.mkfifo(scene)
+    status, _, said = client.ask("start")
+    assert status == 409 and "regular file" in said
+    assert client.ask("save", {"text": "x", "over": True})[0] == 409
+
+
+def test_consent_is_true_alone():
+    model = stiffmbs.Model()
+    model.add("a", stiffmbs.Body(mass=1, inertia=1, position=(1, 0)))
+    model.add("f", stiffmbs.PythonForce(i="a", of=("a.x",), function=lambda x: (-x[0], 0, 0)))
+    page = stiffmbs.open(model, browser=False)
+    try:
+        client = Client(page)
+        text = json.loads(client.ask("start")[2])["text"]
+        for allow in ("false", "true", 1, [True]):
+            assert client.job("solve", text, allow=allow)["status"] == "consent"
+    finally:
+        page.close()
+
+
+def test_a_worker_that_does_not_read_does_not_block_the_server(scene, monkeypatch):
+    from stiffmbs.live import workers
+
+    monkeypatch.setattr(workers.sys, "executable", shutil.which("sleep"))
+    monkeypatch.setattr(workers, "arguments", lambda file: ["60"])
+    page = stiffmbs.open(scene, browser=False)
+    try:
+        client = Client(page)
+        for k in range(3):
+            threading.Thread(
+                target=lambda k=k: client.ask("job", {"page": "a", "what": "solve", "text": "x" * 3_000_000}),
+                daemon=True,
+            ).start()
+        time.sleep(0.5)
+        assert client.ask("start")[0] == 200
+    finally:
+        page.close()
+
+
+def test_a_file_that_is_no_scene_is_not_quoted(page, tmp_path):
+    (tmp_path / "secret.txt").write_text("root:x:0:0\nhunter2\n")
+    said = Client(page).job("solve", "include: secret.txt\nbodies: {a: {mass: 1, inertia: 1}}\n")["message"]
+    assert "secret.txt" in said and "hunter2" not in said

@@ -19,7 +19,18 @@ const LIVE = (() => {
   const text = () => editor.state.doc.toString();
 
   /* Server */
+  const token = location.pathname.split("/")[1];
+  const hex = (bytes) => Array.from(new Uint8Array(bytes), (b) => b.toString(16).padStart(2, "0")).join("");
+  /* Let the server prove that it knows the token: another program may have bound the port of one that has ended. */
+  async function proved() {
+    const number = hex(crypto.getRandomValues(new Uint8Array(16))), bytes = new TextEncoder();
+    const given = await (await fetch(`/prove/${number}`)).text();
+    const key = await crypto.subtle.importKey("raw", bytes.encode(token), { name: "HMAC", hash: "SHA-256" }, false, ["sign"]);
+    if (hex(await crypto.subtle.sign("HMAC", key, bytes.encode(number))) !== given) throw new Error("another server");
+  }
+  async function get(path) { await proved(); return fetch(path); }
   async function post(path, content) {
+    await proved();
     const answer = await fetch(path, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(content) });
     found();
     return answer;
@@ -46,11 +57,11 @@ const LIVE = (() => {
   function lose() {
     if (lost) return;
     lost = true;
-    banner("The server of this page has ended. The text stays here: download it, or keep the page open until the server is back.", true,
+    banner("The server of this page has ended, and the page sends nothing any more. The text stays here: download it, and run 'stiffmbs open' again for a new address.", true,
       ["Download scene", () => download("scene.yaml", text())]);
     verdict("error", "no connection to the solver");
     const retry = setInterval(async () => {
-      try { if ((await fetch("start")).ok) { clearInterval(retry); found(); solve(); } } catch { /* not yet */ }
+      try { await proved(); clearInterval(retry); found(); solve(); } catch { /* no connection, or another server */ }
     }, 2000);
   }
   function found() { if (lost) { lost = false; $("banner").hidden = true; } }
@@ -271,7 +282,7 @@ const LIVE = (() => {
     } catch { lose(); }
   }
   async function reread() {
-    const start = await (await fetch("start")).json();
+    const start = await (await get("start")).json();
     [it.digest, it.saved] = [start.digest, start.text];
     $("banner").hidden = true;
     editor.dispatch({ changes: { from: 0, to: editor.state.doc.length, insert: start.text } });
@@ -308,13 +319,14 @@ const LIVE = (() => {
   }
 
   async function begin() {
-    const start = await (await fetch("start")).json();
+    const given = await get("start"), start = await given.json();
+    if (!given.ok) { banner(start.message, true); return; }
     [it.digest, it.saved] = [start.digest, start.text];
     $("name").textContent = start.name || "model";
     $("save").hidden = !start.name;
     let complete = () => null;
     edit(start, (context) => complete(context));
-    fetch("schema").then((answer) => answer.json()).then((schema) => { it.completer = complete = COMPLETION.create(schema, () => it.channels); it.complete = true; }).catch(() => {});
+    get("schema").then((answer) => answer.json()).then((schema) => { it.completer = complete = COMPLETION.create(schema, () => it.channels); it.complete = true; }).catch(() => {});
     $("save").onclick = () => save();
     $("undo").onclick = () => { CM.undo(editor); editor.focus(); };
     $("redo").onclick = () => { CM.redo(editor); editor.focus(); };
@@ -327,11 +339,11 @@ const LIVE = (() => {
     $("stop").onclick = () => post("job", { page, what: "stop" }).catch(lose);
     $("shut").onclick = () => { $("text").hidden = true; };
     const insert = (words) => editor.dispatch({ changes: { from: 0, to: editor.state.doc.length, insert: words } });
-    $("first").onclick = async () => insert(await (await fetch("own/first_scene.yaml")).text());
+    $("first").onclick = async () => insert(await (await get("own/first_scene.yaml")).text());
     $("skeleton").onclick = () => { insert(SKELETON); editor.focus(); };
     divide();
     addEventListener("beforeunload", (e) => { if (unsaved() && start.editable && start.name) e.preventDefault(); });
-    addEventListener("pagehide", () => navigator.sendBeacon("close", JSON.stringify({ page })));
+    addEventListener("pagehide", () => lost || navigator.sendBeacon("close", JSON.stringify({ page })));
     await solve();
   }
   begin().catch(lose);

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from ...analyses.run import run
 from ...errors import InputError, SolverError, StiffmbsError, refuse_text
 from ...model.scene import Scene
 from ...model.settings import SteadyMotion
+from ...processes import process_pool
 from ...reading.did_you_mean import instead_of
 from ..executors import refuse_workers
 from .car import Car, Manoeuvre, car_of, with_manoeuvre
@@ -135,7 +135,7 @@ def handling(
     car = car_of(scene, body, steering)
     with ExitStack() as stack:
         count = workers or os.cpu_count() or 1
-        pool = stack.enter_context(ProcessPoolExecutor(count, get_context("spawn"))) if count > 1 else None
+        pool = stack.enter_context(process_pool(count)) if count > 1 else None
         known = _preliminary(scene, car, width or car.track + WIDER)
         return Handling(scene.name, car, known.ratio, _solved(scene, car, known, changed, pool))
 
