@@ -199,9 +199,14 @@ def tell_unwritten(path: Path | None, error: OSError) -> None:
     click.echo(f"stiffmbs: not written: {path}: {error.strerror or error}", err=True)
 
 
+LONGEST_NAME = 255
+"""Largest length of a file name in common file systems, bytes."""
+
+
 def file_beside(scene: str, ending: str) -> Path:
-    """Return the default output file: in the working folder, named after the scene."""
-    return Path(f"{'stdin' if scene == STANDARD_INPUT else Path(scene).stem}{ending}")
+    """Return the default output file: in the working folder, named after the scene, as far as file names may be long."""
+    stem = os.fsencode("stdin" if scene == STANDARD_INPUT else Path(scene).stem)[: LONGEST_NAME - len(ending)]
+    return Path(f"{stem.decode(errors='ignore')}{ending}")
 
 
 @contextmanager

@@ -88,6 +88,8 @@ def from_mesh(
 def _read(path: Path) -> meshio.Mesh:
     with needs("meshio", "flexible"):
         import meshio
+    if not path.is_file():  # a pipe or a device may not end
+        raise InputError("found no such file, expected a mesh")
     refuse_ignored(path)
     said = io.StringIO()
     try:

@@ -13,6 +13,10 @@ NASTRAN, ABAQUS = {".bdf", ".fem", ".nas"}, ".inp"
 """Suffixes of Nastran and Abaqus files."""
 MASSES = {"CONM1", "CONM2", "CMASS1", "CMASS2", "CMASS3", "CMASS4"}
 BULK = "BEGIN BULK"
+BULK_LINE = re.compile(r"^\s*BEGIN BULK", re.MULTILINE)
+GMSH = ".msh"
+ENDLESS = {".dat", ".tec", ".ele", ".node", ".off"}
+"""Suffixes of formats (Tecplot, TetGen, OFF) whose readers in meshio do not end at the end of an incomplete file."""
 GMSH_TRIANGLES = re.compile(r"^(\*ELEMENT\s*,\s*TYPE\s*=\s*)CPS6\b", re.IGNORECASE | re.MULTILINE)
 NOT_ZERO = re.compile(r"[^EeDd]*[1-9]")
 
@@ -20,6 +24,10 @@ NOT_ZERO = re.compile(r"[^EeDd]*[1-9]")
 def refuse_ignored(path: Path) -> None:
     """Refuse local coordinate systems, several or moved instances, and files without an end. Raises InputError."""
     suffix = path.suffix.lower()
+    if suffix in ENDLESS:
+        raise InputError(
+            f"found '{suffix}', expected another format; 'meshio convert {path.name} mesh.vtu' converts the mesh"
+        )
     if suffix in NASTRAN:
         _check_nastran(path.read_text(encoding="utf-8", errors="replace"))
     elif suffix == ABAQUS:
@@ -33,9 +41,9 @@ def for_reader(path: Path) -> tuple[Path | io.StringIO, str | None]:
     """
     suffix = path.suffix.lower()
     if suffix not in {*NASTRAN, ABAQUS}:
-        return path, None
+        return path, "gmsh" if suffix == GMSH else None  # not of Ansys Fluent: that reader may not end
     text = path.read_text(encoding="utf-8", errors="replace")
-    if suffix in NASTRAN and BULK not in text:
+    if suffix in NASTRAN and not BULK_LINE.search(text):
         return io.StringIO(f"{BULK}\n{text}"), "nastran"
     if suffix == ABAQUS and (changed := GMSH_TRIANGLES.sub(r"\1CPE6", text)) != text:
         found = io.StringIO(changed)

@@ -147,3 +147,19 @@ def test_elements_without_their_nodes_are_refused(monkeypatch, tmp_path, cells, 
     monkeypatch.setattr("stiffmbs.flexible_bodies.mesh._read", lambda _: mesh)
     with pytest.raises(InputError, match=message):
         from_mesh(tmp_path / "a.vtk", 1.0, 2.1e11, 0.3, 7850.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.msh", "(0 "),
+        ("a.msh", '(2 3)\n(10 (0 1 4 0 3))\n(10 (1 1 4 1 3) ('),
+        ("a.bdf", "$ BEGIN BULK\nENDDATA\n"),
+        ("a.ele", "2 4 0\n0 0 1 2 3\n"),
+        ("a.dat", 'TITLE = "a"\nVARIABLES = "X", "Y", "Z"\nZONE NODES=4, ELEMENTS=1\n0 0'),
+        ("a.off", "OFF\n"),
+    ],
+)  # fmt: skip
+def test_an_incomplete_file_is_refused(tmp_path, name, text):
+    with pytest.raises(InputError, match=r"found .*expected"):
+        read(tmp_path / name, text)

@@ -180,3 +180,14 @@ def test_limits_and_contacts_are_told(tmp_path):
     notes = load_robot(_file(tmp_path, text)).notes
     assert any("contacts" in note for note in notes)
     assert any("roll -0.523599 .. 0.698132 rad" in note for note in notes)
+
+
+@pytest.mark.parametrize("counts", [("100000000",), ("1e5",), ("300", "300")])
+def test_a_great_many_copies_are_refused_at_once(tmp_path, counts):
+    inner = '<body><joint type="hinge"/><geom size="0.1"/></body>'
+    for count in counts:
+        inner = f'<replicate count="{count}" offset="1 0 0">{inner}</replicate>'
+    path = tmp_path / "a.xml"
+    path.write_text(f"<mujoco><worldbody>{inner}</worldbody></mujoco>")
+    with pytest.raises(InputError, match="copies by replicate"):
+        load_robot(path)

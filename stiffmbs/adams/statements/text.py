@@ -141,9 +141,9 @@ def _statements(texts: list[str], first: int) -> tuple[tuple[Statement, ...], bo
 
 def _uncommented(line: str) -> str:
     """Return a line without its comment; an exclamation mark in double quotes starts none."""
-    quoted = False
+    quoted, last = False, line.rfind('"')
     for k, sign in enumerate(line):
-        if sign == '"' and (quoted or '"' in line[k + 1 :]):
+        if sign == '"' and (quoted or k < last):
             quoted = not quoted
         if sign == "!" and not quoted:
             return line[:k]
@@ -177,15 +177,15 @@ def _pieces(text: str, numbers: list[int]) -> Iterator[Subsystem]:
         depth += (sign == "(") - (sign == ")")
         outermost = depth <= 0 or k == len(text)
         if sign in (",", _LINE_COMMA, "\\") and outermost:
-            yield from _piece(text[start:k], numbers[start:], on_new_line, sign == "\\")
+            yield from _piece(text[start:k], numbers, start, on_new_line, sign == "\\")
             start, on_new_line = k + 1, sign == _LINE_COMMA
 
 
-def _piece(text: str, numbers: list[int], on_new_line: bool, ended: bool) -> Iterator[Subsystem]:
-    """Yield one part with joined continuation lines and its line, unless it is empty."""
+def _piece(text: str, numbers: list[int], start: int, on_new_line: bool, ended: bool) -> Iterator[Subsystem]:
+    """Yield the part from `start` on with joined continuation lines and its line, unless it is empty."""
     before = len(text) - len(text.lstrip())
     # the comma of a continuation line is kept between two values
     kept = _TWO_VALUES.sub(lambda found: found[0].replace(_LINE_COMMA, ","), text).replace(_LINE_COMMA, " ")
     joined = re.sub(r"\s+", " ", kept).strip()
     if joined or ended:
-        yield Subsystem(joined, numbers[min(before, len(numbers) - 1)], on_new_line, ended)
+        yield Subsystem(joined, numbers[min(start + before, len(numbers) - 1)], on_new_line, ended)

@@ -19,6 +19,7 @@ from ...errors import InputError
 from ..kind import Kind
 from .continuous_angle import away_from_pole
 from .element import SymbolicElement
+from .residue import residue
 from .stated import Stated, measured_by_joint, multipliers, stated_by_force, stated_by_joint
 from .symbols import Symbols, symbols_of
 from .variation import Summand, Variation
@@ -304,12 +305,9 @@ def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> t
 
 
 def _vanishes(work: sp.Expr) -> bool:
-    """Return True if an expression without functions is zero, as its products cancel: the power of a gyroscopic torque."""
-    if work.has(sp.Function):
-        return False
+    """Return True if a rational function is zero, as its products cancel: the power of a gyroscopic torque."""
     names = sorted(work.free_symbols, key=str)
-    value = work.xreplace({name: sp.Integer(2 * k + 3) for k, name in enumerate(names)})  # expansion takes far longer
-    return not (value.is_Rational and value != 0) and sp.expand(work) == 0
+    return residue(work, {name: 2 * k + 3 for k, name in enumerate(names)}) == 0
 
 
 def _losses(symbols: Symbols, efforts: list[sp.Expr]) -> list[int] | None:

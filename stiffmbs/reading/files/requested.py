@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import islice
 from typing import Any, TypeVar
 
-from .quoted import listed
+from .quoted import listed, quoted
 
 Value = TypeVar("Value")
+MOST_FIELDS = 500
+"""Largest number of fields in one note; a file that is not of its kind may have millions."""
 
 
 class Fields(Mapping[str, Value]):
@@ -67,9 +70,15 @@ def unused_notes(elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[
             reason = _reason(reasons or {}, element.kind, name)
             owners.setdefault(reason, {}).setdefault(f"{element.kind} {name}".strip(), []).append(element.owner)
     return [
-        f"not used{f' ({reason})' if reason else ''}: {', '.join(_listed(field, who) for field, who in fields.items())}"
+        f"not used{f' ({reason})' if reason else ''}: {_all_listed(fields)}"
         for reason, fields in sorted(owners.items())
     ]
+
+
+def _all_listed(fields: Mapping[str, list[str]]) -> str:
+    """Return all fields with their owners; the number of further ones for a file with a great many."""
+    named = [_listed(field, who) for field, who in islice(fields.items(), MOST_FIELDS)]
+    return ", ".join(named) + (f" and {len(fields) - MOST_FIELDS} more" if len(fields) > MOST_FIELDS else "")
 
 
 def _reason(reasons: Mapping[str, Mapping[str, str]], kind: str, name: str) -> str:
@@ -79,7 +88,7 @@ def _reason(reasons: Mapping[str, Mapping[str, str]], kind: str, name: str) -> s
 
 def _listed(field: str, owners: list[str]) -> str:
     named = list(dict.fromkeys(owner for owner in owners if owner))
-    return f"{field} of {listed(named)}" if named else field
+    return f"{quoted(field)} of {quoted(listed(named))}" if named else quoted(field)
 
 
 def _same(value: object, default: object) -> bool:

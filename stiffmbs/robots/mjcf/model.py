@@ -213,7 +213,9 @@ def _notes(m: RequestedModel, disabled: Disabled) -> Iterator[str]:
         yield f"the limits of tendons are left out: {', '.join(limited)}"
 
 
-FILE, INCLUDE = "file", "include"
+FILE, INCLUDE, REPLICATE = "file", "include", "replicate"
+MOST_COPIES = 10_000
+"""Largest number of copies by ``replicate``, repeated copies included: MuJoCo makes them all before it refuses any."""
 FOLDERS = ("assetdir", "meshdir", "texturedir")
 
 
@@ -244,7 +246,22 @@ def _named(file: Path, folder: Path) -> Iterator[tuple[Path, bool]]:
     """Yield the paths where MuJoCo may search for named files, and True for included files."""
     with suppress(ElementTree.ParseError):  # MuJoCo reports the error
         root = ElementTree.fromstring(file_text(file))
+        if (copies := _copies(root)) > MOST_COPIES:
+            raise RobotFault(f"{file.name}: found {copies:.3g} copies by replicate, expected at most {MOST_COPIES}")
         folders = {folder} | {folder / value for part in root.iter() for at in FOLDERS if (value := part.get(at))}
         for part in root.iter():
             if name := part.get(FILE):
                 yield from ((each / name, part.tag == INCLUDE) for each in folders)
+
+
+def _copies(root: ElementTree.Element) -> float:
+    """Return the largest number of copies of an element within nested replicates."""
+    most, waiting = 1.0, [(root, 1.0)]
+    while waiting:
+        element, copies = waiting.pop()
+        if element.tag == REPLICATE:
+            with suppress(ValueError):  # MuJoCo reports the error
+                copies *= float(element.get("count", "1"))
+        most = max(most, copies)
+        waiting += [(child, copies) for child in element]
+    return most
