@@ -7,7 +7,7 @@ rebinding).  So a request counts only with the token of this server in its path,
 Origin.  W3C, Content Security Policy Level 3; RFC 6454, section 7.
 
 When the server has ended, another program may bind its port.  So a page first lets the server prove that it knows the
-token, by the code (RFC 2104) of a number that the page has chosen, and only then sends the token and the text.
+token, by the HMAC (RFC 2104) of a random number of the page.  Only then does the page send the token and the text.
 """
 
 from __future__ import annotations
