@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.linalg import block_diag, eigh, null_space
+from scipy.linalg import block_diag, eigh, inv, null_space
 
 from ..errors import InputError
 from .finite_elements import PRECISION, FiniteElements, rigid_displacements
@@ -91,16 +91,21 @@ class ReducedBody:
         )  # fmt: skip
 
     def held_frequencies(self, held: Sequence[int]) -> np.ndarray:
-        """Return the natural frequencies with some interfaces held, Hz. `held`: numbers of the interfaces."""
+        """Return the natural frequencies with some interfaces held, Hz. `held`: numbers of the interfaces.
+
+        Rigid and elastic modes have unit mass, and rotations are multiplied by the radius of gyration, so that the rank of
+        the held equations does not depend on the size of the body.
+        """
+        radius = np.sqrt(np.trace(self.inertia) / self.mass)
+        of_unit_mass = block_diag(np.eye(3) / np.sqrt(self.mass), inv(np.linalg.cholesky(self.inertia)).T)
+        scale = np.repeat([1.0, radius], 3)[:, None]
         rows = []
         for k in held:
-            size = self.sizes[k]
             of_rigid = np.vstack([rigid_displacements((self.points[k] - self.centre)[None]), np.eye(6)[3:]])
-            rows.append(np.hstack([of_rigid, self.markers[k]])[:size])
+            rows.append((scale * np.hstack([of_rigid @ of_unit_mass, self.markers[k]]))[: self.sizes[k]])
         free = null_space(np.vstack([np.empty((0, 6 + len(self.frequencies))), *rows]), rcond=DEPENDENT)
-        mass = block_diag(self.mass * np.eye(3), self.inertia, np.eye(len(self.frequencies)))
         stiffness = np.append(np.zeros(6), (2 * np.pi * self.frequencies) ** 2)
-        squares = eigh(free.T @ (stiffness[:, None] * free), free.T @ mass @ free, eigvals_only=True)
+        squares = eigh(free.T @ (stiffness[:, None] * free), eigvals_only=True)
         return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
 
 
