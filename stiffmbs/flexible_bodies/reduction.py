@@ -106,8 +106,8 @@ class ReducedBody:
     def held_frequencies(self, held: Sequence[int]) -> np.ndarray:
         """Return the natural frequencies with some interfaces held, Hz. `held`: numbers of the interfaces.
 
-        Rigid and elastic modes have unit mass, and rotations are multiplied by the radius of gyration, so that the rank of
-        the held equations does not depend on the size of the body.
+        Rigid and elastic modes have unit mass, and rotations are multiplied by the radius of gyration. The rank of the
+        held equations then does not depend on the size of the body.
         """
         _, free, stiffness = self._held(held)
         squares = eigh(free.T @ (stiffness[:, None] * free), eigvals_only=True)

@@ -11,7 +11,6 @@ from ..elements.element import Component
 from ..elements.requests.check import check_output
 from ..elements.requests.order import dimension, dimensions
 from ..elements.roads.field import AnyRoad
-from ..elements.spatial.flexible.bodies import FloatingFrame
 from ..errors import prefixed
 from ..reading.fields import Described
 from ..reading.files.unchanged import Unchanged
@@ -132,10 +131,13 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
         components = (component for _, component in element.parts(Component))
         for note in (*element.own_notes(), *(note for component in components for note in component.notes())):
             of_parts.setdefault(note, []).append(name)
-    for name, body in model.bodies.items():
-        for note in body.notes if isinstance(body, FloatingFrame) else ():
-            of_parts.setdefault(note, []).append(f"'{name.removesuffix('.frame')}'")
     own = list(model.notes) if isinstance(model, Scene) else []
+    if model.dimensions == 3:
+        from ..elements.spatial.flexible.bodies import FloatingFrame
+
+        for name, body in model.bodies.items():
+            for note in body.notes if isinstance(body, FloatingFrame) else ():
+                of_parts.setdefault(note, []).append(f"'{name.removesuffix('.frame')}'")
     if model.dimensions == 3 and len(model.forces) > 1:
         from .mounted_tyres import mounted_alike
 

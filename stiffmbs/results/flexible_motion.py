@@ -152,7 +152,7 @@ class FlexibleMotion:
         """Return the share of the strain energy by inertia and weight that the modes cannot represent, and its time, s.
 
         It is that of the static response of the mesh to these loads with the interfaces held, relative to the largest
-        strain energy of the run, at the instants of the largest acceleration, angular velocity and angular acceleration.
+        strain energy of the run. Loads are those at the largest acceleration, angular velocity and angular acceleration.
         """
         model, largest = self.model, (0.0, float(self.t[0]))
         rigid = model.rigid_modes(self.reduced.centre)
