@@ -12,7 +12,7 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.native.parameters import CONSISTENCY
 from ..errors import SolverError
 from .found_speeds import FoundSpeeds, found_speeds
-from .matrices import Matrix, diagonal, joined, matrix_of, product, scaled, solution, term_matrix, zeros
+from .matrices import Matrix, joined, mass_matrix, matrix_of, product, scaled, solution, term_matrix, zeros
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion
 
@@ -94,7 +94,8 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     most_passed_on = np.inf if unloaded else EQUILIBRIA.passed_on * largest
     passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), most_passed_on)
     negligible = system.mass * system.per_velocity(system.size, 1.0) * EQUILIBRIA.slowest**2
-    left = system.mass * _off_the_constraints(dynamics, acceleration - steady, jacobian)
+    mass = mass_matrix(dynamics)
+    left = mass @ _off_the_constraints(dynamics, mass, acceleration - steady, jacobian)
     found = Balance(
         left,
         lam,
@@ -135,16 +136,14 @@ def _grow(dynamics: Dynamics, t: float, rounding: np.ndarray) -> bool:
         return _largest_force(dynamics) > np.sqrt(EQUILIBRIA.pole) * before
 
 
-def _off_the_constraints(dynamics: Dynamics, acceleration: np.ndarray, jacobian: Matrix) -> np.ndarray:
+def _off_the_constraints(dynamics: Dynamics, mass: Matrix, acceleration: np.ndarray, jacobian: Matrix) -> np.ndarray:
     """Remove accelerations that constraints impose, such as those of a drive that accelerates at the start."""
-    asked, mass = jacobian @ acceleration, dynamics.system.mass
+    asked, n_u = jacobian @ acceleration, len(acceleration)
     if np.all(np.abs(asked) <= EQUILIBRIA.no_effect * (abs(jacobian) @ np.abs(acceleration))):
         return acceleration
-    matrix = joined(
-        [[diagonal(dynamics.system, mass), jacobian.T], [jacobian, zeros(dynamics.system, *(asked.shape * 2))]]
-    )
-    found = solution(dynamics, matrix, np.concatenate([mass * acceleration, 0.0 * asked]), len(mass))
-    return np.full(len(mass), np.nan) if found is None else found[: len(mass)]
+    matrix = joined([[mass, jacobian.T], [jacobian, zeros(dynamics.system, *(asked.shape * 2))]])
+    found = solution(dynamics, matrix, np.concatenate([mass @ acceleration, 0.0 * asked]), n_u)
+    return np.full(n_u, np.nan) if found is None else found[:n_u]
 
 
 def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: SteadyMotion, t: float) -> Balance:

@@ -45,6 +45,12 @@ def term_matrix(dynamics: Dynamics, name: str) -> Matrix:
     return matrix_of(system, dynamics.state.values["tangent"][term.source], term.row, term.column, shape)
 
 
+def mass_matrix(dynamics: Dynamics) -> Matrix:
+    """Return the mass matrix at the last evaluation of the set ``tangent``; that of flexible bodies is not diagonal."""
+    diagonal_part = diagonal(dynamics.system, dynamics.system.mass)
+    return diagonal_part + term_matrix(dynamics, "inertia") if dynamics.system.has_coupled_inertia else diagonal_part
+
+
 def zeros(system: System, rows: int, columns: int) -> Matrix:
     """Return a matrix of zeros."""
     nothing = np.empty(0, dtype=np.int64)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from scipy.linalg import block_diag, eigh, null_space
+from scipy.linalg import block_diag, eigh, inv, null_space
 
 from ..errors import InputError
 from .finite_elements import PRECISION, FiniteElements, rigid_displacements
@@ -30,6 +30,8 @@ DEPENDENT = 1e-10
 ratio of an eigenvalue of the mass matrix, or of a singular value, to the largest."""
 ZERO = 10.0
 """Frequency of the lowest elastic mode that is refused as zero, relative to the highest of the rigid modes."""
+FIRST_ORDER = {"tetra": "tetra10", "hexahedron": "hexahedron20"}
+"""Elements of first order, and those of second order in their place."""
 MORE_MODES = 20
 """Modes of the first search up to a frequency, doubled until one is above it."""
 
@@ -58,6 +60,17 @@ class ReducedBody:
     pairs: np.ndarray  # shape (n, n, 3, 3): sum m psi_l psi_k^T by l and k
     dependent: int  # number of combinations of modes left out as linearly dependent
     second_order: SecondOrder  # terms of second order, of a mesh: geometric stiffening
+    elements: str  # type of the elements of a mesh, in the words of meshio; empty for matrices
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Return a note on elements of first order, whose strain is too stiff in bending (shear locking)."""
+        if self.elements not in FIRST_ORDER:
+            return ()
+        return (
+            f"its mesh has elements of first order ({self.elements}), which are too stiff in bending; expected elements of second order "
+            f"({FIRST_ORDER[self.elements]}), or several elements over each thickness",
+        )
 
     def of_material(self, stiffer: float, heavier: float) -> ReducedBody:
         """Return the body with other factors of its stiffness and its mass matrix."""
@@ -91,17 +104,37 @@ class ReducedBody:
         )  # fmt: skip
 
     def held_frequencies(self, held: Sequence[int]) -> np.ndarray:
-        """Return the natural frequencies with some interfaces held, Hz. `held`: numbers of the interfaces."""
+        """Return the natural frequencies with some interfaces held, Hz. `held`: numbers of the interfaces.
+
+        Rigid and elastic modes have unit mass, and rotations are multiplied by the radius of gyration. The rank of the
+        held equations then does not depend on the size of the body.
+        """
+        _, free, stiffness = self._held(held)
+        squares = eigh(free.T @ (stiffness[:, None] * free), eigvals_only=True)
+        return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
+
+    def energy_under(self, load: np.ndarray, rigid: np.ndarray) -> float:
+        """Return the strain energy by a static load on all nodes, shape (3 nodes,), with all interfaces held, J.
+
+        `rigid` of shape (3 nodes, 6): rigid motions about the centre of mass.
+        """
+        of_unit_mass, free, stiffness = self._held(range(len(self.sizes)))
+        along = free.T @ np.append(of_unit_mass.T @ (rigid.T @ load), self.modes.T @ load)
+        values, vectors = eigh(free.T @ (stiffness[:, None] * free))
+        elastic = values > DEPENDENT * values.max(initial=0.0)
+        return float(np.sum((vectors.T @ along)[elastic] ** 2 / values[elastic]) / 2)
+
+    def _held(self, held: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return rigid modes of unit mass, all motions with some interfaces held, and the stiffness of all modes."""
+        radius = np.sqrt(np.trace(self.inertia) / self.mass)
+        of_unit_mass = block_diag(np.eye(3) / np.sqrt(self.mass), inv(np.linalg.cholesky(self.inertia)).T)
+        scale = np.repeat([1.0, radius], 3)[:, None]
         rows = []
         for k in held:
-            size = self.sizes[k]
             of_rigid = np.vstack([rigid_displacements((self.points[k] - self.centre)[None]), np.eye(6)[3:]])
-            rows.append(np.hstack([of_rigid, self.markers[k]])[:size])
+            rows.append((scale * np.hstack([of_rigid @ of_unit_mass, self.markers[k]]))[: self.sizes[k]])
         free = null_space(np.vstack([np.empty((0, 6 + len(self.frequencies))), *rows]), rcond=DEPENDENT)
-        mass = block_diag(self.mass * np.eye(3), self.inertia, np.eye(len(self.frequencies)))
-        stiffness = np.append(np.zeros(6), (2 * np.pi * self.frequencies) ** 2)
-        squares = eigh(free.T @ (stiffness[:, None] * free), free.T @ mass @ free, eigvals_only=True)
-        return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
+        return of_unit_mass, free, np.append(np.zeros(6), (2 * np.pi * self.frequencies) ** 2)
 
 
 def reduce(
@@ -139,7 +172,7 @@ def reduce(
         np.array([interface.point for interface in interfaces]).reshape(-1, 3),
         np.array([interface.size for interface in interfaces], dtype=int),
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
-        second_order(model, interfaces, solver, static, held, centre, modes),
+        second_order(model, interfaces, solver, static, held, centre, modes), next(iter(model.cells or {}), ""),
     )  # fmt: skip
 
 

@@ -190,7 +190,7 @@ class _Parts:
         )  # fmt: skip
         fields: dict[str, object] = {name: getattr(frame, name) for name in Body.model_fields}
         fields |= {"numbers": _Numbers(self._numbers(frame)), "modes": tuple(self._of_modes())}
-        yield f"{self._name}.{FRAME}", FloatingFrame(**fields, source=(self._body, self._folder))
+        yield f"{self._name}.{FRAME}", FloatingFrame(**fields, source=(self._body, self._folder), notes=reduced.notes)
         for name in self._of_modes():
             yield name, ModalCoordinates(mass=reduced.mass, inertia=(reduced.mass,) * 3)
         for name, point in zip(body.interfaces, reduced.points, strict=True):

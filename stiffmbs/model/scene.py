@@ -125,13 +125,19 @@ class Scene(ModelData):
 
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
-    """Return the notes of a scene, and of the roads and tyres of a model."""
+    """Return the notes of a scene, and of the roads, tyres and flexible bodies of a model."""
     of_parts: dict[str, list[str]] = {}
     for name, element in model.forces.items():
         components = (component for _, component in element.parts(Component))
         for note in (*element.own_notes(), *(note for component in components for note in component.notes())):
             of_parts.setdefault(note, []).append(name)
     own = list(model.notes) if isinstance(model, Scene) else []
+    if model.dimensions == 3:
+        from ..elements.spatial.flexible.bodies import FloatingFrame
+
+        for name, body in model.bodies.items():
+            for note in body.notes if isinstance(body, FloatingFrame) else ():
+                of_parts.setdefault(note, []).append(f"'{name.removesuffix('.frame')}'")
     if model.dimensions == 3 and len(model.forces) > 1:
         from .mounted_tyres import mounted_alike
 

@@ -67,6 +67,9 @@ class FlexibleMotion:
         self.name, self.t = body, np.asarray(solution.t)
         self._source = frame.source
         self._frame = np.array([solution[f"{body}.frame.{axis}"] for axis in ["x", "y", "z", "q0", "q1", "q2", "q3"]]).T
+        moving = ["ax", "ay", "az", "wx", "wy", "wz", "wdx", "wdy", "wdz"]
+        self._motion = np.array([solution[f"{body}.frame.{axis}"] for axis in moving]).T
+        self._motion[:, :3] -= scene.gravity
         places = [f"{body}.modes{1 + k // 3}.{'xyz'[k % 3]}" for k in range(len(self.reduced.frequencies))]
         values = np.array([solution[place] for place in places]).reshape(len(places), len(self.t))
         self.modal = values.T * np.sqrt(self.reduced.mass)
@@ -144,6 +147,25 @@ class FlexibleMotion:
     def strain_energy(self) -> np.ndarray:
         """Return the strain energy of each mode, J, shape (times, modes)."""
         return (2 * np.pi * self.reduced.frequencies * self.modal) ** 2 / 2  # type: ignore[no-any-return]
+
+    def unrepresented(self) -> tuple[float, float]:
+        """Return the share of the strain energy by inertia and weight that the modes cannot represent, and its time, s.
+
+        It is that of the static response of the mesh to these loads with the interfaces held, relative to the largest
+        strain energy of the run. Loads are those at the largest acceleration, angular velocity and angular acceleration.
+        """
+        model, largest = self.model, (0.0, float(self.t[0]))
+        rigid = model.rigid_modes(self.reduced.centre)
+        solver, _ = static_solver(model, self._source[0].interfaces_on(model), rigid)
+        arms, total = model.nodes - self.reduced.centre, float(self.strain_energy().sum(axis=1).max())
+        for k in {int(np.linalg.norm(self._motion[:, part : part + 3], axis=1).argmax()) for part in (0, 3, 6)}:
+            acceleration, w, alpha = self._motion[k].reshape(3, 3)
+            field = rotated(self._frame[k, 3:] * [1, -1, -1, -1], acceleration)
+            field = field + np.cross(alpha, arms) + np.cross(w, np.cross(w, arms))
+            load = -(model.mass @ field.ravel())
+            missing = load @ solver.held_response(load) / 2 - self.reduced.energy_under(load, rigid)
+            largest = max(largest, (float(missing / (missing + total or 1.0)), float(self.t[k])))
+        return largest
 
     @cached_property
     def _stress_modes(self) -> np.ndarray:

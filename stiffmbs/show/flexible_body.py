@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 MOST_FREQUENCIES = 12
 """Number of modes that are shown, the slowest first."""
+UNREPRESENTED = 0.01
+"""Share of the strain energy, without a unit, above which a note says that loads are not represented: stresses are 10 % low."""
 LARGE_CONDITION = 1e12
 """Condition number above which a note advises fewer modes."""
 
@@ -48,7 +50,7 @@ def flexible_body_text(name: str, body: ReducedBody, interfaces: Sequence[str], 
 
 
 def _notes(body: ReducedBody) -> list[str]:
-    notes = []
+    notes = list(body.notes)
     if body.dependent:
         notes.append(f"{body.dependent} of the modes are linear combinations of the others and left out")
     if body.condition > LARGE_CONDITION:
@@ -109,6 +111,7 @@ def flexible_motion_as_dict(scene: str, motion: FlexibleMotion, nodes: Sequence[
         "strain_energy": {"largest": float(energy.sum(axis=1).max()), "by_mode": energy.max(axis=0).tolist()},
         "frequencies": motion.reduced.frequencies.tolist(),
         "displacement": {},
+        "notes": _notes_on_motion(motion),
     }
     for node, own in zip(nodes, motion.displacement(nodes).transpose(1, 0, 2), strict=True):
         size = np.linalg.norm(own, axis=1)
@@ -117,6 +120,17 @@ def flexible_motion_as_dict(scene: str, motion: FlexibleMotion, nodes: Sequence[
             "largest": float(size[row]), "time": float(motion.t[row]), "last": own[-1].tolist(),
         }  # fmt: skip
     return found
+
+
+def _notes_on_motion(motion: FlexibleMotion) -> list[str]:
+    """Return a note if loads by the body's own inertia and weight deform it in shapes that its modes do not contain."""
+    share, t = motion.unrepresented()
+    if share <= UNREPRESENTED:
+        return []
+    return [
+        f"stresses by inertia and weight of '{motion.name}' are incomplete: {100 * share:.2g} % of its strain energy at t = {t:.4g} s is that of shapes "
+        "which its modes do not contain; add residual_modes: true (weight, acceleration), or more modes (rotation)"
+    ]
 
 
 def flexible_motion_text(report: Mapping[str, Any]) -> str:
@@ -136,6 +150,7 @@ def flexible_motion_text(report: Mapping[str, Any]) -> str:
         lines.append(f"{'  mode':20}{k + 1} ({report['frequencies'][k]:.6g} Hz): {of_modes[k]:.4g} J at most")
     for node, own in report["displacement"].items():
         lines.append(f"{f'node {node}':20}{own['largest']:.6g} m at {own['time']:.6g} s, at most")
+    lines += [f"{'note':20}{note}" for note in report["notes"]]
     return "\n".join(lines)
 
 

@@ -81,3 +81,47 @@ def test_frequency_response_is_that_of_the_mesh(clamped):
         expected = splu(matrix.tocsc()).solve(loads.astype(complex))[entries]
         shown = [complex(*found["response"]["force"][f"bar.tip.{axis}"][k]) for axis in "yz"]
         assert shown == pytest.approx(expected, rel=1e-3)
+
+
+ON_BUSHINGS = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies:
+  bar:
+    type: flexible
+    matrices: bar.npz
+    units: {length: 1 m}
+    interfaces: {INTERFACES}
+    modes: MODES
+    residual_modes: true
+forces: {FORCES}
+run: {duration: 0.1}
+"""
+
+
+@pytest.mark.parametrize("modes", [0, 6, 15])
+def test_a_body_on_bushings_at_points_comes_to_rest_as_its_mesh(tmp_path, modes):
+    """The mass matrix of a flexible body is not diagonal, so its accelerations are not forces over masses."""
+    model = bar(tmp_path, "hexahedron27", along=4, across=1)
+    corners = [int(np.argmin(np.linalg.norm(model.nodes - [x, y, 0], axis=1))) for x in (0, LENGTH) for y in (0, 0.03)]
+    arrays = {"nodes": model.nodes, "K": model.stiffness.toarray(), "M": model.mass.toarray()}
+    np.savez(tmp_path / "bar.npz", **arrays)
+    points = ", ".join(f"p{k}: {{nodes: [{node}], type: point}}" for k, node in enumerate(corners))
+    at = [", ".join(f"{x:.17g}" for x in model.nodes[node]) for node in corners]
+    forces = ", ".join(
+        f"s{k}: {{type: bushing, i: bar.p{k}, j: {{body: ground, point: [{place}]}}, stiffness: [1e6, 1e6, 1e6, 0, 0, 0]}}"
+        for k, place in enumerate(at)
+    )
+    path = tmp_path / "scene.yaml"
+    path.write_text(ON_BUSHINGS.replace("INTERFACES", points).replace("FORCES", forces).replace("MODES", str(modes)))
+    held = model.stiffness.tolil()
+    for entry in (3 * np.array(corners)[:, None] + np.arange(3)).ravel():
+        held[entry, entry] += 1e6
+    weight = model.mass @ np.tile([0.0, 0.0, -9.81], len(model.nodes))
+    expected = splu(held.tocsc()).solve(weight)
+    found = stiffmbs("equilibrium", path, "--json")["channels"]
+    for k, node in enumerate(corners):
+        for axis, name in enumerate("xyz"):
+            assert found[f"s{k}.f{name}"] == pytest.approx(
+                -1e6 * expected[3 * node + axis], abs=2e-4 * abs(weight.sum())
+            )

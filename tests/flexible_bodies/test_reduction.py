@@ -8,9 +8,10 @@ from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.finite_elements import FiniteElements
 from stiffmbs.flexible_bodies.interfaces import Interface
 from stiffmbs.flexible_bodies.matrices import from_archive
+from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.reduction import reduce
 
-from .bars import HEIGHT, LENGTH, MASS, NU, REFERENCES, WIDTH, E, bar, face
+from .bars import HEIGHT, LENGTH, MASS, NU, REFERENCES, WIDTH, E, bar, face, mesh_of_bar
 
 REFERENCE_BAR = REFERENCES / "a_bar_hex20.npz"
 with_references = pytest.mark.skipif(not REFERENCE_BAR.exists(), reason="without the reference data")
@@ -199,3 +200,16 @@ def test_residual_modes_contain_the_static_displacement_under_weight_and_angular
     for displacement in exact.T:
         rest = displacement - basis @ np.linalg.lstsq(basis, displacement)[0]
         assert (np.linalg.norm(rest) < 1e-7 * np.linalg.norm(displacement)) == residual
+
+
+@pytest.mark.parametrize("size", [1e-5, 1e-3, 0.03])
+def test_held_frequencies_scale_with_the_size_of_the_body(tmp_path, size):
+    """Frequencies are inverse to the size; held equations mix translations and rotations."""
+    mesh_of_bar("tetra10", along=4, across=1).write(tmp_path / "bar.vtu")
+    found = []
+    for length in (1e-3, 1e-3 * size):
+        model = from_mesh(tmp_path / "bar.vtu", length, 2.1e11, 0.3, 7850.0)
+        nodes = np.flatnonzero(model.nodes[:, 0] <= 1e-9 * np.ptp(model.nodes[:, 0]))
+        body = reduce(model, [Interface("root", "rigid", nodes, model.nodes[nodes].mean(axis=0))], 6)
+        found.append(body.held_frequencies([0])[:6] * length)
+    assert found[1] == pytest.approx(found[0], rel=1e-6)

@@ -193,3 +193,37 @@ def test_stresses_need_a_mesh(tmp_path):
     model = bar(tmp_path, along=2, across=1)
     with pytest.raises(InputError, match="found a body described by matrices"):
         nodal_stresses(FiniteElements(model.nodes, model.stiffness, model.mass), np.zeros((len(model.nodes) * 3, 1)))
+
+
+SPINNING = """
+dimensions: 3
+bodies:
+  hub: {mass: 1, inertia: [1, 1, 1], omega: [0, 0, 300]}
+  rod:
+    type: flexible
+    mesh: bar.vtu
+    units: {length: 1 mm}
+    material: {E: 2.1e11, nu: 0.3, density: 7850}
+    interfaces: {root: {plane: {point: [0, 0, 0], normal: [1, 0, 0]}}}
+    modes: MODES
+    damping: {stiffness: 1e-3 s}
+    omega: [0, 0, 300]
+joints:
+  pin: {type: revolute, i: hub, j: ground}
+  clamp: {type: fixed, i: rod.root, j: hub}
+  motor: {type: drive, joint: pin, velocity: 300 rad/s}
+run: {duration: 0.02, points: 11, rtol: 1e-5, solver: radau}
+"""
+
+
+@pytest.mark.parametrize("kind", ["tetra10", "tetra"])
+def test_modes_that_do_not_carry_a_load_and_elements_of_first_order_are_noted(tmp_path, kind):
+    mesh_of_bar(kind, along=8, across=1).write(tmp_path / "bar.vtu")
+    shares = []
+    for modes in ("4", "4\n    residual_modes: true", "60\n    residual_modes: true"):
+        (tmp_path / "scene.yaml").write_text(SPINNING.replace("MODES", modes))
+        scene = load_scene(tmp_path / "scene.yaml")
+        solution = run(scene)
+        shares.append(FlexibleMotion(scene, solution, "rod").unrepresented()[0])
+        assert any("elements of first order" in note for note in solution.notes) == (kind == "tetra")
+    assert shares[0] > 0.9 and 1e-3 < shares[1] < 0.2 and shares[2] < 1e-2

@@ -178,7 +178,8 @@ def _acting(about: _About, dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray, 
     active = about.found.dynamics.system.active
     state.evaluate("motion", about.found.t)
     reactions = state.matrix("motion", "J").T @ about.found.dynamics.state.lam[: system.n_c]
-    left = state.vector("motion", "f") - reactions - system.mass * about.found.acceleration
+    inertia = system.mass * about.found.acceleration + state.matrix("motion", "inertia") @ about.found.acceleration
+    left = state.vector("motion", "f") - reactions - inertia
     rates = state.vector("motion", "rate")[system.first_state :]
     return left, state.vector("motion", "C")[active & system.holonomic], state.vector("motion", "V")[active], rates
 

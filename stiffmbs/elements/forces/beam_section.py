@@ -116,7 +116,7 @@ class _Form:
         smooth = {name: k for name, k in places.items() if name in CALLS and name != "f_q"}
         calls = self.calls(smooth, "slots, moved, places, q_m, turn_m, u_m", dict.fromkeys(smooth, "found"))
         n, d, n_q, n_u = len(self.slots), *((6, 7, 6) if self.space else (3, 3, 3))
-        numbers = n * (16 if self.space else 5) + 2 + 2 * n + d + d * d + self.damped
+        numbers = n * (16 if self.space else 5) + 2 + 2 * n + d + d * d + self.space + self.damped
         bodies = f"{self.space}, {self.n_bodies}, {numbers}"
         rooms = {
             "moved": numbers, "places": 2 * self.n_bodies, "q_m": n_q * self.n_bodies, "turn_m": 2 * n_q * self.n_bodies,

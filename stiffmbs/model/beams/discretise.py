@@ -64,6 +64,7 @@ class Element:
     bowing: np.ndarray = field(default_factory=lambda: np.zeros(2))
     shear_centre: tuple[float, float] = (0.0, 0.0)  # from the axis along axes 2 and 3, m; of elements between two nodes
     wagner: tuple[float, float] = (0.0, 0.0)  # curvatures by torsion, per kappa_1^2/2, m; of elements between two nodes
+    stretch: float = 0.0  # mean stretch of the fibres by torsion, per kappa_1^2/2, m^2
     reference: int = 0  # place of the reference node
     # shapes, slopes: values and derivatives of the nodes' polynomials at the section; empty between two nodes
     shapes: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -87,10 +88,15 @@ class Constants(NamedTuple):
     inertia: np.ndarray  # shape (3, 3): per length, kg m
     shear_centre: tuple[float, float] = (0.0, 0.0)  # from the axis along axes 2 and 3, m
     wagner: tuple[float, float] = (0.0, 0.0)  # curvatures by torsion, per kappa_1^2/2, m
+    stretch: float = 0.0  # mean stretch of the fibres by torsion, per kappa_1^2/2, m^2
 
 
 def _constants(beam: Any, share: float) -> Constants:
-    """Return the constants at a fraction of the length; ValueError if the section of a planar beam is not symmetric."""
+    """Return the constants at a fraction of the length; ValueError if the section of a planar beam is not symmetric.
+
+    The fibres of a section are stretched by torsion (Wagner). A beam of given stiffnesses has none: it is the line of
+    Reissner and Simo, and its published solutions are those without this stretch.
+    """
     if beam.section is not None:
         section: Section = _between(beam.section, beam.section_end, share)
         material: Material = beam.material
@@ -98,7 +104,9 @@ def _constants(beam: Any, share: float) -> Constants:
         if beam.dimensions == 2 and (why := of.leaves_plane()):
             raise ValueError(f"section: {why}")
         K, density = of.stiffness(material.E, material.G), material.density
-        return Constants(K, density * of.A, of.inertia(density), of.shear_centre, of.wagner)
+        y, z = of.shear_centre
+        stretch = (of.I2 + of.I3) / of.A + y**2 + z**2
+        return Constants(K, density * of.A, of.inertia(density), of.shear_centre, of.wagner, stretch)
     given, inertia = beam.stiffness, beam.inertia_per_length
     if len(given) != 6:
         EA, GA, EI = given
@@ -234,13 +242,16 @@ class _Interval:
             return
         relative = [_screw(poses[group.reference], pose) for pose in poses]
         compliances = group.compliances(lambda share: np.linalg.inv(self._stiffness(start + share * (end - start))))
-        for (_, weight, shapes, slopes), compliance in zip(group.sections, compliances, strict=True):
+        for (place, weight, shapes, slopes), compliance in zip(group.sections, compliances, strict=True):
             screw, slope = shapes @ relative, slopes @ relative / (end - start)
             strain = tangent(adjoint(screw)) @ slope
             unloaded = np.where(np.abs(strain) < 1e-13 * np.linalg.norm(strain), 0.0, strain)
             length, slopes = float(weight) * (end - start), slopes / (end - start)
             at, K = group.reference, inverse(compliance)
-            element = Element(own, turned, length, unloaded, K, reference=at, shapes=shapes, slopes=slopes)
+            stretch = 0.0 if self.planar else self.constants(start + float(place) * (end - start)).stretch
+            element = Element(
+                own, turned, length, unloaded, K, stretch=stretch, reference=at, shapes=shapes, slopes=slopes
+            )
             self.elements.append(element)
 
     def _single(
@@ -254,9 +265,10 @@ class _Interval:
         K = element_stiffness(unloaded, length, lambda share: self._stiffness(start + share * (end - start)))
         middle = (start + end) / 2
         of = self.constants(middle)
-        shear_centre, wagner = ((0.0, 0.0),) * 2 if self.planar else (of.shear_centre, of.wagner)
-        bow = bowing(K, self._stiffness(middle), shear_centre)
-        return Element(nodes, turned, length, unloaded, K, bow, shear_centre, wagner)
+        if self.planar:
+            return Element(nodes, turned, length, unloaded, K, bowing(K, self._stiffness(middle), (0.0, 0.0)))
+        bow = bowing(K, self._stiffness(middle), of.shear_centre)
+        return Element(nodes, turned, length, unloaded, K, bow, of.shear_centre, of.wagner, of.stretch)
 
     def _pose(self, s: float) -> tuple[np.ndarray, np.ndarray]:
         point, along = self.piece.at(s - self.first)

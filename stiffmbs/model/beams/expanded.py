@@ -120,9 +120,10 @@ def _force(name: str, element: Element, beam: Beam) -> Content:
     if len(others) == 1:
         of_pair: Content = {"stiffness": [[part or None for part in row] for row in K]}
         of_pair["bowing"] = _numbers(element.bowing[: len(components) // 3])
-        torsion = _of_torsion(element) if any((*element.shear_centre, *element.wagner)) else {}
+        torsion = _of_torsion(element) if element.stretch else {}
         return {"type": "exact_beam", **of_pair, **torsion, **common, "i": i, "j": j}
+    stretch = {"stretch": element.stretch} if element.stretch else {}
     return {
-        "type": "beam_section", "stiffness": K, **common, "nodes": [j, *({"body": body} for body in others)],
+        "type": "beam_section", "stiffness": K, **stretch, **common, "nodes": [j, *({"body": body} for body in others)],
         "reference": element.reference, "shapes": _numbers(element.shapes), "slopes": _numbers(element.slopes),
     }  # fmt: skip

@@ -30,3 +30,4 @@ class FloatingFrame(Body):
     modes: tuple[str, ...] = ()  # bodies with its modal coordinates
     # FlexibleBody, and the folder of its files.
     source: Any = Field(None, exclude=True, repr=False)
+    notes: tuple[str, ...] = Field((), exclude=True, repr=False)  # on the reduction

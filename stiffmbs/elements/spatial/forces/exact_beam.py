@@ -129,6 +129,8 @@ class BeamSection(BeamSectionLaw):
         (Gamma + (1, 0, 0), kappa) = T(xi) xi'
         (n, m) = K ((Gamma + (1, 0, 0), kappa) - unloaded) + damping_ratio K (Gamma', kappa')
 
+    With `stretch`, torsion adds r^2/2 kappa_1^2 to the axial strain, as in `exact_beam`, and tension stiffens torsion.
+
     n is the axial force and the two shear forces, m the torque and the two bending moments at the section; they are
     reported as n1, n2, n3, m1, m2, m3. Its forces, limits and sources are those of the planar `beam_section`.
     """
@@ -143,6 +145,7 @@ class BeamSection(BeamSectionLaw):
     stiffness: tuple[_Six, _Six, _Six, _SixMoments, _SixMoments, _SixMoments] = Field(
         description="K: a symmetric 6x6 matrix of EA, GA2, GA3 (N), GJ, EI2, EI3 (N m^2)"
     )
+    stretch: si.NumberOrZero = Field(0.0, description="r^2 of the axial strain r^2/2 kappa_1^2 by torsion, m^2")
 
     _symmetric = field_validator("stiffness")(check_symmetric)
 

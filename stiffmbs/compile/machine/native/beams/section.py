@@ -2,7 +2,7 @@
 
 The screws of the nodes from the reference are interpolated by polynomials, xi(s) = sum a_k xi_k, and the strain is
 T(xi) xi'. The numbers are the markers of the nodes, the reference, a_k, a_k', and the section's length. They end with the strain
-without load, the stiffness by rows, and the ratio of viscous to elastic stiffness. Strains are in the order of the
+without load, the stiffness by rows, the ratio of viscous to elastic stiffness, and in space the stretch r^2 by torsion. Strains are in the order of the
 section's forces: three translations and rotations, in the plane two and one.
 """
 
@@ -102,6 +102,22 @@ def strain(space, n, law, curve, B, to):
 
 
 @compiled
+def stretch(space, damped, n, law, x):
+    """Add the mean stretch r^2/2 kappa_1^2 of the fibres by torsion (Wagner) to a strain, and return its slope r^2 kappa_1."""
+    slope = 0.0
+    if space == 1:
+        slope = radius(damped, n, law) * x[3]
+        x[0] += 0.5 * slope * x[3]
+    return slope
+
+
+@compiled
+def radius(damped, n, law):
+    """Return r^2 of the stretch by torsion of a section in space."""
+    return law[2 * n + 43 + damped]
+
+
+@compiled
 def strain_rate(space, B, rates, to):
     """Compute the rate of the strain from (xi', xi'')."""
     d = 6 if space == 1 else 3
@@ -150,9 +166,11 @@ def section_state(space, damped, orders, n, slots, numbers, index, q, turn, u, n
     interpolate(n, reference, of_section, shifted(nodes, SCREW), OF_NODE, curve)
     strain_slopes(curve, B)
     strain(space, n, of_section, curve, B, found)
+    slope = stretch(space, damped, n, of_section, found)
     clear(6, stress)
     clear(12, rates)
     stiffness_times(space, n, of_section, found, 1.0, stress)
+    stress[3] += slope * stress[0]
     for k in range(n):
         if k != reference:
             relative_tangents(node(nodes, k))
@@ -242,6 +260,7 @@ def energy(space, damped, n, slots, numbers, index, q, turn, u, dissipated, to):
         factor = -damping(space, n, of_section)
     else:
         strain(space, n, of_section, curve, B, x)
+        stretch(space, damped, n, of_section, x)
     clear(6, y)
     stiffness_times(space, n, of_section, x, factor * of_section[2 * n], y)
     to[0] = 0.0

@@ -15,7 +15,11 @@ from stiffmbs.compile.machine.native.beams.section import (
     damping,
     law,
     node_wrenches,
+    radius,
     section_state,
+    stiffness_times,
+    strain,
+    stretch,
 )
 from stiffmbs.compile.machine.native.vectors import clear, times, transposed_times
 
@@ -92,22 +96,38 @@ def screw_slopes(space, n, width, reference, slots, nodes, maps, D):
 
 
 @compiled
-def second_derivatives(space, n, law, curve, B, stress, W):
-    """Compute the second derivatives (12, 12) of the strain energy by (xi, xi')."""
+def second_derivatives(space, damped, n, law, curve, B, stress, W):
+    """Compute the second derivatives (12, 12) of the strain energy by (xi, xi').
+
+    With the stretch s = r^2/2 kappa_1^2 these are L (S^T K S + r^2 n_1 e_4 e_4^T), where S adds the slope of s to the
+    first row of the derivatives B.
+    """
     d = 6 if space == 1 else 3
     K = shifted(law, 2 * n + 1 + d)
-    KB = room(72)
+    S, KS, x, y = room(72), room(72), room(6), room(6)
     clear(144, W)
-    clear(72, KB)
+    clear(72, KS)
+    for i in range(d):
+        for c in range(12):
+            S[12 * i + c] = B[12 * component(space, i) + c]
+    if space == 1:
+        strain(space, n, law, curve, B, x)
+        slope = stretch(space, damped, n, law, x)
+        clear(6, y)
+        stiffness_times(space, n, law, x, law[2 * n] * radius(damped, n, law), y)
+        for r in range(12):
+            S[r] += slope * S[36 + r]
+            for c in range(12):
+                W[12 * r + c] += y[0] * S[36 + r] * S[36 + c]
     for i in range(d):
         for j in range(d):
             for c in range(12):
-                KB[12 * i + c] += law[2 * n] * K[d * i + j] * B[12 * component(space, j) + c]
+                KS[12 * i + c] += law[2 * n] * K[d * i + j] * S[12 * j + c]
     for i in range(d):
         for r in range(12):
-            x = B[12 * component(space, i) + r]
+            of_row = S[12 * i + r]
             for c in range(12):
-                W[12 * r + c] += x * KB[12 * i + c]
+                W[12 * r + c] += of_row * KS[12 * i + c]
     w = room(6)
     clear(6, w)
     for i in range(d):
@@ -247,7 +267,7 @@ def add_force_slopes(space, damped, n, n_slots, slots, numbers, index, q, turn, 
             product_of(1, 1, 6 * width, shifted(of_section, k), shifted(D, 6 * width * k), 1.0, X)
             to = shifted(X, 6 * width)
             product_of(1, 1, 6 * width, shifted(of_section, n + k), shifted(D, 6 * width * k), 1.0, to)
-    second_derivatives(space, n, of_section, curve, B, stress, W)
+    second_derivatives(space, damped, n, of_section, curve, B, stress, W)
     clear(12 * width, WX)
     product_of(12, 12, width, W, X, 1.0, WX)
     clear(width * width, K)
