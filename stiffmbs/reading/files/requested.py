@@ -56,10 +56,13 @@ class Fields(Mapping[str, Value]):
         ]
 
 
-def unused_notes(elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[str, str]] | None = None) -> list[str]:
+def unused_notes(
+    elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[str, str]] | None = None, words: str = "not used"
+) -> list[str]:
     """Return notes on the fields that were not requested, one for each known reason.
 
-    `reasons`: reasons why a field has no effect, by kind and name; ``*`` matches any kind or name.
+    `reasons`: reasons why a field has no effect, by kind and name; ``*`` matches any kind or name. `words`: what
+    happened to these fields.
     """
     owners: dict[str, dict[str, list[str]]] = {}
     for element in elements:
@@ -67,7 +70,7 @@ def unused_notes(elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[
             reason = _reason(reasons or {}, element.kind, name)
             owners.setdefault(reason, {}).setdefault(f"{element.kind} {name}".strip(), []).append(element.owner)
     return [
-        f"not used{f' ({reason})' if reason else ''}: {', '.join(_listed(field, who) for field, who in fields.items())}"
+        f"{words}{f' ({reason})' if reason else ''}: {', '.join(_listed(field, who) for field, who in fields.items())}"
         for reason, fields in sorted(owners.items())
     ]
 
