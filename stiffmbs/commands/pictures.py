@@ -80,6 +80,7 @@ def draw(
 
     Exit status: 0 done, 1 no such state is found, or the file could not be written, 2 the input is wrong.
     """
+    from ..results.provenance import provenance_of
     from ..show.drawing.draw import state_drawn, summary, write_drawing
     from ..show.drawing.view import check_view
 
@@ -90,7 +91,7 @@ def draw(
         loaded = load_scene(scene, changes_of(options))
         with in_file(scene):
             drawing, poses = state_drawn(loaded, at, described, checked)
-        write_drawing(path, drawing, poses, view, names, forces)
+        write_drawing(path, drawing, poses, view, names, forces, provenance_of(loaded))
     if as_json:
         click.echo(json.dumps({"scene": scene, "output": str(path), **summary(drawing, poses)}))
     else:
@@ -177,7 +178,7 @@ def plot(
         figure = figure_of(runs, channels, against, title)
         sheet = plotted_runs(runs, figure, in_window=output is None)
         if output is not None:
-            write_sheet(output, sheet, dpi=130)
+            write_sheet(output, sheet, dpi=130, origin=next(iter(runs.values())).provenance)
     _tell(source, figure, output, as_json)
     if output is None:
         _show_window()

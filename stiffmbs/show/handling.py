@@ -12,11 +12,14 @@ from ..reading.units.units import DIMENSIONS
 from ..results.files import write_text
 from ..studies.handling.standards import TESTS
 from ..studies.handling.study import Handling, Tested
+from .origin import page_with_origin
 from .page.data import environment
 from .style import data_url, dress, new_sheet
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from ..results.provenance import Provenance
 
 PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>{{ name }}: handling</title><style>
@@ -43,20 +46,21 @@ def handling_text(scene: str, found: Handling) -> str:
     return "\n".join(lines)
 
 
-def write_handling(path: Path, found: Handling) -> None:
-    """Write the page of all tests, completely or not at all. Raises OSError if the file cannot be written."""
+def write_handling(path: Path, found: Handling, origin: Provenance | None = None) -> None:
+    """Write the page of all tests with the origin of its results, completely or not at all.
+
+    Raises OSError if the file cannot be written.
+    """
     sections = [
         (_title(name, one), one.message, _rows(one), "" if one.message else data_url(_figure(name, one), "svg", 100))
         for name, one in found.tests.items()
     ]
     template = environment().from_string(PAGE)
-    write_text(
-        path,
-        template.render(
-            name=found.name, wheelbase=f"{found.car.wheelbase:.4g}", track=f"{found.car.track:.4g}", ratio=f"{found.ratio:.4g}",
-            sections=sections,
-        ),
+    page = template.render(
+        name=found.name, wheelbase=f"{found.car.wheelbase:.4g}", track=f"{found.car.track:.4g}", ratio=f"{found.ratio:.4g}",
+        sections=sections,
     )  # fmt: skip
+    write_text(path, page_with_origin(page, origin))
 
 
 def _title(name: str, one: Tested) -> str:

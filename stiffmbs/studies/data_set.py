@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -96,9 +97,11 @@ def write(path: Path, data: xarray.Dataset) -> None:
 
     `path`: name in .nc, where ``_per_`` replaces ``/`` in names, or in .csv, with a line for each case without series.
     """
-    from ..results.files import written_whole
+    from ..results.files import metadata_file, write_text, written_whole
 
     written_whole(path, lambda part: WRITERS[path.suffix](part, data))
+    if path.suffix != ".nc" and path.is_file():
+        write_text(metadata_file(path), json.dumps(data.attrs, ensure_ascii=False) + "\n")
 
 
 def _write_netcdf(path: Path, data: xarray.Dataset) -> None:

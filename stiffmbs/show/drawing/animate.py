@@ -15,6 +15,7 @@ from ...model.model_data import ModelData
 from ...reading.marker import MarkerReference
 from ...results.files import refuse_path, write_text, written_whole
 from ...results.solution import Solution
+from ..origin import page_with_origin
 from ..page.data import moving_page, page_data
 from .derive import drawing_of
 from .film import Playback, need_encoder, pictures, write_gif, write_mp4
@@ -67,7 +68,7 @@ def write_animation(
         first = next(iter(runs.values()))
         figure = first.figure.y if first.figure else ()
         page = moving_page(drawing.name, page_data(drawing, poses, first, figure, anchors))
-        write_text(path, page)
+        write_text(path, page_with_origin(page, first.provenance))
         return
     seen = view_named(view, drawing.dimensions, drawing.gravity)
     frames = pictures(drawing, poses, seen, playback, shown, anchors)
