@@ -79,9 +79,10 @@ def _as_dataset(
 def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
     """Return the text of a scene from a file of another program."""
     from ..adams.load import convert_file
-    from ..analyses.load_scene import ROBOTS
+    from ..analyses.load_scene import ROBOTS, refuse_others
     from ..robots.load import convert_robot
 
+    refuse_others(path)
     suffix = Path(path).suffix.lower()
     if changes:
         raise InputError(f"{path}: found --set, expected it with --in-space alone")

@@ -43,6 +43,10 @@ class Fields(Mapping[str, Value]):
         """Return True if the field is present, without requesting it."""
         return name in self._values
 
+    def unrecorded(self, name: str) -> Value | None:
+        """Return a field without requesting it; None if it is missing."""
+        return self._values.get(name)
+
     def request(self, *names: str) -> None:
         """Record fields that are used without this mapping."""
         self._requested.update(names)
