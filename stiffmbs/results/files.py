@@ -11,6 +11,7 @@ import numpy as np
 
 from ..dynamics.storage import blocks, release
 from ..errors import InputError, refuse_missing
+from ..reading.ascii import in_ascii
 from ..reading.files.quoted import quoted
 from .archive import write_archive
 from .provenance import Provenance, metadata_file
@@ -43,7 +44,7 @@ def _write_npz(path: Path, solution: Solution) -> None:
 def _write_netcdf(path: Path, solution: Solution) -> None:
     names: dict[str, str] = {}
     for channel in solution.channels:
-        name = channel.replace(".", "_")
+        name = in_ascii(channel).replace(".", "_")  # the attribute `channel` is its name
         while name in names.values():  # front.left_arm.x and front_left.arm.x, or a request called like a channel
             name += "_"
         names[channel] = name

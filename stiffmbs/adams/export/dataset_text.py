@@ -12,6 +12,7 @@ from ...errors import InputError
 from ...model.scene import Scene
 from ...model.settings import DEFAULT_POINTS
 from ...model.spatial_model import SpatialData
+from ...reading.ascii import in_ascii
 from ...reading.files.quoted import listed
 from ...reading.files.written_fields import Recording, written
 from ...reading.formula.formula import Formula
@@ -83,13 +84,16 @@ def written_dataset(scene: SpatialData, source: str = "scene") -> WrittenDataset
     if refused:
         raise InputError(f"{source}: a dataset has no statement for " + "; ".join(refused))
     requests = [f"not written (a dataset has no function for them): requests {listed(lost)}"] if lost else []
-    notes = (*recording.notes(), *requests)
+    letters = (
+        [] if "".join(lines).isascii() else ["names and texts of the dataset are in ASCII letters (ä is a, Θ is Theta)"]
+    )
+    notes = (*recording.notes(), *requests, *letters)
     remarks = [f"! {note}" for note in notes]
     return WrittenDataset(_text(lines), _text([f"! {scene.name}", *remarks, *commands]), notes)
 
 
 def _text(lines: list[str]) -> str:
-    return "\n".join(lines) + "\n"
+    return in_ascii("\n".join(lines)) + "\n"
 
 
 def _hint(name: str) -> str:
