@@ -96,7 +96,7 @@ def _array(name: str, values: Sequence[object]) -> np.ndarray:
 def write(path: Path, data: xarray.Dataset) -> None:
     """Write a data set to a file, completely or not at all.
 
-    `path`: name in .nc, where ``_per_`` replaces ``/`` and ASCII other letters in names (the attribute `long_name` has these), or in .csv, with a line for each case without series.
+    `path`: name in .nc, with names in ASCII and ``_per_`` for ``/`` (the attribute `long_name` has other letters), or in .csv, with a line for each case without series.
     """
     from ..results.files import metadata_file, write_text, written_whole
 
