@@ -29,7 +29,7 @@ from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 from ..errors import InputError
 from .did_you_mean import did_you_mean, instead_of
-from .files.quoted import first_line, quoted, written
+from .files.quoted import MOST_QUOTED, first_line, quoted, written
 from .files.yaml_text import quotes_hint
 from .formula.text import FormulaError
 from .units.quantity import in_si
@@ -270,7 +270,10 @@ def _reason(fault: ErrorDetails) -> str:
             near = did_you_mean(found, re.findall("'([^']*)'", context["expected"])) if isinstance(found, str) else ""
             return f"found {written(found)}{near}, expected {context['expected']}"
         case "tuple_type" | "list_type":
-            return f"found {written(found)}, expected a list in brackets"
+            of_gravity = "gravity" in fault["loc"] and isinstance(found, int | float)
+            example = f"[0, {found}], or [0, 0, {found}] in space" if of_gravity else f"[{found}]"
+            like = isinstance(found, str | int | float) and len(example) <= MOST_QUOTED
+            return f"found {written(found)}, expected a list in brackets{f': {example}' if like else ''}"
         case "dict_type" | "model_type" | "model_attributes_type":
             return f"found {written(found)}, expected a mapping of keys to values"
         case _:
