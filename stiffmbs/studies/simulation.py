@@ -256,7 +256,7 @@ class Simulation:
         job, system, rows = self._job, self._job.dynamics.system, self._instant.rows
         channels = channels_of(job.data, system, rows)
         if self._turns.any:
-            channels |= {name: np.array([angle]) for name, angle in self._turns.angles().items()}
+            channels |= {name: np.array([angle]) for name, angle in self._turns.angles(rows).items()}
         return channels, turns_of(system, rows.q)
 
     def _row(self) -> OutputRows:
@@ -275,7 +275,7 @@ class Simulation:
 
     def _angle(self, rows: OutputRows, channel: str) -> float:
         """Return a continuous angle of a joint."""
-        followed = self._turns.angles() if self._turns.any else {}
+        followed = self._turns.angles(rows) if self._turns.any else {}
         if channel in followed:
             return followed[channel]
         angles = joint_angles(self._job.dynamics.system)

@@ -110,7 +110,7 @@ def test_a_parameter_may_bear_a_units_name_where_it_is_clear():
     assert quantity("3 N", parameters) == Quantity(3.0, (1, 1, -2))
     assert quantity("3 N/m", parameters) == Quantity(3.0, (1, 0, -2))
     with pytest.raises(FormulaError, match="a unit and a parameter"):
-        quantity("3 N/m*N", parameters)
+        quantity("3 N/m + N", parameters)
 
 
 @pytest.mark.long
