@@ -103,7 +103,9 @@ def draw(
 @click.argument("results", nargs=-1, type=click.Path(path_type=Path))
 @output_option("File to write: .gif, .mp4 or .html; by default SCENE.html.")
 @option("--view TEXT", "front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees.", default="")
-@option("--speed FLOAT", "Seconds of the model in one second of a film.", default=1.0)
+@option(
+    "--speed FLOAT", "Seconds of the model in one second of a film; by default 1, or less for a film of at least 4 s."
+)
 @option("--rate FLOAT", "Pictures in one second of a film.", default=25.0)
 @option("--trace TEXT ...", "A marker, such as coupler.tip, or a body whose path is drawn", "traces")
 @option("--names/--no-names", "Whether a film shows names.", default=False)
@@ -111,7 +113,7 @@ def draw(
 @option("--json", "Print one JSON object on one line on what was written.", "as_json")
 @solving_options
 def animate(
-    scene: str, results: tuple[Path, ...], output: Path | None, view: str, speed: float, rate: float, traces: tuple[str, ...],
+    scene: str, results: tuple[Path, ...], output: Path | None, view: str, speed: float | None, rate: float, traces: tuple[str, ...],
     names: bool, forces: bool | None, as_json: bool, **options: object,
 ) -> None:  # fmt: skip
     """Animate SCENE: its run, or RESULTS (.npz) of runs and of mode shapes, drawn over each other.

@@ -27,7 +27,9 @@ def new_sheet(size: tuple[float, float], on_screen: bool = False) -> Sheet:
     if on_screen:
         from matplotlib import pyplot
 
-        return pyplot.figure(figsize=size, layout="constrained")
+        from .shown_once import ShownOnce
+
+        return pyplot.figure(figsize=size, layout="constrained", FigureClass=ShownOnce)
     from matplotlib.figure import Figure as Sheet
 
     return Sheet(figsize=size, layout="constrained")

@@ -50,14 +50,13 @@ class FollowedTurns:
         parts = [*self._last, *([self._reported(between)] if between else []), *([row] if row is not None else [])]
         parts = [part for part in parts if len(part.t)]
         if self._states and parts:
-            joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ("t", "q", "values")}
-            found = self._angles.continuous(replace(parts[-1], **joined))
+            t, q, values = (np.concatenate([getattr(part, name) for part in parts]) for name in ("t", "q", "values"))
+            found = self._angles.continuous(replace(parts[-1], t=t, q=q, values=values))
             self._known = {
                 name: found[name].item(-1) + TURN * round((self._known.get(name, first) - first) / TURN)
                 for name, first in ((name, found[name].item(0)) for name in self._angles.followed)
             }
-            last = {name: values[-1:] for name, values in joined.items()}
-            self._states, self._last = [], [replace(parts[-1], **last)]
+            self._states, self._last = [], [replace(parts[-1], t=t[-1:], q=q[-1:], values=values[-1:])]
         return self._known
 
     def _reported(self, states: Sequence[tuple[float, np.ndarray, np.ndarray]]) -> OutputRows:
