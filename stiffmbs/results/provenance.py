@@ -20,6 +20,9 @@ from ..model.settings import RunSettings
 from ..reading.files.yaml_text import Content, scene_text
 from .command_line import command_line, date
 
+PROVENANCE = "run/provenance"
+"""Name of the origin in .npz files, as JSON."""
+
 
 @dataclass(frozen=True)
 class Provenance:
@@ -136,9 +139,18 @@ def _of_data(data: ModelData | WrittenScene) -> tuple[Content, dict[str, object]
     if read is not None and isinstance(data, Scene) and data.is_as_read:
         return effective(read)
     try:
-        return model_content(data), {}
+        return model_content(data) | _of_scene(data), {}
     except InputError:  # a flexible body, or a Python function, which no scene file can hold
         return effective(read) if read is not None else ({"name": data.name}, {})
+
+
+def _of_scene(data: ModelData) -> Content:
+    """Return the sections of a changed scene that a model does not have, if they differ from their defaults."""
+    if not isinstance(data, Scene):
+        return {}
+    values = {name: getattr(data, name) for name in ("start", "at_start", "stages", "figure", "notes", "run")}
+    defaults = {name: Scene.model_fields[name].get_default(call_default_factory=True) for name in values}
+    return {name: written(value) for name, value in values.items() if value != defaults[name]}
 
 
 def metadata_file(path: Path) -> Path:

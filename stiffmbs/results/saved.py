@@ -19,13 +19,13 @@ from ..model.scene import Figure
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
 from .error_bars import ErrorBar
-from .provenance import from_json
+from .provenance import PROVENANCE, from_json
 from .saved_state import TURNS, reading
 
 if TYPE_CHECKING:
     from .solution import Solution
 
-ABOUT, HISTORY, BALANCE, PROVENANCE = "run/about", "run/history/", "run/balance/", "run/provenance"
+ABOUT, HISTORY, BALANCE = "run/about", "run/history/", "run/balance/"
 TEXTS = ("notes", "not_unique", "presolve", "verification")
 
 

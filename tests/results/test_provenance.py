@@ -151,7 +151,10 @@ def test_settings_and_the_start_of_a_python_run_are_changes(folder):
 def test_a_model_and_stages_have_a_scene(folder):
     scene = stiffmbs.read_scene(SCENE)
     copy = scene.model_copy(update={"bodies": {"b": scene.bodies["b"].model_copy(update={"mass": 3.0})}})
-    assert stiffmbs.run(copy).provenance.scene["bodies"]["b"]["mass"] == 3.0
+    origin = stiffmbs.run(copy).provenance
+    assert origin.scene["bodies"]["b"]["mass"] == 3.0 and origin.scene["run"] == {"duration": 0.2, "points": 5}
+    again = stiffmbs.run(stiffmbs.read_scene(origin.scene_text))
+    np.testing.assert_array_equal(again["b.x"], stiffmbs.run(copy)["b.x"])
     staged = stiffmbs.read_scene(f"{SCENE}stages: [{{run: {{duration: 0.1}}}}, {{run: {{duration: 0.1}}}}]\n")
     assert len(stiffmbs.run(staged).provenance.scene["stages"]) == 2
 
