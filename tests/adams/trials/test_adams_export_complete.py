@@ -1,5 +1,6 @@
 """Datasets hold everything of a scene that changes its motion; the rest is refused or noted, by name."""
 
+import json
 import re
 from pathlib import Path
 
@@ -15,8 +16,11 @@ from stiffmbs.elements.element import Force
 from stiffmbs.errors import AssemblyError, InputError, SolverError
 from stiffmbs.reading.files.written_fields import Recording, unwritten, written
 from stiffmbs.reading.table import Table
+from tests.adams.test_adams_export import BETWEEN, BODIES
 from tests.random_parts import CASES, random_element, refers_to_joints, three_bodies_in_space
 
+TABLES = ("tables", "  smooth", "  straight", "  local")
+"""Lines of `BODIES` without effect here."""
 PENDULUM = """
 name: pendulum
 dimensions: 3
@@ -142,3 +146,33 @@ def test_random_forces_are_refused_or_move_alike(kind, form, seed):
     for name, read in zip(data.bodies, again.bodies, strict=True):
         for axis in "xyz":
             np.testing.assert_allclose(other[f"{read}.{axis}"], one[f"{name}.{axis}"], atol=2e-7, err_msg=name)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(12))
+def test_random_scenes_are_refused_or_run_alike(seed, tmp_path):
+    """With random starts, settings and velocities; the dataset runs by its own command file."""
+    rng = np.random.default_rng(seed)
+    kind = str(rng.choice([kind for kind in BETWEEN if kind not in ("tables", "planar")]))
+    text = "\n".join(line for line in BODIES.splitlines() if not line.startswith(TABLES))
+    run = {"duration": 0.1, "points": 3, "rtol": 1e-9} | ({"max_step": 0.01} if rng.random() < 0.5 else {})
+    run |= {"start": 1.5} if rng.random() < 0.2 else {}
+    omega = "omega: [0.1, 0.2, 0.3]" if rng.random() < 0.5 else "omega: [0, 0, 0]"
+    start = rng.choice(["described", "equilibrium", "settled"], p=[0.6, 0.2, 0.2])
+    text = f"{text.replace('omega: [0, 0, 0]', omega)}\n{BETWEEN[kind]}\nstart: {start}\nrun: {json.dumps(run)}\n"
+    scene = stiffmbs.read_scene(text)
+    if start == "settled" or "start" in run:
+        with pytest.raises(InputError, match="a dataset has no statement for"):
+            written_dataset(scene)
+        return
+    again = _read_back(scene, tmp_path)
+    try:
+        one = stiffmbs.run(scene)
+    except (AssemblyError, SolverError):  # no equilibrium
+        with pytest.raises((AssemblyError, SolverError)):
+            stiffmbs.run(again)
+        return
+    other = stiffmbs.run(again)
+    for name, read in zip(scene.bodies, again.bodies, strict=True):
+        for axis in "xyz":
+            np.testing.assert_allclose(other[f"{read}.{axis}"], one[f"{name}.{axis}"], atol=1e-6, err_msg=kind)
