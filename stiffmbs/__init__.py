@@ -53,7 +53,7 @@ _OFFERED = "AssemblyError", "InputError", "SolverError", "StiffmbsError", "si", 
 
 def __getattr__(name: str) -> Any:
     if name == "__all__":
-        return [*_OFFERED, *elements_of(_KINDS)]
+        return [name for name in (*_OFFERED, *elements_of(_KINDS)) if name != "open"]  # a built-in of the program
     if name in _MODULES:
         from importlib import import_module
 

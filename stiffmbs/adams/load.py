@@ -20,12 +20,15 @@ from ..reading.files.yaml_text import Content, scene_text
 from .commands.commands import Segment, read_commands
 from .scene.scene import scene
 from .stages import followed
-from .statements.changes import Changes, key_of
+from .statements.changes import SWITCHED, Changes, key_of
 from .statements.dataset import NO_CHANGES, Dataset, all_statements, read_dataset
+from .statements.keywords import REFUSED
 from .statements.text import ZERO_BYTE, CommandFault, DatasetFault
 
 COMMANDS = ".acf"
 """Extension of a command file."""
+_LABEL = re.compile(r"\b([A-Z_]+)/(\d+)\b(?=((?:(?!\bline \d).)*))")
+"""Statement with its number in a message, and the text up to the next line number."""
 ENCODING = "latin-1"
 """Encoding of a dataset that is not UTF-8."""
 
@@ -91,11 +94,23 @@ def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Datas
     except CommandFault:
         raise
     except DatasetFault as fault:
-        raise InputError(f"{source}, {fault}") from None
+        raise InputError(f"{source}, {fault}{_without(str(fault))}") from None
     except np.linalg.LinAlgError:
         raise InputError(f"{source}: {BEYOND}") from None
     except InputError as error:
-        raise InputError(f"{source}: {error}") from None
+        raise InputError(f"{source}: {error}{_without(str(error))}") from None
+
+
+def _without(message: str) -> str:
+    """Return how to run a dataset without the statements that a message names as unsupported; empty if it names none."""
+    idents: dict[str, list[str]] = {}
+    for name, ident, reason in _LABEL.findall(message):
+        if name in SWITCHED and (name in ("CONTACT", *REFUSED) or "USER" in reason.upper()):
+            idents.setdefault(name, []).append(ident)
+    if not idents:
+        return ""
+    commands = "; ".join(f"DEACTIVATE/{name}, ID={', '.join(dict.fromkeys(found))}" for name, found in idents.items())
+    return f". To run the dataset without them, write in a command file of the same name ({COMMANDS}): {commands}"
 
 
 def _commanded(path: str | Path) -> tuple[Dataset, dict[str, object]]:

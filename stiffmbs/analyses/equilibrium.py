@@ -20,6 +20,7 @@ from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..reading.files.quoted import listed
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
+from ..results.provenance import provenance_of
 from ..results.solution import Solution
 from ..solve.sampling import held
 from ..solve.trajectory import History, Outcome
@@ -52,7 +53,9 @@ def solution_at_rest(
         )
     system = job.dynamics.system
     notes = (*notes, *flexible_body_notes(system, rows))
-    return solution_of_rows(job.data.name, job.data, system, rows, job.redundancy.not_unique, message, notes, solver)
+    not_unique = job.redundancy.not_unique
+    found = solution_of_rows(job.data.name, job.data, system, rows, not_unique, message, notes, solver)
+    return replace(found, provenance=job.provenance())
 
 
 def solution_of_rows(
@@ -64,7 +67,7 @@ def solution_of_rows(
     return Solution(
         name=name, time=rows.t, channels=channels_of(data, system, rows), outcome=Outcome.DONE, message=message, notes=notes,
         solver=solver, history=History(nothing, np.empty(0, dtype=int)), balance=energy_balance(system, rows, nothing),
-        not_unique=not_unique, requested=units(data.outputs()), turns=turns_of(system, rows.q),
+        not_unique=not_unique, requested=units(data.outputs()), turns=turns_of(system, rows.q), provenance=provenance_of(data),
     )  # fmt: skip
 
 

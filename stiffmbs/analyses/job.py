@@ -27,6 +27,7 @@ from ..model.scene import Scene
 from ..model.settings import RunSettings, SteadyMotion
 from ..reading.did_you_mean import instead_of
 from ..redundancy.redundancy import Redundancy, examine
+from ..results.provenance import Provenance, provenance_of
 from ..results.saved_state import SavedState
 from ..results.solution import Solution
 from ..run_checks.motion import refuse_far_away
@@ -133,6 +134,12 @@ class Job:
     def on_constraints(self) -> bool:
         """Return True if states satisfy the constraints up to the tolerance."""
         return near_constraints(self.settings)
+
+    def provenance(self) -> Provenance:
+        """Return the origin of its results."""
+        state = self.start_from
+        other_start = (f"start from the state at t = {state.t:g} s of {state.source}",) if state else ()
+        return provenance_of(self.data, self.settings, other_start)
 
     def evaluations(self) -> int:
         """Return the number of evaluations of the equations of the system and its subsystems so far."""

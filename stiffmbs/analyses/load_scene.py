@@ -14,6 +14,15 @@ if TYPE_CHECKING:
 
 DATASET, COMMANDS = ".adm", ".acf"
 """File suffixes of Adams/Solver datasets and command files."""
+OTHERS = {
+    ".cmd": "commands of Adams/View: export the model there by File > Export > Adams/Solver dataset, and read the .adm",
+    ".bin": "a database of Adams/View: export the model there by File > Export > Adams/Solver dataset, and read the .adm",
+    ".sdf": "SDFormat, which is not read: convert it to MJCF, for example by sdformat_mjcf's sdformat2mjcf, or to URDF",
+    ".osim": "a model of OpenSim, which is not read: convert it to MJCF, for example by MyoConverter",
+    ".asmt": "an assembly of FreeCAD (MbD), which is not read: write its bodies and joints as a scene, or export it as URDF",
+    ".mbd": "an input file of MBDyn, which is not read: write its nodes, joints and forces as a scene",
+}
+"""Files of other programs that are recognised by their suffix, and what to do with them."""
 ROBOTS = (".urdf", ".xml", ".mjcf")
 """File suffixes of robots."""
 
@@ -42,6 +51,7 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     for change in changes:
         if not (isinstance(change, tuple | list) and len(change) == 2 and isinstance(change[0], str)):
             raise InputError(f"changes: found {change!r}, expected pairs such as ('bodies.cart.mass', '12 kg')")
+    refuse_others(path)
     suffix = Path(path).suffix.lower()
     if suffix in ROBOTS:
         from ..robots.load import load_robot
@@ -63,3 +73,10 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     from ..model.files.scenes_read_before import read_scene_file
 
     return read_scene_file(file_text(path), changes, source_name(path), Path(path))
+
+
+def refuse_others(path: str | Path) -> None:
+    """Raise an InputError for a file of another program that is not read; the message says what to do."""
+    words = OTHERS.get(Path(path).suffix.lower())
+    if words:
+        raise InputError(f"{source_name(path)}: found {words}")

@@ -23,6 +23,7 @@ from ..redundancy.messages.presolve_report import StructureNotes, structure_note
 from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
+from ..results.provenance import provenance_of
 from ..results.solution import Solution
 from ..run_checks.growth import motion_within_tolerance, senseless
 from ..run_checks.motion import motion_notes
@@ -83,7 +84,8 @@ def run(
     if isinstance(data, Scene) and data.stages:
         from .staged import run_stages
 
-        return run_stages(data, settings, watch, start_from, inputs, **changes)
+        found = run_stages(data, settings, watch, start_from, inputs, **changes)
+        return replace(found, provenance=provenance_of(data, settings_of(data, settings, changes)))
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
         data = with_inputs(data, inputs, settings_of(data, settings, changes))
@@ -204,6 +206,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
         figure=job.data.figure if isinstance(job.data, Scene) else None,
         presolve=structure.of_presolve,
         turns=turns_of(job.dynamics.system, rows.q),
+        provenance=job.provenance(),
     )
 
 

@@ -18,9 +18,9 @@ from .scene import CHANGES, in_file, is_written, option, output_option, refuse_f
 if TYPE_CHECKING:
     from ..comparison.compare import Comparison
     from ..comparison.comparison_over import ComparisonOver
+    from ..results.provenance import Provenance
 
     Found = Comparison | ComparisonOver
-    from ..comparison.compare import Comparison
 
 
 @click.command(short_help="Solvers compared on any scene.")
@@ -70,20 +70,21 @@ def compare(scene: str, output: Path | None, as_json: bool, **options: object) -
     with refusing(scene, as_json):
         refuse_file("-o", output, scene, "figure")
         with StatusLine() as tell:
-            found = _found(scene, options, tell)
+            found, origin = _found(scene, options, tell)
     _show(scene, found, as_json)
-    written = is_written(output, lambda path: write_figure(path, found.plot()))
+    written = is_written(output, lambda path: write_figure(path, found.plot(), origin))
     sys.exit(0 if written and not found.interrupted else Status.FAILED)
 
 
-def _found(scene: str, options: dict[str, Any], tell: Any) -> Found:
-    """Return the comparison that the options request."""
+def _found(scene: str, options: dict[str, Any], tell: Any) -> tuple[Found, Provenance]:
+    """Return the comparison that the options request, and its origin."""
     asked = {name: options[name] for name in ("measure", "repeats", "longest")}
     asked |= {name: _names(options[name]) for name in ("solvers", "formulations") if options[name]}
     changes = [*options["changes"], *([("run.duration", options["duration"])] if options["duration"] else [])]
     if options["error"] is not None and not options["over"]:
         raise InputError(f"--error {options['error']:g}: found no --over, expected it with --over NAME=VALUES")
     from ..reading.variation import read_variation, variation
+    from ..results.provenance import provenance_of
 
     asked |= {
         name: variation(f"--{option}", options[option])
@@ -91,16 +92,18 @@ def _found(scene: str, options: dict[str, Any], tell: Any) -> Found:
         if options[option]
     }
     if options["over"]:
+        from ..analyses.job import data_of
         from ..comparison.over import compare_over, with_parameter
 
         over = read_variation(options["over"], "--over")
         made = with_parameter(scene, over.name, changes, over.dimension)
-        return compare_over(made, over.name, over, error=options["error"], tell=tell, **asked)
+        found = compare_over(made, over.name, over, error=options["error"], tell=tell, **asked)
+        return found, provenance_of(data_of(made(float(over.values[0]))), others=(f"{over.name} is varied",))
     from ..comparison.compare import compare
 
     loaded = load_scene(scene, changes)
     with in_file(scene):
-        return compare(loaded, tell=tell, **asked)
+        return compare(loaded, tell=tell, **asked), provenance_of(loaded)
 
 
 def _names(text: str) -> list[str]:

@@ -56,7 +56,7 @@ def _as_dataset(
     path: str, output: Path, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
 ) -> dict[Path | None, str]:
     """Return a dataset and its command file, by their paths."""
-    from ..adams.export.dataset_text import command_text, dataset_text
+    from ..adams.export.dataset_text import written_dataset
     from ..adams.load import COMMANDS
     from ..analyses.in_space import in_space
     from ..analyses.load_scene import ROBOTS, load_scene
@@ -70,15 +70,19 @@ def _as_dataset(
     else:
         scene = load_scene(path, changes)
     spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
-    return {output: dataset_text(spatial, path), commands: command_text(spatial)}
+    found = written_dataset(spatial, path)
+    for note in found.notes:
+        click.echo(f"note: {note}", err=True)
+    return {output: found.text, commands: found.commands}
 
 
 def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
     """Return the text of a scene from a file of another program."""
     from ..adams.load import convert_file
-    from ..analyses.load_scene import ROBOTS
+    from ..analyses.load_scene import ROBOTS, refuse_others
     from ..robots.load import convert_robot
 
+    refuse_others(path)
     suffix = Path(path).suffix.lower()
     if changes:
         raise InputError(f"{path}: found --set, expected it with --in-space alone")

@@ -95,7 +95,8 @@ def response(
 
     from ..analyses.linearised.inputs import force_on, parameter_of
     from ..analyses.linearised.transfer import transfer
-    from ..results.files import write_text
+    from ..results.files import write_table
+    from ..results.provenance import provenance_of
     from ..show.modes import response_as_json, response_csv, response_text
 
     changes = changes_of(options)
@@ -115,6 +116,6 @@ def response(
             frequencies = np.geomspace(lowest, highest, points)
             values = found.response(frequencies)
     text = response_csv(found, frequencies, values)
-    written = is_written(path, lambda path: write_text(path, text))
+    written = is_written(path, lambda path: write_table(path, text, provenance_of(loaded)))
     click.echo((response_as_json if as_json else response_text)(scene, found, frequencies, values))
     sys.exit(0 if written else Status.FAILED)

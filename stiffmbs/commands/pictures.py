@@ -80,6 +80,7 @@ def draw(
 
     Exit status: 0 done, 1 no such state is found, or the file could not be written, 2 the input is wrong.
     """
+    from ..results.provenance import provenance_of
     from ..show.drawing.draw import state_drawn, summary, write_drawing
     from ..show.drawing.view import check_view
 
@@ -90,7 +91,7 @@ def draw(
         loaded = load_scene(scene, changes_of(options))
         with in_file(scene):
             drawing, poses = state_drawn(loaded, at, described, checked)
-        write_drawing(path, drawing, poses, view, names, forces)
+        write_drawing(path, drawing, poses, view, names, forces, provenance_of(loaded))
     if as_json:
         click.echo(json.dumps({"scene": scene, "output": str(path), **summary(drawing, poses)}))
     else:
@@ -102,7 +103,9 @@ def draw(
 @click.argument("results", nargs=-1, type=click.Path(path_type=Path))
 @output_option("File to write: .gif, .mp4 or .html; by default SCENE.html.")
 @option("--view TEXT", "front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees.", default="")
-@option("--speed FLOAT", "Seconds of the model in one second of a film.", default=1.0)
+@option(
+    "--speed FLOAT", "Seconds of the model in one second of a film; by default 1, or less for a film of at least 4 s."
+)
 @option("--rate FLOAT", "Pictures in one second of a film.", default=25.0)
 @option("--trace TEXT ...", "A marker, such as coupler.tip, or a body whose path is drawn", "traces")
 @option("--names/--no-names", "Whether a film shows names.", default=False)
@@ -110,7 +113,7 @@ def draw(
 @option("--json", "Print one JSON object on one line on what was written.", "as_json")
 @solving_options
 def animate(
-    scene: str, results: tuple[Path, ...], output: Path | None, view: str, speed: float, rate: float, traces: tuple[str, ...],
+    scene: str, results: tuple[Path, ...], output: Path | None, view: str, speed: float | None, rate: float, traces: tuple[str, ...],
     names: bool, forces: bool | None, as_json: bool, **options: object,
 ) -> None:  # fmt: skip
     """Animate SCENE: its run, or RESULTS (.npz) of runs and of mode shapes, drawn over each other.
@@ -177,7 +180,7 @@ def plot(
         figure = figure_of(runs, channels, against, title)
         sheet = plotted_runs(runs, figure, in_window=output is None)
         if output is not None:
-            write_sheet(output, sheet, dpi=130)
+            write_sheet(output, sheet, dpi=130, origin=next(iter(runs.values())).provenance)
     _tell(source, figure, output, as_json)
     if output is None:
         _show_window()

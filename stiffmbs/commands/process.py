@@ -18,6 +18,7 @@ import click
 
 from ..interrupts import INTERRUPTED
 from ..reading.files.quoted import quoted
+from ..results.command_line import commanded
 from ..show.escaped import EscapingStream
 
 OF_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EPIPE, errno.EDQUOT)
@@ -46,7 +47,9 @@ class Process(click.Group):
     def main(self, *arguments: Any, **options: Any) -> Any:
         """Run the requested command; see `click.Command.main`."""
         closed = _with_standard_files()
-        with _signals() as received, _no_interrupt_lost(), _escaping(), warnings.catch_warnings():
+        given = options.get("args", arguments[0] if arguments else None)
+        line = commanded(sys.argv[1:] if given is None else list(given))
+        with line, _signals() as received, _no_interrupt_lost(), _escaping(), warnings.catch_warnings():
             # Overflows are reported in sentences where they have an effect.
             warnings.simplefilter("ignore", RuntimeWarning)
             status = 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import unicodedata
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -71,7 +72,7 @@ def pairs(_: click.Context, __: click.Parameter, values: tuple[str, ...]) -> lis
         path, equals, text = value.partition("=")
         if not equals or not path:
             raise click.BadParameter(f"found '{value}', expected PATH=VALUE such as bodies.cart.mass=12")
-        found.append((path.strip(), text))
+        found.append((unicodedata.normalize("NFC", path.strip()), text))
     return found
 
 

@@ -123,13 +123,14 @@ def scene_files() -> dict[str, Path]:
 
 
 def scene_file(name: str) -> Path:
-    """Return the file of an example, by its name with or without ``.yaml``.
+    """Return the file of an example, by its name with or without its folder and ``.yaml``.
 
     Raises InputError if there is no such example.
     """
     found = scene_files()
-    path = found.get(name.removesuffix(".yaml"))
-    if path is None:
+    *folders, stem = name.removesuffix(".yaml").split("/")
+    path = found.get(stem)
+    if path is None or folders not in ([], list(path.relative_to(examples_folder()).parent.parts)):
         raise InputError(f"found no example '{name}'{instead_of(name, found)}")
     return path
 
@@ -171,20 +172,32 @@ def list_all(as_json: bool) -> None:
 def copy(names: tuple[str, ...], folder: Path) -> None:
     """Copy the examples with these NAMEs, or all of them, with the files that they read.
 
-    Existing files are not overwritten.
+    Existing files are not overwritten; a file that several examples read is copied once.
     """
     with refusing("examples"):
-        scenes, source = set(scene_files().values()), examples_folder()
-        chosen = [scene_file(name) for name in names] or sorted(scenes)
-        read_by_scenes = [path for path in sorted(source.rglob("*")) if path.is_file() and path not in scenes]
-        wanted = {path: folder / path.relative_to(source) for path in [*chosen, *read_by_scenes]}
-        for target in wanted.values():
-            if target.exists():
+        source = examples_folder()
+        if names:
+            chosen = {file: None for name in names for file in (scene_file(name), *_read_by(scene_file(name), source))}
+        else:
+            chosen = dict.fromkeys(path for path in sorted(source.rglob("*")) if path.is_file())
+        wanted, scenes = {path: folder / path.relative_to(source) for path in chosen}, set(scene_files().values())
+        for path, target in wanted.items():
+            same = path not in scenes and target.is_file() and target.read_bytes() == path.read_bytes()
+            if target.exists() and not same:
                 raise InputError(f"{target}: found a file, expected none: --to names another folder")
     for path, target in wanted.items():
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(path, target)
     click.echo(f"{len(wanted)} files copied to {folder}")
+
+
+def _read_by(scene: Path, source: Path) -> list[Path]:
+    """Return the files of a folder that a scene reads."""
+    from ..analyses.load_scene import load_scene
+
+    read = load_scene(scene).written
+    files = [Path(os.path.normpath(name)) for name in read.files] if read else []
+    return [file for file in files if file.is_relative_to(source)]
 
 
 @examples.command("run", short_help="Run an example.", context_settings={"ignore_unknown_options": True})

@@ -56,7 +56,8 @@ def kc(
 
     Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
     """
-    from ..results.files import write_text
+    from ..results.files import write_table
+    from ..results.provenance import provenance_of
     from ..show.style import write_sheet
     from ..show.suspension import kc_csv, kc_figure, kc_text
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
@@ -70,8 +71,9 @@ def kc(
             given = VehicleOptions(**vehicle)
             sizes = assigned("--case NAME=SIZE such as bump=40", cases, float)
             found = kinematics_and_compliance(loaded, axle, points, body, steering, wheels, radius, given, **sizes)
-    written = is_written(output, lambda path: write_text(path, kc_csv(found)))
-    written = is_written(figure, lambda path: write_sheet(path, kc_figure(found))) and written
+    origin = provenance_of(loaded)
+    written = is_written(output, lambda path: write_table(path, kc_csv(found), origin))
+    written = is_written(figure, lambda path: write_sheet(path, kc_figure(found), origin=origin)) and written
     click.echo(json.dumps(found.as_dict(scene)) if as_json else kc_text(scene, found))
     sys.exit(0 if written else Status.FAILED)
 
@@ -145,6 +147,7 @@ def handling(
 
     Exit status: 0 done, 1 a test was not done or the page could not be written, 2 the input is wrong.
     """
+    from ..results.provenance import provenance_of
     from ..show.handling import handling_text, write_handling
     from ..studies.handling.study import handling as handled
 
@@ -161,7 +164,7 @@ def handling(
                 workers=workers,
                 parameters=dict(parameters),
             )
-    written = is_written(output, lambda path: write_handling(path, found))
+    written = is_written(output, lambda path: write_handling(path, found, provenance_of(loaded)))
     printed = found.as_dict(scene)
     click.echo(json.dumps(printed) if as_json else handling_text(scene, found))
     sys.exit(0 if written and printed["status"] == "done" else Status.FAILED)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison:
     """Comparison of solvers on a model.
 
@@ -69,7 +69,7 @@ class Comparison:
 
         return work_precision(self)
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         from .table import text
 
         return text(self)

@@ -49,7 +49,7 @@ class AtValue:
     message: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ComparisonOver:
     """Comparison of solvers over a parameter.
 
@@ -129,7 +129,7 @@ class ComparisonOver:
 
         return over_parameter(self)
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         from .table import text
 
         return text(self)

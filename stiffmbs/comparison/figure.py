@@ -16,13 +16,15 @@ from .measures import MEASURES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
+    from ..results.provenance import Provenance
 
-def write_figure(path: Path, sheet: Sheet) -> None:
-    """Write a figure; text in .svg stays text."""
+
+def write_figure(path: Path, sheet: Sheet, origin: Provenance | None = None) -> None:
+    """Write a figure with the origin of its results; text in .svg stays text."""
     from matplotlib import rc_context
 
     with rc_context({"svg.fonttype": "none", "svg.hashsalt": "stiffmbs"}):
-        write_sheet(path, sheet)
+        write_sheet(path, sheet, origin=origin)
 
 
 def work_precision(comparison: Comparison) -> Sheet:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, fields
 from itertools import chain
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias
 from pydantic import Field, field_validator
 
 from ..reading import given
-from ..reading.fields import DOTTED_PATTERN, Described
+from ..reading.fields import Described, is_name, other_letters
 from ..reading.files.quoted import written
 from ..reading.files.yaml_text import quotes_hint
 from ..reading.formula.names import PLANE
@@ -122,8 +121,8 @@ def body_numbers(bodies: Collection[AnyBody]) -> BodyNumbers:
 def check_names(names: Iterable[object], what: str) -> None:
     """Refuse names that are not valid in formulas and channels."""
     for name in names:
-        if not isinstance(name, str) or not re.match(DOTTED_PATTERN, name):
+        if not is_name(name, dotted=True):
             shown = "no name" if name in (None, "") else f"the name {written(name)}"
             raise ValueError(
-                f"found {what} with {shown}, expected letters, digits and _ not starting with a digit{quotes_hint(name)}"
+                f"found {what} with {shown}, expected letters, digits and _ not starting with a digit{quotes_hint(name)}{other_letters(name)}"
             )

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import inspect
-import re
 from collections.abc import Iterator
 from typing import Any
 
 from ..errors import InputError
-from ..reading.fields import NAME_PATTERN
+from ..reading.fields import is_name
 from ..reading.marker import MarkerReference
 from .element import Element, Force, Joint
 from .samples import types_in
@@ -114,7 +113,7 @@ def _lacks(element: object) -> Iterator[str]:
     if not isinstance(element, type) or not issubclass(element, Joint | Force):
         yield "found no subclass of Joint or Force, expected one"
         return
-    if not re.match(NAME_PATTERN, element.kind):
+    if not is_name(element.kind):
         found = f"the kind '{element.kind}'" if element.kind else "no kind"
         yield f"found {found}, expected a name for scenes, such as kind = 'my_{_base(element).__name__.lower()}'"
     if not dimensions_of(element):

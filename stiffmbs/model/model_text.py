@@ -10,7 +10,7 @@ from ..elements.states.amount import Amount
 from ..elements.states.linear_system import PID
 from ..errors import InputError
 from ..reading.fields import Described
-from ..reading.files.yaml_text import scene_text
+from ..reading.files.yaml_text import Content, scene_text
 from ..reading.formula.dimension import Known
 from ..reading.joint_name import JointName
 from ..reading.marker import MarkerReference
@@ -24,7 +24,12 @@ SECTIONS = ("markers", "bodies", "states", "inputs", "joints", "forces", "reques
 
 
 def model_text(data: ModelData) -> str:
-    """Return the text of a scene file of a model, with the parameters and tables that its formulas use.
+    """Return the text of a scene file of a model; errors as for `model_content`."""
+    return scene_text(model_content(data))
+
+
+def model_content(data: ModelData) -> Content:
+    """Return the content of a scene file of a model, with the parameters and tables that its formulas use.
 
     Raises InputError if two formulas have different values of a parameter, or different tables of the same name, or if
     a body is flexible.
@@ -41,7 +46,7 @@ def model_text(data: ModelData) -> str:
     )
     parts["tables"] = _agreed((name, written(table)) for formula in formulas for name, table in formula.tables.items())
     order = ("name", "dimensions", "parameters", "tables", "gravity", *SECTIONS)
-    return scene_text({name: parts[name] for name in order if parts[name]})
+    return {name: parts[name] for name in order if parts[name]}
 
 
 def written(

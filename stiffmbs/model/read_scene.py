@@ -108,6 +108,27 @@ def read_changed(written: WrittenScene, changes: Changes, unchanged: Unchanged |
     return made_scene(content, (*written.changes, *changes), written.source, lambda _: None, written.folder, unchanged)
 
 
+def effective(written: WrittenScene) -> tuple[Content, dict[str, object]]:
+    """Return a scene as in a file, with its changes, and the changes within instances of parts, by their paths.
+
+    The latter have no place in a scene file. Options are merged; of the section `options` the chosen words are left.
+    """
+    content = expand.unshared(copy.deepcopy(dict(written.content)))
+    found, chosen, changes = chosen_options(content, written.changes, written.source)
+    found, changes = placed_in_use(found, changes)
+    in_parts: dict[str, object] = {}
+    for path, value in changes:
+        if set_in_instances(path, found.get("use")):
+            in_parts[path] = value
+        else:
+            expand.set_value(found, path, read_yaml(value, f"--set {path}") if isinstance(value, str) else value)
+    _keep_one_grid(found, {path for path, _ in changes})
+    if words := chosen["words"]:
+        own: Content = {name: {word: {}} for name, word in words.items() if name in chosen["choices"]}
+        found |= {CHOOSE: words} | ({OPTIONS: own} if own else {})
+    return found, in_parts
+
+
 def _made_scene(
     found: dict[str, object], changes: Changes, source: str, line_of: LineOf, folder: Path | None,
     known: Unchanged, kept: WrittenScene | None,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import operator
 import re
+import unicodedata
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -28,15 +29,30 @@ from pydantic_core import CoreSchema, ErrorDetails, core_schema
 
 from ..errors import InputError
 from .did_you_mean import did_you_mean, instead_of
-from .files.quoted import first_line, quoted, written
+from .files.quoted import MOST_QUOTED, first_line, quoted, written
 from .files.yaml_text import quotes_hint
 from .formula.text import FormulaError
 from .units.quantity import in_si
 from .units.units import DIMENSIONS, one
 
-NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
-DOTTED_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$"
-"""Pattern of names that may include the names of parts: ``front.left.arm``."""
+DOTTED_PATTERN = r"^[^\W\d]\w*(\.[^\W\d]\w*)*$"
+"""Pattern of names that may include the names of parts: ``front.left.arm``; letters of any script."""
+
+
+def is_name(text: object, dotted: bool = False) -> bool:
+    """Return True for letters of any script, digits and _, not starting with a digit; `dotted`: with names of parts.
+
+    Names have the form (NFKC) in which Python's parser returns them from formulas; others would not be found there.
+    """
+    if not isinstance(text, str) or unicodedata.normalize("NFKC", text) != text:
+        return False
+    return all(part.isidentifier() for part in (text.split(".") if dotted else (text,)))
+
+
+def other_letters(name: object) -> str:
+    """Return a hint for a name whose letters have another form in formulas, such as the micro sign; empty otherwise."""
+    usual = unicodedata.normalize("NFKC", name) if isinstance(name, str) else ""
+    return f": write '{quoted(usual)}' (NFKC)" if usual != name and is_name(usual, dotted=True) else ""
 
 
 class _SignatureWhenAsked:
@@ -193,9 +209,9 @@ def named_entries(section: str, found: object, values: str) -> Iterator[tuple[st
     not a mapping, or a name is not an identifier.
     """
     for name, entry in mapping({} if found is None else found, section, f"names to {values}").items():
-        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+        if not is_name(name):
             raise InputError(
-                f"{section}: found the name {written(name)}, expected letters, digits and _{quotes_hint(name)}"
+                f"{section}: found the name {written(name)}, expected letters, digits and _{quotes_hint(name)}{other_letters(name)}"
             )
         yield name, entry
 
@@ -254,7 +270,10 @@ def _reason(fault: ErrorDetails) -> str:
             near = did_you_mean(found, re.findall("'([^']*)'", context["expected"])) if isinstance(found, str) else ""
             return f"found {written(found)}{near}, expected {context['expected']}"
         case "tuple_type" | "list_type":
-            return f"found {written(found)}, expected a list in brackets"
+            of_gravity = "gravity" in fault["loc"] and isinstance(found, int | float)
+            example = f"[0, {found}], or [0, 0, {found}] in space" if of_gravity else f"[{found}]"
+            like = isinstance(found, str | int | float) and len(example) <= MOST_QUOTED
+            return f"found {written(found)}, expected a list in brackets{f': {example}' if like else ''}"
         case "dict_type" | "model_type" | "model_attributes_type":
             return f"found {written(found)}, expected a mapping of keys to values"
         case _:

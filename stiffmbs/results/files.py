@@ -11,8 +11,10 @@ import numpy as np
 
 from ..dynamics.storage import blocks, release
 from ..errors import InputError, refuse_missing
+from ..reading.ascii import in_ascii
 from ..reading.files.quoted import quoted
 from .archive import write_archive
+from .provenance import Provenance, metadata_file
 from .saved import record
 from .solution import Solution
 
@@ -42,7 +44,7 @@ def _write_npz(path: Path, solution: Solution) -> None:
 def _write_netcdf(path: Path, solution: Solution) -> None:
     names: dict[str, str] = {}
     for channel in solution.channels:
-        name = channel.replace(".", "_")
+        name = in_ascii(channel).replace(".", "_")  # the attribute `channel` is its name
         while name in names.values():  # front.left_arm.x and front_left.arm.x, or a request called like a channel
             name += "_"
         names[channel] = name
@@ -147,9 +149,24 @@ def write(path: Path, solution: Solution) -> None:
     The suffix selects the format: .csv (a header line of names and units, time first), .npz, .nc, .tab (tab-separated
     columns), or .res (Adams' XML).  A file .npz has arrays by channel name, ``time``, and further data for
     `Solution.load` under names with a slash.  Channels without a unique value are marked: by a column ``rail.fy.not_unique`` of ones, an array
-    ``not_unique`` of names, or the attribute ``unique`` of each variable.
+    ``not_unique`` of names, or the attribute ``unique`` of each variable.  The origin of the results is in the file, or next
+    to a table in ``NAME.csv-metadata.json``.
     """
     written_whole(path, lambda part: WRITERS[path.suffix](part, solution))
+    if path.suffix not in (".npz", ".nc"):
+        write_metadata(path, solution.provenance)
+
+
+def write_table(path: Path, text: str, provenance: Provenance | None) -> None:
+    """Write a table as text, and the origin of its results next to it."""
+    write_text(path, text)
+    write_metadata(path, provenance)
+
+
+def write_metadata(path: Path, provenance: Provenance | None) -> None:
+    """Write the origin of results to the file that accompanies a table; nothing next to a pipe or device."""
+    if provenance is not None and path.is_file():
+        write_text(metadata_file(path), provenance.as_json() + "\n")
 
 
 def write_text(path: Path, text: str) -> None:

@@ -1,6 +1,7 @@
 """Data of a run in an .npz file in addition to its channels, from which the run can be restored.
 
-These names have a slash, which no channel has: ``run/about`` is a JSON text; the others are arrays.
+These names have a slash, which no channel has: ``run/about`` and ``run/provenance`` are JSON texts; the others are
+arrays.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from ..model.scene import Figure
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
 from .error_bars import ErrorBar
+from .provenance import PROVENANCE, from_json
 from .saved_state import TURNS, reading
 
 if TYPE_CHECKING:
@@ -41,6 +43,7 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
     }
     return {
         ABOUT: np.array(json.dumps(about, default=lambda number: number.item())),
+        **({PROVENANCE: np.array(solution.provenance.as_json())} if solution.provenance else {}),
         **{HISTORY + part.name: getattr(solution.history, part.name) for part in fields(History)},
         **{TURNS + name: values for name, values in solution.turns.items()},
         **{BALANCE + part.name: np.asarray(getattr(solution.balance, part.name)) for part in fields(Balance)},
@@ -77,4 +80,5 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
         balance=Balance(**{name: array if array.ndim else array.item() for name, array in balance.items()}),
         figure=Figure(**about["figure"]) if about["figure"] else None,
         turns={name.removeprefix(TURNS): array for name, array in arrays.items() if name.startswith(TURNS)},
+        provenance=from_json(str(arrays[PROVENANCE])) if PROVENANCE in arrays else None,
     )  # fmt: skip

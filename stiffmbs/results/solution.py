@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from .provenance import Provenance
     from .saved_state import SavedState
 
 
@@ -64,6 +65,8 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         Main plot of the scene, if it has one.
     turns : mapping of str to ndarray
         Revolution counters of angles in space, rad, by element and number: ``spring/0``.
+    provenance : Provenance, optional
+        Scene that was solved, changes, command line, version and date; None for files of earlier versions.
     """
 
     name: str
@@ -83,6 +86,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     discretisation: Mapping[str, float] = field(default_factory=dict)
     figure: Figure | None = None
     turns: Mapping[str, np.ndarray] = field(default_factory=dict)
+    provenance: Provenance | None = None
 
     @property
     def success(self) -> bool:
@@ -162,6 +166,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
             known = {"channel": name, "unique": int(name not in self.not_unique), **({"units": unit} if unit else {})}
             variables[name] = ("time", values, known)
         about = {"title": self.name, "outcome": self.outcome.name, "message": self.message}
+        about |= self.provenance.as_texts() if self.provenance else {}
         time = xarray.Variable("time", self.time, {"units": "s"})
         return xarray.Dataset(variables, coords={"time": time}, attrs=about)
 

@@ -12,15 +12,20 @@ from ..reading.units.units import DIMENSIONS
 from ..results.files import write_text
 from ..studies.handling.standards import TESTS
 from ..studies.handling.study import Handling, Tested
+from .handling_figure import handling_figure
+from .origin import page_with_origin
 from .page.data import environment
-from .style import data_url, dress, new_sheet
+from .style import data_url
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from ..results.provenance import Provenance
 
+YES_OR_NO = " (1 yes, 0 no)"
+"""End of the names of metrics that are answers."""
 PAGE = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>{{ name }}: handling</title><style>
-body { font-family: sans-serif; max-width: 60em; margin: 2em auto; }
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>{{ name }}: handling</title><style>
+body { font-family: sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; }
+img { max-width: 100%; height: auto; } pre { overflow-x: auto; }
 table { border-collapse: collapse; } td, th { padding: 0.2em 0.8em; border-bottom: 1px solid #ccc; text-align: left; }
 </style></head><body><h1>{{ name }}: handling</h1>
 <p>Wheelbase {{ wheelbase }} m, track {{ track }} m; the wheels steer by {{ ratio }} for a unit of steering.</p>
@@ -43,20 +48,26 @@ def handling_text(scene: str, found: Handling) -> str:
     return "\n".join(lines)
 
 
-def write_handling(path: Path, found: Handling) -> None:
-    """Write the page of all tests, completely or not at all. Raises OSError if the file cannot be written."""
+def write_handling(path: Path, found: Handling, origin: Provenance | None = None) -> None:
+    """Write the page of all tests with the origin of its results, completely or not at all.
+
+    Raises OSError if the file cannot be written.
+    """
     sections = [
-        (_title(name, one), one.message, _rows(one), "" if one.message else data_url(_figure(name, one), "svg", 100))
+        (
+            _title(name, one),
+            one.message,
+            _rows(one),
+            "" if one.message else data_url(handling_figure(found, name, one), "svg", 100),
+        )
         for name, one in found.tests.items()
     ]
     template = environment().from_string(PAGE)
-    write_text(
-        path,
-        template.render(
-            name=found.name, wheelbase=f"{found.car.wheelbase:.4g}", track=f"{found.car.track:.4g}", ratio=f"{found.ratio:.4g}",
-            sections=sections,
-        ),
+    page = template.render(
+        name=found.name, wheelbase=f"{found.car.wheelbase:.4g}", track=f"{found.car.track:.4g}", ratio=f"{found.ratio:.4g}",
+        sections=sections,
     )  # fmt: skip
+    write_text(path, page_with_origin(page, origin))
 
 
 def _title(name: str, one: Tested) -> str:
@@ -79,18 +90,13 @@ def _number(value: object) -> str:
 
 
 def _rows(one: Tested) -> list[tuple[str, str, str]]:
-    """Return the metrics as cells; a value without a number was not reached."""
+    """Return the metrics as cells; a value without a number was not reached, and some are answers."""
     return [
-        (name, f"{value:.5g}", unit) if np.isfinite(value) else (name, "not reached", "")
+        _row(name, value, unit) if np.isfinite(value) else (name, "not reached", "")
         for name, (value, unit) in one.metrics.items()
     ]
 
 
-def _figure(name: str, one: Tested) -> Figure:
-    sheet = new_sheet((7, 3.2))
-    axes = sheet.subplots()
-    x, y = TESTS[name].shown
-    for run in one.runs:
-        axes.plot(run[x], run[y])
-    dress(axes, xlabel=x, ylabel=y)
-    return sheet
+def _row(name: str, value: float, unit: str) -> tuple[str, str, str]:
+    answer = name.endswith(YES_OR_NO)
+    return (name.removesuffix(YES_OR_NO), "yes" if value else "no", "") if answer else (name, f"{value:.5g}", unit)

@@ -18,6 +18,7 @@ from ..model.scene import Figure, Scene
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import write_text
+from ..results.provenance import provenance_of
 from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import History
@@ -28,6 +29,7 @@ from .figure import drawn
 from .force_table import LOADS, elements_of, joint_forces, reactions_of, with_bar
 from .html import MOST_ROWS
 from .modes import modes_text
+from .origin import page_with_origin
 from .page.data import environment, page_data, page_parts
 from .page.modes import modes_data
 from .sections import Section, differences_section
@@ -53,8 +55,7 @@ def write_report(
     `sections` are additional ones. With `other`, the name and solution of another run, the page begins with the
     differences and shows both motions. InputError if that run has no channels or times in common with this one.
     """
-    page = report_page(scene, solution, text, sections, other)
-    write_text(path, page)
+    write_text(path, report_page(scene, solution, text, sections, other))
 
 
 @np.errstate(all="ignore")  # sums of a diverged run overflow
@@ -74,14 +75,15 @@ def report_page(
     chosen = scene.run.model_fields_set  # shown first
     settings = dict(sorted(scene.run, key=lambda field: field[0] not in chosen))
     points = len(solution.time) + len(solution.step_times)
-    return template.render(
+    page = template.render(
         solution=solution, verdict=verdict(solution), check=report, settings=settings, peaks=_peaks(solution),
         energy=balance_words(solution.balance, float(solution.channels["energy.total"][0])),
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
         sections=_with_figures(sections), first=_with_figures(first), steps=[_embedded(sheet, points) for sheet in steps],
         counted=[f"{label}: {text}" for label, text in solver_lines(solution.solver)], violation=float(np.nanmax(solution.channels["constraint.position"])),
-        forces=joint_forces(solution), modes=lines, text=text, moving=moving, modes_moving=shapes, **page_parts(),
+        forces=joint_forces(solution), modes=lines, moving=moving, modes_moving=shapes, **page_parts(),
     )  # fmt: skip
+    return page_with_origin(page, solution.provenance or provenance_of(scene), text)
 
 
 def _with_figures(sections: Sequence[Section]) -> list[tuple[Section, list[str]]]:

@@ -9,10 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..results.files import written_whole
+from .origin import figure_metadata
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Sheet
+
+    from ..results.provenance import Provenance
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
 """Colors of Okabe and Ito, Color Universal Design (2008)."""
@@ -24,15 +27,20 @@ def new_sheet(size: tuple[float, float], on_screen: bool = False) -> Sheet:
     if on_screen:
         from matplotlib import pyplot
 
-        return pyplot.figure(figsize=size, layout="constrained")
+        from .shown_once import ShownOnce
+
+        return pyplot.figure(figsize=size, layout="constrained", FigureClass=ShownOnce)
     from matplotlib.figure import Figure as Sheet
 
     return Sheet(figsize=size, layout="constrained")
 
 
-def write_sheet(path: Path, sheet: Sheet, dpi: int = 120) -> None:
-    """Write a figure to a file, completely or not at all. Raises OSError if the file cannot be written."""
-    metadata = {"Date": None} if path.suffix == ".svg" else None
+def write_sheet(path: Path, sheet: Sheet, dpi: int = 120, origin: Provenance | None = None) -> None:
+    """Write a figure to a file, completely or not at all, with the origin of its results in its metadata.
+
+    Raises OSError if the file cannot be written.
+    """
+    metadata = figure_metadata(path, origin)
     written_whole(path, lambda part: sheet.savefig(part, dpi=dpi, metadata=metadata))
 
 

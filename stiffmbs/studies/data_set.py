@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import InputError, needs
+from ..reading.ascii import in_ascii
 from ..reading.files.quoted import MOST_LISTED
 from .case_solver import Row
 from .cases import Cases
@@ -94,16 +96,27 @@ def _array(name: str, values: Sequence[object]) -> np.ndarray:
 def write(path: Path, data: xarray.Dataset) -> None:
     """Write a data set to a file, completely or not at all.
 
-    `path`: name in .nc, where ``_per_`` replaces ``/`` in names, or in .csv, with a line for each case without series.
+    `path`: name in .nc, with names in ASCII and ``_per_`` for ``/`` (the attribute `long_name` has other letters), or in .csv, with a line for each case without series.
     """
-    from ..results.files import written_whole
+    from ..results.files import metadata_file, write_text, written_whole
 
     written_whole(path, lambda part: WRITERS[path.suffix](part, data))
+    if path.suffix != ".nc" and path.is_file():
+        write_text(metadata_file(path), json.dumps(data.attrs, ensure_ascii=False) + "\n")
 
 
 def _write_netcdf(path: Path, data: xarray.Dataset) -> None:
-    names = {str(name): str(name).replace("/", "_per_") for name in data.variables if "/" in str(name)}
-    data.rename(names).to_netcdf(path, engine="scipy")
+    names: dict[str, str] = {}
+    for name in map(str, {**data.variables, **data.sizes}):
+        plain = in_ascii(name).replace("/", "_per_")
+        while plain in names.values():
+            plain += "_"
+        names[name] = plain
+    renamed = data.rename({name: plain for name, plain in names.items() if plain != name})
+    for name, plain in names.items():
+        if not name.isascii() and plain in renamed.variables:
+            renamed[plain].attrs["long_name"] = name
+    renamed.to_netcdf(path, engine="scipy")
 
 
 def _write_csv(path: Path, data: xarray.Dataset) -> None:

@@ -113,4 +113,5 @@ def _so_far(job: Job, t: np.ndarray, states: States, lengths: np.ndarray, outcom
         solver={"name": job.settings.solver}, history=History(np.empty(0), np.empty(0, dtype=int)), not_unique=job.redundancy.not_unique,
         balance=energy_balance(system, rows, np.empty(0)),
         requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
+        provenance=job.provenance(),
     )  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from ..analyses.job import Job
 from ..analyses.renumber import Change, changes_of_numbers, write_numbers
+from ..dynamics.dynamics import OutputRows
 from ..errors import InputError
 from ..model.scene import Scene
 from ..reading.did_you_mean import instead_of
@@ -34,6 +35,7 @@ class FollowedTurns:
         self._known = dict(known)
         self.any = self._angles is not None and bool(self._angles.followed)
         self._states = [(t, q.copy(), u.copy())]
+        self._last: list[OutputRows] = []  # row of the state up to which turns are counted
 
     def note(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Keep the state at the end of a step."""
@@ -41,20 +43,26 @@ class FollowedTurns:
         if len(self._states) > MOST_KEPT:
             self.angles()
 
-    def angles(self) -> dict[str, float]:
-        """Return the angles at the last state, rad, by channel."""
+    def angles(self, row: OutputRows | None = None) -> dict[str, float]:
+        """Return the angles at the last state, rad, by channel; `row` is its output row if it is known."""
         assert self._angles is not None
-        t, q, u = (np.array(each) for each in zip(*self._states, strict=True))
-        with self._dynamics.state.unchanged():
-            rows = self._dynamics.report(t, q, u, project=False)
-        if len(rows.t):
-            found = self._angles.continuous(rows)
+        between = self._states if row is None else self._states[:-1]
+        parts = [*self._last, *([self._reported(between)] if between else []), *([row] if row is not None else [])]
+        parts = [part for part in parts if len(part.t)]
+        if self._states and parts:
+            t, q, values = (np.concatenate([getattr(part, name) for part in parts]) for name in ("t", "q", "values"))
+            found = self._angles.continuous(replace(parts[-1], t=t, q=q, values=values))
             self._known = {
                 name: found[name].item(-1) + TURN * round((self._known.get(name, first) - first) / TURN)
                 for name, first in ((name, found[name].item(0)) for name in self._angles.followed)
             }
-            self._states = self._states[-1:]
+            self._states, self._last = [], [replace(parts[-1], t=t[-1:], q=q[-1:], values=values[-1:])]
         return self._known
+
+    def _reported(self, states: Sequence[tuple[float, np.ndarray, np.ndarray]]) -> OutputRows:
+        t, q, u = (np.array(each) for each in zip(*states, strict=True))
+        with self._dynamics.state.unchanged():
+            return self._dynamics.report(t, q, u, project=False)
 
 
 TRIED: Final = (0.0, *(sign * 10.0**k for k in (0, -1, 3) for sign in (1, -1)))

@@ -22,6 +22,7 @@ from ..results.files import written_whole
 from ..results.frames import own_are_principal
 from ..results.instant import Instant
 from ..results.joint_angles import joint_angles
+from ..results.provenance import PROVENANCE
 from ..results.saved_state import TURNS, SavedState
 from ..solve.error_control.relaxation import drift_at
 from ..solve.events.restart import restarted
@@ -256,7 +257,7 @@ class Simulation:
         job, system, rows = self._job, self._job.dynamics.system, self._instant.rows
         channels = channels_of(job.data, system, rows)
         if self._turns.any:
-            channels |= {name: np.array([angle]) for name, angle in self._turns.angles().items()}
+            channels |= {name: np.array([angle]) for name, angle in self._turns.angles(rows).items()}
         return channels, turns_of(system, rows.q)
 
     def _row(self) -> OutputRows:
@@ -275,7 +276,7 @@ class Simulation:
 
     def _angle(self, rows: OutputRows, channel: str) -> float:
         """Return a continuous angle of a joint."""
-        followed = self._turns.angles() if self._turns.any else {}
+        followed = self._turns.angles(rows) if self._turns.any else {}
         if channel in followed:
             return followed[channel]
         angles = joint_angles(self._job.dynamics.system)
@@ -297,6 +298,7 @@ class Simulation:
         content: dict[str, Any] = {name: np.array([value]) for name, value in state.channels.items()}
         content |= {TURNS + name: np.array([value]) for name, value in state.turns.items()}
         content |= {INPUT + name: np.array(value) for name, value in self._inputs.values.items()}
+        content[PROVENANCE] = np.array(self._job.provenance().as_json())
         written_whole(file, lambda part: np.savez(part, time=np.array([self.t]), **content))
 
     def load(self, path: StartFrom) -> None:

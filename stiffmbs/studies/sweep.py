@@ -20,6 +20,7 @@ from ..model.scene import Scene
 from ..model.settings import RunSettings
 from ..reading.files.quoted import quoted
 from ..reading.variation import Range, Variation, variation
+from ..results.provenance import Provenance, with_settings
 from ..solve.settings import changed, output_grid
 from .case_solver import CaseSolver, Row, Task, refuse_units, written_scene
 from .cases import Cases, cases_of
@@ -39,12 +40,13 @@ StudyProgress = Callable[[int, int, float], None]
 
 @dataclass(frozen=True)
 class Study:
-    """Study that is ready to be solved. `time`: output instants of series, s."""
+    """Study that is ready to be solved. `time`: output instants of series, s. `origin`: scene without varied values."""
 
     task: Task
     cases: Cases
     time: np.ndarray
     title: str
+    origin: Provenance
 
     @property
     def parts(self) -> dict[str, str]:
@@ -78,7 +80,8 @@ class Study:
                 progress.add(len(solved))
 
             rows_of(task, _chunks(self.cases, done, size), found, count, keep)
-            return data_set(self.cases, self.task.outputs, rows.rows(), self.time, self.title)
+            solved = data_set(self.cases, self.task.outputs, rows.rows(), self.time, self.title)
+        return solved.assign_attrs(self.origin.as_texts())
 
 
 class _Progress:
@@ -194,7 +197,8 @@ def study_of(
     _refuse_other_instants(cases, chosen)
     task = Task(written, cases.names, settings, chosen)
     _refuse_unfit(task, cases)
-    return Study(task, cases, _instants(known, settings, chosen), known.name)
+    origin = with_settings(written, settings, tuple(f"{name} is varied" for name in cases.names))
+    return Study(task, cases, _instants(known, settings, chosen), known.name, origin)
 
 
 def _refuse_unfit(task: Task, cases: Cases) -> None:

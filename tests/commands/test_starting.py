@@ -71,6 +71,19 @@ def test_examples_are_copied_with_their_parts_and_nothing_is_written_over(call, 
     assert copied == installed
 
 
+def test_a_copy_takes_the_files_that_the_scene_reads_alone(call):
+    for name in ("vehicles/half_car_at_rest", "hatchback", "car.yaml"):
+        assert call("examples", "copy", name, "--to", "mine").exit_code == 0, name
+    found = {str(path.relative_to("mine")) for path in Path("mine").rglob("*.*")}
+    assert found == {"car.tir", "car.yaml", "vehicles/half_car_at_rest.yaml", "vehicles/hatchback.yaml"}
+    Path("mine/car.yaml").unlink()
+    Path("mine/car.tir").write_text("mine")
+    refused = call("examples", "copy", "car", "--to", "mine")
+    assert refused.exit_code == 2 and "car.tir: found a file" in refused.stderr
+    assert Path("mine/car.tir").read_text() == "mine" and not Path("mine/car.yaml").exists()
+    assert "(did you mean" in call("examples", "copy", "beams/half_car_at_rest").stderr
+
+
 def test_an_example_is_run_with_the_options_of_run(call):
     ran = call("examples", "run", "bar_pendulum", "--json", "--duration", "0.1")
     assert ran.exit_code == 0

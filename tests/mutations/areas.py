@@ -39,7 +39,7 @@ AREAS = {
     ),
     "events": Area(
         ("stiffmbs/solve/events/*.py", "stiffmbs/solve/events/native/*.py", "stiffmbs/compile/inputs/*.py"),
-        ("tests/events", "tests/compile/test_input_features.py", "tests/stress/test_stress.py", "tests/solve"),
+        ("tests/events", "tests/compile/test_input_features.py", "tests/stress/tests/test_stress.py", "tests/solve"),
     ),
     "error_control": Area(
         ("stiffmbs/solve/error_control/*.py", "stiffmbs/solve/ida/native/error_norm.py", "stiffmbs/solve/explicit/native/*.py"),

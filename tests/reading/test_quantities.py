@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stiffmbs
+from stiffmbs.errors import InputError
 from stiffmbs.reading.formula.text import FormulaError
 from stiffmbs.reading.units.quantity import in_si, quantity
 from stiffmbs.reading.units.units import Quantity
@@ -107,8 +108,9 @@ def test_a_parameter_may_bear_a_units_name_where_it_is_clear():
     parameters = {"N": Quantity(5.0), "m": Quantity(2.0)}
     assert quantity("3*N", parameters).value == 15
     assert quantity("3 N", parameters) == Quantity(3.0, (1, 1, -2))
+    assert quantity("3 N/m", parameters) == Quantity(3.0, (1, 0, -2))
     with pytest.raises(FormulaError, match="a unit and a parameter"):
-        quantity("3 N/m", parameters)
+        quantity("3 N/m + N", parameters)
 
 
 @pytest.mark.long
@@ -143,3 +145,44 @@ def test_numbers_whose_products_overflow_are_refused(found):
 def test_units_in_other_spellings_are_suggested(written, meant):
     with pytest.raises(stiffmbs.InputError, match=re.escape(f"'{written}' (did you mean '{meant}'?)")):
         stiffmbs.read_scene(f"{{bodies: {{a: {{mass: 2 {written}, inertia: 1}}}}, run: {{duration: 1}}}}")
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1e8 N/m", 1e8), ("-1e8 N/m", -1e8), ("3 N*s/m", 3), ("2 kN/mm^2", 2e9), ("5 m", 5), ("4 m/s^2", 4), ("2 N m/rad", 2), ("7 kg/(m*s)", 7),
+        ("m", 2), ("s/m", 0.15), ("2*m*s", 1.2),
+    ],
+)  # fmt: skip
+def test_units_may_have_the_names_of_parameters(text, value):
+    """A textbook calls a mass m, and its stiffness is in N/m."""
+    parameters = {"m": Quantity(2.0), "s": Quantity(0.3)}
+    assert quantity(text, parameters).value == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["3 N/m*x", "2*m*3 N", "1 N/m + m", "5 N/(x*m)", "2 mm*sin(m)"])
+def test_a_parameter_next_to_units_in_a_formula_is_ambiguous(text):
+    parameters = {"m": Quantity(2.0), "x": Quantity(1.0)}
+    with pytest.raises(FormulaError, match=r"rename the parameter, or write \(1 m\) for the unit"):
+        quantity(text, parameters)
+    quantity(text.replace("m", "y").replace("yy", "mm"), {"y": Quantity(2.0), "x": Quantity(1.0)})
+
+
+def test_the_unit_can_be_written_in_parentheses():
+    parameters = {"m": Quantity(2.0), "x": Quantity(1.0)}
+    assert quantity("3 N/(1 m)*x", parameters).value == 3
+
+
+@pytest.mark.parametrize(
+    ("entry", "example"),
+    [
+        (
+            "gravity: -9.81",
+            r"gravity: found -9\.81, expected a list in brackets: \[0, -9\.81\], or \[0, 0, -9\.81\] in space",
+        ),
+        ("figure: {y: b.x}", r"figure\.y: found 'b\.x', expected a list in brackets: \[b\.x\]"),
+    ],
+)
+def test_a_list_without_brackets_is_answered_with_an_example(entry, example):
+    with pytest.raises(InputError, match=example):
+        stiffmbs.read_scene(f"bodies: {{b: {{mass: 1, inertia: 1}}}}\n{entry}")

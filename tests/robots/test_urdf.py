@@ -131,3 +131,37 @@ def test_numbers_beyond_all_bounds_are_refused(tmp_path, place, inertia):
     path.write_text(FAR.format(place=place, inertia=inertia))
     with pytest.raises(stiffmbs.InputError, match=r"found (numbers|moments of inertia|1e\+308)"):
         stiffmbs.load_scene(path)
+
+
+PAIR = """<robot name="pair">
+  <link name="base"/>
+  <link name="one"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="two"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="three"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="c" type="{kind}"><parent link="base"/><child link="three"/><axis xyz="0 0 1"/><mimic joint="b" multiplier="2" offset="-0.1"/>{limit}</joint>
+  <joint name="b" type="{kind}"><parent link="base"/><child link="two"/><axis xyz="0 1 0"/><mimic joint="a" multiplier="-1.5" offset="0.2"/>{limit}</joint>
+  <joint name="a" type="{kind}"><parent link="base"/><child link="one"/><axis xyz="1 0 0"/>{limit}</joint>
+</robot>"""
+
+
+@pytest.mark.parametrize(
+    ("given", "rates", "expected"),
+    [
+        ({}, {}, (0, 0.2, 0.3)),
+        ({"a": 0.4}, {"a": 1.0}, (0.4, -0.4, -0.9)),
+        ({"b": 0.5}, {}, (-0.2, 0.5, 0.9)),
+        ({"c": 0.9}, {}, (-0.2, 0.5, 0.9)),
+    ],
+)
+@pytest.mark.parametrize("kind", ["continuous", "prismatic"])
+def test_joints_that_mimic_others_start_at_their_offset(tmp_path, kind, given, rates, expected):
+    """The driver keeps its coordinate; the assembly does not share the offset."""
+    limit = '<limit lower="-9" upper="9" effort="1" velocity="1"/>' if kind == "prismatic" else ""
+    (tmp_path / "pair.urdf").write_text(PAIR.format(kind=kind, limit=limit))
+    scene = load_robot(tmp_path / "pair.urdf", coordinates=given, rates=rates)
+    found = stiffmbs.run(scene, duration=0.01, points=2)
+    channel = "angle" if kind == "continuous" else "displacement"
+    for name, value in zip("abc", expected, strict=True):
+        assert found[f"{name}.{channel}"][0] == pytest.approx(value, abs=1e-9)
+    if rates:
+        assert [float(found[f"{name}.{channel}_rate"][0]) for name in "abc"] == pytest.approx([1, -1.5, -3])

@@ -17,6 +17,7 @@ from ...elements.spatial.joints.parallel import Parallel
 from ...elements.spatial.joints.tangent_to_curve import TangentToCurve
 from ...elements.spatial.orientation import matrix
 from ...model.spatial_model import SpatialData
+from ...reading.files.written_fields import written
 from ...reading.marker import GROUND, MarkerReference
 from ...reading.table import Table
 from .numbering import Numbering, Refusal, numbers, statement
@@ -68,6 +69,8 @@ class Curves:
         body, names = self._touching[name]
         second, first = (self._model.joints[joint] for joint in names[:2])
         assert isinstance(first, TangentToCurve) and isinstance(second, TangentToCurve)
+        for auxiliary in (self._model.bodies[body], *(self._model.joints[joint] for joint in names)):
+            written(auxiliary)  # CVCV stands for all of them
         sides = []
         for side, joint in (("I", first), ("J", second)):
             number = yield from self._curve(joint)

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from ...elements.states.state import StateValue
 from ...errors import InputError
 from ...model.scene import Scene
+from ...model.settings import DEFAULT_POINTS
 from ...model.spatial_model import SpatialData
+from ...reading.ascii import in_ascii
+from ...reading.files.quoted import listed
+from ...reading.files.written_fields import Recording, written
 from ...reading.formula.formula import Formula
 from .curves import touching
 from .forces import Forces
@@ -20,49 +25,122 @@ from .numbering import Numbering, Refusal, number, statement
 UNITS = ("FORCE = NEWTON", "MASS = KILOGRAM", "LENGTH = METER", "TIME = SECOND")
 
 
-def dataset_text(scene: SpatialData, source: str = "scene") -> str:
-    """Return a spatial scene as an Adams/Solver dataset in SI units.
+EQUILIBRIUM = "equilibrium"
+"""Start of a scene that Adams finds by a static simulation."""
+IN_FORMULAS = ("parameters", "tables", "variables", "roads")
+"""Sections of a scene whose content is written where formulas and elements use it."""
+_IN_VIEW, _SOLVER = "a dataset has nothing of this kind; the motion is the same", "settings of this package"
+LEFT_OUT = {
+    "": dict.fromkeys(("figure", "notes", "vehicle", "path"), _IN_VIEW),
+    "body": {"geometry": _IN_VIEW, "any_moments": _IN_VIEW, "markers": "nothing refers to them"},
+    "state": {"scale": _SOLVER},
+    "run": {"*": _SOLVER},
+}
+"""Reasons why fields are left out of a dataset with a note, by kind of their owner; all others are refused."""
+REMEDIES = {
+    "at_start": "describe bodies in the pose and with the velocities that it gives, and remove it",
+    "stages": "write each stage as a scene of its own",
+    "start": "describe the bodies in the pose of the start, and use start: described or start: equilibrium",
+}
+LATER = "run.start: a simulation of Adams starts at time 0; shift the time in the formulas, and set run.start=0"
 
-    `source`: name of the scene in messages. Raises InputError if elements of the scene have no equivalent in
-    Adams/Solver; names all of them.
+
+@dataclass(frozen=True)
+class WrittenDataset:
+    """Texts of a dataset and of its command file, and notes on what they do not contain."""
+
+    text: str
+    commands: str
+    notes: tuple[str, ...]
+
+
+def dataset_text(scene: SpatialData, source: str = "scene") -> str:
+    """Return a spatial scene as an Adams/Solver dataset in SI units; parameters and errors as for `written_dataset`."""
+    return written_dataset(scene, source).text
+
+
+def written_dataset(scene: SpatialData, source: str = "scene") -> WrittenDataset:
+    """Return a spatial scene as an Adams/Solver dataset in SI units, and the command file that runs it.
+
+    `source`: name of the scene in messages. Raises InputError if something in the scene has no equivalent in
+    Adams/Solver; names all of it.
     """
+    recording = Recording(LEFT_OUT)
+    sections = {name: recording.section(getattr(scene, f"{name}s"), name) for name in ("joint", "force", "state")}
+    sections["bodie"] = recording.section(scene.bodies, "body")
+    model = recording.of(scene.model_copy(update={f"{name}s": entries for name, entries in sections.items()}), "")
+    written(model, "dimensions", "markers", "states", "inputs", "requests", "run", *IN_FORMULAS)
+    for state in model.states.values():
+        written(state, *(name for name in type(state._entry).model_fields if name != "scale"))
+    refused: list[str] = []
+    lines, lost = _statements(model, refused)
+    commands: list[str] = []
+    if isinstance(scene, Scene):
+        commands = _commands(scene, model, recording.of(scene.run, "run"), refused)
+    refused += [
+        f"{f'{kind}.' if kind else ''}{name}{f' of {owner}' if owner else ''}{_hint(name)}"
+        for kind, owner, name in recording.refused()
+    ]
+    if refused:
+        raise InputError(f"{source}: a dataset has no statement for " + "; ".join(refused))
+    requests = [f"not written (a dataset has no function for them): requests {listed(lost)}"] if lost else []
+    letters = (
+        [] if "".join(lines).isascii() else ["names and texts of the dataset are in ASCII letters (ä is a, Θ is Theta)"]
+    )
+    notes = (*recording.notes(), *requests, *letters)
+    remarks = [f"! {note}" for note in notes]
+    return WrittenDataset(_text(lines), _text([f"! {scene.name}", *remarks, *commands]), notes)
+
+
+def _text(lines: list[str]) -> str:
+    return in_ascii("\n".join(lines)) + "\n"
+
+
+def _hint(name: str) -> str:
+    return f" ({REMEDIES[name]})" if name in REMEDIES else ""
+
+
+def _statements(scene: Any, refused: list[str]) -> tuple[list[str], list[str]]:
+    """Return the statements of a scene, and the requests that they leave out; add unsupported entries to `refused`."""
     numbering, names = Numbering(scene, touching(scene)), state_names(scene)
     functions = Functions(numbering, names, reactions(scene))
     joints, forces = Joints(scene, numbering, functions), Forces(scene, numbering, functions)
-    refused: list[str] = []
+    lost: list[str] = []
     made = [
         *_each("joints", scene.joints.items(), lambda name, joint: joints.statements(joint, name), refused),
         *_each("forces", scene.forces.items(), lambda _, force: forces.statements(force), refused),
         *_each("states", states(scene), lambda _, write: write(functions), refused),
-        *requests(scene, functions),
+        *requests(scene, functions, lost),
     ]
-    if refused:
-        raise InputError(f"{source}: a dataset has no statement for " + "; ".join(refused))
+    # a run from the equilibrium starts at rest, and Adams' statics take no velocities
+    moving = getattr(scene._entry, "start", "") != EQUILIBRIUM
     gravity = (f"{axis}GRAV = {number(g)}" for axis, g in zip("IJK", scene.gravity, strict=True))
     lines = [
         scene.name or "scene",
         statement("UNITS", None, *UNITS),
         statement("ACCGRAV", None, *gravity),
-        *numbering.statements(),
+        *numbering.statements(moving),
         *made,
         "END",
     ]
-    return "\n".join(lines) + "\n"
+    return lines, lost
 
 
-def command_text(scene: Scene) -> str:
-    """Return the command file that runs the dataset with the scene's section `run`."""
-    run = scene.run
-    end = run.start + run.duration
-    spacing = run.output or run.duration / 1000
+def _commands(scene: Scene, recorded: Any, run: Any, refused: list[str]) -> list[str]:
+    """Return the commands that run the dataset with the scene's sections `start` and `run`."""
+    if run.start:
+        refused.append(LATER)
+    if scene.start == EQUILIBRIUM:
+        written(recorded, "start")
+    spacing = run.output or run.duration / (DEFAULT_POINTS - 1)
     steps = run.points - 1 if isinstance(run.points, int) else round(run.duration / spacing)
-    lines = [
-        f"! {scene.name}",
-        f"INTEGRATOR/ERROR = {number(run.rtol)}",
-        f"SIMULATE/DYNAMIC, END = {number(end)}, STEPS = {max(steps, 1)}",
+    longest = [f"HMAX = {number(run.max_step)}"] if run.max_step else []
+    return [
+        f"INTEGRATOR/{', '.join([f'ERROR = {number(run.rtol)}', *longest])}",
+        *(["SIMULATE/STATICS"] if scene.start == EQUILIBRIUM else []),
+        f"SIMULATE/DYNAMIC, END = {number(run.duration)}, STEPS = {max(steps, 1)}",
         "STOP",
     ]
-    return "\n".join(lines) + "\n"
 
 
 def _each(
@@ -74,6 +152,7 @@ def _each(
             text = list(write(name, entry))
         except Refusal as refusal:
             refused.append(f"{section}.{name}: {refusal}")
+            written(entry)
             continue
         if text:
             yield f"! adams_view_name='{name}'"
@@ -111,12 +190,13 @@ def _output(k: int, formula: Formula, functions: Functions) -> Iterator[str]:
     yield statement("VARIABLE", k, f"FUNCTION = {functions.text(formula)}")
 
 
-def requests(scene: SpatialData, functions: Functions) -> Iterator[str]:
-    """Yield the requests; those without an equivalent in Adams become a comment."""
+def requests(scene: SpatialData, functions: Functions, lost: list[str]) -> Iterator[str]:
+    """Yield the requests; those without an equivalent in Adams become a comment, and are added to `lost`."""
     for k, (name, output) in enumerate(scene.outputs().items(), 1):
         try:
             law = functions.output(output)
         except Refusal:
+            lost.append(name)
             yield f"! the request {name} is left out"
             continue
         yield f"! adams_view_name='{name}'"

@@ -126,7 +126,7 @@ class Forces:
 
     @statements.register
     def _bushing(self, force: Bushing) -> Iterator[str]:
-        for name in type(force).model_fields:
+        for name in force.__class__.model_fields:
             if name.startswith("law_") and getattr(force, name) is not None:
                 raise Refusal(f"found a {name} of a {force.kind}, expected numbers only, or a force with a formula")
         if force.axes != "j":
@@ -151,8 +151,11 @@ class Forces:
             "EMODULUS": force.young, "GMODULUS": force.shear_modulus, "ASY": force.asy, "ASZ": force.asz,
         }  # fmt: skip
         damping = [f"CRATIO = {number(force.damping_ratio)}"] if force.damping_ratio else []
-        if np.any(_filled(force.damping)):
-            damping = [f"CMATRIX = {numbers(_filled(force.damping).T.ravel())}"]
+        C = _filled(force.damping)
+        if np.any(C):  # the lower triangle by columns
+            if not np.array_equal(C, C.T):
+                raise Refusal("found a damping matrix of a beam that is not symmetric, expected a symmetric one")
+            damping = [f"CMATRIX = {numbers(C[np.triu_indices(6)])}"]
         yield statement("BEAM", next(self._numbers), *self._numbering.ends(force), *_given(given), *damping)
 
 

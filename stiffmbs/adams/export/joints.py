@@ -17,6 +17,7 @@ from ...elements.spatial.joints.shared import Distance
 from ...elements.spatial.joints.tangent_to_curve import TangentToCurve
 from ...elements.spatial.joints.thread import Thread
 from ...model.spatial_model import SpatialData
+from ...reading.files.written_fields import written
 from ...reading.joint_name import JointName
 from ..scene.joints import KINDS
 from .curves import Curves
@@ -105,6 +106,7 @@ class Joints:
 
     @statements.register
     def _equation(self, joint: ConstraintEquation | VelocityEquation, name: str) -> Iterator[str]:
+        written(joint, "j")  # only the axes of requests for its reaction
         reported = [] if joint.i is None else [f"I = {self._numbering.marker(joint.i)}"]
         for formula in joint.zero:
             yield statement("GCON", next(self._other_numbers), *reported, f"FUNCTION = {self._functions.text(formula)}")

@@ -12,6 +12,7 @@ import numpy as np
 from ...elements.spatial.body import Body
 from ...elements.spatial.orientation import IDENTITY, matrix
 from ...model.spatial_model import SpatialData
+from ...reading.files.written_fields import unwritten
 from ...reading.marker import GROUND, MarkerReference
 from ...reading.table import Table
 from ..statements.outputs import FEWEST_POINTS
@@ -100,6 +101,8 @@ class Numbering:
 
         Raises Refusal if Adams has no such interpolation, or the table has too few points.
         """
+        if others := unwritten(table, "table", "ends", "lines", "akima", "spline"):
+            raise Refusal(f"found {others} of the table {name}, expected none")
         method = table.ends if table.interpolation == "spline" or table.ends == "periodic" else table.interpolation
         if method is None or method not in CURVES:
             raise Refusal(f"found the table {name} ({method or 'natural'}), expected akima, lines, or ends: not-a-knot")
@@ -111,9 +114,12 @@ class Numbering:
             self._splines[name] = len(self._splines) + 1, table
         return CURVES[method], self._splines[name][0]
 
-    def statements(self) -> Iterator[str]:
-        """Yield the statements of parts, markers and splines."""
-        moving = any(any(body.velocity) or any(body.omega) for body in self._model.bodies.values())
+    def statements(self, moving: bool = True) -> Iterator[str]:
+        """Yield the statements of parts, markers and splines.
+
+        `moving`: False for a start at rest, without the described velocities.
+        """
+        moving = moving and any(any(body.velocity) or any(body.omega) for body in self._model.bodies.values())
         yield statement("PART", self.parts[GROUND], "GROUND")
         yield from self._of(GROUND)
         for name, body in self._model.bodies.items():

@@ -12,7 +12,7 @@ from ...elements.forces.friction import AT_REST
 from ...elements.spatial.number_format import plain
 from ..functions.translate import Translation
 from ..statements.contact import BOX, CYLINDER, ELLIPSOID, PLANE, SPHERE, Contact, Friction, Shape, read_shape
-from ..statements.text import of_each
+from ..statements.text import DatasetFault, of_each
 from ..statements.units import Units
 from .forces import TORQUE
 from .mechanism import Mechanism
@@ -138,7 +138,10 @@ def _shape(contact: Contact, ident: int, mechanism: Mechanism) -> Shape:
     statement = mechanism.dataset.graphics.get(ident)
     if statement is None:
         raise contact.fault(f"found the geometry {ident}, expected the number of a GRAPHICS")
-    return read_shape(statement)
+    try:
+        return read_shape(statement)
+    except DatasetFault as fault:
+        raise DatasetFault(fault.line, fault.label, f"{fault.reason} (used by {contact.label})") from None
 
 
 def _impact(contact: Contact, gap: str, rate: str) -> str:

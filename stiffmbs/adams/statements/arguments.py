@@ -13,7 +13,14 @@ from .text import DatasetFault, Statement, Subsystem
 
 _ASSIGNED = re.compile(r"([A-Za-z_]\w*)\s*=\s*(.*)", re.DOTALL)
 _WORD = re.compile(r"[A-Za-z_]\w*")
-_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[ED][+-]?\d+)?)(D?)", re.IGNORECASE)
+_NUMBER = re.compile(r"([+-]?)\s*((?:\d+\.?\d*|\.\d+)(?:[ED][+-]?\d+)?)\s*(D?)", re.IGNORECASE)
+_ANGULAR = {
+    "PART": ("REULER", "WX", "WY", "WZ", "WM"), "POINT_MASS": ("REULER",), "MARKER": ("REULER",),
+    "JOINT": ("IC", "ICROT", "ICTRAN"), "MOTION": ("ICDISP", "ICVEL"), "SPRINGDAMPER": ("ANGLE",), "FIELD": ("LENGTH",),
+    "SENSOR": ("VALUE", "ERROR"), "SPLINE": ("X", "Y"), "ARRAY": ("NUMBERS",), "DIFF": ("IC",), "VARIABLE": ("IC",),
+    "COUPLER": ("SCALES",), "MATRIX": ("VALUES",),
+}  # fmt: skip
+"""Arguments that may be angles, by statement: a D after a number means degrees there alone."""
 
 
 @dataclass(frozen=True)
@@ -117,6 +124,11 @@ class Arguments:
         """Exclude arguments from the report of unused arguments."""
         self._found.request(*names)
 
+    def says(self, name: str) -> str:
+        """Return an argument's value in capitals, empty if it is missing; it stays in the report of unused arguments."""
+        found = self._found.unrecorded(name)
+        return ", ".join(found.values).strip().upper() if found else ""
+
     def fault(self, reason: str, place: int | str = "") -> DatasetFault:
         """Return the error for a fault in this statement, at a line or an argument; by default at its first line."""
         return DatasetFault(self.line(place) if isinstance(place, str) else place, self.label, reason)
@@ -158,11 +170,13 @@ class Arguments:
         """Return an argument's numbers, as many as one of `counts`; None if it is missing. Degrees become radians."""
         if name not in self:
             return None
-        values = tuple(number(text) for text in self._found[name].values)
+        angular = name in _ANGULAR.get(self.keyword, ())
+        values = tuple(number(text, angular) for text in self._found[name].values)
         wanted = " or ".join(map(str, counts))
         if None in values or (counts and len(values) not in counts):
             raise self.fault(
-                f"found {name} = {quoted(self.text(name))}, expected {wanted or 'only'} numbers", self.line(name)
+                f"found {name} = {quoted(self.text(name))}, expected {wanted or 'only'} numbers{_hint(self.texts(name))}",
+                self.line(name),
             )
         return tuple(value for value in values if value is not None)
 
@@ -210,15 +224,25 @@ class Arguments:
         return found
 
 
-def number(text: str) -> float | None:
-    """Return the number in a text, in radians if followed by D for degrees; None if not a finite number."""
-    found = _NUMBER.fullmatch(text.replace(" ", ""))
-    if found is None:
+def _hint(values: Sequence[str]) -> str:
+    """Return how numbers are written if a value is none because of blanks, or of a D for degrees; empty otherwise."""
+    if any(number(text) is None and number(text.replace(" ", "")) is not None for text in values):
+        return " without blanks in them"
+    return ", no angles in degrees (D)" if any(number(text, False) is None and number(text) for text in values) else ""
+
+
+def number(text: str, angular: bool = True) -> float | None:
+    """Return the number in a text, in radians if followed by D for degrees; None if not a finite number.
+
+    Blanks are allowed after its sign and before a D. `angular`: False for a number that is no angle.
+    """
+    found = _NUMBER.fullmatch(text.strip())
+    if found is None or (found[3] and not angular):
         return None
-    value = float(found[1].upper().replace("D", "E"))
+    value = float(found[1] + found[2].upper().replace("D", "E"))
     if math.isinf(value):  # overflow
         return None
-    return math.radians(value) if found[2] else value
+    return math.radians(value) if found[3] else value
 
 
 def _integer(arguments: Arguments, text: str, where: str, place: int | str) -> int:

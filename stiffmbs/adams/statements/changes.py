@@ -13,7 +13,7 @@ from .text import CommandFault, Statement
 SWITCHED = (
     "JOINT", "JPRIM", "GCON", "MOTION", "COUPLER", "GEAR", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "SPRINGDAMPER",
     "BUSHING", "BEAM", "FIELD", "REQUEST", "CONTACT", "FRICTION", "NFORCE", "MFORCE", "PTCV", "CVCV", "SENSOR", "MREQUEST",
-    "UCON",
+    "UCON", "GSE",
 )  # fmt: skip
 """Statements that can be deactivated."""
 GRAVITY: Final = ("ACCGRAV", 0)

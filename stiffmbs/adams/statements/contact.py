@@ -75,7 +75,10 @@ class Contact(Numbered):
     depth: float = above_zero("DMAX")
     friction: Friction | None = read_by(_friction, "COULOMB_FRICTION", *_FRICTION)
     part: int = 0
-    others = ("TYPE", "IMPACT", "NO_FRICTION")
+    others = ("TYPE", "IMPACT", "NO_FRICTION", "STICTION")
+    ignored = dict.fromkeys(
+        ("MAX_STICTION_DEFORMATION", "STICTION"), "it slides slowly below STICTION_TRANSITION_VELOCITY"
+    )
     refused = dict.fromkeys(_NOT_READ, "a contact by IMPACT between primitives")
 
     @classmethod
@@ -84,6 +87,11 @@ class Contact(Numbered):
         if (kind := (found.text("TYPE") or SOLIDS).strip().upper()) and not SOLIDS.startswith(kind):
             raise found.fault(f"found TYPE = {kind}, expected {SOLIDS}", "TYPE")
         found.without_effect("IMPACT", "NO_FRICTION")
+        stiction = found.says("STICTION")
+        if stiction not in ("", "ON", "OFF"):
+            raise found.fault(f"found STICTION = {stiction}, expected ON or OFF", "STICTION")
+        if stiction == "OFF":
+            found.without_effect("STICTION", "MAX_STICTION_DEFORMATION")
 
     @property
     def name(self) -> str:

@@ -42,12 +42,18 @@ def _rows(found: Arguments, _: Units) -> Rows:
     values = found.numbers("VALUES") or ()
     if found.one_of("FULL", "SPARSE") == "SPARSE":
         return _from_entries(found, values)
-    rows, columns = (int(found.number(name) or 0) for name in ("M", "N"))
+    rows, columns = _size(found)
     if rows < 1 or columns < 1 or len(values) != rows * columns:
         raise found.fault(f"found {len(values)} VALUES, M = {rows} and N = {columns}, expected M N VALUES")
     by_rows = (found.text("FULL") or "RORDER").strip().upper().startswith("R")
     at = (lambda i, j: i * columns + j) if by_rows else (lambda i, j: j * rows + i)
     return tuple(tuple(values[at(i, j)] for j in range(columns)) for i in range(rows))
+
+
+def _size(found: Arguments) -> tuple[int, int]:
+    """Return M and N, which Adams/View writes as ROWS and COLUMNS; 0 for one that is missing."""
+    rows, columns = (found.number(found.one_of(*names) or names[0]) or 0 for names in (("M", "ROWS"), ("N", "COLUMNS")))
+    return int(rows), int(columns)
 
 
 def _from_entries(found: Arguments, values: tuple[float, ...]) -> Rows:
@@ -57,7 +63,7 @@ def _from_entries(found: Arguments, values: tuple[float, ...]) -> Rows:
             f"found {len(rows)} I, {len(columns)} J and {len(values)} VALUES, expected equal numbers, I and J from 1 on"
         )
     entries = dict(zip(zip(rows, columns, strict=True), values, strict=True))
-    high, wide = (max(int(found.number(name) or 0), *at) for name, at in (("M", rows), ("N", columns)))
+    high, wide = (max(count, *at) for count, at in zip(_size(found), (rows, columns), strict=True))
     return tuple(tuple(entries.get((i, j), 0.0) for j in range(1, wide + 1)) for i in range(1, high + 1))
 
 
@@ -65,7 +71,7 @@ def _from_entries(found: Arguments, values: tuple[float, ...]) -> Rows:
 class Matrix(Numbered):
     """Full or sparse matrix by rows."""
 
-    rows: Rows = read_by(_rows, "FULL", "SPARSE", "M", "N", "VALUES", "I", "J")
+    rows: Rows = read_by(_rows, "FULL", "SPARSE", "M", "N", "ROWS", "COLUMNS", "VALUES", "I", "J")
     ignored = dict.fromkeys(("NAME", "UNITS"), "text")
     refused = {"FILE": "the numbers in VALUES"}
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from pydantic import Field, field_validator, model_validator
 
-from ...reading.fields import NAME_PATTERN
+from ...reading.fields import is_name
 from ...reading.formula.dimension import UNKNOWN
 from ...reading.formula.field import OfMotion
 from ...reading.formula.formula import Formula
@@ -161,7 +161,7 @@ class LinearSystem(Entry):
         if len(self.outputs_) != (p if p > 1 or self.outputs_ else 0):
             raise ValueError(f"outputs: found {len(self.outputs_)} names, expected {p}, one for each row of c")
         for output in self.outputs_:
-            if not re.match(NAME_PATTERN, output) or re.match(r"x\d+$", output):
+            if not is_name(output) or re.match(r"x\d+$", output):
                 raise ValueError(f"outputs: found '{output}', expected letters, digits and _, and none of x1, x2, ...")
         return self
 

@@ -27,7 +27,7 @@ from ...reading.units.quantity import in_si, quantity
 from ...reading.units.units import CONSTANTS, Quantity
 
 MOST_REPEATS = 100_000
-_LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
+_LOOP = re.compile(r"^\s*([^\W\d]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
 _BRACES = re.compile(r"\{([^{}]*)\}")
 
 

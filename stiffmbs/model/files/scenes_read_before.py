@@ -1,7 +1,8 @@
 """Disk cache of validated scenes.
 
 There is one entry for a file and its changes. It is valid for the same text if all other files read for it are
-unchanged, and so are the files of `stiffmbs.describe`, Python, pydantic and NumPy.
+unchanged. It also depends on the code of `stiffmbs.reading`, `stiffmbs.elements` and `stiffmbs.model`, and on Python,
+pydantic and NumPy.
 """
 
 from __future__ import annotations

@@ -46,6 +46,10 @@ class Fields(Mapping[str, Value]):
         """Return True if the field is present, without requesting it."""
         return name in self._values
 
+    def unrecorded(self, name: str) -> Value | None:
+        """Return a field without requesting it; None if it is missing."""
+        return self._values.get(name)
+
     def request(self, *names: str) -> None:
         """Record fields that are used without this mapping."""
         self._requested.update(names)
@@ -59,10 +63,13 @@ class Fields(Mapping[str, Value]):
         ]
 
 
-def unused_notes(elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[str, str]] | None = None) -> list[str]:
+def unused_notes(
+    elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[str, str]] | None = None, words: str = "not used"
+) -> list[str]:
     """Return notes on the fields that were not requested, one for each known reason.
 
-    `reasons`: reasons why a field has no effect, by kind and name; ``*`` matches any kind or name.
+    `reasons`: reasons why a field has no effect, by kind and name; ``*`` matches any kind or name. `words`: what
+    happened to these fields.
     """
     owners: dict[str, dict[str, list[str]]] = {}
     for element in elements:
@@ -70,8 +77,7 @@ def unused_notes(elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[
             reason = _reason(reasons or {}, element.kind, name)
             owners.setdefault(reason, {}).setdefault(f"{element.kind} {name}".strip(), []).append(element.owner)
     return [
-        f"not used{f' ({reason})' if reason else ''}: {_all_listed(fields)}"
-        for reason, fields in sorted(owners.items())
+        f"{words}{f' ({reason})' if reason else ''}: {_all_listed(fields)}" for reason, fields in sorted(owners.items())
     ]
 
 

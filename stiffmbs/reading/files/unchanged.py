@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 REUSED = ("bodies", "joints", "forces")
 """Sections whose validated entries can be reused."""
-_NAME = re.compile(r"[A-Za-z_]\w*")
+_NAME = re.compile(r"[^\W\d]\w*")
 
 
 class Unchanged:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+import unicodedata
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from io import StringIO
@@ -61,7 +62,7 @@ def _unlocated(error: Exception) -> str:
 
 
 def _with_plain_ends(text: str) -> str:
-    return _OTHER_ENDS.sub(" ", text)
+    return _OTHER_ENDS.sub(" ", text if text.isascii() else unicodedata.normalize("NFC", text))
 
 
 def quotes_hint(key: object) -> str:

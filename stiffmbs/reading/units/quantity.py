@@ -80,17 +80,41 @@ def is_unit(node: ast.AST) -> bool:
     return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == UNIT
 
 
+def _is_number_with_units(node: ast.expr) -> bool:
+    """Return True for one number that is followed by units alone, such as ``-1e8 N/m``."""
+    match node:
+        case ast.UnaryOp(_, operand):
+            return _is_number_with_units(operand)
+        case ast.BinOp(left, ast.Mult() | ast.Div(), right):
+            return _is_number_with_units(left) and _is_of_units(right)
+    return isinstance(node, ast.Constant)
+
+
+def _is_of_units(node: ast.expr) -> bool:
+    match node:
+        case ast.Name(name):
+            return name in UNITS
+        case ast.BinOp(left, ast.Mult() | ast.Div(), right):
+            return _is_of_units(left) and _is_of_units(right)
+        case ast.BinOp(base, ast.Pow(), exponent):
+            return _is_of_units(base) and not any(isinstance(part, ast.Name) for part in ast.walk(exponent))
+    return is_unit(node)
+
+
 def of_name(
     name: str, text: str, tree: ast.expr, parameters: Mapping[str, Quantity], units: Mapping[str, Quantity] = UNITS
 ) -> Quantity:
     """Return the meaning of an undotted name in a formula: a parameter, a unit or a constant.
 
-    Raise a FormulaError for an unknown name, and for a parameter that could also be a unit.
+    A name that is a parameter and a unit is a unit in a number with units alone: m in ``1e8 N/m``. Raise a FormulaError for
+    one next to other units in a formula, and for an unknown name.
     """
     if name in parameters and name in UNITS and any(map(is_unit, ast.walk(tree))):
+        if _is_number_with_units(tree):
+            return UNITS[name]
         raise FormulaError(
             f"found '{name}' in '{quoted(text)}', which is a unit and a parameter of the scene, expected one or the other: "
-            "rename the parameter"
+            f"rename the parameter, or write (1 {name}) for the unit"
         )
     for table in (parameters, units, CONSTANTS):
         if name in table:

@@ -9,6 +9,7 @@ import numpy as np
 from ...elements.spatial.number_format import plain, vector
 from ...reading.files.yaml_text import Content
 from ...reading.marker import GROUND
+from ..following import with_followers
 from ..robot import LinkJoint, Robot, RobotFault
 from .actuators import actuators
 from .joints import Masses, bodies, joints, passive
@@ -22,10 +23,11 @@ RUN = {"duration": 1, "output": 0.01}
 def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> Content:
     """Return the scene of a robot for `stiffmbs.model.read_scene.read_scene`.
 
-    `coordinates`, `rates`: initial coordinates of hinges and slides, rad or m, and their rates; others are as drawn,
-    and at rest. Raises RobotFault if the robot has features without an equivalent in a scene.
+    `coordinates`, `rates`: initial coordinates of hinges and slides, rad or m, and their rates; others follow these, or
+    are as drawn, and at rest. Raises RobotFault if the robot has features without an equivalent in a scene.
     """
     _check_joints(robot, {**coordinates, **rates})
+    coordinates, rates = with_followers(robot, coordinates, rates)
     mechanism = Mechanism(robot, coordinates, rates)
     masses = Masses(robot, mechanism)
     acting = actuators(robot, mechanism)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +12,12 @@ import numpy as np
 
 from ...analyses.job import Runnable, data_of
 from ...analyses.run import run
-from ...errors import InputError, refuse_text
+from ...errors import InputError, refuse_missing, refuse_text
 from ...model.model_data import ModelData
 from ...reading.marker import MarkerReference
 from ...results.files import refuse_path, write_text, written_whole
 from ...results.solution import Solution
+from ..origin import page_with_origin
 from ..page.data import moving_page, page_data
 from .derive import drawing_of
 from .film import Playback, need_encoder, pictures, write_gif, write_mp4
@@ -31,7 +34,7 @@ def check_animation(path: Path, playback: Playback) -> None:
     refuse_path("-o", path, "animation")
     need_encoder(path)
     for option, value in (("--speed", playback.speed), ("--rate", playback.rate)):
-        if not (np.isfinite(value) and value > 0):
+        if value is not None and not (np.isfinite(value) and value > 0):
             raise InputError(f"{option}: found {value:g}, expected a number greater than 0")
 
 
@@ -60,38 +63,54 @@ def write_animation(
     drawn in full colors. `view`, `playback` and `shown` are options of a film; a page can be rotated by hand. `traces` are
     markers or bodies whose paths are drawn. InputError if a run belongs to another model, or a marker is unknown.
     """
+    if path.suffix == ".html":
+        write_text(path, animation_page(data, runs, traces))
+        return
     poses = {name: poses_of(data, run.time, run.channels) for name, run in runs.items()}
     drawing = drawing_of(data, along=next(iter(poses.values())))
     anchors = traced(data, traces)
-    if path.suffix == ".html":
-        first = next(iter(runs.values()))
-        figure = first.figure.y if first.figure else ()
-        page = moving_page(drawing.name, page_data(drawing, poses, first, figure, anchors))
-        write_text(path, page)
-        return
     seen = view_named(view, drawing.dimensions, drawing.gravity)
     frames = pictures(drawing, poses, seen, playback, shown, anchors)
     written_whole(path, lambda part: FILMS[path.suffix](part, frames, playback.rate))
 
 
+def animation_page(data: ModelData, runs: Mapping[str, Solution], traces: Sequence[str] = ()) -> str:
+    """Return the page of an animation; parameters and errors as for `write_animation`."""
+    poses = {name: poses_of(data, run.time, run.channels) for name, run in runs.items()}
+    drawing, first = drawing_of(data, along=next(iter(poses.values()))), next(iter(runs.values()))
+    figure = first.figure.y if first.figure else ()
+    page = moving_page(drawing.name, page_data(drawing, poses, first, figure, traced(data, traces)))
+    return page_with_origin(page, first.provenance)
+
+
+@dataclass(frozen=True, repr=False)
+class Animation:
+    """Page of a mechanism in motion, which notebooks show."""
+
+    page: str
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{escape(self.page)}" style="width: 100%; height: 40rem; border: 0"></iframe>'
+
+
 def animate(
-    model: Runnable, path: str | Path, runs: Solution | Mapping[str, Solution] | None = None, view: str = "", speed: float = 1.0,
+    model: Runnable, path: str | Path | None = None, runs: Solution | Mapping[str, Solution] | None = None, view: str = "", speed: float | None = None,
     rate: float = 25.0, names: bool = False, forces: bool | None = None, traces: Sequence[str] = (), **changes: Any,
-) -> None:  # fmt: skip
-    """Write an animation of a model, as a film or a page.
+) -> Animation | None:  # fmt: skip
+    """Write an animation of a model, as a film or a page, or return the page for a notebook.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
         A model, a scene, or a scene's file.
-    path : str or Path
-        Output file: .gif, .mp4, or .html for a page that needs no network.
+    path : str or Path, optional
+        Output file: .gif, .mp4, or .html for a page that needs no network; by default the page is returned.
     runs : Solution or mapping of str to Solution, optional
         Runs of the model, drawn over each other, by name; by default the model is run.
     view : str
         As for `stiffmbs.draw`.
-    speed : float
-        Seconds of the model per second of a film.
+    speed : float, optional
+        Seconds of the model per second of a film; by default 1, or less for a film of at least 4 s.
     rate : float
         Pictures per second of a film.
     names : bool
@@ -103,17 +122,28 @@ def animate(
     **changes
         Fields of the run's settings to change.
 
+    Returns
+    -------
+    Animation or None
+        Page that a notebook shows as the value of a cell; None if a path is given.
+
     Raises
     ------
     InputError, AssemblyError
         As for `stiffmbs.run`, and for a file that cannot be written.
     """
     playback = Playback(speed, rate)
-    check_animation(Path(path), playback)
+    if path is None:
+        refuse_missing("jinja2", "'stiffmbs[report]'", "animate: ")
+    else:
+        check_animation(Path(path), playback)
     check_view(view)
     data = data_of(model)
     traced(data, traces)
     if runs is None:
         runs = run(data, **changes)
     found = {"": runs} if isinstance(runs, Solution) else runs
+    if path is None:
+        return Animation(animation_page(data, found, traces))
     write_animation(Path(path), data, found, view, playback, Shown(names, forces), traces)
+    return None

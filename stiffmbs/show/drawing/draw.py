@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...analyses.check import Report, check
-from ...analyses.job import data_of
+from ...analyses.job import data_of, settings_of
 from ...analyses.linearised.at_state import at_state
 from ...errors import refuse_missing
 from ...reading.names import owner_of
 from ...results.channels import channels_of
 from ...results.files import refuse_path, write_text
+from ...results.provenance import Provenance, provenance_of
 from ..style import write_sheet
 from .as_json import drawing_json, poses_json
 from .derive import drawing_of
@@ -56,14 +57,17 @@ def marks_of(report: Report) -> dict[str, Mark]:
     return marks | {joint: "redundant" for joint, _ in report.redundant}
 
 
-def write_drawing(path: Path, drawing: Drawing, poses: Poses, view: str, names: bool, forces: bool | None) -> None:
-    """Write a drawing to a file, completely or not at all."""
+def write_drawing(
+    path: Path, drawing: Drawing, poses: Poses, view: str, names: bool, forces: bool | None, origin: Provenance | None = None
+) -> None:  # fmt: skip
+    """Write a drawing to a file, completely or not at all, with the origin of its results."""
     if path.suffix == ".json":
-        text = json.dumps({"drawing": drawing_json(drawing), "poses": poses_json(poses)})
+        about = {"origin": origin.as_texts()} if origin else {}
+        text = json.dumps({"drawing": drawing_json(drawing), "poses": poses_json(poses), **about})
         write_text(path, text)
         return
     sheet = picture(drawing, poses, view_named(view, drawing.dimensions, drawing.gravity), Shown(names, forces))
-    write_sheet(path, sheet, dpi=130)
+    write_sheet(path, sheet, dpi=130, origin=origin)
 
 
 def draw(
@@ -109,11 +113,13 @@ def draw(
         refuse_missing("matplotlib", "'stiffmbs[plot]'", "draw: ")
     else:
         refuse_path("-o", Path(path), "drawing")
-    drawing, poses = state_drawn(model, at, described, checked, **changes)
+    data = data_of(model)  # type: ignore[arg-type]
+    drawing, poses = state_drawn(data, at, described, checked, **changes)
     if path is None:
         seen = view_named(view, drawing.dimensions, drawing.gravity)
         return picture(drawing, poses, seen, Shown(names, forces), on_screen=True)
-    write_drawing(Path(path), drawing, poses, view, names, forces)
+    chosen = settings_of(data, None, changes)
+    write_drawing(Path(path), drawing, poses, view, names, forces, provenance_of(data, chosen))
     return None
 
 

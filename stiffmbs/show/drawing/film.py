@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MOST_FRAMES = 3_000
+SHORTEST_FILM = 4.0
+"""Length of a film, s, below which it shows a short run in slow motion unless a speed is given."""
 FAINT = 0.4
 """Opacity of the bodies of other runs."""
 
@@ -33,20 +35,22 @@ FAINT = 0.4
 class Playback:
     """Time scale and picture rate of a film.
 
-    `speed`: seconds of the model per second of the film. `rate`: pictures per second of the film.
+    `speed`: seconds of the model per second of the film; by default 1, or less for a film of at least `SHORTEST_FILM`.
+    `rate`: pictures per second of the film.
     """
 
-    speed: float = 1.0
+    speed: float | None = None
     rate: float = 25.0
 
     def instants(self, start: float, end: float) -> np.ndarray:
         """Return the instants of all pictures, s. Raises InputError if there are more than `MOST_FRAMES` pictures."""
-        count = int((end - start) / self.speed * self.rate) + 1
+        speed = self.speed or min(1.0, (end - start) / SHORTEST_FILM) or 1.0
+        count = int((end - start) / speed * self.rate) + 1
         if count > MOST_FRAMES:
             raise InputError(
                 f"animate: found {count} pictures, expected at most {MOST_FRAMES}: a higher --speed, or fewer pictures by --rate"
             )
-        return start + np.arange(max(count, 2)) * self.speed / self.rate
+        return start + np.arange(max(count, 2)) * speed / self.rate
 
 
 def need_encoder(path: Path) -> None:

@@ -9,11 +9,13 @@ from ...analyses.linearised.modes import Modes
 from ...errors import InputError, SolverError
 from ...linear_analysis.modes import Motion
 from ...results.files import write_text
+from ...results.provenance import provenance_of
 from ...results.solution import Solution
 from ..drawing.deformed import true_to_scale
 from ..drawing.derive import drawing_of
 from ..drawing.poses import poses_of
 from ..flexible_body import MOST_FREQUENCIES
+from ..origin import page_with_origin
 from .data import moving_page, page_data
 
 POINTS = 31
@@ -50,4 +52,4 @@ def write_modes(path: Path, found: Modes, amplitude: float) -> None:
     if data is None:
         raise InputError(f"-o {path}: found no mode that can be shown, expected a vibration and a smaller --amplitude")
     page = moving_page(f"Modes of {found.name or 'the model'}", data)
-    write_text(path, page)
+    write_text(path, page_with_origin(page, provenance_of(found.about.data)))

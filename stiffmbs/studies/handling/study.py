@@ -53,12 +53,15 @@ class Handling:
     ratio : float
         Steer angle of the wheels per steering, rad/rad or rad/m.
     tests : dict of str to Tested
+    width : float
+        Width of the vehicle, m, for which courses have their cones.
     """
 
     name: str
     car: Car
     ratio: float
     tests: dict[str, Tested]
+    width: float
 
     def __getitem__(self, test: str) -> dict[str, float]:
         """Return the values of the metrics of a test."""
@@ -137,7 +140,7 @@ def handling(
         count = workers or os.cpu_count() or 1
         pool = stack.enter_context(process_pool(count)) if count > 1 else None
         known = _preliminary(scene, car, width or car.track + WIDER)
-        return Handling(scene.name, car, known.ratio, _solved(scene, car, known, changed, pool))
+        return Handling(scene.name, car, known.ratio, _solved(scene, car, known, changed, pool), known.width)
 
 
 def _preliminary(scene: Scene, car: Car, width: float) -> Known:

@@ -93,7 +93,7 @@ WITHOUT: Mapping[str, str] = MappingProxyType(
         **dict.fromkeys(
             ("exact_beam", "beam_section"), "the line body beam creates it, and tests/beams has its scenes"
         ),
-        "road_contact": "it needs a road; tests/elements/test_road_contact.py compares it with a contact with a plane",
+        "road_contact": "it needs a road; tests/roads/test_road_contact.py compares it with a contact with a plane",
         "driver": "it needs a car with four wheels on tyres, which examples/car.yaml is",
         **dict.fromkeys(
             ("twist_beam", "pushrod_wishbone", "trailer_hitch", "telescopic_fork", "swingarm"),

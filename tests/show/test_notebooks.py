@@ -1,0 +1,50 @@
+"""What notebooks show: figures once, comparisons as tables, animations as pages; films of short runs in slow motion."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs.show.drawing.film import SHORTEST_FILM, Playback
+
+EXAMPLES = Path(stiffmbs.__file__).parents[1] / "examples"
+
+
+def test_a_plot_is_shown_once(monkeypatch):
+    """By pyplot at the end of its cell; later by IPython, if it is the value of a cell."""
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    sheet = stiffmbs.run(EXAMPLES / "bar_pendulum.yaml", duration=0.1, points=3).plot("bar.x")
+    assert sheet.number in pyplot.get_fignums()
+    assert sheet._ipython_display_() is None
+    pyplot.close(sheet)
+    with pytest.raises(NotImplementedError):
+        sheet._ipython_display_()
+
+
+def test_a_comparison_shows_its_table():
+    found = stiffmbs.compare(
+        EXAMPLES / "bar_pendulum.yaml", solvers=["bdf"], tolerances=[1e-4], repeats=1, duration=0.1
+    )
+    assert repr(found) == str(found) and "dataclass" not in repr(found) and "Comparison(" not in repr(found)
+    assert "bdf" in repr(found) and len(repr(found)) < 3000
+
+
+def test_an_animation_without_a_file_is_a_page(tmp_path):
+    pytest.importorskip("jinja2")
+    shown = stiffmbs.animate(EXAMPLES / "bar_pendulum.yaml", duration=0.1, points=3)
+    assert shown is not None and shown._repr_html_().startswith("<iframe srcdoc=")
+    assert stiffmbs.animate(EXAMPLES / "bar_pendulum.yaml", tmp_path / "a.html", duration=0.1, points=3) is None
+    assert (tmp_path / "a.html").exists()
+
+
+@pytest.mark.parametrize(("length", "speed"), [(0.1, 0.1 / SHORTEST_FILM), (SHORTEST_FILM, 1.0), (10.0, 1.0)])
+def test_short_runs_are_shown_in_slow_motion(length, speed):
+    instants = Playback().instants(2.0, 2.0 + length)
+    assert np.diff(instants) == pytest.approx(speed / 25)
+    assert instants[-1] == pytest.approx(2.0 + length, abs=speed / 25)
+    assert len(Playback(speed=1.0).instants(0.0, 0.1)) == 3
+    assert len(Playback().instants(0.0, 0.0)) == 2
