@@ -28,7 +28,7 @@ RADAU = Layout({
     "steps": INT_CELL, "residuals": INT_CELL, "jacobians": INT_CELL, "factorizations": INT_CELL, "error_failures": INT_CELL,
     "step_failures": INT_CELL, "iterations": INT_CELL, "newton_failures": INT_CELL,
     "least_factor": FLOAT_CELL, "largest_factor": FLOAT_CELL, "keep_matrix": FLOAT_CELL, "keep_high": FLOAT_CELL,
-    "stages_after": INT_CELL, "gain": FLOAT_CELL, "slowest": FLOAT_CELL, "converging": FLOAT_CELL, "after_failure": FLOAT_CELL, "tolerance": FLOAT_CELL,
+    "stages_after": INT_CELL, "gain": FLOAT_CELL, "slowest": FLOAT_CELL, "converging": FLOAT_CELL, "after_failure": FLOAT_CELL, "remainder": FLOAT_CELL, "tolerance": FLOAT_CELL,
 })  # fmt: skip
 """Memory of an integration by Radau methods.
 

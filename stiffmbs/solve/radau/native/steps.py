@@ -6,7 +6,7 @@ from typing import Final
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import add_rate_terms
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
+from stiffmbs.solve.error_control.native.parameters import EXCLUDED
 from stiffmbs.solve.events.native.parameters import INDISTINCT
 from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
@@ -215,7 +215,7 @@ def _accept(x, c, t, h):
 def _choose_unknowns(x):
     """Make the efforts of stiff forces unknowns if the step is long for these forces."""
     acting = x.n_efforts if x.h > output_correction_view(x.output_correction).long else 0
-    x.newton = NEWTON.loosest if acting > 0 else x.part
+    x.newton = x.remainder if acting > 0 else x.part
     if acting > 0 and (x.acting == 0 or x.h_past == 0.0):
         x.acting = acting
         store_efforts(x, x.t)
