@@ -126,7 +126,7 @@ def _corrected(x, c, place, count):
 
 
 @compiled
-def _most_moved_within(c):
+def most_moved_within(c):
     """Return the largest change of a state within a step, in tolerances: its error is that of the estimate."""
     return MOST_MOVED_WITHIN * max(1.0, c.relaxed)
 
@@ -140,7 +140,7 @@ def _closed_at(x, c, t, place):
             polynomial_rates(x, place, x.yp_stage)
         if new and not factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True):
             break
-        if closed(x, t, _most_moved_within(c)) != OPEN:
+        if closed(x, t, most_moved_within(c)) != OPEN:
             return True
     _corrected(x, c, place, 0)
     return False
@@ -158,7 +158,7 @@ def _find_corrections(x, c):
         correction = shifted(x.corrections, j * x.n_all)
         copied(correction, x.y_stage, x.n_all)
         x.n_corrections = j + 1
-        outcome = closed(x, x.t - (1.0 - place) * x.h_past, _most_moved_within(c))
+        outcome = closed(x, x.t - (1.0 - place) * x.h_past, most_moved_within(c))
         if outcome == OPEN:
             return
         for k in range(x.n_all):

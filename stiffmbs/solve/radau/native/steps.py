@@ -12,7 +12,7 @@ from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
-from stiffmbs.solve.radau.native.between_steps import close_end
+from stiffmbs.solve.radau.native.between_steps import CLOSED, close_end, closed, most_moved_within
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
@@ -39,6 +39,8 @@ ROUNDING = 1e-10
 """Least estimated error."""
 LEAST_ERROR = 1e-2
 """Least error in the predictive control."""
+MOST_DECAYS = 4
+"""Largest number of replacements of a start by a state without decaying motions."""
 
 
 @compiled
@@ -189,6 +191,36 @@ def _choose_method(x, c, longest):
 
 
 @compiled
+def _passes_over_decay(x, c, h):
+    """Replace the start of a first step by a state without the motions that decay within it; False if there are none.
+
+    Efforts of the decaying motions belong to the start. A polynomial through them would spread them over the step, and so
+    would the stages. The other efforts at the start are those of the polynomial of the stages alone.
+    """
+    if x.acting == 0 or x.decaying == 0:
+        return False
+    x.decaying -= 1
+    copied(x.y_stage, x.y, x.n_all)
+    for j in range(c.stages):
+        factor = 1.0
+        for i in range(c.stages):
+            if i != j:
+                factor *= c.nodes[i] / (c.nodes[i] - c.nodes[j])
+        for k in range(x.n, x.n_all):
+            x.y_stage[k] += factor * x.z[j * x.n_all + k]
+    for k in range(x.n):
+        x.yp_stage[k] = x.yp[k]
+    x.closing = 1.0
+    if closed(x, x.t, most_moved_within(c)) != CLOSED:
+        return False
+    for j in range(c.stages):
+        for k in range(x.n_all):
+            x.z[j * x.n_all + k] -= x.y_stage[k] - x.y[k]
+    copied(x.y, x.y_stage, x.n_all)
+    return True
+
+
+@compiled
 def _accept(x, c, t, h):
     """Make the end of the step the state; keep its polynomial."""
     n = x.n
@@ -219,6 +251,7 @@ def _choose_unknowns(x):
     if acting > 0 and (x.acting == 0 or x.h_past == 0.0):
         x.acting = acting
         store_efforts(x, x.t)
+        x.decaying = MOST_DECAYS
         for k in range(x.n, x.n_all):
             x.y_past[k] = x.y[k]
         for j in range(collocation_view(ints(x.methods[x.method_past])).stages):
@@ -354,7 +387,9 @@ def step(x):
             continue
         if error < 1.0:
             if x.acting == 0 or close_end(x, c, stage_time(x, x.t + h), h):
-                break
+                if not _passes_over_decay(x, c, h):
+                    break
+                continue
             h = _after_failed_iteration(x, DIVERGED, h)
             continue
         x.rejected = 1
