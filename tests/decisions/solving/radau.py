@@ -22,7 +22,7 @@ def collocating(**fields):
         "acting": 0, "current": 0, "iterations": 0, "iterations_taken": 3, "suggested": 0.0, "contraction": 0.0, "left": 0.0, "rejected": 0,
         "h_accepted": 1.0, "h_past": 1.0, "last_error": 1.0, "error_size": 1.0, "rate_kept": 0, "since_change": 0, "n_methods": 2, "method": 0,
         "methods": [], "below": [], "error": np.ones(1), "weight": np.ones(1), "z": np.zeros(3), "misfit": np.ones(1), "yp_stage": np.zeros(1),
-        "y": np.zeros(1), "y_stage": np.zeros(1), "b": np.zeros(1), "x": np.zeros(1), "d": np.zeros(1), "closing": 1.0, "outputs": 0, "suffice": 0,
+        "y": np.zeros(1), "y_stage": np.zeros(1), "b": np.zeros(1), "x": np.zeros(1), "d": np.zeros(1), "outputs": 0, "suffice": 0,
         "h_factored": 1.0, "method_past": 0, "output_correction": Record(long=0.0), "y_past": np.zeros(1), "past": np.zeros(3),
     }  # fmt: skip
     return Record(**{**usual, **fields})

@@ -74,8 +74,7 @@ def closed(x, t, most):
         if apart <= allowed and (count > 0 or x.n_closing == 0):
             enough = True
             break
-        if count > 0:
-            x.closing = apart / before
+        rate = apart / before if count > 0 else 1.0
         before = max(apart, 1e-300)
         for k in range(x.n_levers):
             x.b[x.lever_unknown[k]] += x.lever[k] * x.misfit[x.lever_effort[k]]
@@ -89,7 +88,7 @@ def closed(x, t, most):
         if count == 0 and x.n_closing > 0:  # forces change as joints close
             for k in range(x.n, x.n_all):
                 first = max(first, abs(x.d[k]))
-        if x.closing * apart <= allowed:
+        if rate * apart <= allowed:
             enough = True
             break
     if moved > most or not (enough or x.rtol * size <= ROUNDING):
@@ -105,7 +104,6 @@ def close_end(x, c, t, h):
         x.y_stage[k] = x.y[k] + last[k]
     for k in range(x.n):
         x.yp_stage[k] = 0.0
-    x.closing = 1.0
     succeeded = closed(x, t, MOST_MOVED) != OPEN
     for k in range(x.n_all):
         last[k] = x.y_stage[k] - x.y[k]
@@ -126,7 +124,7 @@ def _corrected(x, c, place, count):
 
 
 @compiled
-def most_moved_within(c):
+def _most_moved_within(c):
     """Return the largest change of a state within a step, in tolerances: its error is that of the estimate."""
     return MOST_MOVED_WITHIN * max(1.0, c.relaxed)
 
@@ -140,7 +138,7 @@ def _closed_at(x, c, t, place):
             polynomial_rates(x, place, x.yp_stage)
         if new and not factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True):
             break
-        if closed(x, t, most_moved_within(c)) != OPEN:
+        if closed(x, t, _most_moved_within(c)) != OPEN:
             return True
     _corrected(x, c, place, 0)
     return False
@@ -158,7 +156,7 @@ def _find_corrections(x, c):
         correction = shifted(x.corrections, j * x.n_all)
         copied(correction, x.y_stage, x.n_all)
         x.n_corrections = j + 1
-        outcome = closed(x, x.t - (1.0 - place) * x.h_past, most_moved_within(c))
+        outcome = closed(x, x.t - (1.0 - place) * x.h_past, _most_moved_within(c))
         if outcome == OPEN:
             return
         for k in range(x.n_all):

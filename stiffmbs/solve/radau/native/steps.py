@@ -12,7 +12,7 @@ from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
-from stiffmbs.solve.radau.native.between_steps import CLOSED, close_end, closed, most_moved_within
+from stiffmbs.solve.radau.native.between_steps import CLOSED, close_end, closed
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
@@ -191,7 +191,7 @@ def _choose_method(x, c, longest):
 
 
 @compiled
-def _passes_over_decay(x, c, h):
+def _passes_over_decay(x, c):
     """Replace the start of a first step by a state without the motions that decay within it; False if there are none.
 
     Efforts of the decaying motions belong to the start. A polynomial through them would spread them over the step, and so
@@ -210,9 +210,10 @@ def _passes_over_decay(x, c, h):
             x.y_stage[k] += factor * x.z[j * x.n_all + k]
     for k in range(x.n):
         x.yp_stage[k] = x.yp[k]
-    x.closing = 1.0
-    if closed(x, x.t, most_moved_within(c)) != CLOSED:
+    if closed(x, x.t, float("inf")) != CLOSED:
         return False
+    if x.decaying == MOST_DECAYS - 1:
+        copied(x.y_past, x.y, x.n_all)
     for j in range(c.stages):
         for k in range(x.n_all):
             x.z[j * x.n_all + k] -= x.y_stage[k] - x.y[k]
@@ -365,7 +366,12 @@ def step(x):
     c = collocation_view(ints(x.methods[x.method]))
     # a vibration of as many radians per stage has been tested
     tested = x.h_past * c.stages / collocation_view(ints(x.methods[x.method_past])).stages
+    passed = 0.0
     while True:
+        if passed > 0.0 and h != passed:  # a shorter step may resolve what has decayed within the last one
+            copied(x.y, x.y_past, x.n_all)
+            x.decaying = MOST_DECAYS
+            passed = 0.0
         at_stop = x.stops and x.t + (1.0 if first else STRETCHED) * h >= x.stop
         if at_stop:
             h = x.stop - x.t
@@ -387,8 +393,9 @@ def step(x):
             continue
         if error < 1.0:
             if x.acting == 0 or close_end(x, c, stage_time(x, x.t + h), h):
-                if not _passes_over_decay(x, c, h):
+                if not _passes_over_decay(x, c):
                     break
+                passed = h
                 continue
             h = _after_failed_iteration(x, DIVERGED, h)
             continue
