@@ -39,7 +39,7 @@ def test_motions_without_stiff_forces_are_far_below_the_tolerance(rtol):
     """Errors of 2.5 and 1.3 tolerances were Newton's remainder."""
 
     def rates(t, y):
-        x, phi, v, w = y
+        _, phi, v, w = y
         mass = np.array([[3.0, -0.5 * np.sin(phi)], [-0.5 * np.sin(phi), 1 / 3]])
         return [v, w, *np.linalg.solve(mass, [0.5 * w * w * np.cos(phi), -0.5 * 9.81 * np.cos(phi)])]
 
