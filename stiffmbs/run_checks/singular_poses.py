@@ -39,8 +39,7 @@ class PosesBetween:
         self._system, self._t, self._q = system, t, q
         self._state = State(system)
         self._scale = system.per_velocity(1.0, system.size)
-        self._looked_at = np.linspace(0, len(t) - 1, min(len(t), RUN_CHECKS.usual_poses)).astype(int)
-        norms = np.array([self._norms(k) for k in (*self._looked_at.tolist(), *suspects, 0)])
+        norms = np.array([self._norms(k) for k in (*_few_of(len(t)), *suspects, 0)])
         self._least_norm = np.sqrt(RUN_CHECKS.dip) * norms.max(axis=0)
         in_loops = loops(system, self._state)
         inside = np.zeros(system.n_c, dtype=bool)
@@ -74,8 +73,8 @@ class PosesBetween:
         if not len(self._rows):
             return 0.0
         if len(self._rows) > RUN_CHECKS.few_rows:
-            return max(self._least(int(k))[0] for k in self._looked_at)
-        values = np.linalg.svd(np.array([self._scaled(int(k)) for k in self._looked_at]), compute_uv=False)
+            return max(self._least(k)[0] for k in _few_of(len(self._t)))
+        values = np.linalg.svd(np.array([self._scaled(k) for k in _few_of(len(self._t))]), compute_uv=False)
         return float(np.sqrt(values[:, -1].max() ** 2 + RUN_CHECKS.floor))
 
     @property
@@ -132,6 +131,12 @@ class PosesBetween:
         J /= self._scale
         J /= norms[:, None]
         return J
+
+
+def _few_of(count: int) -> list[int]:
+    """Return a few poses of a motion, evenly spaced."""
+    few: list[int] = np.linspace(0, count - 1, min(count, RUN_CHECKS.usual_poses)).astype(int).tolist()
+    return few
 
 
 def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:

@@ -281,7 +281,7 @@ def nearest(weight=1.0, rows=1, n_u=1):
     of_body = Record(pose=lambda *_: "")
     system = Record(n_u=n_u, of_body=of_body, bodies=[], equations=[(f"j{k}", "x") for k in range(rows)])
     poses = Record(
-        _t=np.linspace(0.0, 1.0, 1000), _q=np.zeros((1000, 1)), _rows=np.arange(rows), _system=system, _loops=[],
+        _t=np.linspace(0.0, 1.0, 1000), _q=np.zeros((1000, 1)), _rows=np.arange(rows), _system=system, _bodies=[],
         distance=lambda k: asked.append(k) or 0.0, _least=lambda _: (0.0, np.array([1.0, weight, *[0.0] * (rows - 2)])),
     )  # fmt: skip
     return PosesBetween.nearest(poses, 0.0, 1.0), len(asked)
@@ -290,7 +290,7 @@ def nearest(weight=1.0, rows=1, n_u=1):
 def poses_of_a_motion():
     asked = []
     poses = Record(
-        _t=np.zeros(1000), _rows=np.zeros(1), _loops=[1], _scaled=lambda k: asked.append(k) or np.ones((1, 1)), _system=None,
+        _t=np.zeros(1000), _rows=np.zeros(1), _scaled=lambda k: asked.append(k) or np.ones((1, 1)), _system=None,
         _least=lambda k: (asked.append(k) or 1.0, None),
     )  # fmt: skip
     PosesBetween.usual.func(poses)

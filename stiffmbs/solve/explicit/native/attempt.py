@@ -55,7 +55,7 @@ def attempt(x, c, s, m, h):
 @compiled
 def distance_of_end(x):
     """Return the relative distance from a singular pose at the last evaluated state; infinite where it is not small."""
-    if not x.pivots_tell:
+    if not (x.pivots_tell and x.eliminates):
         return float("inf")
     r = eliminated_view(x.eliminated)
     if r.kept > ENDS.close * r.most_kept:

@@ -124,8 +124,8 @@ def _step(x, c, s, m, end):
             status = arrive(x, c, s, m, t_new)
             x.distance_of_end = distance_of_end(x)
             uncertain = status == 0 and uncertain_end(x, c, h, x.distance_of_end)
-            turns = uncertain and x.distance_of_end < ENDS.turning
-            if uncertain and (turns or not x.uncertain) and t_new < end and moved < 2:
+            turns = status == 0 and x.distance_of_end < ENDS.turning
+            if (turns or (uncertain and not x.uncertain)) and t_new < end and moved < 2:
                 h = h / ENDS.shorter if moved else h * ENDS.shorter  # back to the whole step if that does not help
                 moved += 1
                 continue
