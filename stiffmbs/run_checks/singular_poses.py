@@ -29,8 +29,8 @@ class SingularPose(NamedTuple):
 class PosesBetween:
     """Poses of a motion and their distances from singular ones.
 
-    The distance is the smallest singular value of J of the joints in loops, and of equations that nearly vanish at a pose,
-    relative to the largest such value in the motion. Rows of J are normalised, with arms in units of the system's size.
+    The distance is the smallest singular value of J, relative to the largest such value in the motion. Its rows are those of
+    the joints in loops, and of equations that nearly vanish at a pose. Rows of J are normalised, with arms in units of the system's size.
     Those that nearly vanish remain small. `system`: without redundant equations. `t` of shape (n,). `q` of shape (n, n_q).
     `suspects`: poses that may be singular.
     """
