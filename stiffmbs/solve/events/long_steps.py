@@ -32,8 +32,6 @@ class LongStepParameters:
 
 LONG_STEP = tuned("long_steps", LongStepParameters())
 
-ALL = 0.0, 1.0
-"""The same for all steps."""
 WHOLE = 0.5 - 0.5 * np.cos(np.arange(8) * np.pi / 7)
 """Nodes that represent a whole step: the interpolant of DOP853 has degree 7, that of BDF at most 5."""
 
@@ -105,7 +103,7 @@ class LongStepLog:
 
     def __init__(self, system: System, width: int) -> None:
         places = WHOLE if system.has_functions else np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
-        ratio, remembered = ALL if system.has_functions else LONG_STEP.for_others
+        ratio, remembered = (0.0, 1.0) if system.has_functions else LONG_STEP.for_others
         row = 2 + len(places) * width
         room = LOOP.most_items // row if system.has_laws else 0
         self._rows, self._shape = np.empty((room, row)), (len(places), width)
