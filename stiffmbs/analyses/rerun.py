@@ -1,7 +1,8 @@
 """Reruns of jobs whose results contradict their equations.
 
 After missed events a job is rerun with a restart at each instant that shows one.  The step that ends there includes the
-force, and its error estimate shortens it as required.
+force, and its error estimate shortens it as required.  A Python function has no event functions, and its narrow features
+may be met at other times in the rerun: all steps of this one are shorter than the shortest feature found.
 
 If relaxed constraints drift beyond the tolerance, a job is rerun with exact ones.  SI2 holds J u + C_t = E_lam lam,
 with E_lam so small that forces of usual size have no effect.  If equations are nearly dependent, or forces are huge for
@@ -10,6 +11,7 @@ the masses, lam is not of usual size: velocities drift, and energy is lost.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -30,6 +32,10 @@ if TYPE_CHECKING:
 ROUNDS, STARTS = 3, 1000
 """Number of reruns, and of restarts in a rerun, at most."""
 AGAIN = "the run was repeated with a restart there; set max_step, or request more output points, to resolve events between output times"
+PART_OF_A_FEATURE = 0.5
+"""Longest step of a rerun, relative to the shortest missed feature of a Python function."""
+MOST_STEPS = 100_000
+"""Most steps of such a rerun."""
 LEFT = "the results may be wrong from there on; set max_step to a much smaller value"
 
 RELAXED, EXACT = "SI2", "SI2_exact"
@@ -53,6 +59,8 @@ def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> t
     """Compute a job until no checked instant contradicts its steps; return it with notes on missed events."""
     found = compute(job)
     seen = left = _overlooked(job, found)
+    if seen and job.dynamics.system.has_functions and "max_step" in traits_of(job.settings).reads:
+        return _with_shorter_steps(job, compute, found, seen)
     stops = np.empty(0)
     for _ in range(ROUNDS):
         if left is None or found.trajectory.outcome is Outcome.INTERRUPTED:
@@ -68,6 +76,28 @@ def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> t
         note = f"{left.sentence()}; {LEFT}"
         return replace(found, doubts=(*found.doubts, note)), [note]
     return found, [f"{seen.sentence()}; {AGAIN}"] if seen else []
+
+
+def _with_shorter_steps(
+    job: Job, compute: Callable[[Job], Computed], found: Computed, seen: Overlooked
+) -> tuple[Computed, list[str]]:
+    """Repeat a job until its steps resolve the features of Python functions; return it with a note."""
+    left: Overlooked | None = seen
+    longest = math.inf
+    for _ in range(ROUNDS):
+        if left is None or found.trajectory.outcome is Outcome.INTERRUPTED:
+            break
+        longest = min(longest, PART_OF_A_FEATURE * left.shortest)
+        if job.grid.end - job.grid.start > MOST_STEPS * longest:
+            break
+        again = compute(replace(job, settings=changed(job.settings, {"max_step": longest})))
+        if again.trajectory.outcome is Outcome.INTERRUPTED:
+            break
+        found, left = again, _overlooked(job, again)
+    if left is not None:
+        note = f"{seen.sentence()}; {LEFT}"
+        return replace(found, doubts=(*found.doubts, note)), [note]
+    return found, [f"{seen.sentence()}; the run was repeated with max_step {longest:.2g} s"]
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:

@@ -161,11 +161,14 @@ class Dynamics:
             self.system.known_terms.clear()
         return cast(T, self._kept[name][1])
 
-    def forget_pivots(self) -> None:
-        """Discard all pivot sequences, so that the rounding of a run does not depend on earlier runs."""
+    def forget_pivots(self, within_run: bool = False) -> None:
+        """Discard all pivot sequences, so that the rounding of a run does not depend on earlier runs.
+
+        `within_run`: True to keep the largest pivots so far, which show how close a pose is to a singular one.
+        """
         for system in (self._positions, self._velocities, self._accelerations):
             system.forget_pivots()
-        if "eliminated" in self.__dict__:
+        if "eliminated" in self.__dict__ and not within_run:
             self.eliminated.forget()
 
     def forget_inputs(self) -> None:

@@ -8,6 +8,7 @@ the step only, and at an output time, exceeds both.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -41,12 +42,14 @@ class Overlooked:
     - `step`: length of the first of these steps, s.
     - `velocity`: velocity that would have changed most there.
     - `element`: force law with the largest force there, or an empty string.
+    - `shortest`: duration of the shortest of the contradictions in steps with Python functions, s; infinite for other laws.
     """
 
     times: np.ndarray
     step: float
     velocity: str
     element: str
+    shortest: float = math.inf
 
     def sentence(self) -> str:
         """Return a sentence on the first missed event."""
@@ -65,6 +68,7 @@ def together(found: Sequence[Overlooked]) -> Overlooked | None:
     return replace(
         min(found, key=lambda each: float(each.times[0])),
         times=np.unique(np.concatenate([each.times for each in found])),
+        shortest=min(each.shortest for each in found),
     )
 
 
@@ -163,8 +167,7 @@ def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray
 
 def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
     """Return steps and fractions of them, evenly spaced in time; an odd number in each includes its midpoint."""
-    spacing = settings.duration / RUN_CHECKS.parts_of_a_run
-    counts = 2 * ((found.end - found.begin)[steps] / (2.0 * spacing)).astype(int) + 1
+    counts = 2 * ((found.end - found.begin)[steps] / (2.0 * _spacing(settings))).astype(int) + 1
     first, of_number = (np.repeat(values, counts) for values in (np.cumsum(counts) - counts, counts))
     return np.repeat(steps, counts), (np.arange(len(first)) - first + 0.5) / of_number
 
@@ -190,7 +193,26 @@ def _judged(
     first = peaks[0]
     of_first = np.abs(off[first]) / (tolerance[system.n_q :] + settings.rtol * np.abs(rows.u[first]))
     velocity = system.name_of(int(np.nanargmax(of_first)), system.of_body.velocities)
-    return Overlooked(rows.t[peaks], float(length[first]), velocity, acting(system, rows, first))
+    shortest = _shortest(found, steps[peaks], rows.t[peaks], settings) if found.whole else math.inf
+    return Overlooked(rows.t[peaks], float(length[first]), velocity, acting(system, rows, first), shortest)
+
+
+def _spacing(settings: RunSettings) -> float:
+    return settings.duration / RUN_CHECKS.parts_of_a_run
+
+
+def _shortest(found: LongSteps, steps: np.ndarray, times: np.ndarray, settings: RunSettings) -> float:
+    """Return the duration of the shortest of the contradictions around some times, s, at half of their height."""
+    parts = np.linspace(-1.0, 1.0, RUN_CHECKS.parts_of_a_peak)
+    length = (found.end - found.begin)[steps]
+    middle = (times - found.begin[steps]) / length
+    places = np.clip(middle[:, None] + _spacing(settings) / length[:, None] * parts, 0.0, 1.0)
+    motion = found.at(np.repeat(steps, len(parts)), places.ravel())
+    rows = found.dynamics.report(motion.t, motion.q, motion.u, near_constraints(settings))
+    off = (rows.acceleration - motion.rate[: len(rows.t)]) ** 2 @ found.dynamics.system.mass
+    off = np.resize(off, places.shape)
+    high = (off >= 0.25 * off.max(axis=1, keepdims=True)).sum(axis=1)
+    return float(high.min() * 2.0 * _spacing(settings) / len(parts))
 
 
 def _peaks(places: np.ndarray, steps: np.ndarray, size: np.ndarray) -> list[int]:

@@ -86,6 +86,8 @@ class RunCheckParameters:
     """Velocity contradiction over a step, in tolerances, from which on an event counts as missed."""
     parts_of_a_run: int = 20_000
     """Number of samples over a run with Python functions, whose features are unknown."""
+    parts_of_a_peak: int = 129
+    """Samples around a contradiction, from which its duration follows."""
     worth_a_note: float = 0.1
     """Fraction of both bounds below which no event counts as missed, for accelerations at states that are not projected."""
     slight: float = 0.01

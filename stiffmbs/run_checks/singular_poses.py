@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from copy import copy
 from functools import cached_property
 from typing import NamedTuple
@@ -29,21 +29,36 @@ class SingularPose(NamedTuple):
 class PosesBetween:
     """Poses of a motion and their distances from singular ones.
 
-    The distance is the smallest singular value of J of the joints in loops, relative to the largest such value in the
-    motion. Rows of J are normalised, with arms in units of the system's size. `system`: without redundant equations.
-    `t` of shape (n,). `q` of shape (n, n_q).
+    The distance is the smallest singular value of J, relative to the largest such value in the motion. Its rows are those of
+    the joints in loops, and of equations that nearly vanish at a pose. Rows of J are normalised, with arms in units of the system's size.
+    Those that nearly vanish remain small. `system`: without redundant equations. `t` of shape (n,). `q` of shape (n, n_q).
+    `suspects`: poses that may be singular.
     """
 
-    def __init__(self, system: System, t: np.ndarray, q: np.ndarray) -> None:
+    def __init__(self, system: System, t: np.ndarray, q: np.ndarray, suspects: Sequence[int] = ()) -> None:
         self._system, self._t, self._q = system, t, q
         self._state = State(system)
-        self._state.q[:] = q[0]
-        self._state.evaluate("motion", float(t[0]))
-        self._loops = loops(system, self._state)
-        rows = np.concatenate([loop.rows for loop in self._loops]) if self._loops else np.empty(0, dtype=int)
-        self._rows = np.sort(rows[system.active[rows]])
         self._scale = system.per_velocity(1.0, system.size)
+        norms = np.array([self._norms(k) for k in (*_few_of(len(t)), *suspects, 0)])
+        self._least_norm = np.sqrt(RUN_CHECKS.dip) * norms.max(axis=0)
+        in_loops = loops(system, self._state)
+        inside = np.zeros(system.n_c, dtype=bool)
+        for loop in in_loops:
+            inside[loop.rows] = True
+        vanishing = norms.min(axis=0) < self._least_norm
+        self._rows = np.flatnonzero((inside | vanishing) & system.active)
+        J = system.term("motion", "J")
+        columns = J.column[np.isin(J.row, np.flatnonzero(vanishing & system.active))] // system.of_body.n_u
+        self._bodies = sorted({*columns.tolist(), *(body for loop in in_loops for body in loop.bodies)})
         self._known: dict[int, float] = {}
+
+    def _norms(self, k: int) -> np.ndarray:
+        """Return the norms of the rows of J of pose k, with arms in units of the size."""
+        J = self._system.term("motion", "J")
+        self._state.q[:] = self._q[k]
+        self._state.evaluate("motion", float(self._t[k]))
+        parts = self._state.values["motion"][J.source] / self._scale[J.column]
+        return np.sqrt(np.bincount(J.row, parts * parts, minlength=self._system.n_c))
 
     def at(self, t: np.ndarray, q: np.ndarray) -> PosesBetween:
         """Return other poses of the same motion, with its usual singular value."""
@@ -54,13 +69,12 @@ class PosesBetween:
 
     @cached_property
     def usual(self) -> float:
-        """Largest smallest singular value at a few poses of the motion; 0 without loops."""
-        if not self._loops:
+        """Largest smallest singular value at a few poses of the motion; 0 without equations that may be dependent."""
+        if not len(self._rows):
             return 0.0
-        looked_at = np.linspace(0, len(self._t) - 1, min(len(self._t), RUN_CHECKS.usual_poses)).astype(int)
         if len(self._rows) > RUN_CHECKS.few_rows:
-            return max(self._least(int(k))[0] for k in looked_at)
-        values = np.linalg.svd(np.array([self._scaled(int(k)) for k in looked_at]), compute_uv=False)
+            return max(self._least(k)[0] for k in _few_of(len(self._t)))
+        values = np.linalg.svd(np.array([self._scaled(k) for k in _few_of(len(self._t))]), compute_uv=False)
         return float(np.sqrt(values[:, -1].max() ** 2 + RUN_CHECKS.floor))
 
     @property
@@ -69,8 +83,8 @@ class PosesBetween:
         return float(len(self._known) * len(self._rows) ** 2 * self._system.n_u)
 
     def distance(self, k: int) -> float:
-        """Return the distance of pose k from a singular one: 0 at one, about 1 at most, and 1 without loops."""
-        if not self._loops:
+        """Return the distance of pose k from a singular one: 0 at one, about 1 at most, and 1 where none may be."""
+        if not len(self._rows):
             return 1.0
         if k not in self._known:
             self._known[k] = self._least(k)[0] / self.usual
@@ -102,23 +116,27 @@ class PosesBetween:
         _, weights = self._least(k)
         equations = self._rows[weights > RUN_CHECKS.takes_part * weights.max()]
         joints = tuple(dict.fromkeys(self._system.equations[row][0] for row in equations))
-        bodies = sorted({body for loop in self._loops for body in loop.bodies})
         of_body = self._system.of_body
-        poses = tuple(of_body.pose(self._q[k], body) for body in bodies)
-        return SingularPose(float(self._t[k]), joints, tuple(self._system.bodies[body] for body in bodies), poses)
+        poses = tuple(of_body.pose(self._q[k], body) for body in self._bodies)
+        return SingularPose(float(self._t[k]), joints, tuple(self._system.bodies[body] for body in self._bodies), poses)
 
     def _least(self, k: int) -> tuple[float, np.ndarray]:
         """Return the smallest singular value of the scaled J, and the weight of each equation in its vector."""
         return _smallest(self._scaled(k))
 
     def _scaled(self, k: int) -> np.ndarray:
-        """Return J of pose k with normalised rows and arms in units of the size."""
-        self._state.q[:] = self._q[k]
-        self._state.evaluate("motion", float(self._t[k]))
+        """Return J of pose k with normalised rows and arms in units of the size; rows that nearly vanish remain small."""
+        norms = np.maximum(self._norms(k), self._least_norm)[self._rows]
         J = self._state.matrix("motion", "J")[self._rows]
         J /= self._scale
-        J /= np.linalg.norm(J, axis=1, keepdims=True)
+        J /= norms[:, None]
         return J
+
+
+def _few_of(count: int) -> list[int]:
+    """Return a few poses of a motion, evenly spaced."""
+    few: list[int] = np.linspace(0, count - 1, min(count, RUN_CHECKS.usual_poses)).astype(int).tolist()
+    return few
 
 
 def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:
@@ -153,7 +171,7 @@ def singular_passage_sentence(
     dips = deepest_dips(rows.log_determinant)
     if not dips:
         return
-    poses = PosesBetween(dynamics.system, rows.t, rows.q)
+    poses = PosesBetween(dynamics.system, rows.t, rows.q, dips)
     if not poses.usual:
         return
     first, *others = [np.linspace(rows.t[k - 1], rows.t[k + 1], RUN_CHECKS.dip_instants) for k in sorted(dips)]

@@ -207,7 +207,7 @@ class Integrator:
         solved = at["lam"] != ABSENT
         multipliers = yp if equations.formulation.integrated else y
         multipliers[at["lam"][solved]] = start.lam[solved]
-        relax(self.dynamics, self.settings, t)
+        relax(self.dynamics, self.settings, t, self.control.relaxation)
         stiffness = stiffness_at(self.dynamics, t)
         newton = self.control.newton or newton_tolerance(stiffness, self.settings)
         self.engine.begin(t, y, yp, newton, stiffness)

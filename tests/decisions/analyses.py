@@ -197,6 +197,21 @@ def largest_rate_of_an_input():
     return count_while(lambda rate: accepts(1e-8 * rate), DOUBLES)
 
 
+def steps_over_a_feature(shortest):
+    """Return the longest steps of the reruns of a run of 1 s in which a Python function has a feature of some duration."""
+    steps = []
+    left = iter([None])
+    replaced = {
+        "_overlooked": lambda *_: next(left), "replace": lambda *_, **__: None,
+        "changed": lambda _, changes: steps.append(changes["max_step"]),
+    }  # fmt: skip
+    found = Record(trajectory=Record(outcome=None), doubts=())
+    seen = Record(shortest=shortest, sentence=lambda: "")
+    with patch.multiple(rerun, **replaced):
+        rerun._with_shorter_steps(Record(grid=Record(start=0.0, end=1.0), settings=None), lambda _: found, found, seen)
+    return steps
+
+
 def reruns(times):
     """Return the number of runs if each of them missed events."""
     computed = []
@@ -207,7 +222,7 @@ def reruns(times):
 
     missed = Record(times=np.arange(float(times)), sentence=str)
     with patch.multiple(rerun, _overlooked=lambda *_: missed, replace=lambda *_, **__: None):
-        rerun.rerun_after_missed_events(Record(grid=None), compute)
+        rerun.rerun_after_missed_events(Record(grid=None, dynamics=Record(system=Record(has_functions=False))), compute)
     return len(computed)
 
 
@@ -357,6 +372,8 @@ DECISIONS = {
     "analyses.linearised.sides:Moves.curved": largest_curvature,
     "analyses.linearised.transfer:NO_RATE": largest_rate_of_an_input,
     "analyses.rerun:ROUNDS": lambda: reruns(1),
+    "analyses.rerun:PART_OF_A_FEATURE": lambda: steps_over_a_feature(0.125)[0],
+    "analyses.rerun:MOST_STEPS": lambda: count_while(lambda k: steps_over_a_feature(1e-2 / k), DOUBLES[:60]),
     "analyses.rerun:STARTS": lambda: count_while(lambda n: reruns(100 * n) > 1, DOUBLES[:40]),
     "analyses.rerun:DRIFTED": lambda: count_while(lambda drift: with_exact_constraints(drift, 0.0)[0] == 1, DOUBLES[:40]),
     "analyses.rerun:LESS": lambda: count_while(
@@ -386,7 +403,7 @@ EXPECTED = {
     "analyses.given_inputs:ROUNDINGS": 9.094947017729282e-13, "analyses.job:DEPENDENT": 120, "analyses.linearised.modes:AT_REST": 27,
     "analyses.linearised.modes:UNHURRIED": 6.283185307179586, "analyses.linearised.sides:Moves.wide": 1e-06,
     "analyses.linearised.sides:Moves.narrow": 1e-07, "analyses.linearised.sides:Moves.steep": 44, "analyses.linearised.sides:Moves.rounding": 40,
-    "analyses.linearised.sides:Moves.curved": 23, "analyses.linearised.transfer:NO_RATE": 27, "analyses.rerun:ROUNDS": 4,
+    "analyses.linearised.sides:Moves.curved": 23, "analyses.linearised.transfer:NO_RATE": 27, "analyses.rerun:ROUNDS": 4, "analyses.rerun:PART_OF_A_FEATURE": 0.0625, "analyses.rerun:MOST_STEPS": 36,
     "analyses.rerun:STARTS": 14, "analyses.rerun:DRIFTED": 14, "analyses.rerun:LESS": 4, "analyses.settled:MOST_FOR_EIGENVALUES": 16,
     "analyses.settled:BRANCH": 0.001, "analyses.settled:MOST_BRANCHES": 3, "analyses.settled:SAME_MOTION": 102, "analyses.settled:LARGE_PART": 4,
     "analyses.settled:GROWING": 80, "analyses.settled:ROUNDED": 133, "analyses.staged:POINTS": 33, "analyses.staged:LEVELS": 3,

@@ -216,7 +216,7 @@ def velocity_within_tolerances():
 def judged(off, acceleration):
     """Return whether the midpoint of a step of 1 s shows a missed event; `off` is in tolerances."""
     system = Record(mass=np.ones(1), n_q=0, of_body=Record(velocities=None), name_of=lambda *_: "a.vx")
-    found = Record(dynamics=Record(system=system), begin=np.zeros(1), end=np.ones(1))
+    found = Record(dynamics=Record(system=system), begin=np.zeros(1), end=np.ones(1), whole=False)
     rows = Record(t=np.zeros(1), u=np.zeros((1, 1)), acceleration=np.array([[acceleration]]))
     replaced = {
         "absolute_tolerances": lambda *_: np.ones(1), "acting": lambda *_: "", "_of_errors": lambda *_: np.zeros(1)
@@ -224,6 +224,23 @@ def judged(off, acceleration):
     with patch.multiple(overlooked, **replaced):
         made = overlooked._judged(found, np.array([0]), Record(rate=np.array([[acceleration - off]])), rows, SETTINGS)
     return made is not None
+
+
+def duration_of_a_peak():
+    """Return the duration of a contradiction that a single sample shows, relative to the spacing of samples in a run."""
+
+    def report(t, *_):
+        off = np.zeros((len(t), 1))
+        off[len(t) // 2] = 1.0
+        return Record(t=t, acceleration=off)
+
+    def at(steps, places):
+        return Record(t=places, q=None, u=None, rate=np.zeros((len(places), 1)))
+
+    dynamics = Record(report=report, system=Record(mass=np.ones(1)))
+    found = Record(begin=np.zeros(1), end=np.ones(1), at=at, dynamics=dynamics)
+    with patch.multiple(overlooked, near_constraints=lambda _: True, _spacing=lambda _: 1.0):
+        return overlooked._shortest(found, np.array([0]), np.array([0.5]), SETTINGS)
 
 
 def parts_of_a_whole_run():
@@ -281,7 +298,7 @@ def nearest(weight=1.0, rows=1, n_u=1):
     of_body = Record(pose=lambda *_: "")
     system = Record(n_u=n_u, of_body=of_body, bodies=[], equations=[(f"j{k}", "x") for k in range(rows)])
     poses = Record(
-        _t=np.linspace(0.0, 1.0, 1000), _q=np.zeros((1000, 1)), _rows=np.arange(rows), _system=system, _loops=[],
+        _t=np.linspace(0.0, 1.0, 1000), _q=np.zeros((1000, 1)), _rows=np.arange(rows), _system=system, _bodies=[],
         distance=lambda k: asked.append(k) or 0.0, _least=lambda _: (0.0, np.array([1.0, weight, *[0.0] * (rows - 2)])),
     )  # fmt: skip
     return PosesBetween.nearest(poses, 0.0, 1.0), len(asked)
@@ -290,7 +307,7 @@ def nearest(weight=1.0, rows=1, n_u=1):
 def poses_of_a_motion():
     asked = []
     poses = Record(
-        _t=np.zeros(1000), _rows=np.zeros(1), _loops=[1], _scaled=lambda k: asked.append(k) or np.ones((1, 1)), _system=None,
+        _t=np.zeros(1000), _rows=np.zeros(1), _scaled=lambda k: asked.append(k) or np.ones((1, 1)), _system=None,
         _least=lambda k: (asked.append(k) or 1.0, None),
     )  # fmt: skip
     PosesBetween.usual.func(poses)
@@ -342,6 +359,7 @@ DECISIONS = {
     "run_checks.effort": lambda: nearest(rows=1000, n_u=5)[1],
     "run_checks.contradicted_tolerances": lambda: count_while(lambda off: not judged(off, 0.0), DOUBLES),
     "run_checks.parts_of_a_run": parts_of_a_whole_run,
+    "run_checks.parts_of_a_peak": duration_of_a_peak,
     "run_checks.worth_a_note": bounds_of_a_quick_check,
     "run_checks.slight": change_by_errors,
 }
@@ -356,6 +374,6 @@ EXPECTED = {
     "run_checks.worth_telling": 27, "run_checks.last_digits": 54, "run_checks.nearly_singular": 21,
     "run_checks.takes_part": 7, "run_checks.floor": 1e-07, "run_checks.iterations": 1.525878906e-05,
     "run_checks.few_rows": 3, "run_checks.usual_poses": 20, "run_checks.effort": 100,
-    "run_checks.contradicted_tolerances": 54, "run_checks.parts_of_a_run": 20001, "run_checks.worth_a_note": 0.03,
+    "run_checks.contradicted_tolerances": 54, "run_checks.parts_of_a_run": 20001, "run_checks.parts_of_a_peak": 0.015503875968992248, "run_checks.worth_a_note": 0.03,
     "run_checks.slight": 0.01,
 }  # fmt: skip

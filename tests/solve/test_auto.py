@@ -219,7 +219,7 @@ def test_the_cost_ahead_follows_the_decay_of_a_vibration():
 
 
 @pytest.mark.parametrize(
-    ("stiffness", "duration", "rtol"), [("1e7", 3.0, 1e-7), ("3e5", 10.0, 1e-5), ("1e5", 10.0, 9e-4)]
+    ("stiffness", "duration", "rtol"), [("1e7", 3.0, 1e-7), ("3e5", 10.0, 2e-5), ("3e5", 9.0, 1e-4)]
 )
 def test_radau_is_kept_if_the_rest_of_its_steps_costs_less(examples, stiffness, duration, rtol):
     """A vibration has almost decayed when the trial has lost what it may: 12 to 65 steps remain of 200 to 280."""

@@ -106,6 +106,9 @@ class Eliminated:
     def forget(self) -> None:
         """Reset the largest pivots, so that rounding in a run does not depend on earlier runs."""
         self._cells["most_kept"] = 0.0
+        scale = self._lists.get("pivot_scale") if self.serves else None
+        if isinstance(scale, np.ndarray):
+            scale[:] = 0.0
 
 
 def _bodies(joint: np.ndarray, body: np.ndarray) -> dict[int, list[int]]:

@@ -29,6 +29,7 @@ class ErrorControl:
       an even motion keep the size that the start has given them.
     - `predicted_residual`: if True, use the convergence test of `stiffmbs.solve.ida.native.iteration`: the convergence
       rate worsens with the age of the iteration matrix, and short steps may leave a larger residual.
+    - `relaxation`: factor of the relaxations of constraints (`stiffmbs.solve.error_control.relaxation`).
     """
 
     margin: float = 0.3
@@ -37,6 +38,7 @@ class ErrorControl:
     renewal: float = 0.05
     growth: float = 2.0
     predicted_residual: bool = True
+    relaxation: float = 1.0
 
     by_step: ClassVar[tuple[str, ...]] = ()
     """Unknowns that are tested times the step if the formulation does not test them; they have negative absolute tolerances."""

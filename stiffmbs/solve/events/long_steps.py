@@ -21,13 +21,12 @@ from .native.layouts import LONG_STEPS
 class LongStepParameters:
     """Parameters that decide which steps are stored to be checked after the run.
 
-    Python functions are checked in these steps only; other laws are searched for events as well.
+    Laws are searched for events as well; Python functions, which have none, are checked in all steps.
     """
 
     from_middle: float = 1e-4
     """Distance from the middle of a step, relative to the step, of two stored states."""
     for_others: tuple[float, float] = (4.0, 8.0)
-    for_functions: tuple[float, float] = (2.0, 64.0)
     """Ratio of a long step to the usual one, and number of steps over which the usual one is averaged."""
 
 
@@ -104,7 +103,7 @@ class LongStepLog:
 
     def __init__(self, system: System, width: int) -> None:
         places = WHOLE if system.has_functions else np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
-        ratio, remembered = LONG_STEP.for_functions if system.has_functions else LONG_STEP.for_others
+        ratio, remembered = (0.0, 1.0) if system.has_functions else LONG_STEP.for_others
         row = 2 + len(places) * width
         room = LOOP.most_items // row if system.has_laws else 0
         self._rows, self._shape = np.empty((room, row)), (len(places), width)

@@ -8,7 +8,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from ...compile.machine.layout import address, addresses
-from ...compile.machine.native.statuses import NOT_FINITE, STEP_TOO_SMALL, STIFF
+from ...compile.machine.native.statuses import NOT_FINITE, SINGULAR, STEP_TOO_SMALL, STIFF
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...dynamics.storage import FAILURES
@@ -94,6 +94,7 @@ class Integration:
         memory.end_rates[self._n_q :] = start.acceleration
         memory.lam[:] = start.lam
         cells["started"], cells["last_error"], cells["at_event"] = 0, 0.0, 0
+        cells["uncertain"], cells["distance"], cells["distance_of_end"] = 0, np.inf, np.inf
         met = self._watch.found[: self._watch.n_event_functions].tolist()
         self._watch.begin()
         return met.index(1) if 1 in met else -1
@@ -125,6 +126,7 @@ class Integration:
 _USE_BDF = "the scene is stiff; use solver bdf or radau"
 REASONS = {
     **FAILURES,
+    SINGULAR: f"{FAILURES[SINGULAR]}, and the motion may branch there; bdf and radau pass such poses",
     NOT_FINITE: "the solution has overflowed; the step is too long for the stiffness of the scene",
     STEP_TOO_SMALL: "the step that the tolerance requires has become too small: the motion has a singularity there, or "
     + _USE_BDF,

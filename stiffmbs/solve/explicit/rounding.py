@@ -74,7 +74,7 @@ class Rounding:
         for t in self._along(work, ROUNDING.within * mean_step, ROUNDING.few):
             if ATTEMPT.call(t, address(found), address(self._dynamics.eliminated.table)):
                 off.append(np.abs(found - self._dynamics.accelerate(t)[1]))
-        self._dynamics.forget_pivots()
+        self._dynamics.forget_pivots(within_run=True)
         return bool(off) and bool(np.any(mean_step * np.max(off, axis=0) > ENDS.harmful * self._tolerance(work)))
 
     def _jumping(self, work: Integration, mean_step: float) -> str:

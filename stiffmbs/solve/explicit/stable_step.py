@@ -170,7 +170,7 @@ def rates_at(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> Rate
     found, work = np.zeros(4), np.zeros(3 * n_u + dynamics.system.n_q)
     arrays = dynamics.system.mass, found, work, dynamics.table
     FASTEST_RATES.call(t, *addresses(*arrays), ACCELERATE.address)
-    dynamics.forget_pivots()
+    dynamics.forget_pivots(within_run=True)
     # its accelerations are this change over the square of the frequency
     velocity = np.abs(work[n_u : 2 * n_u]) / found[2] ** 3 if found[2] > 0.0 else np.zeros(n_u)
     vibration, damping, excited, decay = found.tolist()

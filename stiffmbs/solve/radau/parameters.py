@@ -25,6 +25,8 @@ class RadauParameters:
     - `converging`: ratio of successive Chebyshev coefficients of a step's polynomial above which the error estimate has
       no order, and its tolerance is the requested one.
     - `after_failure`: factor of the step after a failed iteration.
+    - `remainder`: largest part of the error tolerance that Newton's iteration may leave; in motions that are not stiff,
+      the method's own error is far smaller.
     """
 
     tolerance: float = 0.01
@@ -38,6 +40,7 @@ class RadauParameters:
     slowest: float = 0.3
     converging: float = 0.25
     after_failure: float = 0.5
+    remainder: float = 0.003
 
 
 RADAU = tuned("radau", RadauParameters())

@@ -33,7 +33,7 @@ class StepwiseControl(ErrorControl):
 
 READ = ("formulation", "rtol", "atol", "max_step", "stages")
 """Settings that the solver reads."""
-CONTROL = tuned("error_test_of_radau", StepwiseControl(margin=1.0))
+CONTROL = tuned("error_test_of_radau", StepwiseControl(margin=1.0, relaxation=0.01))
 ITERATIONS, START_STEPS = 3, 4
 """Average number of Newton iterations in a step; small steps after a start per digit of the relative tolerance."""
 RESIDUAL = 4.0

@@ -193,7 +193,6 @@ DECISIONS = {
     "next_step.inside": lambda: bounded_passage(searched(), repeat=1).passage,
     "next_step.lifted": first_part_of_a_run,
     "long_steps.for_others": lambda: length_of_a_long_step(False),
-    "long_steps.for_functions": lambda: length_of_a_long_step(True),
     "long_steps.from_middle": places_of_a_long_step,
     "narrow_inputs.most_samples": samples_of_narrow_features,
     "jumps.jumps": smallest_jump,
@@ -206,7 +205,7 @@ DECISIONS = {
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
     "next_step.short_of": 0.001, "next_step.of_an_interval": 34, "next_step.just_after": 48, "next_step.soon": 53, "next_step.passage_steps": 0.0625,
-    "next_step.first_part": 0.0078125, "next_step.inside": 0.4, "next_step.lifted": 10, "long_steps.for_others": 594, "long_steps.for_functions": 215,
+    "next_step.first_part": 0.0078125, "next_step.inside": 0.4, "next_step.lifted": 10, "long_steps.for_others": 594,
     "long_steps.from_middle": 0.0002, "narrow_inputs.most_samples": 5000, "jumps.jumps": 99, "jumps.rate_interval": 0.0001,
     "solve.events.native.step_bound:STRETCHED": 99, "solve.events.narrow_inputs:NEAR_INPUT_END": 9, "solve.trajectory:SAME_TIME": 40,
     "solve.missing_rows:MOST_MISSING": 100,

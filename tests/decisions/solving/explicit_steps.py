@@ -29,6 +29,7 @@ def stepping(**fields):
         "n": 1, "n_q": 0, "t": 0.0, "t_before": 0.0, "h": 1.0, "span": 1.0, "longest": np.inf, "stable": 0.0, "shortest": 1e-12, "atol": np.full(1, 1e-3),
         "rtol": 0.0, "y": np.ones(1), "y_before": np.zeros(1), "y_stage": np.ones(1), "k": np.ones(3), "weight": np.ones(1), "difference": np.zeros(1),
         "steps": 1, "stiff_steps": 0, "far_beyond": 0, "rejected": 0, "repeats": 1.0, "last_error": 0.0, "uncertain": 0, "measured": 0,
+        "distance": np.inf, "distance_of_end": np.inf, "pivots_tell": 0, "eliminates": 1, "eliminated": None,
         "dense_ready": 0, "n_event_functions": 1, "signs": np.zeros(1), "watch": searched(), "step_bound": Record(n=0),
     }  # fmt: skip
     return Record(**{**usual, **fields})
@@ -144,8 +145,8 @@ def searches_after_a_start():
 
 
 def uncertain(kept, rate):
-    r = Record(kept=kept, most_kept=1.0)
-    return attempt.uncertain_end(stepping(pivots_tell=1, eliminated=r, k=np.array([0.0, rate])), scheme(), 1.0)
+    x = stepping(pivots_tell=1, eliminated=Record(kept=kept, most_kept=1.0), k=np.array([0.0, rate]))
+    return attempt.uncertain_end(x, scheme(), 1.0, attempt.distance_of_end(x))
 
 
 def largest_uncertain_pivot():
@@ -172,6 +173,20 @@ def step_before_a_bifurcation():
     return x.span
 
 
+def nearest_end():
+    """Return the relative distance from a singular pose, in quarter octaves of 1e-7, up to which no step ends."""
+
+    def turns(distance):
+        replaced = {
+            "_depart": nothing, "is_halved": never, "attempt": nothing, "trusted_error": lambda *_: 0.5, "arrive": nothing,
+            "distance_of_end": lambda _: distance, "uncertain_end": never, "_watch_stiffness": nothing,
+        }  # fmt: skip
+        with interpreted(runge_kutta, **replaced):
+            return runge_kutta._step(stepping(), scheme(), None, None, 1e9) == runge_kutta.SINGULAR
+
+    return count_while(turns, 1e-7 * DOUBLES)
+
+
 def changes_of_velocities():
     """Return the changes of a velocity by which accelerations are differentiated."""
     found, s = [], Record(u=np.zeros(1), q=np.zeros(1), n_u=1, n_q=1)
@@ -188,7 +203,7 @@ def changes_of_velocities():
 
 def look_for_rounding():
     """Return the number of places and the length over which the elimination is compared with the LU, for steps of 1 s."""
-    check, asked = rounding.Rounding(Record(forget_pivots=nothing), 1e-6, 0.0, 1.0), []
+    check, asked = rounding.Rounding(Record(forget_pivots=lambda **_: None), 1e-6, 0.0, 1.0), []
     check._along = lambda work, span, count: asked.extend((count, span)) or iter(())
     check._loses_digits(Record(u=np.zeros(1)), 1.0)
     return asked
@@ -311,6 +326,7 @@ DECISIONS = {
     "explicit_ends.close": largest_uncertain_pivot,
     "explicit_ends.harmful": largest_harmless_change,
     "explicit_ends.shorter": step_before_a_bifurcation,
+    "explicit_ends.turning": nearest_end,
     "explicit_events.beyond": distance_beyond_an_event,
     "explicit_events.most_retaken": steps_to_an_event,
     "explicit_first_step.part": first_length,
@@ -346,7 +362,7 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
-    "explicit_checks.now_and_then": 100, "explicit_ends.close": 10, "explicit_ends.harmful": 30, "explicit_ends.shorter": 0.55,
+    "explicit_checks.now_and_then": 100, "explicit_ends.close": 10, "explicit_ends.harmful": 30, "explicit_ends.shorter": 0.55, "explicit_ends.turning": 27,
     "explicit_events.beyond": 1e-10, "explicit_events.most_retaken": 8, "explicit_first_step.part": 0.01, "explicit_first_step.short": 1e-06,
     "explicit_first_step.small": 67, "explicit_first_step.farthest": 40, "explicit_rounding.few": 4, "explicit_rounding.within": 0.01,
     "explicit_rounding.instants": 64, "explicit_rounding.jumps": 3, "explicit_rounding.part": 48, "explicit_steps.safety": 0.9,

@@ -22,7 +22,7 @@ def collocating(**fields):
         "acting": 0, "current": 0, "iterations": 0, "iterations_taken": 3, "suggested": 0.0, "contraction": 0.0, "left": 0.0, "rejected": 0,
         "h_accepted": 1.0, "h_past": 1.0, "last_error": 1.0, "error_size": 1.0, "rate_kept": 0, "since_change": 0, "n_methods": 2, "method": 0,
         "methods": [], "below": [], "error": np.ones(1), "weight": np.ones(1), "z": np.zeros(3), "misfit": np.ones(1), "yp_stage": np.zeros(1),
-        "y": np.zeros(1), "y_stage": np.zeros(1), "b": np.zeros(1), "x": np.zeros(1), "d": np.zeros(1), "closing": 1.0, "outputs": 0, "suffice": 0,
+        "y": np.zeros(1), "y_stage": np.zeros(1), "b": np.zeros(1), "x": np.zeros(1), "d": np.zeros(1), "outputs": 0, "suffice": 0,
         "h_factored": 1.0, "method_past": 0, "output_correction": Record(long=0.0), "y_past": np.zeros(1), "past": np.zeros(3),
     }  # fmt: skip
     return Record(**{**usual, **fields})
@@ -180,6 +180,24 @@ def outputs_corrected_one_by_one():
         return count_while(lambda _: between_steps.dense_output(x, 0.0, 0.5, None) or not found, range(20))
 
 
+def remainder():
+    """Return the part of the tolerance that Newton's iteration may leave where no force is stiff."""
+    x = collocating(part=0.0)
+    with interpreted(interface, radau_view=lambda _: x, ints=lambda at: at):
+        interface.set_newton(None, 1.0)
+    return x.part
+
+
+def starts_without_decay():
+    """Return the number of replacements of a start whose forces never agree."""
+    x = collocating(acting=1, h_past=0.0, n_all=1, n_efforts=0, decaying=0, remainder=0.0, part=0.0, yp=np.zeros(1))
+    x.output_correction = Record(long=0.0)
+    with interpreted(steps, closed=lambda *_: steps.CLOSED, output_correction_view=lambda at: at, copied=nothing):
+        steps._choose_unknowns(x)
+        x.acting = 1
+        return count_while(lambda _: steps._removes_decay(x, METHOD), range(100))
+
+
 DECISIONS = {
     "radau.tolerance": relaxed_tolerance,
     "radau.least_factor": lambda: steps._bounded(collocating(), 0.0),
@@ -192,6 +210,7 @@ DECISIONS = {
     "radau.slowest": lambda: following_step(contraction=0.2),
     "radau.converging": slowest_coefficients,
     "radau.after_failure": lambda: iterated([np.nan])[1].suggested,
+    "radau.remainder": remainder,
     "solve.radau.collocation:MOST_BETWEEN": lambda: len(collocation._between(np.array([0.0, 0.2, 0.6, 1.0]))) - 2,
     "solve.radau.native.between_steps:ROUNDING": smallest_correction_between_steps,
     "solve.radau.native.between_steps:MOST_MOVED": lambda: most_moved(False),
@@ -204,15 +223,16 @@ DECISIONS = {
     "solve.radau.native.newton:LATER": allowed_later,
     "solve.radau.native.steps:ROUNDING": least_error,
     "solve.radau.native.steps:LEAST_ERROR": last_error,
+    "solve.radau.native.steps:MOST_DECAYS": starts_without_decay,
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
     "radau.tolerance": 0.01, "radau.least_factor": 0.125, "radau.largest_factor": 5, "radau.keep_matrix": 0.003125, "radau.keep_high": 51,
-    "radau.stages_after": 3, "radau.gain": 79, "radau.solution_cost": 3.2, "radau.slowest": 1, "radau.converging": 25, "radau.after_failure": 0.5,
+    "radau.stages_after": 3, "radau.gain": 79, "radau.solution_cost": 3.2, "radau.slowest": 1, "radau.converging": 25, "radau.after_failure": 0.5, "radau.remainder": 0.003,
     "solve.radau.collocation:MOST_BETWEEN": 4, "solve.radau.native.between_steps:ROUNDING": 27, "solve.radau.native.between_steps:MOST_MOVED": 0.5,
     "solve.radau.native.between_steps:MOST_MOVED_WITHIN": 30, "solve.radau.native.between_steps:FEW": 2,
     "solve.radau.native.newton:MOST_ITERATIONS": 7, "solve.radau.native.newton:DIVERGING": 40, "solve.radau.native.newton:SHORTER": 0.5214690759,
     "solve.radau.native.newton:MOST_LEFT": 0.5214690759, "solve.radau.native.newton:LATER": 5, "solve.radau.native.steps:ROUNDING": 1e-10,
-    "solve.radau.native.steps:LEAST_ERROR": 0.01,
+    "solve.radau.native.steps:LEAST_ERROR": 0.01, "solve.radau.native.steps:MOST_DECAYS": 3,
 }  # fmt: skip
 """The decisions of the default parameters."""

@@ -307,7 +307,7 @@ bodies:
   second: {mass: 1, inertia: 0.01, position: [0.3, 0], velocity: [0, 1.5], omega: 5}
 joints: {pin: {type: revolute, i: {body: first, point: [-0.1, 0]}, j: ground}JOINT}
 FORCE
-run: {duration: 0.5 s, points: 101, solver: radau, rtol: 1e-4}
+run: {duration: 0.5 s, points: 501, solver: radau, rtol: 1e-5}
 """
     ends = "i: {body: first, point: [0.1, 0]}, j: {body: second, point: [-0.1, 0]}"
     bushing = f"forces: {{bushing: {{type: bushing, {ends}, stiffness: [1e14, 1e14, 1e10]}}}}"
@@ -316,4 +316,4 @@ run: {duration: 0.5 s, points: 101, solver: radau, rtol: 1e-4}
         for joint, force in (("", bushing), (f", weld: {{type: fixed, {ends}}}", ""))
     )
     for name in ("pin.fx", "pin.fy"):  # the bushing vibrates at the start
-        np.testing.assert_allclose(stiff[name][5:], rigid[name][5:], atol=0.01 * np.abs(rigid[name]).max())
+        np.testing.assert_allclose(stiff[name][25:], rigid[name][25:], atol=0.002 * np.abs(rigid[name]).max())

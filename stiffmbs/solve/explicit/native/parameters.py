@@ -93,6 +93,9 @@ class UncertainEndParameters:
     shorter: float = 0.55
     """Factor of the step: the stages of the next step then avoid the pose, because those of dopri5 and dop853 are at up
     to 0.33 and from 0.6 of a step on."""
+    turning: float = 1e-5
+    """Relative distance d of an end from the pose within which the motion may turn into another branch: constraints are
+    closed to the square of a tenth of it."""
 
 
 ENDS = tuned("explicit_ends", UncertainEndParameters())

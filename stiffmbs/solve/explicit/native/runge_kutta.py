@@ -10,6 +10,7 @@ from stiffmbs.compile.machine.native.statuses import (
     AT_EVENT,
     NOT_FINITE,
     PAUSED,
+    SINGULAR,
     STEP_TOO_SMALL,
     STIFF,
     UNSTABLE,
@@ -30,7 +31,7 @@ from stiffmbs.solve.events.native.step_bound import (
     next_row,
     step_bound_view,
 )
-from stiffmbs.solve.explicit.native.attempt import arrive, attempt, uncertain_end
+from stiffmbs.solve.explicit.native.attempt import across, arrive, attempt, distance_of_end, uncertain_end
 from stiffmbs.solve.explicit.native.error_estimate import trusted_error
 from stiffmbs.solve.explicit.native.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
 from stiffmbs.solve.explicit.native.interpolant import interpolated, prepare, store_rows, store_step
@@ -91,6 +92,9 @@ def _step(x, c, s, m, end):
     `span` is the length of the step, or that of the last attempt in case of a negative status.
     """
     _depart(x, c)
+    distance = x.distance_of_end
+    crossing = across(x, distance)
+    x.distance = distance
     x.span = 0.0
     t = x.t
     h = min(x.h, x.longest)
@@ -118,11 +122,16 @@ def _step(x, c, s, m, end):
         if status == 0 and error <= 1.0:
             t_new = end if h == end - t else t + h
             status = arrive(x, c, s, m, t_new)
-            uncertain = status == 0 and uncertain_end(x, c, h)
-            if uncertain and not x.uncertain and t_new < end and moved < 2:
+            x.distance_of_end = distance_of_end(x)
+            uncertain = status == 0 and uncertain_end(x, c, h, x.distance_of_end)
+            turns = status == 0 and x.distance_of_end < ENDS.turning
+            if (turns or (uncertain and not x.uncertain)) and t_new < end and moved < 2:
                 h = h / ENDS.shorter if moved else h * ENDS.shorter  # back to the whole step if that does not help
                 moved += 1
                 continue
+            if turns:
+                copied(x.y, x.y_before, x.n)
+                return SINGULAR
             if status == 0:
                 x.uncertain = 1 if uncertain or moved else 0  # two in succession would approach a locking pose
                 x.t = t_new
@@ -134,7 +143,11 @@ def _step(x, c, s, m, end):
                 return 0
         x.rejected += 1
         most = 1.0
-        h *= CONTROL.least_factor if status < 0 else max(CONTROL.least_factor, CONTROL.safety * error**-c.exponent)
+        shorter = CONTROL.least_factor if status < 0 else max(CONTROL.least_factor, CONTROL.safety * error**-c.exponent)
+        if crossing < h:
+            h, crossing = crossing, float("inf")
+        else:
+            h *= shorter
         if h < x.shortest:
             copied(x.y, x.y_before, x.n)
             return status if status < 0 else STEP_TOO_SMALL

@@ -52,7 +52,7 @@ class Starts:
         values: dict[str, Any] = {
             "dynamics": dynamics.table, "ida": connection.table, "error_norm": connection.error_norm.table, "n_watched": connection.watch.n,
             "rate": np.zeros(system.n_q), "sums": np.zeros(system.n_u),
-            **_places(equations), **_relaxing(dynamics, settings), **_stiff(dynamics), **statistics.arrays,
+            **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **statistics.arrays,
             "soft": NEWTON.soft, "loosest": control.newton or NEWTON.loosest,
             "tightest": control.newton or max(NEWTON.negligible, NEWTON.precision / settings.rtol), "growth": control.growth,
             **{name: connection.address(function) for name, function in FUNCTIONS.items()},
@@ -92,16 +92,16 @@ def _places(equations: Equations) -> dict[str, Any]:
     return found
 
 
-def _relaxing(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
+def _relaxing(dynamics: Dynamics, settings: RunSettings, factor: float) -> dict[str, Any]:
     """Return the entries that determine relaxations, and the positions of relaxations in each term set."""
     system = dynamics.system
     positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
     return {
         "relaxations": dynamics.state.relaxations,
         "n_position_entries": len(positions.row), "position_source": integers(positions.source), "position_row": integers(positions.row),
-        "position_drift": drift_of_positions(settings),
+        "position_drift": factor * drift_of_positions(settings),
         "n_velocity_entries": len(velocities.row), "velocity_source": integers(velocities.source), "velocity_row": integers(velocities.row),
-        "velocity_drift": drift_of_velocities(settings, system),
+        "velocity_drift": factor * drift_of_velocities(settings, system),
         "inverse_mass": np.ascontiguousarray(inverse_mass(dynamics)[velocities.column]) if system.n_c else np.empty(0),
         "n_sets": len(SETS), "at_relaxations": integers(np.array([system.constants(term_set)["E_mu"] for term_set in SETS])),
     }  # fmt: skip

@@ -74,8 +74,7 @@ def closed(x, t, most):
         if apart <= allowed and (count > 0 or x.n_closing == 0):
             enough = True
             break
-        if count > 0:
-            x.closing = apart / before
+        rate = apart / before if count > 0 else 1.0
         before = max(apart, 1e-300)
         for k in range(x.n_levers):
             x.b[x.lever_unknown[k]] += x.lever[k] * x.misfit[x.lever_effort[k]]
@@ -89,7 +88,7 @@ def closed(x, t, most):
         if count == 0 and x.n_closing > 0:  # forces change as joints close
             for k in range(x.n, x.n_all):
                 first = max(first, abs(x.d[k]))
-        if x.closing * apart <= allowed:
+        if rate * apart <= allowed:
             enough = True
             break
     if moved > most or not (enough or x.rtol * size <= ROUNDING):
@@ -105,7 +104,6 @@ def close_end(x, c, t, h):
         x.y_stage[k] = x.y[k] + last[k]
     for k in range(x.n):
         x.yp_stage[k] = 0.0
-    x.closing = 1.0
     succeeded = closed(x, t, MOST_MOVED) != OPEN
     for k in range(x.n_all):
         last[k] = x.y_stage[k] - x.y[k]

@@ -6,13 +6,13 @@ from typing import Final
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import add_rate_terms
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
+from stiffmbs.solve.error_control.native.parameters import EXCLUDED
 from stiffmbs.solve.events.native.parameters import INDISTINCT
 from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
-from stiffmbs.solve.radau.native.between_steps import close_end
+from stiffmbs.solve.radau.native.between_steps import CLOSED, MOST_MOVED, close_end, closed
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
@@ -39,6 +39,8 @@ ROUNDING = 1e-10
 """Least estimated error."""
 LEAST_ERROR = 1e-2
 """Least error in the predictive control."""
+MOST_DECAYS = 4
+"""Largest number of replacements of a start by a state without decaying motions."""
 
 
 @compiled
@@ -189,6 +191,47 @@ def _choose_method(x, c, longest):
 
 
 @compiled
+def _end_stays(x, c):
+    """Return True if the end of the step is that with the first of the starts that `_removes_decay` has replaced."""
+    last = shifted(x.z, (c.stages - 1) * x.n_all)
+    for k in range(x.n):
+        end = x.y[k] + last[k]
+        if x.decaying == MOST_DECAYS:
+            x.corrections[k] = end
+        x.d[k] = end - x.corrections[k]
+    return x.decaying == 0 or size_in_tolerances(x, x.d) <= MOST_MOVED
+
+
+@compiled
+def _removes_decay(x, c):
+    """Replace the start of a first step by a state without the motions that decay within the step; True to repeat it.
+
+    Efforts of the decaying motions belong to the start. The stages, and a polynomial through the start, would spread them
+    over the step. The other efforts at the start are those of the polynomial of the stages alone.
+    """
+    if x.acting == 0 or x.decaying == 0:
+        return False
+    if x.decaying == MOST_DECAYS:
+        copied(x.y_past, x.y, x.n_all)
+    x.decaying -= 1
+    if x.decaying == 0:
+        return False
+    copied(x.y_stage, x.y, x.n_all)
+    copied(x.yp_stage, x.yp, x.n)
+    for j in range(c.stages):
+        factor = 1.0
+        for i in range(c.stages):
+            if i != j:
+                factor *= c.nodes[i] / (c.nodes[i] - c.nodes[j])
+        for k in range(x.n, x.n_all):
+            x.y_stage[k] += factor * x.z[j * x.n_all + k]
+    if closed(x, x.t, float("inf")) != CLOSED:
+        return False
+    copied(x.y, x.y_stage, x.n_all)
+    return True
+
+
+@compiled
 def _accept(x, c, t, h):
     """Make the end of the step the state; keep its polynomial."""
     n = x.n
@@ -215,7 +258,8 @@ def _accept(x, c, t, h):
 def _choose_unknowns(x):
     """Make the efforts of stiff forces unknowns if the step is long for these forces."""
     acting = x.n_efforts if x.h > output_correction_view(x.output_correction).long else 0
-    x.newton = NEWTON.loosest if acting > 0 else x.part
+    x.newton = x.remainder if acting > 0 else x.part
+    x.decaying = MOST_DECAYS if x.h_past == 0.0 else 0
     if acting > 0 and (x.acting == 0 or x.h_past == 0.0):
         x.acting = acting
         store_efforts(x, x.t)
@@ -332,7 +376,12 @@ def step(x):
     c = collocation_view(ints(x.methods[x.method]))
     # a vibration of as many radians per stage has been tested
     tested = x.h_past * c.stages / collocation_view(ints(x.methods[x.method_past])).stages
+    repeated = 0.0
     while True:
+        if repeated > 0.0 and h != repeated:  # a shorter step may resolve what decays within this one
+            copied(x.y, x.y_past, x.n_all)
+            x.decaying = MOST_DECAYS
+            repeated = 0.0
         at_stop = x.stops and x.t + (1.0 if first else STRETCHED) * h >= x.stop
         if at_stop:
             h = x.stop - x.t
@@ -353,8 +402,11 @@ def step(x):
             h *= x.after_failure
             continue
         if error < 1.0:
-            if x.acting == 0 or close_end(x, c, stage_time(x, x.t + h), h):
-                break
+            if x.acting == 0 or (close_end(x, c, stage_time(x, x.t + h), h) and _end_stays(x, c)):
+                if not _removes_decay(x, c):
+                    break
+                repeated = h
+                continue
             h = _after_failed_iteration(x, DIVERGED, h)
             continue
         x.rejected = 1

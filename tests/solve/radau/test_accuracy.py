@@ -1,0 +1,78 @@
+"""Errors of radau are its method's own, also within a first step over motions that decay."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import stiffmbs
+
+PENDULUM = """
+gravity: [0, -9.81]
+bodies:
+  cart: {mass: 2, inertia: 1}
+  bar: {mass: 1, inertia: 1/12, position: [0.5, 0]}
+joints:
+  rail: {type: prismatic, i: cart, j: ground}
+  hinge: {type: revolute, i: {body: bar, point: [-0.5, 0]}, j: cart}
+run: {duration: 5, points: 51, solver: radau}
+"""
+FOUR_BAR = """
+gravity: [0, -9.81]
+bodies:
+  c: {mass: 1.0, inertia: 0.0075, position: [0.05435366317150104, 0.13980586289508393], angle: 1.2}
+  k: {mass: 2.0, inertia: 0.10666666666666669, position: [0.47923380137787847, 0.4303105356667861], angle: 0.38628204458413135}
+  r: {mass: 1.5, inertia: 0.04499999999999999, position: [0.7748801382063775, 0.2905046727717022], angle: 1.3185286921117703}
+joints:
+  j1: {type: revolute, i: {body: c, point: [-0.15, 0]}, j: ground}
+  j2: {type: revolute, i: {body: k, point: [-0.4, 0]}, j: {body: c, point: [0.15, 0]}}
+  j3: {type: revolute, i: {body: r, point: [0.3, 0]}, j: {body: k, point: [0.4, 0]}}
+  j4: {type: revolute, i: {body: r, point: [-0.3, 0]}, j: {body: ground, point: [0.7, 0]}}
+run: {duration: 2, points: 51, solver: radau}
+"""
+GOVERNOR = Path(__file__).parents[3] / "examples" / "governor.yaml"
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6])
+def test_motions_without_stiff_forces_are_far_below_the_tolerance(rtol):
+    """Errors of 2.5 and 1.3 tolerances were Newton's remainder."""
+
+    def rates(t, y):
+        _, phi, v, w = y
+        mass = np.array([[3.0, -0.5 * np.sin(phi)], [-0.5 * np.sin(phi), 1 / 3]])
+        return [v, w, *np.linalg.solve(mass, [0.5 * w * w * np.cos(phi), -0.5 * 9.81 * np.cos(phi)])]
+
+    found = stiffmbs.run(stiffmbs.read_scene(PENDULUM), rtol=rtol)
+    exact = solve_ivp(rates, (0, 5), np.zeros(4), "DOP853", found.t, rtol=1e-12, atol=1e-12).y
+    for name, values in zip(("cart.x", "bar.angle"), exact[:2], strict=True):
+        np.testing.assert_allclose(found[name], values, rtol=0, atol=0.3 * rtol, err_msg=name)
+
+
+def test_constraints_give_way_less_than_the_method_errs():
+    """With a hundred times the relaxation, as in bdf, the error of this closed loop is larger."""
+    scene = stiffmbs.read_scene(FOUR_BAR)
+    exact = stiffmbs.run(scene, solver="projected", scheme="dop853", rtol=1e-11)["k.angle"]
+    own, relaxed = (
+        np.abs(stiffmbs.run(scene, rtol=1e-5, tuning=tuning)["k.angle"] - exact).max()
+        for tuning in ({}, {"relaxation": {"of_positions": 1e-7, "of_velocities": 1e-10}})
+    )
+    assert own < 3e-6  # 5e-5 before
+    assert relaxed > 5 * own
+
+
+@pytest.mark.parametrize("c", [4e4, 2e5, 1e6])
+def test_forces_within_a_first_step_over_decaying_motions(c):
+    """The force of a damper rises from zero to its peak in 0.1 ms, and first steps are up to 50 ms long.
+
+    A polynomial through the zero exceeded the peak by a third.
+    """
+    scene = stiffmbs.read_scene(GOVERNOR.read_text().replace("c: 4e4 N s/m", f"c: {c:g} N s/m"))
+    exact = stiffmbs.run(scene, solver="projected", scheme="dop853", rtol=1e-8, duration=0.1, points=201)
+    decayed = exact.t > 60 / c
+    peak = exact["right_spring.fx"].max()
+    for stages in (3, 5, 7):
+        for rtol in (1e-3, 1e-4, 1e-5):
+            found = stiffmbs.run(scene, solver="radau", stages=stages, rtol=rtol, duration=0.1, points=201)
+            for name in ("right_spring.fx", "right_spring.fz"):
+                np.testing.assert_allclose(found[name][decayed], exact[name][decayed], rtol=0, atol=0.01 * peak)
