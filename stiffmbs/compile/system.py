@@ -34,8 +34,6 @@ class Term(NamedTuple):
     column: np.ndarray
 
 
-INITIAL_COUNT = 1e-9
-"""Turn counter of an initial angle, rad: half a turn up to rounding counts as positive."""
 
 
 @dataclass(frozen=True)

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..compile.group import Group
-from ..compile.system import INITIAL_COUNT, System
+from ..compile.system import System
 from ..elements.element import Joint
+from ..elements.turns import INITIAL_COUNT, TURN
 from .dynamics import Dynamics
-
-TURN = 2 * math.pi
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,11 @@ from functools import cached_property
 
 import numpy as np
 
-from ..compile.system import INITIAL_COUNT, System
+from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
-from ..dynamics.turns import TURN, counted_angles
+from ..dynamics.turns import counted_angles
 from ..elements.element import Joint
+from ..elements.turns import INITIAL_COUNT, TURN
 from ..reading.joint_name import ORDERS
 
 UNCERTAIN_TURN = 1.0

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from ..element import Expr, Symbolic
-from .planar_pair import InOneTurn
+from ..turns import WithinHalfATurn
+from .planar_pair import PlanarPair
 
 
-class Fixed(InOneTurn):
+class Fixed(WithinHalfATurn, PlanarPair):
     """Weld: two markers coincide in position and direction.
 
     The reaction is a force of any direction and a torque. This is Adams' FIXED in the plane.

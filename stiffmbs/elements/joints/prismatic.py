@@ -7,10 +7,11 @@ from pydantic import Field
 from ...reading.marker import Marker
 from ..element import Expr, Symbolic
 from ..forces.friction import Loads, magnitude
-from .planar_pair import InOneTurn
+from ..turns import WithinHalfATurn
+from .planar_pair import PlanarPair
 
 
-class Prismatic(InOneTurn):
+class Prismatic(WithinHalfATurn, PlanarPair):
     """Slider: marker i remains on the line through marker j along j's axis, and keeps j's direction.
 
     The reaction is a force normal to the line and a torque.

@@ -22,11 +22,12 @@ from ...elements.joints.prismatic import Prismatic
 from ...elements.joints.relation import Relation
 from ...elements.spatial.branches import FARTHEST
 from ...elements.spatial.spatial_kinds import FORCES, JOINTS
+from ...elements.turns import TURN
 from ...errors import InputError
 from ...reading.joint_name import JointName
 from ...reading.python_function import PythonFunction
 from .fields import oriented, plain, same
-from .formulas import QUARTER, TURN, Angles, Written, across, along, turned
+from .formulas import QUARTER, Angles, Written, across, along, turned
 
 
 @singledispatch

@@ -57,7 +57,6 @@ def point(place: tuple[float, float]) -> Written:
 
 
 QUARTER = math.pi / 2
-TURN = 2 * math.pi
 
 
 @dataclass(frozen=True)
