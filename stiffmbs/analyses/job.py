@@ -39,7 +39,7 @@ from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwa
 from ..tuning import changed_values, described, in_use
 from .found_before import FoundBefore
 from .load_scene import load_scene
-from .start_from import StartFrom, started_from, starting_at, state_to_start_from
+from .start_from import StartFrom, in_pose_of, started_from, starting_at, state_to_start_from
 
 DEPENDENT = 1e-9
 """Singular value of equations that depend on others, relative to the largest."""
@@ -107,6 +107,7 @@ class Examined(NamedTuple):
     settings: RunSettings
     grid: Grid
     redundancy: Redundancy
+    placed: ModelData  # in the pose of the start if that is a saved state
     start_from: SavedState | None = None
 
     def dynamics(self) -> Dynamics:
@@ -218,7 +219,7 @@ def prepare(
             dynamics.place(start.q, start.u, start.lam)
         if isinstance(found.data, Scene) and found.data.start != "described":
             start = replace(start, notes=(*start.notes, *held(dynamics.system)))
-        subsystems = presolved(found.data, dynamics, start, found.grid, found.settings, partial(before.get, "implicit"))
+        subsystems = presolved(found.placed, dynamics, start, found.grid, found.settings, partial(before.get, "implicit"))
     before.keep()
     dynamics.system.known_terms.clear()
     return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)
@@ -309,9 +310,10 @@ def examined(
         if name not in data.joints:
             raise InputError(f"drop_first: found no joint '{name}'{instead_of(name, data.joints)}")
     order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
-    system = compile_model(data)
+    placed = in_pose_of(state, data)
+    system = compile_model(placed)
     with in_use(chosen.tuning):
         refuse_far_away(system)
-    system = started_from(system, data, state)
+    system = started_from(system, placed, state)
     with reported_faults(system), in_use(chosen.tuning):
-        return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), state)
+        return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), placed, state)

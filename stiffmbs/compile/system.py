@@ -6,7 +6,7 @@ equation and coordinate of each.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -62,6 +62,7 @@ class System:
     - `size`: size of the mechanism at the start, m.
     - `start_angles`: continuous angles of joints at a start from a saved state or with joints that hold at the start
       alone, rad, by channel; may be changed in place.
+    - `turns_set_up`: full turns by which elements were reduced that were set up during a motion, by name.
     - `outputs`: formulas for which names in other formulas stand, such as the values of inputs; may be changed in
       place.
     - `n_q`, `n_u`, `n_c`: numbers of coordinates, velocities and constraint equations.
@@ -92,6 +93,7 @@ class System:
     active: np.ndarray
     size: float
     start_angles: dict[str, float] = field(default_factory=dict)
+    turns_set_up: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     outputs: dict[str, Formula] = field(default_factory=dict)
     n_q: int = field(init=False)
     n_u: int = field(init=False)

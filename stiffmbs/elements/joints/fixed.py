@@ -17,6 +17,7 @@ class Fixed(WithinHalfATurn, PlanarPair):
     equations = ("x", "y", "angle")
     elastic = "bushing"
     keeps_in_plane = True
+    same_in_each_pose = True
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:

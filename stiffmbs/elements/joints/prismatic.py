@@ -25,6 +25,7 @@ class Prismatic(WithinHalfATurn, PlanarPair):
     coordinates = ("displacement",)
     elastic = "bushing"
     keeps_in_plane = True
+    same_in_each_pose = True
 
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose axis is the line of sliding")
