@@ -219,7 +219,9 @@ def prepare(
             dynamics.place(start.q, start.u, start.lam)
         if isinstance(found.data, Scene) and found.data.start != "described":
             start = replace(start, notes=(*start.notes, *held(dynamics.system)))
-        subsystems = presolved(found.placed, dynamics, start, found.grid, found.settings, partial(before.get, "implicit"))
+        subsystems = presolved(
+            found.placed, dynamics, start, found.grid, found.settings, partial(before.get, "implicit")
+        )
     before.keep()
     dynamics.system.known_terms.clear()
     return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)

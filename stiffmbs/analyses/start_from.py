@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias, TypeVar
@@ -89,12 +89,13 @@ def _turns_set_up(state: SavedState) -> dict[str, tuple[int, ...]]:
 
 
 def started_from(system: System, model: ModelData, state: SavedState | None) -> System:
-    """Return a system that starts from a saved state, or the same system if there is none.
+    """Return a system that starts from a saved state, or as described if there is none.
 
     `model`: of the system, in the pose of the state (`in_pose_of`). Raise an InputError if the state lacks values.
     """
     if state is None:
-        return system
+        described = model.described_angles()
+        return replace(system, described_angles=described) if described else system
     of_body, channels = system.of_body, state.channels
     q, u = (
         np.array([channels[f"{body}.{label}"] for body in system.bodies for label in labels])

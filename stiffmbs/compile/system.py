@@ -34,8 +34,6 @@ class Term(NamedTuple):
     column: np.ndarray
 
 
-
-
 @dataclass(frozen=True)
 class System:
     """Compiled model.
@@ -62,6 +60,7 @@ class System:
     - `size`: size of the mechanism at the start, m.
     - `start_angles`: continuous angles of joints at a start from a saved state or with joints that hold at the start
       alone, rad, by channel; may be changed in place.
+    - `described_angles`: angles of joints with described full turns, rad, by channel, unless drives select the turns.
     - `turns_set_up`: full turns by which elements were reduced that were set up during a motion, by name.
     - `outputs`: formulas for which names in other formulas stand, such as the values of inputs; may be changed in
       place.
@@ -93,6 +92,7 @@ class System:
     active: np.ndarray
     size: float
     start_angles: dict[str, float] = field(default_factory=dict)
+    described_angles: Mapping[str, float] = field(default_factory=dict)
     turns_set_up: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     outputs: dict[str, Formula] = field(default_factory=dict)
     n_q: int = field(init=False)

@@ -58,6 +58,21 @@ class WithinHalfATurn:
         return self.without_turns(model, self.relative_turns(model))
 
 
+class KeepsDescribedTurns(WithinHalfATurn):
+    """Elements whose angle counts all turns between the described angles of planar bodies.
+
+    One that starts to act in a later pose starts within half a turn there, as in space.
+    """
+
+    def at_initial_pose(self, model: ModelData) -> Self:
+        """Return the same element."""
+        return self
+
+    def at_current_pose(self, model: ModelData) -> Self:
+        """Return the element with an angle within half a turn."""
+        return self.without_turns(model, self.relative_turns(model))
+
+
 def _between_angles(model: ModelData, i: Any, j: Any) -> int:
     return full_turns(model.initial_marker(i).angle - model.initial_marker(j).angle)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..elements.element import Element
+from ..elements.turns import WithinHalfATurn
 
 if TYPE_CHECKING:
     from .model_data import ModelData
@@ -37,15 +38,16 @@ class CurrentPose:
         """
         if name not in self.acted:
             return element.at_current_pose(model)  # type: ignore[no-any-return]
-        if name in self.turns:
+        if name in self.turns and not element.same_in_each_pose:
             return element.without_turns(model, self.turns[name])  # type: ignore[no-any-return]
         return element.at_initial_pose(model if element.same_in_each_pose else self.described)  # type: ignore[no-any-return]
 
     def turns_set_up(self, model: ModelData) -> dict[str, tuple[int, ...]]:
         """Return `turns` of all elements, including those that are set up now."""
-        new = {name: force for name, force in model.forces.items() if name not in self.acted}
-        counting = {name: force for name, force in new.items() if hasattr(force, "relative_turns")}
-        return {**self.turns, **{name: force.relative_turns(model) for name, force in counting.items()}}
+        elements = {**model.joints, **model.forces}
+        new = {name: element for name, element in elements.items() if name not in self.acted}
+        counting = {name: element for name, element in new.items() if isinstance(element, WithinHalfATurn)}
+        return {**self.turns, **{name: element.relative_turns(model) for name, element in counting.items()}}
 
 
 def in_current_pose(model: Data, bodies: Mapping[str, Any], pose: CurrentPose) -> Data:

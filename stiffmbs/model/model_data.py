@@ -202,8 +202,13 @@ class ModelData(NotebookMethods, Described):
         return element.at_initial_pose(self) if pose is None else pose.set_up(name, element, self)
 
     def known_angle(self, channel: str) -> float | None:
-        """Return the angle of a joint with its full turns, rad, if a restart knows it."""
-        return None if self._current_pose is None else self._current_pose.angles.get(channel)
+        """Return the angle of a joint with its full turns, rad, if a restart or the joint states it."""
+        angles = self.described_angles() if self._current_pose is None else self._current_pose.angles
+        return angles.get(channel)
+
+    def described_angles(self) -> Mapping[str, float]:
+        """Return angles of joints whose full turns are described, but do not follow from the poses, by channel, rad."""
+        return {}
 
     def known_own_angle(self, joint: Joint) -> float | None:
         """Return the angle with its full turns that a joint itself counts, rad, if a restart knows it."""

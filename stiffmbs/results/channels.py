@@ -100,7 +100,9 @@ def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
 
     Also the full turns by which elements were reduced when they were set up in a restart: ``bushing/set_up0``.
     """
-    counted = {f"{name}/{k}": q[:, place] for (name, k), place in counters_of(system).items()} if system.n_counters else {}
+    counted = (
+        {f"{name}/{k}": q[:, place] for (name, k), place in counters_of(system).items()} if system.n_counters else {}
+    )
     of_elements = ((name, k, n) for name, turns in system.turns_set_up.items() for k, n in enumerate(turns))
     return counted | {f"{name}/{SET_UP}{k}": np.full(len(q), float(n)) for name, k, n in of_elements}
 

@@ -101,4 +101,5 @@ def joint_angles(system: System) -> JointAngles | None:
     }
     places = {name: found for name, found in angles.items() if min(found) >= 0}
     counters = {angle.channel: angle.place for angle in counted_angles(system) if angle.channel}
-    return JointAngles(places, counters, system.start_angles) if places else None
+    start = {**system.described_angles, **system.start_angles}
+    return JointAngles(places, counters, start) if places else None

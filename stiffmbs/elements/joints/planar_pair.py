@@ -6,6 +6,7 @@ from ...reading.marker import Marker
 from ..element import Expr, Symbolic
 from .pair import Pair
 
+
 class PlanarPair(Pair[Marker]):
     """Base of the planar joints between two markers; a subclass names its coordinates among these."""
 

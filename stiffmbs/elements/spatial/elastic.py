@@ -11,8 +11,8 @@ from pydantic import Field, WithJsonSchema, field_validator
 from ...reading.files.quoted import written
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic
-from ..turns import WithinHalfATurn
 from ..forces.elastic_matrix import C, Cc, Ct, K, Kc, Kt, Rows, check_symmetric, from_diagonal, times
+from ..turns import WithinHalfATurn
 from .marker import Marker
 from .wrench import Pairs, along_axes, velocity
 
