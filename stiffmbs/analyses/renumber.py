@@ -25,7 +25,6 @@ from ..reading.formula.text import FormulaError
 from ..reading.marker import GROUND
 from ..reading.table import Table
 from .job import Job, prepare, start_of_job
-from .start_from import in_pose_of
 
 HELD = ("dimensions", "gravity", "markers", "bodies", "joints")
 """Sections that must be equal: they determine coordinates, rank and the start."""
@@ -67,7 +66,7 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
     if not renumberable(job) or not _same_structure(job.data, data):
         return None
     written = []
-    placed = in_pose_of(job.start_from, data)
+    placed = job.placed(data)
     for name, element in (*_changed(job.data, placed), *_changed_by_states(job.data, placed)):
         change = _change(system, name, element, data)
         if change is None:

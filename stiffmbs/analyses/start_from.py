@@ -59,11 +59,10 @@ def in_pose_of(state: SavedState | None, model: Data) -> Data:
         return model
     _refuse_others(model, state)
     acted = state.elements if state.elements is not None else {owner_of(name) for name in state.channels}
-    own = {name: angle for name in model.joints if (angle := state.turns.get(f"{name}/0")) is not None}
+    own = {name: angle for name in model.joints if np.isfinite(angle := state.turns.get(f"{name}/0", np.nan))}
     pose = CurrentPose(model, acted, {**_angles(state), **own}, _turns_set_up(state))
-    labels = BODY_KINDS[model.dimensions].positions
-    places = {name: [state.channels[f"{name}.{label}"] for label in labels] for name in model.bodies}
-    bodies = {name: body.in_pose(places[name]) for name, body in model.bodies.items()}
+    places = _motion(model, state)[0].reshape(len(model.bodies), -1).tolist()
+    bodies = {name: body.in_pose(place) for (name, body), place in zip(model.bodies.items(), places, strict=True)}
     found = in_current_pose(model, bodies, pose)
     drawn = InitialPose(found)
     for section in ("joints", "forces"):
@@ -73,9 +72,30 @@ def in_pose_of(state: SavedState | None, model: Data) -> Data:
     return found
 
 
+def _motion(model: ModelData, state: SavedState) -> tuple[np.ndarray, np.ndarray]:
+    """Return the coordinates and velocities of the bodies, with unit quaternions; raise an InputError if they lack values."""
+    of_body, channels = BODY_KINDS[model.dimensions], state.channels
+    q, u = (
+        np.array([channels[f"{body}.{label}"] for body in model.bodies for label in labels])
+        for labels in (of_body.positions, of_body.velocities)
+    )
+    if not np.all(np.isfinite([*q, *u])):
+        raise InputError(
+            f"{state.source}: found no numbers for all bodies at t = {state.t:g} s, expected an earlier row"
+        )
+    if of_body.dimensions == 3:
+        turned = q.reshape(-1, of_body.n_q)[:, of_body.linear :]
+        lengths = np.linalg.norm(turned, axis=1, keepdims=True)
+        if not np.all(lengths > 0):
+            raise InputError(f"{state.source}: found a quaternion of length 0, expected 1")
+        turned /= lengths
+    return q, u
+
+
 def _angles(state: SavedState) -> dict[str, float]:
     """Return the coordinates of joints, angles with their full turns."""
-    return {name: x for name, x in state.channels.items() if name.rpartition(".")[2] in FREE_COORDINATES}
+    of_joints = ((name, x) for name, x in state.channels.items() if name.rpartition(".")[2] in FREE_COORDINATES)
+    return {name: x for name, x in of_joints if np.isfinite(x)}
 
 
 def _turns_set_up(state: SavedState) -> dict[str, tuple[int, ...]]:
@@ -94,23 +114,10 @@ def started_from(system: System, model: ModelData, state: SavedState | None) -> 
     `model`: of the system, in the pose of the state (`in_pose_of`). Raise an InputError if the state lacks values.
     """
     if state is None:
-        described = model.described_angles()
-        return replace(system, described_angles=described) if described else system
-    of_body, channels = system.of_body, state.channels
-    q, u = (
-        np.array([channels[f"{body}.{label}"] for body in system.bodies for label in labels])
-        for labels in (of_body.positions, of_body.velocities)
-    )
-    if not np.all(np.isfinite([*q, *u])):
-        raise InputError(
-            f"{state.source}: found no numbers for all bodies at t = {state.t:g} s, expected an earlier row"
-        )
-    if of_body.dimensions == 3:
-        turned = q.reshape(-1, of_body.n_q)[:, of_body.linear :]
-        lengths = np.linalg.norm(turned, axis=1, keepdims=True)
-        if not np.all(lengths > 0):
-            raise InputError(f"{state.source}: found a quaternion of length 0, expected 1")
-        turned /= lengths
+        if model.dimensions == 2:  # angles in the plane count their turns
+            return system
+        return replace(system, described_angles=model.described_angles())
+    q, u = _motion(model, state)
     q, u = from_own_axes(system, q[None])[0], rates_from_own_axes(system, u[None])[0]
     return replace(
         system,

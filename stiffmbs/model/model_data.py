@@ -63,6 +63,7 @@ class ModelData(NotebookMethods, Described):
     forces: dict[str, Any] = Field(default_factory=dict, description="forces by name")
     requests: dict[str, Any] = Field(default_factory=dict, description="formulas to report, by channel name")
     _current_pose: CurrentPose | None = PrivateAttr(default=None)
+    _turns_of_joints: Mapping[str, int] = PrivateAttr(default_factory=dict)  # in space, that drives select
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {contents(self)}>"

@@ -80,10 +80,10 @@ class SpatialData(ModelData):
         return joint is not None and name in joint.free_coordinates() and name.startswith("angle")
 
     def described_angles(self) -> Mapping[str, float]:
-        stated = {name: joint for name, joint in self.joints.items() if getattr(joint, "turns", None)}
+        stated = {name: n for name, joint in self.joints.items() if (n := getattr(joint, "turns", None))}
         return {
-            f"{name}.angle": joint.angle(initial_element(joint, self)) + TURN * joint.turns
-            for name, joint in stated.items()
+            f"{name}.angle": self.joints[name].angle(initial_element(self.joints[name], self)) + TURN * n
+            for name, n in {**stated, **self._turns_of_joints}.items()
         }
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:

@@ -55,6 +55,7 @@ def _stages(data: Scene, first: Written, angles: Angles) -> list[Written]:
     stages: list[Written] = []
     before = {name: part for name, part in first.items() if part and name not in OF_STAGES}
     for stage, scene in zip(data.stages, data.stage_scenes, strict=True):
+        assert isinstance(scene, PlanarData)
         found = _one_scene(scene, replace(angles, data=scene))
         found = {name: part for name, part in found.items() if part and name not in OF_STAGES}
         own = {name: part for name, part in stage.model_dump(exclude_defaults=True).items() if name != "change"}

@@ -116,7 +116,7 @@ def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[Written
                 f"--set {path}: found a scene with stages, which have durations and outputs of their own, expected no change of it"
             )
     content = {key: value for key, value in scene.content.items() if key != "stages"}
-    found = []
+    found: list[WrittenScene] = []
     for k, stage in enumerate(stages):
         content = merged(content, stage.change)
         if k == 1:

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from ...analyses.job import Job, start_of_job
-from ...analyses.start_from import in_pose_of, started_from
+from ...analyses.start_from import started_from
 from ...compile.compile_model import compile_model
 from ...compile.directional.direction import Numbers
 from ...compile.inputs.features import input_features
@@ -76,7 +76,7 @@ class SetUp:
     @cached_property
     def _systems(self) -> list[System]:
         """Compiled systems of the scenes."""
-        placed = [in_pose_of(self._job.start_from, scene) for scene in self.scenes]
+        placed = [self._job.placed(scene) for scene in self.scenes]
         found = [started_from(compile_model(scene), scene, self._job.start_from) for scene in placed]
         system = self._job.dynamics.system
         for other in found:
@@ -134,7 +134,7 @@ class SetUp:
 
     def _place(self, name: str, scene: Scene, element: Element) -> tuple[int, int, np.ndarray]:
         """Return the group of an element, the index of its first number there, and its numbers."""
-        kind, data = sorted_out(name, in_pose_of(self._job.start_from, scene).set_up(name, element), scene)
+        kind, data = sorted_out(name, self._job.placed(scene).set_up(name, element), scene)
         for g, group in enumerate(self._job.dynamics.system.groups):
             if name in group.names and group.kind == kind:
                 return g, int(group.index[group.names.index(name), 2 * kind.n_bodies]), data.flat()
