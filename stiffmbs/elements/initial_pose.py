@@ -13,7 +13,7 @@ import numpy as np
 from ..reading.joint_name import JointName
 from ..reading.marker import MarkerReference
 from .element import Element, Joint
-from .turns import TURN, full_turns
+from .turns import INITIAL_COUNT, TURN, full_turns
 
 if TYPE_CHECKING:
     from ..model.model_data import ModelData
@@ -72,8 +72,8 @@ def initial_element(element: Element, model: ModelData, own_angle: float | None 
 
 
 def _with_turns(angle: float, known: float | None) -> float:
-    """Return an angle in the turn of a known one."""
-    return angle if known is None else angle - TURN * full_turns(angle, known)
+    """Return an angle in the turn of a known one, or within half a turn."""
+    return angle - TURN * full_turns(angle, INITIAL_COUNT if known is None else known)
 
 
 def _drawn(value: object, model: ModelData) -> Any:
@@ -84,8 +84,9 @@ def _drawn(value: object, model: ModelData) -> Any:
             joint: Joint = model.joints[value.joint]
             e, name = initial_element(joint, model), value.coordinate_of(joint)
             e.coordinate = None if name is None else getattr(joint, name)(e)
-            if name is not None and name.startswith("angle"):
-                e.coordinate = _with_turns(e.coordinate, model.known_angle(f"{value.joint}.{name}"))
+            known = model.known_angle(f"{value.joint}.{name}") if name is not None and "angle" in name else None
+            if known is not None:
+                e.coordinate = _with_turns(e.coordinate, known)
             return e
         case _:
             return value

@@ -2,7 +2,7 @@
 
 Angles of bodies in the plane are numbers with full turns. In space, the sign of a quaternion tells an odd number of
 turns from an even one. Coordinates of joints, springs and measures keep these turns. An element that holds or measures
-a pose, such as a weld or a bushing, starts within half a turn of the pose in which it is set up.
+a pose, such as a weld or a bushing, has a rotation within half a turn where it is set up.
 """
 
 from __future__ import annotations
