@@ -1,8 +1,8 @@
 """Full turns by which position drives differ from the described angles.
 
-A described angle and a prescribed one may differ by full turns, such as 350 and -10 degrees. The pose is the same, so
-the turns of the drives are taken before elements are set up, and assembly does not search for the turn in other poses:
-in the plane by the angles of bodies, in space by the angles of joints from which default offsets follow.
+A described angle and a prescribed one may differ by full turns, such as 350 and -10 degrees. The turns of the drives are
+taken before elements are set up, so that assembly does not search for them in other poses. In the plane, the angles of
+bodies have them, in space those of joints, from which default offsets follow.
 """
 
 from __future__ import annotations
