@@ -8,6 +8,7 @@ bodies have them, in space those of joints, from which default offsets follow.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from ..compile.compile_model import compile_model
@@ -34,12 +35,37 @@ def turns_of_drives(data: ModelData, system: System | None, t: float) -> dict[st
         data, system = data.held_at_start, None
     if not (drives := _drives(data)):
         return {}
-    system = system or compile_model(data)
+    turns = _turns_of_joints(drives, system or compile_model(data), t)
+    return {name: n for name, n in (turns if data.dimensions == 3 else _of_bodies(data, turns)).items() if n}
+
+
+def in_turns_of_new_drives(placed: Data, system: System, t: float) -> Data:
+    """Return a model at a restart in which new drives select the turns of planar joints; bodies keep theirs.
+
+    `placed`: in the pose of a saved state. `system`: of that model, started from the state.
+    """
+    pose = placed._current_pose
+    drives = _drives(placed) if placed.dimensions == 2 else {}  # counters find the turns in space
+    drives = {name: joint for name, joint in drives.items() if pose is not None and name not in pose.acted}
+    turns = {joint: n for joint, n in _turns_of_joints(drives, system, t).items() if n} if drives else {}
+    if pose is None or not turns:
+        return placed
+    before = pose.turns_set_up(placed)
+    found = placed.model_copy()
+    found._current_pose = replace(
+        pose,
+        turns={**pose.turns, **{joint: (before.get(joint, (0,))[0] - n,) for joint, n in turns.items()}},
+        angles={name: angle + TURN * turns.get(name.removesuffix(".angle"), 0) for name, angle in pose.angles.items()},
+    )
+    return found
+
+
+def _turns_of_joints(drives: Mapping[str, str], system: System, t: float) -> dict[str, int]:
+    """Return the full turns to add to the angles of joints for the prescribed ones; `drives`: joints by drive."""
     state = State(system)
     state.evaluate("position", t)
     gaps = dict(zip((name for name, _ in system.equations), state.vector("position", "C"), strict=True))
-    turns = {joint: -full_turns(gaps[drive]) for drive, joint in drives.items()}
-    return {name: n for name, n in (turns if data.dimensions == 3 else _of_bodies(data, turns)).items() if n}
+    return {joint: -full_turns(gaps[drive]) for drive, joint in drives.items()}
 
 
 def _of_bodies(data: ModelData, turns: Mapping[str, int]) -> dict[str, int]:

@@ -37,7 +37,7 @@ from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 from ..tuning import changed_values, described, in_use
-from .driven_turns import note_on_turns, turns_of_drives, with_turns
+from .driven_turns import in_turns_of_new_drives, note_on_turns, turns_of_drives, with_turns
 from .found_before import FoundBefore
 from .load_scene import load_scene
 from .start_from import StartFrom, in_pose_of, started_from, starting_at, state_to_start_from
@@ -331,5 +331,8 @@ def examined(
     with in_use(chosen.tuning):
         refuse_far_away(system)
     system = started_from(system, placed, state)
+    if state is not None and (turned := in_turns_of_new_drives(placed, system, grid.start)) is not placed:
+        placed = turned
+        system = started_from(compile_model(placed), placed, state)
     with reported_faults(system), in_use(chosen.tuning):
         return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), placed, turns, state)

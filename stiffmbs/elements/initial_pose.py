@@ -81,7 +81,7 @@ def _drawn(value: object, model: ModelData) -> Any:
         case MarkerReference():
             return model.initial_marker(value)
         case JointName():
-            joint: Joint = model.joints[value.joint]
+            joint: Joint = model.joint_at_initial_pose(value.joint)
             e, name = initial_element(joint, model), value.coordinate_of(joint)
             e.coordinate = None if name is None else getattr(joint, name)(e)
             known = model.known_angle(f"{value.joint}.{name}") if name is not None and "angle" in name else None

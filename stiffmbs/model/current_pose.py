@@ -36,10 +36,10 @@ class CurrentPose:
         One that did not act before starts in the current pose. Of one that acted, fields that the current pose
         determines as any earlier one did follow from that; those that count turns are kept.
         """
-        if name not in self.acted:
-            return element.at_current_pose(model)  # type: ignore[no-any-return]
         if name in self.turns and not element.same_in_each_pose:
             return element.without_turns(model, self.turns[name])  # type: ignore[no-any-return]
+        if name not in self.acted:
+            return element.at_current_pose(model)  # type: ignore[no-any-return]
         return element.at_initial_pose(model if element.same_in_each_pose else self.described)  # type: ignore[no-any-return]
 
     def turns_set_up(self, model: ModelData) -> dict[str, tuple[int, ...]]:
@@ -47,7 +47,7 @@ class CurrentPose:
         elements = {**model.joints, **model.forces}
         new = {name: element for name, element in elements.items() if name not in self.acted}
         counting = {name: element for name, element in new.items() if isinstance(element, WithinHalfATurn)}
-        return {**self.turns, **{name: element.relative_turns(model) for name, element in counting.items()}}
+        return {**{name: element.relative_turns(model) for name, element in counting.items()}, **self.turns}
 
 
 def in_current_pose(model: Data, bodies: Mapping[str, Any], pose: CurrentPose) -> Data:
