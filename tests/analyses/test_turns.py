@@ -132,11 +132,31 @@ def test_what_a_stage_adds_is_set_up_in_its_pose_in_plane_and_space(kind):
     np.testing.assert_allclose(space["y.tz"], plane["y.torque"], atol=1e-4)
 
 
+WOUND = STAGE.replace(
+    "joints:\n", "forces: {s: {type: torsion_spring, i: a, j: ground, stiffness: 0.05}}\njoints:\n", 1
+)
+
+
+def test_a_drive_that_a_stage_adds_selects_the_turn_of_its_joint_and_unwinds_no_spring():
+    scene = read(WOUND, added='joints: {y: {type: drive, joint: p, position: "0.2 + 3*(t-1)"}}')
+    plane, space = stiffmbs.run(scene), stiffmbs.run(spatial.in_space(scene))
+    row = int(np.flatnonzero(plane.time == 1.0)[-1])
+    assert plane["p.angle"][row] == pytest.approx(0.2) and plane["a.angle"][row] == pytest.approx(3 * TURN + 0.2)
+    np.testing.assert_allclose(space["p.angle"], plane["p.angle"], atol=1e-5)
+    np.testing.assert_allclose(space["s.tz"], plane["s.torque"], atol=1e-5)
+
+
+def test_joints_and_a_coupler_of_one_stage_have_the_same_turns():
+    text = STAGE.replace("  p: {type: revolute, i: a, j: ground}\n", "")
+    pin = "r: {type: revolute, i: a, j: {body: ground, angle: 1}}"
+    scene = read(text, added=f"joints: {{{pin}, y: {{type: coupler, joint_1: q, joint_2: r, scale: 0.3}}}}")
+    (plane, row), (space, _) = starts(scene)
+    np.testing.assert_allclose(space["r.angle"][-6:], plane["r.angle"][-6:], atol=1e-5)
+    assert plane["r.angle"][row] == pytest.approx(BEYOND - 1, abs=1e-6)
+
+
 def test_a_lock_closes_in_the_nearest_turn():
-    text = STAGE.replace(
-        "joints:\n", "forces: {s: {type: torsion_spring, i: a, j: ground, stiffness: 0.05}}\njoints:\n"
-    )
-    found = stiffmbs.run(read(text, added="joints: {y: {type: fixed, i: a, j: ground}}"))
+    found = stiffmbs.run(read(WOUND, added="joints: {y: {type: fixed, i: a, j: ground}}"))
     assert found["a.angle"][-1] == pytest.approx(3 * TURN, abs=1e-9)
     assert found["s.torque"][-1] == pytest.approx(-0.05 * 3 * TURN, abs=1e-9)
 
