@@ -13,10 +13,12 @@ from ..model.embedding.scene import scene_in_space
 from ..model.model import Model as PlanarModel
 from ..model.model import PlanarData
 from ..model.read_scene import made_scene
+from ..model.scene import Scene
 from ..model.spatial_model import Model
 from ..model.spatial_scene import SpatialScene
 from ..reading.files.text_file import source_name
 from ..reading.files.yaml_text import scene_text
+from .driven_turns import turns_of_drives, with_turns
 from .load_scene import load_scene
 
 
@@ -63,7 +65,19 @@ def in_space(planar: PlanarModel | PlanarData) -> Model | SpatialScene:
 
 
 def _embedded(planar: PlanarData) -> SpatialScene:
-    return _checked(scene_in_space(planar), planar.name or "in space")
+    return _checked(scene_in_space(_in_driven_turns(planar)), planar.name or "in space")
+
+
+def _in_driven_turns(planar: PlanarData) -> PlanarData:
+    """Return the planar model in the turns of its drives, in which it starts."""
+    if not isinstance(planar, Scene):
+        return with_turns(planar, turns_of_drives(planar, None, 0.0))
+    first = next(iter(planar.stage_scenes), planar)
+    turns = turns_of_drives(first, None, first.run.start)
+    found = with_turns(planar, turns)
+    if turns:
+        found._stage_scenes = tuple(with_turns(scene, turns) for scene in planar.stage_scenes)
+    return found
 
 
 def text_in_space(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> str:
@@ -72,7 +86,7 @@ def text_in_space(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> 
     if not isinstance(planar, PlanarData):
         raise InputError(f"{source_name(path)}: found a scene in space, expected a planar one")
     with prefixed(f"{source_name(path)}: "):
-        found = scene_in_space(planar)
+        found = scene_in_space(_in_driven_turns(planar))
     _checked(copy.deepcopy(found), source_name(path))
     return scene_text(found)
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -38,10 +38,12 @@ from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 from ..tuning import changed_values, described, in_use
+from .driven_turns import in_turns_of_new_drives, note_on_turns, turns_of_drives, with_turns
 from .found_before import FoundBefore
 from .load_scene import load_scene
-from .start_from import StartFrom, started_from, starting_at, state_to_start_from
+from .start_from import StartFrom, in_pose_of, started_from, starting_at, state_to_start_from
 
+Data = TypeVar("Data", bound=ModelData)
 DEPENDENT = 1e-9
 """Singular value of equations that depend on others, relative to the largest."""
 
@@ -108,6 +110,8 @@ class Examined(NamedTuple):
     settings: RunSettings
     grid: Grid
     redundancy: Redundancy
+    placed: ModelData  # with the pose of a saved state, or the turns of drives
+    turns: Mapping[str, int]  # added to described angles
     start_from: SavedState | None = None
 
     def dynamics(self) -> Dynamics:
@@ -128,7 +132,12 @@ class Job:
     dynamics: Dynamics
     start: InitialValues
     subsystems: tuple[Subsystem, ...] = ()
+    turns: Mapping[str, int] = field(default_factory=dict)
     start_from: SavedState | None = None
+
+    def placed(self, data: Data) -> Data:
+        """Return a model of the same bodies in the pose in which the elements of the job were set up."""
+        return with_turns(in_pose_of(self.start_from, data), self.turns)
 
     @cached_property
     def on_constraints(self) -> bool:
@@ -223,12 +232,17 @@ def prepare(
         start = before.get("start", lambda: _start(found.data, dynamics, found.grid.start, found.start_from))
         if before.name:
             dynamics.place(start.q, start.u, start.lam)
+        if found.turns and found.data.dimensions == 2:
+            start = replace(start, notes=(*start.notes, *note_on_turns(found.turns)))
         if isinstance(found.data, Scene) and found.data.start != "described":
             start = replace(start, notes=(*start.notes, *held(dynamics.system)))
-        subsystems = presolved(found.data, dynamics, start, found.grid, found.settings, partial(before.get, "implicit"))
+        subsystems = presolved(
+            found.placed, dynamics, start, found.grid, found.settings, partial(before.get, "implicit")
+        )
     before.keep()
     dynamics.system.known_terms.clear()
-    return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)
+    parts = found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems
+    return Job(*parts, found.turns, found.start_from)
 
 
 def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
@@ -316,9 +330,16 @@ def examined(
         if name not in data.joints:
             raise InputError(f"drop_first: found no joint '{name}'{instead_of(name, data.joints)}")
     order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
-    system = compile_model(data)
+    placed, turns = in_pose_of(state, data), {}
+    system = compile_model(placed)
+    if state is None and (turns := turns_of_drives(data, system, grid.start)):
+        placed = with_turns(data, turns)
+        system = compile_model(placed)
     with in_use(chosen.tuning):
         refuse_far_away(system)
-    system = started_from(system, data, state)
+    system = started_from(system, placed, state)
+    if state is not None and (turned := in_turns_of_new_drives(placed, system, grid.start)) is not placed:
+        placed = turned
+        system = started_from(compile_model(placed), placed, state)
     with reported_faults(system), in_use(chosen.tuning):
-        return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), state)
+        return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), placed, turns, state)

@@ -66,7 +66,8 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
     if not renumberable(job) or not _same_structure(job.data, data):
         return None
     written = []
-    for name, element in (*_changed(job.data, data), *_changed_by_states(job.data, data)):
+    placed = job.placed(data)
+    for name, element in (*_changed(job.data, placed), *_changed_by_states(job.data, placed)):
         change = _change(system, name, element, data)
         if change is None:
             return None
@@ -130,13 +131,13 @@ def _changed_by_states(before: ModelData, after: ModelData) -> Iterator[tuple[st
     yield from after.state_equations()
     for name, force in after.forces.items():
         if force is before.forces[name] and any(formula.states for _, formula in force.parts(Formula)):
-            yield name, force.at_initial_pose(after)
+            yield name, after.set_up(name, force)
 
 
 def _changed(before: ModelData, after: ModelData) -> Iterator[tuple[str, Element]]:
     for name, force in after.forces.items():
         if force is not before.forces[name]:
-            yield name, force.at_initial_pose(after)
+            yield name, after.set_up(name, force)
 
 
 def may_be_input(element: Element) -> bool:

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
 from ..compile.bodies import BODY_KINDS
 from ..compile.system import System
 from ..dynamics.turns import counted_angles
+from ..elements.initial_pose import InitialPose
 from ..errors import InputError
+from ..model.current_pose import CurrentPose, in_current_pose
 from ..model.model_data import ModelData
 from ..model.settings import RunSettings
 from ..presolve.subsystems import counters_of
@@ -20,11 +22,12 @@ from ..reading.files.quoted import listed
 from ..reading.joint_name import FREE_COORDINATES
 from ..reading.names import owner_of
 from ..results.frames import from_own_axes, rates_from_own_axes
-from ..results.saved_state import SavedState, read_state
+from ..results.saved_state import SET_UP, SavedState, read_state
 from ..results.solution import Solution
 
 StartFrom: TypeAlias = SavedState | Solution | str | Path
 """Saved state: one row of a solution or of a results file, by default the last."""
+Data = TypeVar("Data", bound=ModelData)
 
 
 def state_to_start_from(given: StartFrom | None) -> SavedState | None:
@@ -47,17 +50,33 @@ def starting_at(state: SavedState | None, given: RunSettings | None, changes: di
     return changes if state is None or asked else {**changes, "start": state.t}
 
 
-def started_from(system: System, model: ModelData, state: SavedState | None) -> System:
-    """Return a system that starts from a saved state, or the same system if there is none.
+def in_pose_of(state: SavedState | None, model: Data) -> Data:
+    """Return a model in the pose of a saved state, in which a restart sets up its elements; the same one without a state.
 
-    Raise an InputError if the state belongs to other bodies, or lacks values.
+    Raise an InputError if the state belongs to other bodies, or if an element cannot start to act in its pose.
     """
     if state is None:
-        return system
-    _refuse_others(system, state)
-    of_body, channels = system.of_body, state.channels
+        return model
+    _refuse_others(model, state)
+    acted = state.elements if state.elements is not None else {owner_of(name) for name in state.channels}
+    own = {name: angle for name in model.joints if np.isfinite(angle := state.turns.get(f"{name}/0", np.nan))}
+    pose = CurrentPose(model, acted, {**_angles(state), **own}, _turns_set_up(state))
+    places = _motion(model, state)[0].reshape(len(model.bodies), -1).tolist()
+    bodies = {name: body.in_pose(place) for (name, body), place in zip(model.bodies.items(), places, strict=True)}
+    found = in_current_pose(model, bodies, pose)
+    drawn = InitialPose(found)
+    for section in ("joints", "forces"):
+        for name, element in getattr(found, section).items():
+            for reason in () if name in acted else element.invalid_placement(drawn):
+                raise InputError(f"{section}.{name}: {reason}, in the pose at t = {state.t:.9g} s of {state.source}")
+    return found
+
+
+def _motion(model: ModelData, state: SavedState) -> tuple[np.ndarray, np.ndarray]:
+    """Return the coordinates and velocities of the bodies, with unit quaternions; raise an InputError if they lack values."""
+    of_body, channels = BODY_KINDS[model.dimensions], state.channels
     q, u = (
-        np.array([channels[f"{body}.{label}"] for body in system.bodies for label in labels])
+        np.array([channels[f"{body}.{label}"] for body in model.bodies for label in labels])
         for labels in (of_body.positions, of_body.velocities)
     )
     if not np.all(np.isfinite([*q, *u])):
@@ -70,12 +89,42 @@ def started_from(system: System, model: ModelData, state: SavedState | None) -> 
         if not np.all(lengths > 0):
             raise InputError(f"{state.source}: found a quaternion of length 0, expected 1")
         turned /= lengths
+    return q, u
+
+
+def _angles(state: SavedState) -> dict[str, float]:
+    """Return the coordinates of joints, angles with their full turns."""
+    of_joints = ((name, x) for name, x in state.channels.items() if name.rpartition(".")[2] in FREE_COORDINATES)
+    return {name: x for name, x in of_joints if np.isfinite(x)}
+
+
+def _turns_set_up(state: SavedState) -> dict[str, tuple[int, ...]]:
+    """Return the full turns by which elements were reduced when they were set up during the motion before."""
+    found: dict[str, tuple[int, ...]] = {}
+    for key, turns in state.turns.items():
+        name, _, kind = key.rpartition("/")
+        if kind.startswith(SET_UP) and np.isfinite(turns):
+            found[name] = (*found.get(name, ()), round(turns))
+    return found
+
+
+def started_from(system: System, model: ModelData, state: SavedState | None) -> System:
+    """Return a system that starts from a saved state, or as described if there is none.
+
+    `model`: of the system, in the pose of the state (`in_pose_of`). Raise an InputError if the state lacks values.
+    """
+    if state is None:
+        if model.dimensions == 2:  # angles in the plane count their turns
+            return system
+        return replace(system, described_angles=model.described_angles())
+    q, u = _motion(model, state)
     q, u = from_own_axes(system, q[None])[0], rates_from_own_axes(system, u[None])[0]
     return replace(
         system,
         q=np.concatenate([q, _turns(system, model, state), _states(system, state)]),
         u=u,
-        start_angles={name: x for name, x in channels.items() if name.rpartition(".")[2] in FREE_COORDINATES},
+        start_angles=_angles(state),
+        turns_set_up={} if model._current_pose is None else model._current_pose.turns_set_up(model),
         open_rates=np.zeros(system.n_u, dtype=bool),
     )
 
@@ -109,8 +158,8 @@ def _states(system: System, state: SavedState) -> np.ndarray:
     return np.array([state.channels[name] for name in system.states])
 
 
-def _refuse_others(system: System, state: SavedState) -> None:
-    of_body, channels = system.of_body, state.channels
+def _refuse_others(model: ModelData, state: SavedState) -> None:
+    of_body, channels, bodies = BODY_KINDS[model.dimensions], state.channels, tuple(model.bodies)
     labels = (*of_body.positions, *of_body.velocities)
     owners = dict.fromkeys(owner_of(name) for name in channels if name.endswith(f".{of_body.velocities[0]}"))
     saved = [owner for owner in owners if all(f"{owner}.{label}" in channels for label in labels)]
@@ -121,14 +170,14 @@ def _refuse_others(system: System, state: SavedState) -> None:
         raise InputError(
             f"{state.source}: found {found}, expected those of a scene {_where(of_body.dimensions, 'in ')}"
         )
-    missing, more = ([name for name in one if name not in other] for one, other in ((system.bodies, saved), (saved, system.bodies)))  # fmt: skip
+    missing, more = ([name for name in one if name not in other] for one, other in ((bodies, saved), (saved, bodies)))  # fmt: skip
     if missing:
         raise InputError(
             f"{state.source}: found no state of body {_listed(missing)}, expected the bodies of the scene; it has {_listed(saved)}"
         )
     if more:
         raise InputError(
-            f"{state.source}: found body {_listed(more)}, which the scene does not have, expected its bodies {_listed(system.bodies)}"
+            f"{state.source}: found body {_listed(more)}, which the scene does not have, expected its bodies {_listed(bodies)}"
         )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..elements.body import body_numbers
 from ..elements.element import Element
 from ..elements.states.equation import Reported
+from ..elements.turns import INITIAL_COUNT
 from ..errors import InputError
 from ..model.model_builder import ModelBuilder
 from ..reading.formula.text import FormulaError
@@ -20,7 +21,7 @@ from .group import Group
 from .kind import Compilable, ElementData, Kind, sorted_out
 from .machine.layout import at_a_line
 from .record import KindRecord, record_of
-from .system import INITIAL_COUNT, System
+from .system import System
 
 
 def compile_model(model: Compilable | ModelBuilder) -> System:

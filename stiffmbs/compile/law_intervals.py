@@ -23,13 +23,14 @@ def _on_both_sides(*breakpoints: float) -> np.ndarray:
     return np.array([*(-breakpoint for breakpoint in reversed(breakpoints)), *breakpoints])
 
 
-TURN = "turn"
+TURN, DIRECTION = "turn", "direction"
 FIXED = {
     "exp": _on_both_sides(0.5, 2.0, 6.0, 15.0, 37.0),
     "tanh": _on_both_sides(1.0, 3.0, 8.0, 19.0),
     "atan": _on_both_sides(1.0, 4.0, 20.0),
     "reciprocal": _on_both_sides(0.0, *2.0 * 4.0 ** np.arange(-20, 21))[1:],
     TURN: np.empty(0),
+    DIRECTION: np.empty(0),
 }
 """Breakpoints of exp, cosh and sinh (exp(-37) is rounding), tanh (1 - tanh(19) is rounding), atan, and 1/x and other
 negative powers. None of these is at 1, an extremum of 1 + x^2 and cos(x), where rounding would decide. They are graded,
@@ -59,7 +60,8 @@ class Intervals(NamedTuple):
       function.
     - `period` of shape (n,): period of a law; 0 if it is not periodic.
     - `turns`: indices of the functions that are arguments of sines or of periodic tables with few intervals.
-    - `radians`: radians per unit of such an argument: 1 for a sine, 2 pi divided by the period for a table.
+    - `radians`: radians per unit of such an argument: 1 for a sine, 2 pi divided by the period for a table; -1 for a sine
+      whose argument jumps by full turns, as the angle of a direction does.
     - `kinks` of shape (n,): 1 for arguments of tables with a kink, 0 for others.
     - `zoned`: number of functions with breakpoints.
     """
@@ -98,14 +100,15 @@ def _intervals_of(system: System) -> Intervals:
     counts = np.array([len(breakpoints) for _, breakpoints, _, _ in found], dtype=np.int64)
     period = np.array([period for *_, period in found])
     repeated = (period > 0) & (counts <= FEW)
-    turns = np.flatnonzero(np.array([name == TURN for name, *_ in found], dtype=bool) | repeated)
+    turns = np.flatnonzero(np.array([name in (TURN, DIRECTION) for name, *_ in found], dtype=bool) | repeated)
+    sines = np.array([-1.0 if found[k][0] == DIRECTION else 1.0 for k in turns])
     return Intervals(
         np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
         np.concatenate([np.empty(0), *(breakpoints for _, breakpoints, _, _ in found)]),
         np.concatenate([np.empty(0), *(overlap for _, _, overlap, _ in found)]),
         period,
         turns,
-        np.divide(2 * np.pi, period[turns], out=np.ones(len(turns)), where=period[turns] > 0),
+        np.divide(2 * np.pi, period[turns], out=sines, where=period[turns] > 0),
         np.array(
             # a law departs from its tangent immediately at a breakpoint
             [np.any((o > 0) & (o < 4 * BARELY * _narrower(breakpoints, turn))) for _, breakpoints, o, turn in found],

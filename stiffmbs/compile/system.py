@@ -6,7 +6,7 @@ equation and coordinate of each.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -32,10 +32,6 @@ class Term(NamedTuple):
     source: np.ndarray
     row: np.ndarray
     column: np.ndarray
-
-
-INITIAL_COUNT = 1e-9
-"""Turn counter of an initial angle, rad: half a turn up to rounding counts as positive."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +60,8 @@ class System:
     - `size`: size of the mechanism at the start, m.
     - `start_angles`: continuous angles of joints at a start from a saved state or with joints that hold at the start
       alone, rad, by channel; may be changed in place.
+    - `described_angles`: angles of joints with described full turns, rad, by channel, unless drives select the turns.
+    - `turns_set_up`: full turns by which elements were reduced that were set up during a motion, by name.
     - `outputs`: formulas for which names in other formulas stand, such as the values of inputs; may be changed in
       place.
     - `n_q`, `n_u`, `n_c`: numbers of coordinates, velocities and constraint equations.
@@ -94,6 +92,8 @@ class System:
     active: np.ndarray
     size: float
     start_angles: dict[str, float] = field(default_factory=dict)
+    described_angles: Mapping[str, float] = field(default_factory=dict)
+    turns_set_up: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     outputs: dict[str, Formula] = field(default_factory=dict)
     n_q: int = field(init=False)
     n_u: int = field(init=False)

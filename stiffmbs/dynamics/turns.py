@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..compile.group import Group
-from ..compile.system import INITIAL_COUNT, System
+from ..compile.system import System
 from ..elements.element import Joint
+from ..elements.turns import INITIAL_COUNT, TURN
 from .dynamics import Dynamics
-
-TURN = 2 * math.pi
 
 
 @dataclass(frozen=True)
@@ -58,6 +56,7 @@ def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], boo
     known |= {angle.channel: q[angle.place] for angle in angles if angle.channel and not wanted(angle.element)}
     free = {angle.place: angle for angle in angles if wanted(angle.element)}
     q[[place for place, angle in free.items() if angle.constrained]] = INITIAL_COUNT
+    described = dict(dynamics.system.described_angles)
     while True:
         decided = {place: known[angle.channel] for place, angle in free.items() if angle.channel in known}
         for place, turned in decided.items():
@@ -67,9 +66,13 @@ def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], boo
         for angle in free.values():
             if angle.constrained:
                 undecided.setdefault(angle.element, []).append(angle)
-        if not undecided:
+        if not undecided and not described:
             break
-        chosen = [found for found in undecided.values() if len(found) == 1] or [min(undecided.values(), key=len)]
+        driven = [found for found in undecided.values() if len(found) == 1]
+        if described and not driven:
+            known, described = described | known, {}
+            continue
+        chosen = driven or [min(undecided.values(), key=len)]
         _take_nearest_turns(dynamics, t, [first for first, *_ in chosen])
         for angle in (angle for found in chosen for angle in found):
             del free[angle.place]

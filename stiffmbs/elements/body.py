@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, fields
 from itertools import chain
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
@@ -58,6 +58,11 @@ class Body(Described):
     def coordinates(self) -> tuple[float, ...]:
         """Return x, y (m) of the centre of mass and the angle phi (rad) at the start."""
         return (*self.position, self.angle)
+
+    def in_pose(self, place: Sequence[float]) -> Body:
+        """Return the body in another pose: x, y (m) of the centre of mass and the angle phi (rad)."""
+        x, y, angle = place
+        return self.model_copy(update={"position": (x, y), "angle": angle})
 
     def rates(self) -> tuple[float, ...]:
         """Return the rates of `coordinates` at the start, m/s and rad/s."""

@@ -153,6 +153,8 @@ class Element(Described):
         condition. A body with any other marker keeps its spin in its quaternion (`stiffmbs.presolve.spinning_bodies`).
     symbol : str
         Kind whose symbol drawings show; by default its own, or a diamond or a dashed line if there is none.
+    same_in_each_pose : bool
+        True if each pose in which the equations hold gives the same open values (`at_initial_pose`).
     """
 
     kind: ClassVar[str] = ""
@@ -162,6 +164,7 @@ class Element(Described):
     symmetric_with: ClassVar[dict[str, str] | None] = None
     spin_conditions: ClassVar[dict[str, str]] = {}
     symbol: ClassVar[str] = ""
+    same_in_each_pose: ClassVar[bool] = False
 
     type: str = ""
 
@@ -228,6 +231,10 @@ class Element(Described):
     def at_initial_pose(self, model: ModelData) -> Self:
         """Return the element with open values taken from the described poses of the bodies."""
         return self
+
+    def at_current_pose(self, model: ModelData) -> Self:
+        """Return the element with open values where it starts to act during a motion, in the poses of a model."""
+        return self.at_initial_pose(model)
 
 
 class Joint(Element):

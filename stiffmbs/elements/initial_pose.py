@@ -13,6 +13,7 @@ import numpy as np
 from ..reading.joint_name import JointName
 from ..reading.marker import MarkerReference
 from .element import Element, Joint
+from .turns import INITIAL_COUNT, TURN, full_turns
 
 if TYPE_CHECKING:
     from ..model.model_data import ModelData
@@ -61,10 +62,18 @@ class InitialMarker:
         return np.array([-math.sin(self.angle), math.cos(self.angle)])
 
 
-def initial_element(element: Element, model: ModelData) -> Any:
-    """Return the element as its equations see it, with numbers for markers, fields and referenced joints."""
+def initial_element(element: Element, model: ModelData, own_angle: float | None = None) -> Any:
+    """Return the element as its equations see it, with numbers for markers, fields and referenced joints.
+
+    `own_angle`: angle with full turns that it counts itself, if known, rad.
+    """
     fields = {name: _drawn(getattr(element, name), model) for name in type(element).model_fields}
-    return SimpleNamespace(**fields, angle=math.atan2)
+    return SimpleNamespace(**fields, angle=lambda y, x: _with_turns(math.atan2(y, x), own_angle))
+
+
+def _with_turns(angle: float, known: float | None) -> float:
+    """Return an angle in the turn of a known one, or within half a turn."""
+    return angle - TURN * full_turns(angle, INITIAL_COUNT if known is None else known)
 
 
 def _drawn(value: object, model: ModelData) -> Any:
@@ -72,9 +81,12 @@ def _drawn(value: object, model: ModelData) -> Any:
         case MarkerReference():
             return model.initial_marker(value)
         case JointName():
-            joint: Joint = model.joints[value.joint]
+            joint: Joint = model.joint_at_initial_pose(value.joint)
             e, name = initial_element(joint, model), value.coordinate_of(joint)
             e.coordinate = None if name is None else getattr(joint, name)(e)
+            known = model.known_angle(f"{value.joint}.{name}") if name is not None and "angle" in name else None
+            if known is not None:
+                e.coordinate = _with_turns(e.coordinate, known)
             return e
         case _:
             return value

@@ -92,10 +92,13 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     if at_a_pole:  # where rounding excuses no imbalance
         rounding, unloaded = 0.0 * rounding, False
     most_passed_on = np.inf if unloaded else EQUILIBRIA.passed_on * largest
-    passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), most_passed_on)
+    at_most = roots * np.max(rounding / roots, initial=0.0)
+    passed_on = np.minimum(at_most, most_passed_on)
     negligible = system.mass * system.per_velocity(system.size, 1.0) * EQUILIBRIA.slowest**2
     mass = mass_matrix(dynamics)
     left = mass @ _off_the_constraints(dynamics, mass, acceleration - steady, jacobian)
+    if np.any(np.abs(left) > passed_on) and np.all(np.abs(left) <= at_most):  # more than a small part of the forces
+        passed_on = np.maximum(passed_on, _transmitted(jacobian, rounding, roots))
     found = Balance(
         left,
         lam,
@@ -134,6 +137,14 @@ def _grow(dynamics: Dynamics, t: float, rounding: np.ndarray) -> bool:
         state.q[:] = dynamics.system.of_body.moved(state.q, move)
         state.evaluate("motion", t)
         return _largest_force(dynamics) > np.sqrt(EQUILIBRIA.pole) * before
+
+
+def _transmitted(jacobian: Matrix, rounding: np.ndarray, roots: np.ndarray) -> np.ndarray:
+    """Return bounds of the rounding of forces that joints pass on: abs(I - Q Q^T) in the mass metric, Q spanning J^T."""
+    rows = jacobian.toarray() if hasattr(jacobian, "toarray") else np.asarray(jacobian)
+    held, _ = np.linalg.qr((rows / roots).T)
+    bound: np.ndarray = roots * (np.abs(np.eye(len(roots)) - held @ held.T) @ (rounding / roots))
+    return bound
 
 
 def _off_the_constraints(dynamics: Dynamics, mass: Matrix, acceleration: np.ndarray, jacobian: Matrix) -> np.ndarray:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from typing import Any, ClassVar
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from ..elements.body import check_names
 from ..elements.element import Element, Force, Joint
@@ -30,7 +30,10 @@ from ..reading.formula.text import UNIT
 from ..reading.joint_name import JointName
 from ..reading.marker import GROUND, MarkerReference, check_marker
 from ..reading.names import beginnings
+from .current_pose import CurrentPose
 
+STARTS_LATER = "starts_later"
+"""Key of a validation's context: names of the joints and forces that start to act in a later pose."""
 RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 
 
@@ -59,6 +62,8 @@ class ModelData(NotebookMethods, Described):
     joints: dict[str, Any] = Field(default_factory=dict, description="joints by name")
     forces: dict[str, Any] = Field(default_factory=dict, description="forces by name")
     requests: dict[str, Any] = Field(default_factory=dict, description="formulas to report, by channel name")
+    _current_pose: CurrentPose | None = PrivateAttr(default=None)
+    _turns_of_joints: Mapping[str, int] = PrivateAttr(default_factory=dict)  # in space, that drives select
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {contents(self)}>"
@@ -84,7 +89,7 @@ class ModelData(NotebookMethods, Described):
         return named
 
     @model_validator(mode="after")
-    def _whole(self) -> ModelData:
+    def _whole(self, info: ValidationInfo) -> ModelData:
         if not self.bodies:
             raise ValueError("bodies: found no body, expected at least one")
         seen: dict[str, str] = {}
@@ -104,21 +109,24 @@ class ModelData(NotebookMethods, Described):
         placed = {
             f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
         }
-        self.check_elements(placed)
+        self.check_elements(placed, (info.context or {}).get(STARTS_LATER, ()))
         self.check_requests()
         return self
 
     def _scope(self) -> Scope:
         return Scope(self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas())
 
-    def check_elements(self, placed: Mapping[str, Element]) -> None:
-        """Refuse joints and forces with unknown references, or that cannot act at the initial pose."""
+    def check_elements(self, placed: Mapping[str, Element], later: Container[str] = ()) -> None:
+        """Refuse joints and forces with unknown references, or that cannot act at the initial pose.
+
+        `later`: names of those that start to act in another pose, in which they are checked.
+        """
         scope = self._scope()
         for where, element in placed.items():
             check_element(where, element, scope)
         pose = InitialPose(self)
         for where, element in placed.items():  # requires valid references in all elements
-            for reason in element.invalid_placement(pose):
+            for reason in () if where.partition(".")[2] in later else element.invalid_placement(pose):
                 raise ValueError(f"{where}: {reason}")
 
     def check_requests(self) -> None:
@@ -182,15 +190,37 @@ class ModelData(NotebookMethods, Described):
     def elements_at_initial_pose(self) -> Iterator[tuple[str, Element]]:
         """Yield joints and forces with their names, with undefined fields taken from the described poses."""
         for name, element in (*self.joints.items(), *self.forces.items()):
-            yield name, element.at_initial_pose(self)
+            yield name, self.set_up(name, element)
 
     def joint_at_initial_pose(self, name: str) -> Joint:
         """Return a joint with its undefined fields taken from the described poses."""
-        joint: Joint = self.joints[name]
-        return joint.at_initial_pose(self)
+        joint: Joint = self.set_up(name, self.joints[name])
+        return joint
+
+    def set_up(self, name: str, element: Any) -> Any:
+        """Return an element with its undefined fields taken from the described poses, or from those of a restart."""
+        pose = self._current_pose
+        return element.at_initial_pose(self) if pose is None else pose.set_up(name, element, self)
+
+    def known_angle(self, channel: str) -> float | None:
+        """Return the angle of a joint with its full turns, rad, if a restart or the joint states it."""
+        angles = self.described_angles() if self._current_pose is None else self._current_pose.angles
+        return angles.get(channel)
+
+    def described_angles(self) -> Mapping[str, float]:
+        """Return angles of joints whose full turns are described, but do not follow from the poses, by channel, rad."""
+        return {}
+
+    def known_own_angle(self, joint: Joint) -> float | None:
+        """Return the angle with its full turns that a joint itself counts, rad, if a restart knows it."""
+        if self._current_pose is None:
+            return None
+        return next((self.known_angle(name) for name, other in self.joints.items() if other is joint), None)
 
     def size(self) -> float:
-        """Return the diagonal of the bounding box of all bodies and markers at the start, m; 1 for a single point."""
+        """Return the diagonal of the bounding box of all bodies and markers as described, m; 1 for a single point."""
+        if self._current_pose is not None:
+            return self._current_pose.described.size()
         points = [body.coordinates()[: self.dimensions] for body in self.bodies.values()]
         elements = (*self.joints.values(), *self.forces.values())
         markers = dict.fromkeys(marker for element in elements for _, marker in element.markers())

@@ -26,6 +26,7 @@ from .beams.division import beams_read
 from .beams.entries import with_beams
 from .files import expand
 from .files.stages import WrittenScene, with_held, written_stages
+from .model_data import STARTS_LATER
 from .parts.definitions import NAMED
 from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
 from .parts.placed import with_parts
@@ -84,17 +85,20 @@ def made_scene(
     folder: Path | None = None,
     unchanged: Unchanged | None = None,
     files: Mapping[str, str] = NO_FILES,
+    starts_later: frozenset[str] = frozenset(),
 ) -> Scene:
     """Return the scene described by a mapping, which is modified in place; InputError if the scene is not valid.
 
     The changes are values by their paths; those that are not text are used unchanged. `source` names the scene in
     messages, and `line_of` returns the line in it of a path of keys. Meshes and property files are found in the folder,
     by default the working folder. `unchanged` holds parts that have been validated before; the scene then does not keep
-    its source. `files` are digests of the files from which the mapping was read.
+    its source. `files` are digests of the files from which the mapping was read. `starts_later`: joints and forces that
+    are not checked in the described pose.
     """
-    kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, dict(files))
+    of_files = dict(files), starts_later
+    kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, *of_files)
     with recorded() as read, beams_read() as beams:
-        scene = _made_scene(found, changes, source, line_of, folder, unchanged or Unchanged(), kept)
+        scene = _made_scene(found, changes, source, line_of, folder, unchanged or Unchanged(), kept, starts_later)
         record(own_sources(scene))
     scene._beams = beams
     if kept:
@@ -105,7 +109,10 @@ def made_scene(
 def read_changed(written: WrittenScene, changes: Changes, unchanged: Unchanged | None = None) -> Scene:
     """Read a scene with other values, without what was validated before; errors as for `made_scene`."""
     content = copy.deepcopy(dict(written.content))
-    return made_scene(content, (*written.changes, *changes), written.source, lambda _: None, written.folder, unchanged)
+    return made_scene(
+        content, (*written.changes, *changes), written.source, lambda _: None, written.folder, unchanged,
+        starts_later=written.starts_later,
+    )  # fmt: skip
 
 
 def effective(written: WrittenScene) -> tuple[Content, dict[str, object]]:
@@ -131,7 +138,7 @@ def effective(written: WrittenScene) -> tuple[Content, dict[str, object]]:
 
 def _made_scene(
     found: dict[str, object], changes: Changes, source: str, line_of: LineOf, folder: Path | None,
-    known: Unchanged, kept: WrittenScene | None,
+    known: Unchanged, kept: WrittenScene | None, starts_later: frozenset[str],
 ) -> Scene:  # fmt: skip
     found, chosen, changes = chosen_options(expand.unshared(found), changes, source)
     parts = found.get("parts")
@@ -149,7 +156,8 @@ def _made_scene(
             own.append(path)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        scene = _validated(found, replaced, in_parts, {**chosen, FOLDER: folder}, known)
+        others = {**chosen, FOLDER: folder, STARTS_LATER: starts_later}
+        scene = _validated(found, replaced, in_parts, others, known)
     except _Located as error:
         message = as_written(str(error), parts)
         there = error.path if message == str(error) else ("parts", *error.path[1:])
@@ -191,7 +199,9 @@ def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
 def _stage_scene(stage: WrittenScene, removed: Collection[str], source: str) -> Scene:
     """Return the scene of a stage; a fault that names an entry that it removes has a hint."""
     try:
-        return made_scene(dict(stage.content), stage.changes, source, lambda path: None, stage.folder)
+        return made_scene(
+            dict(stage.content), stage.changes, source, lambda path: None, stage.folder, starts_later=stage.starts_later
+        )
     except InputError as error:
         missing = next((name for name in removed if f"'{name}'" in str(error)), "")
         hint = f": the stage removes '{missing}', so its change must also replace or remove (null) what uses it"

@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from ..elements.element import Force
 from ..elements.forces.weight import weights
-from ..elements.initial_pose import InitialSpatialMarker
+from ..elements.initial_pose import InitialSpatialMarker, initial_element
 from ..elements.requests.names import OF_SPACE
 from ..elements.requests.order import channels_in
 from ..elements.requests.output import CONTINUOUS_ANGLES
@@ -22,6 +22,7 @@ from ..elements.spatial.marker import Placement
 from ..elements.spatial.orientation import matrix, product, rotated
 from ..elements.spatial.spatial_kinds import FORCES, JOINTS, AnyForce, AnyJoint
 from ..elements.states.equation import AngleCounter, counter_of
+from ..elements.turns import TURN
 from ..methods import ModelMethods
 from ..reading.given import Numbers
 from ..reading.marker import GROUND, MarkerReference
@@ -77,6 +78,13 @@ class SpatialData(ModelData):
         owner, _, name = channel.rpartition(".")
         joint = self.joints.get(owner)
         return joint is not None and name in joint.free_coordinates() and name.startswith("angle")
+
+    def described_angles(self) -> Mapping[str, float]:
+        stated = {name: n for name, joint in self.joints.items() if (n := getattr(joint, "turns", None))}
+        return {
+            f"{name}.angle": self.joints[name].angle(initial_element(self.joints[name], self)) + TURN * n
+            for name, n in {**stated, **self._turns_of_joints}.items()
+        }
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """Yield the weights and gyroscopic torques of the bodies."""

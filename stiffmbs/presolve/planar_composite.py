@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from ..elements.body import Body
+from ..elements.turns import TURN, full_turns
 from ..reading.marker import Placement
 
 
@@ -35,4 +36,10 @@ def composite(members: Sequence[tuple[Body, Placement]]) -> tuple[Body, list[Pla
     position = (x + c * xi - s * eta, y + s * xi + c * eta)
     body = Body(mass=mass, inertia=inertia, position=position, angle=first.angle)
     from_centre = Placement(point=(-xi, -eta))
-    return body, [on(from_centre, placed) for _, placed in members]
+    return body, [_as_drawn(body, own, on(from_centre, placed)) for own, placed in members]
+
+
+def _as_drawn(whole: Body, own: Body, placed: Placement) -> Placement:
+    """Return the placement of a member, in the turn in which the member is drawn."""
+    turns = full_turns(whole.angle + placed.angle, own.angle)
+    return Placement(point=placed.point, angle=placed.angle - TURN * turns)

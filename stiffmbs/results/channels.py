@@ -17,6 +17,7 @@ from ..reading.joint_name import FREE_COORDINATES
 from ..reading.names import owner_of
 from .frames import in_own_axes
 from .joint_angles import joint_angles
+from .saved_state import SET_UP
 
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
@@ -95,10 +96,15 @@ def series_of(model: ModelData, system: System, rows: OutputRows, name: str) -> 
 
 
 def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the revolution counters of angles, rad, by element and number: ``spring/0``. `q` of shape (n, n_q)."""
-    if not system.n_counters:
-        return {}
-    return {f"{name}/{k}": q[:, place] for (name, k), place in counters_of(system).items()}
+    """Return the revolution counters of angles, rad, by element and number: ``spring/0``. `q` of shape (n, n_q).
+
+    Also the full turns by which elements were reduced when they were set up in a restart: ``bushing/set_up0``.
+    """
+    counted = (
+        {f"{name}/{k}": q[:, place] for (name, k), place in counters_of(system).items()} if system.n_counters else {}
+    )
+    of_elements = ((name, k, n) for name, turns in system.turns_set_up.items() for k, n in enumerate(turns))
+    return counted | {f"{name}/{SET_UP}{k}": np.full(len(q), float(n)) for name, k, n in of_elements}
 
 
 def counters(model: ModelData, system: System, q: np.ndarray) -> dict[str, np.ndarray]:

@@ -12,10 +12,11 @@ from functools import cached_property
 
 import numpy as np
 
-from ..compile.system import INITIAL_COUNT, System
+from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
-from ..dynamics.turns import TURN, counted_angles
+from ..dynamics.turns import counted_angles
 from ..elements.element import Joint
+from ..elements.turns import INITIAL_COUNT, TURN
 from ..reading.joint_name import ORDERS
 
 UNCERTAIN_TURN = 1.0
@@ -100,4 +101,5 @@ def joint_angles(system: System) -> JointAngles | None:
     }
     places = {name: found for name, found in angles.items() if min(found) >= 0}
     counters = {angle.channel: angle.place for angle in counted_angles(system) if angle.channel}
-    return JointAngles(places, counters, system.start_angles) if places else None
+    start = {**system.described_angles, **system.start_angles}
+    return JointAngles(places, counters, start) if places else None

@@ -61,6 +61,8 @@ def reading(path: Path, source: str, content: str, expected: str) -> Iterator[No
 
 TURNS = "run/turns/"
 """Prefix of the names of revolution counters in .npz files."""
+SET_UP = "set_up"
+"""Beginning of the numbers, in such names, of full turns by which elements were reduced when they were set up."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,8 @@ class SavedState:
     channels : mapping of str to float
         Every channel at that instant.
     turns : mapping of str to float
-        Revolution counters of angles in space, rad, by element and number: ``spring/0``.
+        Revolution counters of angles in space, rad, by element and number: ``spring/0``. Also the full turns by which
+        rotations were reduced in elements that were added during the motion: ``bushing/set_up0``.
     elements : frozenset of str, optional
         Joints and forces of the saved run, if known: the counters of other elements start again.
     """

@@ -12,10 +12,11 @@ import numpy as np
 from ..analyses.job import Job
 from ..analyses.renumber import Change, changes_of_numbers, write_numbers
 from ..dynamics.dynamics import OutputRows
+from ..elements.turns import TURN
 from ..errors import InputError
 from ..model.scene import Scene
 from ..reading.did_you_mean import instead_of
-from ..results.joint_angles import TURN, joint_angles
+from ..results.joint_angles import joint_angles
 from .case_solver import CaseSolver
 
 MOST_KEPT = 1000

@@ -12,7 +12,7 @@ import numpy as np
 from ..analyses.job import Job, Runnable, data_of, prepare
 from ..analyses.renumber import renumberable
 from ..analyses.rerun import DRIFTED, exactly, relaxed
-from ..analyses.start_from import StartFrom, started_from, state_to_start_from
+from ..analyses.start_from import StartFrom, in_pose_of, started_from, state_to_start_from
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
 from ..errors import AssemblyError, ChannelError, InputError, SolverError
@@ -312,7 +312,7 @@ class Simulation:
         found = state_to_start_from(path)
         assert found is not None
         job = self._job
-        placed = started_from(job.dynamics.system, job.data, found)
+        placed = started_from(job.dynamics.system, in_pose_of(found, job.data), found)
         if isinstance(path, str | Path) and Path(path).suffix == ".npz":
             with np.load(path) as archive:
                 self._inputs.set(

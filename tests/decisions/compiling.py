@@ -486,7 +486,7 @@ DECISIONS = {
     "compile.symbolic.symbols:STEEP": largest_gentle_power,
     "compile.symbolic.variation:MOST_SUMMANDS": most_summands,
     "compile.symbolic.variation:ORDER_ONE": largest_number_of_order_one,
-    "compile.system:INITIAL_COUNT": smallest_departure_from_half_a_turn,
+    "elements.turns:INITIAL_COUNT": smallest_departure_from_half_a_turn,
     "compile.table_values:UNDEFINED": smallest_defined_slope,
     "compile.written_values:BEYOND": largest_overshoot,
 }  # fmt: skip
@@ -512,6 +512,6 @@ EXPECTED = {
     "compile.machine.native.factors:LIGHT": 80, "compile.machine.native.factors:COUPLES": 13, "compile.machine.native.factors:SPREAD_OVER": 4,
     "compile.machine.native.rotation_vector:NEAR": 13, "compile.machine.native.rotation_vector:TERMS": 308.33391674417925,
     "compile.state:LEFT_OPEN": 27, "compile.symbolic.shared_parts:MOST_FACTORS": 5, "compile.symbolic.symbols:STEEP": 8,
-    "compile.symbolic.variation:MOST_SUMMANDS": 100, "compile.symbolic.variation:ORDER_ONE": 8, "compile.system:INITIAL_COUNT": 119,
+    "compile.symbolic.variation:MOST_SUMMANDS": 100, "compile.symbolic.variation:ORDER_ONE": 8, "elements.turns:INITIAL_COUNT": 119,
     "compile.table_values:UNDEFINED": 111, "compile.written_values:BEYOND": 27,
 }  # fmt: skip

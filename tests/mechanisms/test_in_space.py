@@ -286,11 +286,7 @@ def test_a_kind_without_a_case_has_a_namesake_with_the_same_fields(plane, space)
         (
             "joints: {x: {type: prismatic, i: {body: a, angle: 0.5}, j: ground}}",
             "joints.x: found its markers drawn 171.9 degrees",
-        ),
-        (
-            "forces: {x: {type: bushing, i: a, j: b, stiffness: [1, 1, 1]}}",
-            "forces.x: found its markers drawn 372.4 degrees",
-        ),
+        )
     ],
 )
 def test_what_has_no_counterpart_is_refused(element, words):

@@ -243,12 +243,17 @@ class _Builder:
             for component, shape in wanted
         ]
 
+    def _of_direction(self, argument: sp.Expr) -> bool:
+        """Return True if an argument contains an angle of a direction, which jumps by a full turn."""
+        meanings = self.symbols.element.meanings
+        return any(x.has(sp.atan2) for x in (argument, *(meanings.get(s, s) for s in argument.free_symbols)))
+
     def functions(self) -> dict[str, Callable[..., sp.Expr]]:
         """Return the functions of formulas; those with breakpoints record them if they depend on the state."""
 
         def noting(name: str, function: FormulaFunction) -> Any:
             def turning(argument: sp.Expr) -> sp.Expr:
-                self.symbols.note_law(argument, "turn")
+                self.symbols.note_law(argument, "direction" if self._of_direction(argument) else "turn")
                 return SMOOTH[name](argument)
 
             def called(*arguments: sp.Expr) -> sp.Expr:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
 from ...reading.marker import MarkerReference
 from ...reading.units import si
 from ..element import CompiledTerms, Force
+from ..turns import WithinHalfATurn
 from .beam_strain import BEYOND, DOUBT, DampingRatio
 
 NATIVE = "stiffmbs.compile.machine.native"
@@ -26,7 +27,7 @@ CALLS = {
 """Module, function and arguments of the compiled loop for each term."""
 
 
-class BeamSectionLaw(Force):
+class BeamSectionLaw(WithinHalfATurn, Force):
     """Base of cross sections at an inner point of a beam with several nodes; scenes use its subclasses `beam_section`."""
 
     symbol: ClassVar[str] = "beam"
@@ -55,6 +56,12 @@ class BeamSectionLaw(Force):
         if not 0 <= self.reference < n:
             raise ValueError(f"reference: found {self.reference}, expected the place of a node from 0 to {n - 1}")
         return self
+
+    def _rotations(self) -> Iterator[tuple[Any, Any]]:
+        yield from ((node, self.nodes[self.reference]) for node in self.nodes)
+
+    def _with(self, markers: Sequence[Any]) -> Self:
+        return self.model_copy(update={"nodes": tuple(markers)})
 
     @classmethod
     def compiled_terms(cls, kind: Any) -> CompiledTerms:

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field, field_validator
 
 from ...reading.units import si
 from ..element import Expr, Force, Symbolic
+from ..turns import WithinHalfATurn
 from .elastic_matrix import times
 
 BEYOND = "found its ends rotated by three quarters of a revolution relative to each other, expected less; divide the beam into more elements"
@@ -26,7 +27,7 @@ class Stretch(NamedTuple):
     slopes: dict[int, Expr]
 
 
-class BeamStrain(Force):
+class BeamStrain(WithinHalfATurn, Force):
     """Base of beam elements; scenes use its subclasses `exact_beam`."""
 
     symbol: ClassVar[str] = "beam"

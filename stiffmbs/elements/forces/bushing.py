@@ -10,6 +10,7 @@ from ...reading.formula.field import ForceOfDeflection, TorqueOfDeflection
 from ...reading.marker import Marker
 from ...reading.units import si
 from ..element import Expr, Force, Symbolic
+from ..turns import WithinHalfATurn
 from .elastic_matrix import REFLECTED, C, Cc, Ct, K, Kc, Kt, check_symmetric, from_diagonal, stored_with_laws, times
 
 _AS_WRITTEN = WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})
@@ -20,10 +21,11 @@ Damping = Annotated[tuple[tuple[C, C, Cc], tuple[C, C, Cc], tuple[Cc, Cc, Ct]], 
 NONE: Final = (0.0, 0.0, 0.0)
 
 
-class Bushing(Force):
+class Bushing(WithinHalfATurn, Force):
     """Elastic force and torque between two markers.
 
-    The deformation s = (x, y, angle) of marker i relative to marker j is measured along the axes of j. The force is
+    The deformation s = (x, y, angle) of marker i relative to marker j is measured along the axes of j. The angle counts
+    revolutions; it starts within half a turn, as at a joint in place of the bushing. The force is
     preload - K s - C s' - law(s), conjugate to the three deformations. It acts on i at its point, and the opposite
     force acts on j at the same point of space, so linear and angular momentum are conserved.
 

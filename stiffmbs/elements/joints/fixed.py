@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from ..element import Expr, Symbolic
-from .planar_pair import InOneTurn
+from ..turns import WithinHalfATurn
+from .planar_pair import PlanarPair
 
 
-class Fixed(InOneTurn):
+class Fixed(WithinHalfATurn, PlanarPair):
     """Weld: two markers coincide in position and direction.
 
     The reaction is a force of any direction and a torque. This is Adams' FIXED in the plane.
@@ -16,6 +17,7 @@ class Fixed(InOneTurn):
     equations = ("x", "y", "angle")
     elastic = "bushing"
     keeps_in_plane = True
+    same_in_each_pose = True
 
     @staticmethod
     def position(e: Symbolic) -> list[Expr]:

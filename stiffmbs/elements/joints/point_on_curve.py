@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Generic, Self
 
@@ -16,9 +15,9 @@ from ...reading.formula.value import formula_value
 from ...reading.marker import M, Marker
 from ...reading.table import Table
 from ..element import Expr, Joint, Symbolic, sp
+from ..turns import TURN, KeepsDescribedTurns
 from .planar_pair import PlanarPair
 
-TURN = 2 * math.pi
 CLOSED = 1e-9
 """Tolerance of the change over a full turn, relative to the largest radius, for a closed cam."""
 
@@ -67,7 +66,7 @@ class Curve(Joint, Generic[M]):
         return self
 
 
-class PointOnCurve(Curve[Marker]):
+class PointOnCurve(KeepsDescribedTurns, Curve[Marker]):
     """Point follower: the point of marker i remains on a curve fixed to marker j.
 
     In the axes of marker j the point is at (x, y), or at the distance rho in the direction theta (-pi .. pi). The curve

@@ -6,10 +6,11 @@ from pydantic import Field
 
 from ...reading.marker import Marker
 from ..element import Expr, Symbolic
+from ..turns import KeepsDescribedTurns
 from .planar_pair import PlanarPair
 
 
-class PointOnLine(PlanarPair):
+class PointOnLine(KeepsDescribedTurns, PlanarPair):
     """Pin in a slot: the point of marker i remains on the line through marker j along j's axis, d . n_j = 0.
 
     Body i can rotate. Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.1 (the first of the

@@ -7,10 +7,11 @@ from pydantic import Field
 from ...reading.marker import Marker
 from ..element import Expr, Symbolic
 from ..forces.friction import Loads, magnitude
-from .planar_pair import InOneTurn
+from ..turns import WithinHalfATurn
+from .planar_pair import PlanarPair
 
 
-class Prismatic(InOneTurn):
+class Prismatic(WithinHalfATurn, PlanarPair):
     """Slider: marker i remains on the line through marker j along j's axis, and keeps j's direction.
 
     The reaction is a force normal to the line and a torque.
@@ -24,6 +25,7 @@ class Prismatic(InOneTurn):
     coordinates = ("displacement",)
     elastic = "bushing"
     keeps_in_plane = True
+    same_in_each_pose = True
 
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose axis is the line of sliding")

@@ -21,6 +21,8 @@ class OffsetConstraint(Joint):
     bodies.
     """
 
+    same_in_each_pose = True
+
     offset: si.Anything | None = None
 
     @staticmethod
@@ -35,7 +37,8 @@ class OffsetConstraint(Joint):
     def at_initial_pose(self, model: ModelData) -> Self:
         if self.offset is not None:
             return self
-        at_start = self.relation(initial_element(self.model_copy(update={"offset": 0.0}), model))
+        without = self.model_copy(update={"offset": 0.0})
+        at_start = self.relation(initial_element(without, model, model.known_own_angle(self)))
         return self.model_copy(update={"offset": float(at_start)})
 
 

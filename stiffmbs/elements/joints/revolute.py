@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from ..element import Matrix, Symbolic
 from ..forces.friction import Loads, magnitude
+from ..turns import KeepsDescribedTurns
 from .planar_pair import PlanarPair
 
 
-class Revolute(PlanarPair):
+class Revolute(KeepsDescribedTurns, PlanarPair):
     """Pin: a point of body i and a point of body j coincide.
 
     The reaction is a force of any direction at the pin, without torque.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
@@ -121,6 +122,13 @@ class Body(Described):
         """Return the centre of mass (m) and the quaternion of the principal axes at the start, in ground axes."""
         centre = np.array(self.position) + rotated(self.orientation, self.center_of_mass)
         return (*(float(x) for x in centre), *product(self.orientation, self.principal_axes()))
+
+    def in_pose(self, place: Sequence[float]) -> Body:
+        """Return the body in another pose: its centre of mass (m) and the quaternion of its own axes, in ground axes."""
+        x, y, z, q0, q1, q2, q3 = place
+        turned = (q0, q1, q2, q3)
+        position = np.array((x, y, z)) - rotated(turned, self.center_of_mass)
+        return self.model_copy(update={"position": tuple(map(float, position)), "orientation": turned})
 
     def rates(self) -> tuple[float, ...]:
         """Return the velocity of the centre of mass in ground axes, m/s, and omega in the principal axes, rad/s."""

@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import Annotated, Any
 
 from pydantic import Field, WithJsonSchema, field_validator
 
 from ...reading.files.quoted import written
-from ...reading.marker import GROUND
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic
 from ..forces.elastic_matrix import C, Cc, Ct, K, Kc, Kt, Rows, check_symmetric, from_diagonal, times
+from ..turns import WithinHalfATurn
 from .marker import Marker
-from .orientation import Quaternion, product
 from .wrench import Pairs, along_axes, velocity
-
-if TYPE_CHECKING:
-    from ...model.model_data import ModelData
 
 _Forces = tuple[K, K, K, Kc, Kc, Kc]
 _Torques = tuple[Kc, Kc, Kc, Kt, Kt, Kt]
@@ -71,7 +67,7 @@ def _rows_of_blocks(blocks: Any) -> list[Any]:
     return [(*row, *zeros) if k < len(first) else (*zeros, *row) for k, row in enumerate(lists)]
 
 
-class Elastic(Force):
+class Elastic(WithinHalfATurn, Force):
     """Base of elastic connections of six components; scenes use its subclasses.
 
     The deformation s is the displacement of i's point from j's and the rotation vector of i's axes relative to j's,
@@ -98,10 +94,6 @@ class Elastic(Force):
 
     i: Marker = Field(description="marker of the first body, on which force and torque are reported")
     j: Marker = Field(description="marker of the second body, whose axes orient the forces")
-
-    def at_initial_pose(self, model: ModelData) -> Self:
-        """Return the element with the sign of marker i's quaternion for an initial rotation below half a turn."""
-        return self.model_copy(update={"i": nearest(model, self.i, self.j)})
 
     @classmethod
     def resisted(cls, e: Symbolic) -> list[bool]:
@@ -189,20 +181,3 @@ def pull_back(stiffness: Rows, s: list[Expr], preload: Sequence[Expr | None]) ->
 def has_moments(stiffness: Rows, preload: Sequence[Expr | None]) -> list[bool]:
     """Return True for each axis x, y, z about which stiffness or preload has a moment."""
     return [any(part is not None for part in (*stiffness[k], preload[k])) for k in (3, 4, 5)]
-
-
-def nearest(model: ModelData, i: Marker, j: Marker) -> Marker:
-    """Return marker i with the sign of its quaternion that is nearer to the quaternion of marker j.
-
-    The quaternions of bodies are continuous during motion, so a relative rotation can continue beyond half a turn.
-    """
-    p, q = _quaternion(model, i), _quaternion(model, j)
-    if sum(a * b for a, b in zip(p, q, strict=True)) >= 0:
-        return i
-    placed = model.place(i)
-    return Marker(body=i.body, point=placed.point, orientation=tuple(-part for part in placed.orientation))
-
-
-def _quaternion(model: ModelData, marker: Marker) -> Quaternion:
-    own: Quaternion = model.place(marker).orientation
-    return own if marker.body == GROUND else product(model.bodies[marker.body].orientation, own)

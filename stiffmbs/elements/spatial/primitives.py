@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from pydantic import Field
 
 from ..element import Expr, Matrix, Symbolic
 from ..initial_pose import InitialPose
@@ -60,6 +62,8 @@ ORIENT = Condition(
     initially_rotated,
 )
 """Parallel axes; half turns about an axis and cyclic permutations satisfy the equations, too."""
+
+Turns = Annotated[int | None, Field(description="full turns added to the angle within half a turn at the start")]
 
 
 class SpatialJoint(Pair[Marker]):

@@ -16,17 +16,16 @@ from ...elements.forces.contact import Contact
 from ...elements.forces.exact_beam import BeamSection, ExactBeam
 from ...elements.forces.python_force import PythonForce
 from ...elements.forces.torsion_spring import TorsionSpring
-from ...elements.initial_pose import initial_element
 from ...elements.joints.point_on_line import PointOnLine
 from ...elements.joints.prismatic import Prismatic
-from ...elements.joints.relation import Relation
+from ...elements.joints.revolute import Revolute
 from ...elements.spatial.branches import FARTHEST
 from ...elements.spatial.spatial_kinds import FORCES, JOINTS
+from ...elements.turns import TURN, full_turns
 from ...errors import InputError
-from ...reading.joint_name import JointName
 from ...reading.python_function import PythonFunction
 from .fields import oriented, plain, same
-from .formulas import QUARTER, TURN, Angles, Written, across, along, turned
+from .formulas import QUARTER, Angles, Written, across, along, turned
 
 
 @singledispatch
@@ -63,7 +62,7 @@ def torque(element: AppliedTorque, angles: Angles) -> Written:
 def torsion_spring(element: TorsionSpring, angles: Angles) -> Written:
     """Return a torsion spring, with a large initial angle subtracted from its marker and free angle."""
     initial = angles.initial(element.i, element.j)
-    if abs(initial) <= QUARTER:
+    if angles.later or abs(initial) <= QUARTER:
         return same(element, angles)
     i = oriented(element.i, angles, lambda angle: turned(angle - initial))
     return same(element, angles, i=i, free_angle=element.free_angle - initial)
@@ -72,11 +71,6 @@ def torsion_spring(element: TorsionSpring, angles: Angles) -> Written:
 @element_in_space.register(Bushing)
 def bushing(element: Bushing, angles: Angles) -> Written:
     """Return a bushing of six components, three of them without stiffness and damping."""
-    initial = angles.initial(element.i, element.j)
-    if (element.stiffness[2][2] or element.law_angle is not None) and abs(initial) >= math.pi:
-        raise InputError(
-            f"found its markers drawn {math.degrees(initial):.4g} degrees apart, expected less than half a turn in space"
-        )
     matrices = {name: _six_by_six(getattr(element, name)) for name in ("stiffness", "damping")}
     preload = _six(element.preload, 0) if any(element.preload) else None
     law = None if element.law_angle is None else plain(element.law_angle, angles)
@@ -137,6 +131,13 @@ def python_force(element: PythonForce, angles: Angles) -> Written:
     return same(element, angles, function=PythonFunction(function, planar.derivatives))
 
 
+@element_in_space.register(Revolute)
+def revolute(joint: Revolute, angles: Angles) -> Written:
+    """Return a joint whose angle starts in the turn of the described angles."""
+    turns = 0 if angles.later else full_turns(angles.initial(joint.i, joint.j))
+    return same(joint, angles, turns=turns or None)
+
+
 @element_in_space.register(Prismatic)
 def prismatic(joint: Prismatic, angles: Angles) -> Written:
     """Return a joint along z of rotated markers, which would keep a half turn between the markers if drawn so."""
@@ -150,17 +151,3 @@ def prismatic(joint: Prismatic, angles: Angles) -> Written:
 def point_on_line(joint: PointOnLine | Prismatic, angles: Angles) -> Written:
     """Return a joint along z of rotated markers."""
     return same(joint, angles, i=oriented(joint.i, angles, along), j=oriented(joint.j, angles, along))
-
-
-@element_in_space.register(Relation)
-def relation(joint: Relation, angles: Angles) -> Written:
-    """Return a relation whose offset is corrected for coordinates that are measured differently in space."""
-    if joint.offset is None:
-        return same(joint, angles)
-    data = angles.data
-    e = initial_element(joint.model_copy(update={"offset": 0.0}), data)
-    for field, name in joint.parts(JointName):
-        coordinate = getattr(e, field)
-        counted = name.coordinate_of(data.joints[name.joint]) == "angle"
-        coordinate.coordinate = TURN * round(coordinate.coordinate / TURN) if counted else 0.0
-    return same(joint, angles, offset=joint.offset - float(joint.relation(e)))

@@ -13,7 +13,6 @@ import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from ...elements.requests.names import OF_PLANE
 from ...elements.requests.output import Output
@@ -26,6 +25,7 @@ from ...reading.joint_name import JOINT_CHANNELS
 from ...reading.marker import GROUND, MarkerReference, Placement
 from ...reading.names import Names
 from ..model import PlanarData
+from ..scene import Scene
 
 Written = Content
 """Part of a scene as in its file."""
@@ -57,7 +57,6 @@ def point(place: tuple[float, float]) -> Written:
 
 
 QUARTER = math.pi / 2
-TURN = 2 * math.pi
 
 
 @dataclass(frozen=True)
@@ -66,6 +65,13 @@ class Angles:
 
     data: PlanarData
     added: dict[str, dict[str, Written]] = field(default_factory=dict)  # added markers by name, by body
+    later: bool = False  # True for an element that starts to act after the described pose
+
+    @property
+    def starts_later(self) -> frozenset[str]:
+        """Names of the elements of a stage that start to act after the described pose."""
+        source = self.data.written if isinstance(self.data, Scene) else None
+        return source.starts_later if source else frozenset()
 
     def initial(self, i: MarkerReference, j: MarkerReference) -> float:
         """Return the angle of one marker relative to another in the described poses, rad."""
@@ -126,7 +132,7 @@ class _Renamed(ast.NodeTransformer):
         if owner in data.requests or owner == UNIT:
             return node
         if owner in data.joints and node.attr in JOINT_CHANNELS:
-            return self._of_joint(node, data.joints[owner])
+            return node
         match node.attr:
             case "angle":
                 return self._angle(MarkerReference(body=owner), MarkerReference(body=GROUND))
@@ -137,11 +143,6 @@ class _Renamed(ast.NodeTransformer):
             case "torque":
                 return self._read(f"{owner}.tz")
         return node
-
-    def _of_joint(self, node: ast.Attribute, joint: Any) -> ast.AST:
-        """Return a joint coordinate; in space an angle starts within half a turn."""
-        turns = round(self._angles.initial(joint.i, joint.j) / (2 * math.pi)) if node.attr == "angle" else 0
-        return self._read(f"({ast.unparse(node)} + {2 * math.pi * turns!r})") if turns else node
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
         """Replace ``az``, and arguments of functions."""

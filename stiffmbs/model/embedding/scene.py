@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from ...elements import shape as planar
 from ...elements.body import Body
 from ...elements.element import Element
 from ...elements.shape import Shape
-from ...errors import prefixed
+from ...errors import InputError, prefixed
 from ...reading.marker import GROUND, MarkerReference, Placement
+from ..files.stages import merge_patch
 from ..model import PlanarData
 from ..model_data import ModelData
 from ..scene import Scene
@@ -19,9 +21,11 @@ from .fields import plain
 from .formulas import Angles, Written, placement, point, request, turned
 
 ORDER = (
-    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests", "figure", "start", "run", "notes",
+    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests", "figure", "start", "at_start", "run", "stages", "notes",
 )  # fmt: skip
-"""Order of sections in the file."""
+"""Sections of a converted scene, in the order of the file."""
+OF_STAGES = ("name", "dimensions", "start", "at_start", "run", "notes")
+"""Sections that a stage does not change."""
 CHANNELS = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
 """Spatial names of planar channels, if different."""
 
@@ -29,9 +33,40 @@ CHANNELS = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
 def scene_in_space(data: PlanarData) -> Written:
     """Return the spatial scene of a planar model in the x-y plane of the ground.
 
-    Raises InputError for an element without a spatial counterpart; the message names it.
+    Raises InputError for a section or an element without a spatial counterpart; the message names it.
     """
+    _refuse_others(data)
     angles = Angles(data)
+    written = _one_scene(data, angles)
+    if isinstance(data, Scene) and data.stages:
+        written |= {"stages": _stages(data, written, angles)}
+    return {name: written[name] for name in ORDER if written.get(name)}
+
+
+def _refuse_others(data: PlanarData) -> None:
+    """Refuse sections that are not converted."""
+    for name, field in type(data).model_fields.items():
+        if name not in ORDER and getattr(data, name) != field.get_default(call_default_factory=True):
+            raise InputError(f"{name}: found a section that has no counterpart in space, expected a scene without it")
+
+
+def _stages(data: Scene, first: Written, angles: Angles) -> list[Written]:
+    """Return the stages of a spatial scene, each with all of its changes from the one before."""
+    stages: list[Written] = []
+    before = {name: part for name, part in first.items() if part and name not in OF_STAGES}
+    for stage, scene in zip(data.stages, data.stage_scenes, strict=True):
+        assert isinstance(scene, PlanarData)
+        found = _one_scene(scene, replace(angles, data=scene))
+        found = {name: part for name, part in found.items() if part and name not in OF_STAGES}
+        own = {name: part for name, part in stage.model_dump(exclude_defaults=True).items() if name != "change"}
+        run = scene.run.model_dump(exclude_unset=True)
+        stages.append({**own, "change": merge_patch(before, found), "run": run})
+        before = found
+    return [{name: part for name, part in stage.items() if part} for stage in stages]
+
+
+def _one_scene(data: PlanarData, angles: Angles) -> Written:
+    """Return the sections of a scene without its stages."""
     joints = _elements("joints", data.joints, angles)
     joints |= {_free(f"{body}_in_plane", data): {"type": "planar", "i": body, "j": GROUND} for body in loose(data)}
     requests: Written = {name: request(found, angles) for name, found in data.requests.items()}
@@ -46,12 +81,21 @@ def scene_in_space(data: PlanarData) -> Written:
             "variables": {name: request(found, angles) for name, found in data.variables.items()},
             "figure": _figure(data, requests, angles),
             "start": _start(data.start),
+            "at_start": _held_at_start(data, angles),
             "run": plain(data.run.model_dump(exclude_unset=True), angles),
             "notes": list(data.notes),
         }
     parts["bodies"] = {name: _body(name, body, angles) for name, body in data.bodies.items()}
     parts["markers"] = _markers(GROUND, data.markers, angles)
-    return {name: parts[name] for name in ORDER if parts.get(name)}
+    return parts
+
+
+def _held_at_start(data: Scene, angles: Angles) -> Written:
+    """Return the joints that hold at the start alone."""
+    held = next((scene.held_at_start for scene in (data, *data.stage_scenes) if scene.held_at_start), None)
+    if held is None:
+        return {}
+    return _elements("at_start", {name: held.joints[name] for name in data.at_start}, angles)
 
 
 def _start(start: str | SteadyMotion) -> str | Written | None:
@@ -85,7 +129,7 @@ def _elements(section: str, elements: Mapping[str, Element], angles: Angles) -> 
     found: Written = {}
     for name, element in elements.items():
         with prefixed(f"{section}.{name}: "):
-            found[name] = element_in_space(element, angles)
+            found[name] = element_in_space(element, replace(angles, later=name in angles.starts_later))
     return found
 
 

@@ -27,6 +27,8 @@ class WrittenScene:
     folder: Path | None = field(compare=False)  # folder of meshes
     # digests of all other files that were read for it, and of the code of user-defined elements
     files: dict[str, str] = field(default_factory=dict, compare=False)
+    # joints and forces that start to act after the described pose, in a stage
+    starts_later: frozenset[str] = field(default=frozenset(), compare=False)
 
 
 BOUNDS = ("at_least", "at_most", "equals")
@@ -114,7 +116,7 @@ def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[Written
                 f"--set {path}: found a scene with stages, which have durations and outputs of their own, expected no change of it"
             )
     content = {key: value for key, value in scene.content.items() if key != "stages"}
-    found = []
+    found: list[WrittenScene] = []
     for k, stage in enumerate(stages):
         content = merged(content, stage.change)
         if k == 1:
@@ -123,8 +125,15 @@ def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[Written
         if any(grid in stage.run for grid in GRIDS):
             settings = {name: value for name, value in settings.items() if name not in GRIDS}
         whole = copy.deepcopy({**content, "run": settings | stage.run})
-        found.append(WrittenScene(whole, _of_stage(scene.changes, whole), scene.source, scene.folder))
+        later = frozenset(_elements(whole) - _elements(found[0].content)) if k else frozenset()
+        changes = _of_stage(scene.changes, whole)
+        found.append(WrittenScene(whole, changes, scene.source, scene.folder, starts_later=later))
     return found
+
+
+def _elements(content: Content) -> set[str]:
+    """Return the names of the joints and forces of a scene."""
+    return {name for section in ("joints", "forces") for name in content.get(section) or ()}
 
 
 def merged(old: object, change: object) -> Any:

@@ -76,7 +76,8 @@ class SetUp:
     @cached_property
     def _systems(self) -> list[System]:
         """Compiled systems of the scenes."""
-        found = [started_from(compile_model(scene), scene, self._job.start_from) for scene in self.scenes]
+        placed = [self._job.placed(scene) for scene in self.scenes]
+        found = [started_from(compile_model(scene), scene, self._job.start_from) for scene in placed]
         system = self._job.dynamics.system
         for other in found:
             if not _same_structure(system, other):
@@ -133,7 +134,7 @@ class SetUp:
 
     def _place(self, name: str, scene: Scene, element: Element) -> tuple[int, int, np.ndarray]:
         """Return the group of an element, the index of its first number there, and its numbers."""
-        kind, data = sorted_out(name, element.at_initial_pose(scene), scene)
+        kind, data = sorted_out(name, self._job.placed(scene).set_up(name, element), scene)
         for g, group in enumerate(self._job.dynamics.system.groups):
             if name in group.names and group.kind == kind:
                 return g, int(group.index[group.names.index(name), 2 * kind.n_bodies]), data.flat()

@@ -13,7 +13,7 @@ import numpy as np
 from stiffmbs.errors import StiffmbsError
 
 from ..case import Outcome, Verdict, measured
-from ..invariance import bodies, descriptions, galilean, naming, rigid, similarity, time_shift, ways
+from ..invariance import bodies, descriptions, galilean, naming, rigid, similarity, time_shift, turns, ways
 from ..invariance.balance import balance
 from ..invariance.change import Change, Channels
 from ..invariance.comparison import Difference, bars_of, compared
@@ -41,7 +41,7 @@ RARE = "a fixed pair as one body"
 ALIKE = 0.3
 """Fraction of transformed scenes that are run with the settings of the original."""
 OF_EXPANDED = (
-    "turned", "moved by 1 km", "later", "renamed", "with an idle body", "embedded in space", "in two runs", "step by step", "as a study",
+    "turned", "moved by 1 km", "later", "renamed", "with an idle body", "embedded in space", "in stages", "in two runs", "step by step", "as a study",
 )  # fmt: skip
 """Transformations of scenes with line bodies or flexible bodies."""
 FREE = ("with an idle body",)
@@ -230,6 +230,9 @@ WAYS: dict[str, Way] = {
     "a body in other own axes": _in_other_axes,
     RARE: _as_one_body,
     "embedded in space": _embedded,
+    "with full turns": lambda content, rng: (turns.with_full_turns(content, rng), ways.at_once),
+    "with i and j exchanged": lambda content, rng: (turns.with_exchanged_markers(content, rng), ways.at_once),
+    "in stages": _run_otherwise(ways.in_stages, "in stages"),
     "in two runs": _run_otherwise(ways.in_two_runs, "in two runs"),
     "step by step": _run_otherwise(ways.step_by_step, "step by step"),
     "as a study": _run_otherwise(ways.as_a_study, "as a study"),

@@ -85,6 +85,21 @@ def in_two_runs(content: Content, **how: Any) -> Found:
     return Found(np.concatenate([found.time[:-1], then.time]), joined, found.not_unique)
 
 
+def in_stages(content: Content, **how: Any) -> Found:
+    """Return the channels of a run in two stages without changes."""
+    duration, points = content["run"]["duration"], content["run"]["points"]
+    half = (points - 1) // 2
+    middle = duration * half / (points - 1)
+    own = {key: value for key, value in content["run"].items() if key not in ("duration", "points")}
+    stages = [
+        {"run": {"duration": middle, "points": half + 1}},
+        {"run": {"duration": duration - middle, "points": points - half}},
+    ]
+    found = found_of(run(scene_of({**content, "run": own, "stages": stages}), **how))
+    kept = np.append(np.diff(found.time) > 0, True)  # one of two rows at the transition
+    return Found(found.time[kept], {name: x[kept] for name, x in found.channels.items()}, found.not_unique)
+
+
 def step_by_step(content: Content, **how: Any) -> Found:
     """Return the channels of a simulation after each step."""
     stepped = simulation(scene_of(content), **how)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field, field_validator, model_validator
 
@@ -12,12 +12,9 @@ from ...element import Expr, Symbolic
 from ...forces.beam_section import BeamSectionLaw
 from ...forces.beam_strain import BeamStrain, Stretch
 from ...forces.elastic_matrix import check_symmetric
-from ..elastic import AS_WRITTEN, Elastic, nearest, six_rows, without_zeros
+from ..elastic import AS_WRITTEN, six_rows, without_zeros
 from ..marker import Marker
 from ..wrench import Pairs, along_axes, force_at, torque_on
-
-if TYPE_CHECKING:
-    from ....model.model_data import ModelData
 
 _F = si.Force | None
 _T = si.Torque | None
@@ -96,8 +93,6 @@ class ExactBeam(BeamStrain):
                 raise ValueError(f"stiffness: found no {name}, expected it with shear_centre or wagner")
         return self
 
-    at_initial_pose: ClassVar = Elastic.at_initial_pose
-
     @staticmethod
     def stretching(e: Symbolic, strain: list[Expr]) -> list[Stretch]:
         """Return the stretching by bowing and by torsion, with the strains at the shear centre."""
@@ -148,8 +143,3 @@ class BeamSection(BeamSectionLaw):
     stretch: si.NumberOrZero = Field(0.0, description="r^2 of the axial strain r^2/2 kappa_1^2 by torsion, m^2")
 
     _symmetric = field_validator("stiffness")(check_symmetric)
-
-    def at_initial_pose(self, model: ModelData) -> Self:
-        """Return the section with the signs of the nodes' quaternions for initial rotations below half a turn."""
-        reference = self.nodes[self.reference]
-        return self.model_copy(update={"nodes": tuple(nearest(model, node, reference) for node in self.nodes)})

@@ -16,8 +16,8 @@ from ..wrench import Pairs, velocity
 class JointFriction(AnyJointFriction):
     """Dry friction in a revolute, cylindrical, prismatic or spherical joint, loaded by the joint's reaction.
 
-    The reaction at i's point has the forces F normal to the z axis and T (thrust) along it. Its moments are M normal to
-    the axis and D about it. They follow from the multipliers at the same time, which include the effect of friction.
+    The reaction at i's point, the middle of the supporting part, has the forces F normal to the z axis and T (thrust)
+    along it. Its moments are M normal to the axis and D about it. They follow from the multipliers at the same time, which include the effect of friction.
 
     - Pin of radius R (``revolute``): N = F + M/(length/2), the sliding speed is R w with the angular velocity w about
       the axis, and the torque -mu N R acts on it. The moment is supported at the ends of a bearing of the given length;

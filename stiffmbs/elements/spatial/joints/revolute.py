@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from ...element import Symbolic, sp
 from ...forces.friction import Loads, magnitude
-from ..primitives import ALIGN, COINCIDE, SpatialJoint
+from ..primitives import ALIGN, COINCIDE, SpatialJoint, Turns
 
 
 class Revolute(SpatialJoint):
     """Hinge: two points coincide, with the z axes of both markers parallel.
+
+    The angle of marker i relative to marker j starts within half a turn, plus `turns`. A position drive on it selects
+    the turn nearest to the prescribed angle instead.
 
     The reaction is a force of any direction, and a torque normal to the axis.
 
@@ -21,6 +24,8 @@ class Revolute(SpatialJoint):
     conditions = COINCIDE, ALIGN
     coordinates = ("angle",)
     elastic = "bushing"
+
+    turns: Turns = None
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:

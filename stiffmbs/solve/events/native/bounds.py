@@ -146,11 +146,19 @@ def turned(w, q_before, q_after, most):
 
 
 @compiled
+def turned_argument(w, i, change):
+    """Return the size of a change of an argument of a sine, rad, without the jumps of a direction's angle."""
+    if w.radians[i] < 0.0:
+        return abs(change - tau * floor(change / tau + 0.5))
+    return w.radians[i] * abs(change)
+
+
+@compiled
 def turned_arguments(w, before, after):
     """Return the largest change of an argument of a sine, rad."""
     farthest = 0.0
     for i in range(w.n_turns):
-        farthest = max(farthest, w.radians[i] * abs(after[w.turn[i]] - before[w.turn[i]]))
+        farthest = max(farthest, turned_argument(w, i, after[w.turn[i]] - before[w.turn[i]]))
     return farthest
 
 
@@ -167,7 +175,7 @@ def fastest_turn(w, rate):
     """Return the largest rate of an argument of a sine, rad/s."""
     fastest = 0.0
     for i in range(w.n_turns):
-        fastest = max(fastest, w.radians[i] * abs(rate[w.turn[i]]))
+        fastest = max(fastest, abs(w.radians[i] * rate[w.turn[i]]))
     return fastest
 
 
@@ -196,7 +204,7 @@ def note_unresolved(w, t, before, after):
     if w.unresolved == 0:
         farthest = turned_arguments(w, before, after)
         for i in range(w.n_turns):
-            if w.radians[i] * abs(after[w.turn[i]] - before[w.turn[i]]) == farthest:
+            if turned_argument(w, i, after[w.turn[i]] - before[w.turn[i]]) == farthest:
                 w.fastest = w.turn[i]
         w.first_unresolved = t
     w.unresolved += 1

@@ -26,6 +26,7 @@ from stiffmbs.solve.events.native.bounds import (
     note_unresolved,
     noted_rates,
     reaches,
+    turned_argument,
     turned_arguments,
 )
 from stiffmbs.solve.events.native.parameters import BISECTIONS, SEARCH
@@ -210,8 +211,10 @@ def _turned_in_part(w, part):
     farthest = 0.0
     for i in range(w.n_turns):
         k = w.turn[i]
-        moved = max(abs(w.b[k] - w.a[k]), max(abs(w.m[k] - w.a[k]), abs(w.m2[k] - w.a[k])))
-        farthest = max(farthest, w.radians[i] * max(moved, part * max(abs(w.a_rate[k]), abs(w.b_rate[k]))))
+        farthest = max(farthest, turned_argument(w, i, w.b[k] - w.a[k]))
+        farthest = max(farthest, turned_argument(w, i, w.m[k] - w.a[k]))
+        farthest = max(farthest, turned_argument(w, i, w.m2[k] - w.a[k]))
+        farthest = max(farthest, abs(w.radians[i]) * part * max(abs(w.a_rate[k]), abs(w.b_rate[k])))
     return farthest
 
 

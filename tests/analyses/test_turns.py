@@ -1,0 +1,288 @@
+"""Full turns of angles at the start, in welds, bushings and beams, with drives, in stages and after restarts."""
+
+import math
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import spatial
+
+TURN = 2 * math.pi
+
+
+def read(text, **parts):
+    for name, value in parts.items():
+        text = text.replace(name.upper(), str(value))
+    return stiffmbs.read_scene(text)
+
+
+WELDED = """
+gravity: [0, -9.81]
+bodies:
+  a: {mass: 1, inertia: 0.1, angle: PHI}
+  b: {mass: 1, inertia: 0.1, angle: PHI + 2*pi*TURNS, position: [cos(PHI), sin(PHI)]}
+joints:
+  pin: {type: revolute, i: a, j: ground}
+  weld: {type: fixed, i: {body: b, point: [-1, 0]}, j: a}
+forces: {spring: {type: torsion_spring, i: {body: b, angle: 0.3}, j: ground, stiffness: 2, free_angle: 2*pi*TURNS}}
+run: {duration: 1, points: 11, rtol: 1e-8}
+"""
+
+
+@pytest.mark.parametrize("turns", [1, -1, 3])
+@pytest.mark.parametrize("phi", [-1.5707963267948966, 3.0])
+def test_welded_bodies_move_as_without_turns_between_them(phi, turns):
+    wanted = stiffmbs.run(read(WELDED, phi=phi, turns=0))
+    found = stiffmbs.run(read(WELDED, phi=phi, turns=turns))
+    assert any("merged" in line for line in found.presolve)
+    for channel in ("b.x", "b.y", "weld.torque", "spring.torque", "energy.total"):
+        np.testing.assert_allclose(found[channel], wanted[channel], atol=1e-6)
+    np.testing.assert_allclose(found["b.angle"] - wanted["b.angle"], TURN * turns, atol=1e-6)
+
+
+BEAM = """
+gravity: [0, -9.81]
+bodies:
+  w:
+    {type: beam, START: [1, 0.2], END: [0, 0], elements: 4, section: {type: rectangle, width: 20 mm, height: 10 mm},
+     material: {E: 2e9, nu: 0.3, density: 2000}, damping: 2 ms}
+  ball: {mass: 0.3, inertia: 0.001, position: [1, 0.2]}
+joints:
+  pin: {type: fixed, i: w.END, j: {body: ground, angle: ANGLE}}
+  k: {type: fixed, i: {body: ball, angle: ANGLE}, j: w.START}
+run: {duration: 0.1, points: 11, rtol: 1e-7, solver: radau}
+"""
+
+
+def test_a_beam_moves_the_same_drawn_from_right_to_left():
+    angle = math.atan2(0.2, 1)
+    one = stiffmbs.run(read(BEAM, start="end", end="start", angle=angle))
+    other = stiffmbs.run(read(BEAM, start="start", end="end", angle=angle + math.pi))
+    np.testing.assert_allclose(one["ball.y"], other["ball.y"], atol=1e-6)
+    np.testing.assert_allclose(one["pin.torque"], other["pin.torque"], atol=1e-3)
+
+
+SQUARE = """
+bodies:
+  frame:
+    {type: beam, points: [[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], elements: 2, section: {type: rectangle, width: 30 mm, height: 3 mm},
+     material: {E: 2e9, nu: 0.3, density: 1200}}
+joints: {closed: {type: fixed, i: frame.end, j: {body: frame.start, angle: -90 deg}}}
+run: {duration: 0.01, solver: radau}
+"""
+
+
+def test_a_closed_frame_of_beams_starts_without_load():
+    assert abs(stiffmbs.run(stiffmbs.read_scene(SQUARE))["energy.total"]).max() < 1e-12
+
+
+@pytest.mark.parametrize("turns", [1, -2])
+def test_a_bushing_between_described_angles_a_turn_apart_is_not_wound(turns):
+    text = """
+bodies: {b: {mass: 1, inertia: 0.1, angle: 0.2 + 2*pi*TURNS}}
+forces: {m: {type: bushing, i: b, j: ground, stiffness: [1000, 1000, 50]}}
+run: {duration: 0.01}
+"""
+    for found in (read(text, turns=turns), spatial.in_space(read(text, turns=turns))):
+        solution = stiffmbs.run(found)
+        assert solution["m.torque" if "m.torque" in solution else "m.tz"][0] == pytest.approx(-10)
+
+
+STAGE = """
+bodies:
+  a: {mass: 1, inertia: 0.1, omega: 20}
+  b: {mass: 1, inertia: 0.2, position: [1, 0]}
+joints:
+  p: {type: revolute, i: a, j: ground}
+  q: {type: revolute, i: b, j: {body: ground, point: [1, 0]}}
+run: {points: 6, rtol: 1e-8}
+stages:
+  - {run: {duration: 1}}
+  - {change: {ADDED}, run: {duration: 0.2}}
+  - {run: {duration: 0.2}}
+"""
+BEYOND = 20 - 3 * TURN  # angle of a within half a turn, after 1 s
+ADDED = {
+    "bushing": "forces: {y: {type: bushing, i: a, j: ground, stiffness: [10, 10, 10], damping: [1, 1, 0.5]}}",
+    "spring": "forces: {y: {type: torsion_spring, i: a, j: b, stiffness: 10, damping: 0.5}}",
+    "gear": "joints: {y: {type: gear, joint_1: p, joint_2: q, ratio: 1}}",
+    "coupler": "joints: {y: {type: coupler, joint_1: p, joint_2: q, scale: -1}}",
+}
+
+
+def starts(scene):
+    """Return a planar and a spatial solution, and the row at which the second stage starts."""
+    for found in (stiffmbs.run(scene), stiffmbs.run(spatial.in_space(scene))):
+        assert not [note for note in found.notes if ".angle by" in note]
+        yield found, int(np.flatnonzero(found.time == 1.0)[-1])
+
+
+@pytest.mark.parametrize("kind", ADDED)
+def test_what_a_stage_adds_is_set_up_in_its_pose_in_plane_and_space(kind):
+    (plane, row), (space, _) = starts(read(STAGE, added=ADDED[kind]))
+    assert plane["p.angle"][row] == pytest.approx(20, abs=1e-6)
+    if kind in ("gear", "coupler"):
+        assert plane["a.omega"][row] == pytest.approx(20 / 3, abs=1e-6)
+        assert plane["q.angle"][row] == pytest.approx(0, abs=1e-6)
+    else:
+        assert plane["y.torque"][row] == pytest.approx(-10 * BEYOND - 0.5 * 20, abs=1e-5)
+    for channel in ("p.angle", "q.angle"):
+        np.testing.assert_allclose(space[channel], plane[channel], atol=1e-5)
+    np.testing.assert_allclose(space["y.tz"], plane["y.torque"], atol=1e-4)
+
+
+WOUND = STAGE.replace(
+    "joints:\n", "forces: {s: {type: torsion_spring, i: a, j: ground, stiffness: 0.05}}\njoints:\n", 1
+)
+
+
+def test_a_drive_that_a_stage_adds_selects_the_turn_of_its_joint_and_unwinds_no_spring():
+    scene = read(WOUND, added='joints: {y: {type: drive, joint: p, position: "0.2 + 3*(t-1)"}}')
+    plane, space = stiffmbs.run(scene), stiffmbs.run(spatial.in_space(scene))
+    row = int(np.flatnonzero(plane.time == 1.0)[-1])
+    assert plane["p.angle"][row] == pytest.approx(0.2) and plane["a.angle"][row] == pytest.approx(3 * TURN + 0.2)
+    np.testing.assert_allclose(space["p.angle"], plane["p.angle"], atol=1e-5)
+    np.testing.assert_allclose(space["s.tz"], plane["s.torque"], atol=1e-5)
+
+
+def test_joints_and_a_coupler_of_one_stage_have_the_same_turns():
+    text = STAGE.replace("  p: {type: revolute, i: a, j: ground}\n", "")
+    pin = "r: {type: revolute, i: a, j: {body: ground, angle: 1}}"
+    scene = read(text, added=f"joints: {{{pin}, y: {{type: coupler, joint_1: q, joint_2: r, scale: 0.3}}}}")
+    (plane, row), (space, _) = starts(scene)
+    np.testing.assert_allclose(space["r.angle"][-6:], plane["r.angle"][-6:], atol=1e-5)
+    assert plane["r.angle"][row] == pytest.approx(BEYOND - 1, abs=1e-6)
+
+
+def test_a_lock_closes_in_the_nearest_turn():
+    found = stiffmbs.run(read(WOUND, added="joints: {y: {type: fixed, i: a, j: ground}}"))
+    assert found["a.angle"][-1] == pytest.approx(3 * TURN, abs=1e-9)
+    assert found["s.torque"][-1] == pytest.approx(-0.05 * 3 * TURN, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["bushing", "spring", "coupler"])
+def test_a_restart_from_a_file_keeps_the_turns_of_what_a_stage_has_added(kind, tmp_path):
+    scene = read(STAGE, added=ADDED[kind])
+    for whole in (scene, spatial.in_space(scene)):
+        wanted = stiffmbs.run(whole)
+        wanted.save(tmp_path / "all.npz")
+        rows = np.flatnonzero(np.isclose(wanted.time, 1.2))
+        state = stiffmbs.read_state(tmp_path / "all.npz", at=float(wanted.time[rows[-1]]))
+        found = stiffmbs.run(whole.stage_scenes[2], start_from=state, duration=0.2, points=6)
+        for channel in ("p.angle", "q.angle", "y.torque" if "y.torque" in wanted else "y.tz"):
+            np.testing.assert_allclose(found[channel], wanted[channel][-6:], atol=1e-5)
+
+
+def test_a_joint_that_a_stage_adds_is_checked_where_it_closes():
+    text = """
+dimensions: 3
+bodies: {a: {mass: 1, inertia: [1, 1, 1], orientation: {euler: zxz, angles: [90 deg, 0, 0]}, omega: [0, 0, RATE]}}
+joints: {p: {type: revolute, i: a, j: ground}}
+stages:
+  - {run: {duration: 1, rtol: 1e-8}}
+  - {change: {joints: {x: {type: fixed, i: a, j: ground}}}, run: {duration: 0.1}}
+"""
+    assert stiffmbs.run(read(text, rate=1.5 * math.pi))["p.angle"][-1] == pytest.approx(TURN)
+    with pytest.raises(stiffmbs.InputError, match=r"stage 2 of 2: joints\.x: found the axes .* in the pose at t = 1 s"):
+        stiffmbs.run(read(text, rate=math.pi))
+
+
+DRIVEN = """
+bodies:
+  a: {mass: 1, inertia: 0.1, angle: A}
+  b: {mass: 1, inertia: 0.2, position: [1, 0], angle: -350 deg}
+joints:
+  p: {type: revolute, i: a, j: ground}
+  q: {type: revolute, i: b, j: {body: ground, point: [1, 0]}}
+  g: {type: gear, joint_1: p, joint_2: q, ratio: 0.7}
+MOTOR
+forces: {s: {type: torsion_spring, i: b, j: a, stiffness: 5, damping: 0.1}}
+requests: {angles: q.angle + 2*p.angle}
+run: {duration: 0.5, points: 11, rtol: 1e-8}
+"""
+MOTOR = "  m: {type: drive, joint: p, position: 20 deg + 3*t^2}"
+HELD = "at_start: {m: {type: drive, joint: p, position: 20 deg}}"
+
+
+@pytest.mark.parametrize("motor", [MOTOR, HELD], ids=["drive", "at_start"])
+@pytest.mark.parametrize("angle", ["20 deg", "380 deg", "-1060 deg", "30 deg + 2*pi"])
+def test_a_drive_selects_the_turn_and_moves_no_geared_wheel(motor, angle):
+    near = stiffmbs.run(read(DRIVEN, a="30 deg" if "30 deg" in angle else "20 deg", motor=motor))
+    scene = read(DRIVEN, a=angle, motor=motor)
+    found, there = stiffmbs.run(scene), stiffmbs.run(spatial.in_space(scene))
+    for channel in ("a.angle", "b.angle", "p.angle", "g.torque", "s.torque"):
+        np.testing.assert_allclose(found[channel], near[channel], atol=2e-5)
+        other = channel.replace("torque", "tz")
+        if other in there:
+            np.testing.assert_allclose(there[other], near[channel], atol=2e-5)
+    np.testing.assert_allclose(there["angles"], found["angles"], atol=2e-5)
+
+
+def test_a_drive_between_free_bodies_a_turn_away_moves_neither():
+    text = """
+bodies: {a: {mass: 1, inertia: 0.1, angle: 20 deg}, b: {mass: 1, inertia: 0.2, position: [1, 0]}}
+joints:
+  p: {type: revolute, i: {body: b, point: [-0.5, 0]}, j: {body: a, point: [0.5*cos(20 deg), -0.5*sin(20 deg)]}}
+  m: {type: drive, joint: p, position: 340 deg + 3*t^2}
+run: {duration: 0.1}
+"""
+    found = stiffmbs.run(stiffmbs.read_scene(text))
+    assert found["b.angle"][0] == pytest.approx(TURN) and found["a.angle"][0] == pytest.approx(math.radians(20))
+    assert any("bodies start with full turns added: b +1" in note for note in found.notes)
+
+
+def test_in_space_a_gear_has_the_turn_of_the_drive_of_its_joint():
+    text = """
+dimensions: 3
+bodies:
+  a: {mass: 1, inertia: [1, 1, 1], orientation: {euler: zxz, angles: [200 deg, 0, 0]}}
+  b: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}
+joints:
+  p: {type: revolute, i: a, j: ground}
+  q: {type: revolute, i: b, j: {body: ground, point: [1, 0, 0]}}
+  g: {type: gear, joint_1: p, joint_2: q, ratio: 0.7}
+  m: {type: drive, joint: p, position: 200 deg}
+run: {duration: 0.1}
+"""
+    found = stiffmbs.run(stiffmbs.read_scene(text))
+    assert found["q.angle"][0] == pytest.approx(0, abs=1e-9) and found["p.angle"][0] == pytest.approx(math.radians(200))
+
+
+@pytest.mark.parametrize("angle", [170, 190, 540, -900])
+def test_the_angle_of_a_joint_has_its_turns_in_space(angle):
+    text = f"""
+bodies: {{a: {{mass: 1, inertia: 0.1, angle: {angle} deg, omega: 3}}}}
+joints: {{p: {{type: revolute, i: a, j: ground}}}}
+forces: {{f: {{type: torque, i: a, torque: "-0.1*p.angle"}}}}
+requests: {{angle: 2*p.angle}}
+run: {{duration: 1, points: 11, rtol: 1e-8}}
+"""
+    plane = stiffmbs.run(stiffmbs.read_scene(text))
+    space = stiffmbs.run(spatial.in_space(stiffmbs.read_scene(text)))
+    for channel in ("p.angle", "angle", "p.angle_rate"):
+        np.testing.assert_allclose(space[channel], plane[channel], atol=1e-6)
+
+
+def test_conversion_keeps_what_holds_at_the_start():
+    text = """
+bodies: {a: {mass: 1, inertia: 0.1, angle: 10 deg}}
+joints: {p: {type: revolute, i: a, j: ground}}
+at_start: {m: {type: drive, joint: p, position: 1.0}, w: {type: drive, joint: p, velocity: 4}}
+run: {duration: 0.1, rtol: 1e-8}
+"""
+    found = stiffmbs.run(spatial.in_space(stiffmbs.read_scene(text)))
+    assert found["p.angle"][0] == pytest.approx(1) and found["p.angle_rate"][0] == pytest.approx(4)
+
+
+def test_the_polar_angle_of_a_cam_jumps_without_a_note():
+    text = """
+bodies: {a: {mass: 1, inertia: 0.1, angle: 50 deg, omega: 9}, f: {mass: 0.4, inertia: 0.01, position: [0, 0.0496]}}
+joints:
+  p: {type: revolute, i: a, j: ground}
+  u: {type: prismatic, i: {body: f, angle: 90 deg}, j: {body: ground, angle: 90 deg}}
+  c: {type: point_on_curve, i: f, j: a, radius: "0.04 + 0.01*cos(angle) + 0.002*sin(2*angle)"}
+  d: {type: drive, joint: p, velocity: 9}
+run: {duration: 1, points: 11, rtol: 1e-8}
+"""
+    assert not [note for note in stiffmbs.run(stiffmbs.read_scene(text)).notes if "period" in note]
