@@ -10,5 +10,5 @@ def model():
     bar = found.add("bar", Body(mass=1, inertia=0.03, position=(0.3, 0)))
     found.add("rail", Prismatic(i=cart, j="ground"))
     found.add("hinge", Revolute(i=bar.at(-0.3, 0), j=cart))
-    found.add("spring", SpringDamper(i=cart, j=found.ground.at(-1, 0), stiffness=270, damping=5, length=1))
+    found.add("spring", SpringDamper(i=cart.at(0, 0.1), j="ground", stiffness=270, damping=5, free_length=0.2))
     return found
