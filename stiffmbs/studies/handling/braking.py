@@ -74,5 +74,5 @@ def of_straight_braking(known: Known, test: StraightBraking, runs: list[Run]) ->
         "mean fully developed deceleration": (mean_deceleration(time, speed), "m/s^2"),
         "distance": (float(distance), "m"),
         "largest braking slip": (-100 * slip, "%"),
-        "lateral deviation": (float(np.max(np.abs(run["vehicle.y"]))), "m"),
+        "lateral deviation": (float(np.max(np.abs(run["vehicle.y"] - run["vehicle.y"][0]))), "m"),
     }

@@ -104,7 +104,7 @@ def of_constant_speed(known: Known, test: ConstantSpeed, runs: list[Run]) -> Met
     return found | {
         "largest lateral acceleration": (float(np.max(ay)), "m/s^2"),
         "rollover threshold": (rollover_threshold(ay, inner), "m/s^2"),
-        "static stability factor": (static_stability_factor(known.car.track, known.car.height), "g"),
+        "static stability factor": (static_stability_factor(known.car.track, known.car.centre[2]), "g"),
     }
 
 

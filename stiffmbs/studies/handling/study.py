@@ -81,7 +81,8 @@ class Handling:
         return {
             "scene": scene, "status": "stopped" if failed else "done",
             "message": "; ".join(f"{test}: {self.tests[test].message}" for test in failed),
-            "wheelbase": self.car.wheelbase, "track": self.car.track, "steer_per_steering": self.ratio, "tests": found,
+            "wheelbase": self.car.wheelbase, "track": self.car.track, "steer_per_steering": self.ratio,
+            "reference_point": list(self.car.reference), "tests": found,
         }  # fmt: skip
 
 

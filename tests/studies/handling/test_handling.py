@@ -40,7 +40,7 @@ def test_the_metrics_of_the_car_agree_with_each_other():
     assert gradient == pytest.approx(circle["understeer gradient"], rel=0.02), "two methods of ISO 4138"
     assert ramp["characteristic speed"] == pytest.approx(np.sqrt(1e3 * found.car.wheelbase / gradient))
     to_rear = 1e-3 * (ramp["sideslip gradient"] - circle["sideslip gradient"]) * SPEED**2
-    assert to_rear == pytest.approx(found.car.rear, rel=0.05), (
+    assert to_rear == pytest.approx(found.car.behind(found.car.centre), rel=0.05), (
         "by V^2 times the difference: the distance of the rear axle"
     )
     gain = SPEED / (found.car.wheelbase + 1e-3 * gradient * SPEED**2)
