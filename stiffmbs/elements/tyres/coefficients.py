@@ -23,6 +23,7 @@ from ..roads.envelope import MOST_TRACKS, Envelope
 from . import file_fields
 from .file_fields import Bottoming
 from .names import COMBINED, OF_PAC2002, OF_PRESSURE, OF_THE_FILE, ONE_SIDED, POSITIVE, REASONS, TURN_SLIP
+from .passivity import active_notes
 from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, read_property_file
 
 if TYPE_CHECKING:
@@ -230,7 +231,7 @@ class TyreProperties(Component):
         return numbers
 
     def notes(self) -> Iterator[str]:
-        """Yield sentences on settings that the equations do not use."""
+        """Yield sentences on settings that the equations do not use, and on loads at which the tyre adds energy."""
         yield from self.remarks
         if self._lags and not self.has_lengths:
             missing = ", ".join(self.names_of_lengths)
@@ -241,6 +242,8 @@ class TyreProperties(Component):
             yield "the gyroscopic couple of the belt (QTZ1) needs relaxation lengths, and there are none: it is left out"
         if self.formula.is_magic and not self.is_combined:
             yield "there are no coefficients of combined slip (RBX1, RCX1, RBY1, RCY1): forces are held on the friction ellipse"
+        if self.formula.is_magic:
+            yield from active_notes(self)
 
     def wrench(
         self,

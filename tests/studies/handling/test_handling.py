@@ -61,7 +61,7 @@ def test_the_frequency_response_is_that_of_single_sines():
     found = stiffmbs.handling(scene, ["frequency_response"], workers=1)
     known, runs = Known(car, car.wheelbase / found.ratio, 0, 1.8, {}), found.tests["frequency_response"].runs
     responses = {name: _of_sweeps(known, runs, name) for name in ("yaw_rate", "ay")}
-    amplitude = np.max(np.abs(runs[0][SEEN]))
+    amplitude = float(np.max(np.abs(runs[0][SEEN])))
     for f in (0.3, 0.6, 1.0, 2.0):
         periods = int(np.ceil(4 * f))
         steer = f"step5(t, 0.5, 0, 1.5, {amplitude!r})*sin(2*pi*{f!r}*t)"
