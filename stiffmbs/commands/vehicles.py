@@ -123,6 +123,7 @@ def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
 @option("--body TEXT", "Sprung body; by default that of the section vehicle, or chassis.")
 @option("--steering TEXT", "Joint that steers; by default steering_wheel, or the only joint named guide.")
 @option("--width FLOAT", "Width of the vehicle, m; by default the track plus 0.2 m.")
+@option("--length FLOAT", "Length of the vehicle, m; by default 1.6 wheelbases.")
 @option("--workers INTEGER RANGE", "Number of processes; by default one for each core.")
 @option(
     "--set-test NAME=VALUE ...",
@@ -135,7 +136,7 @@ def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
 @CHANGES
 def handling(
     scene: str, tests: tuple[str, ...], body: str | None, steering: str | None, width: float | None,
-    workers: int | None, parameters: list[tuple[str, str]], output: Path | None, as_json: bool, changes: list[tuple[str, str]],
+    length: float | None, workers: int | None, parameters: list[tuple[str, str]], output: Path | None, as_json: bool, changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
     """Drive the car of SCENE through tests of the standards, and print their metrics.
 
@@ -158,6 +159,7 @@ def handling(
                 body=body,
                 steering=steering,
                 width=width,
+                length=length,
                 workers=workers,
                 parameters=dict(parameters),
             )

@@ -25,7 +25,7 @@ table { border-collapse: collapse; } td, th { padding: 0.2em 0.8em; border-botto
 </style></head><body><h1>{{ name }}: handling</h1>
 <p>Wheelbase {{ wheelbase }} m, track {{ track }} m; the wheels steer by {{ ratio }} for a unit of steering; {{ measured }}.</p>
 {% for title, message, rows, figure in sections %}<h2>{{ title }}</h2>
-{% if message %}<p>Not done: {{ message }}</p>{% else %}
+{% if message %}<p>Not done: {{ message }}</p>{% endif %}{% if rows %}
 <table><tr><th>metric</th><th>value</th><th>unit</th></tr>
 {% for row in rows %}<tr>{% for cell in row %}<td>{{ cell }}</td>{% endfor %}</tr>
 {% endfor %}</table><p><img src="{{ figure }}" alt="{{ title }}"></p>{% endif %}
@@ -57,7 +57,7 @@ def _measured(found: Handling) -> str:
 def write_handling(path: Path, found: Handling) -> None:
     """Write the page of all tests, completely or not at all. Raises OSError if the file cannot be written."""
     sections = [
-        (_title(name, one), one.message, _rows(one), "" if one.message else data_url(_figure(name, one), "svg", 100))
+        (_title(name, one), one.message, _rows(one), data_url(_figure(name, one), "svg", 100) if one.runs else "")
         for name, one in found.tests.items()
     ]
     template = environment().from_string(PAGE)

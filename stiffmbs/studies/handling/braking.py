@@ -34,7 +34,7 @@ def _moving(speed: np.ndarray) -> np.ndarray:
 def braking_in_a_turn(known: Known, test: BrakingInATurn) -> list[Manoeuvre]:
     """Return braking on a circle with the steering held."""
     speed, brakes = _turn(test)
-    driver = {**known.driver(), "brakes": brakes, "holds": brakes - 0.2, "pressing": 0.2, **_pressed(test.pedal)}
+    driver = {**known.driver(speed), "brakes": brakes, "holds": brakes - 0.2, "pressing": 0.2, **_pressed(test.pedal)}
     duration = brakes + 3.0
     return [Manoeuvre(speed, duration, driver=driver, path=circle(test.radius, 60.0, speed * duration))]
 

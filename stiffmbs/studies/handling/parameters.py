@@ -86,7 +86,9 @@ class LaneChange:
 class ObstacleAvoidance:
     """Parameters of `obstacle_avoidance`."""
 
-    speed: float = parameter(50 / 3.6, "velocity", "entry speed")
+    speed: float = parameter(
+        50 / 3.6, "velocity", "before the course; the throttle is released in its first lane", "ISO 3888-2, test method"
+    )
     slowest: float = parameter(30 / 3.6, "velocity", "lower end of the search of the highest entry speed")
     fastest: float = parameter(80 / 3.6, "velocity", "upper end of the search")
     resolution: float = parameter(1 / 3.6, "velocity", "width of the interval at which the search ends")

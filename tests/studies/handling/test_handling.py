@@ -374,7 +374,7 @@ def test_a_sine_with_dwell_has_the_frequency_and_dwell_of_its_parameters():
 @pytest.mark.parametrize(
     "given",
     [
-        {"width": -1.0}, {"width": float("nan")}, {"width": "2 s"}, {"width": True}, {"workers": 0}, {"workers": "2"},
+        {"width": -1.0}, {"width": float("nan")}, {"width": "2 s"}, {"width": True}, {"length": 0}, {"workers": 0}, {"workers": "2"},
         {"workers": True}, {"workers": 1.5}, {"tests": "ride"},
     ],
 )  # fmt: skip
@@ -386,9 +386,9 @@ def test_a_width_and_a_number_of_processes_are_checked(examples, given):
 def test_a_width_may_have_a_unit(examples, monkeypatch):
     widths = []
     monkeypatch.setattr(
-        study, "_preliminary", lambda scene, car, width: widths.append(width) or Known(car, 1, 0, width, {})
+        study, "_preliminary", lambda scene, car, width, length: widths.append((width, length)) or Known(car, 1, 0, width, {})
     )
     monkeypatch.setattr(study, "_solved", lambda *arguments: {})
-    for width in ("1900 mm", 1.9):
-        stiffmbs.handling(examples / "car.yaml", [], width=width, workers=1)
-    assert widths == pytest.approx([1.9, 1.9])
+    for width, length in (("1900 mm", "4.5 m"), (1.9, None)):
+        stiffmbs.handling(examples / "car.yaml", [], width=width, length=length, workers=1)
+    assert widths == [pytest.approx((1.9, 4.5)), pytest.approx((1.9, 1.6 * 2.7))]

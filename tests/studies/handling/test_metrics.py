@@ -13,6 +13,8 @@ from stiffmbs.studies.handling.parameters import BrakingInATurn, ConstantRadius,
 
 MASS, YAW_INERTIA, TO_FRONT, TO_REAR, FRONT, REAR, SPEED = 1500.0, 2600.0, 1.2, 1.5, 9e4, 1.2e5, 22.0
 WHEELBASE = TO_FRONT + TO_REAR
+STANDING = SimpleNamespace(centre=(0.0, 0.0, 0.5), behind=lambda place: TO_REAR)
+"""Car for what depends on the place of its centre of mass alone."""
 GRADIENT = MASS / WHEELBASE * (TO_REAR / FRONT - TO_FRONT / REAR)
 
 
@@ -186,7 +188,7 @@ def test_a_circle_counts_up_to_the_limit():
 
 def test_a_circle_has_turns_for_its_whole_speed():
     """The path went straight on after three turns: 70 mrad/(m/s^2) of understeer for 2.8."""
-    known = Known(None, 1.0, 0.0, 1.8, {})
+    known = Known(STANDING, 1.0, 0.0, 1.8, {})
     for acceleration in (0.02, 0.1, 0.5):
         test = ConstantRadius(acceleration=acceleration)
         (one,) = steady_state_cornering.constant_radius(known, test)
@@ -198,7 +200,7 @@ def test_a_circle_has_turns_for_its_whole_speed():
 def test_a_circle_does_not_end_before_braking(radius):
     """That of 5 m ended after three turns: the car braked straight ahead."""
     test = BrakingInATurn(radius=radius)
-    (one,) = braking.braking_in_a_turn(Known(None, 1.0, 0.0, 1.8, {}), test)
+    (one,) = braking.braking_in_a_turn(Known(STANDING, 1.0, 0.0, 1.8, {}), test)
     assert one.path["turns"] * 2 * np.pi * radius >= one.speed * one.duration
 
 
