@@ -86,17 +86,17 @@ def step_response(time: np.ndarray, steer: np.ndarray, response: np.ndarray, set
     final, steady = float(np.mean(steer[end])), float(np.mean(response[end]))
     if final == 0.0 or steady == 0.0:
         raise InputError("found no step of the input or no response to it, expected non-zero final values of both")
-    start = _first(time, steer / final, 0.5)
+    start = first_time(time, steer / final, 0.5)
     part = response / steady
     after = time >= start
     peak = int(np.argmax(np.where(after, part, -np.inf)))
     return StepResponse(
-        steady, steady / final, _first(time, np.where(after, part, 0.0), 0.9) - start, float(time[peak]) - start,
+        steady, steady / final, first_time(time, np.where(after, part, 0.0), 0.9) - start, float(time[peak]) - start,
         float(part[peak]) - 1.0,
     )  # fmt: skip
 
 
-def _first(time: np.ndarray, values: np.ndarray, level: float) -> float:
+def first_time(time: np.ndarray, values: np.ndarray, level: float) -> float:
     """Return the first time at which values rise to a level, by linear interpolation; NaN without one."""
     above = np.flatnonzero(values >= level)
     if not len(above):
@@ -213,6 +213,10 @@ def _local_fit(
     return fit[:, 0], np.sqrt(variance), coherence
 
 
+STABLE = 0.35, 0.2
+"""Largest yaw rate ratios of a stable car 1 s and 1.75 s after the end of steering. ISO 19365."""
+
+
 @dataclass(frozen=True)
 class SineWithDwell:
     """Stability and responsiveness of ISO 19365."""
@@ -221,13 +225,13 @@ class SineWithDwell:
     # the sine
     ratio_1: float
     ratio_1_75: float
-    # lateral displacement 1.07 s after the begin of steering, m, positive in the direction of the first steering
+    # lateral displacement 1.07 s after the begin of steering, at 5 deg of the steering wheel, m, positive in the direction of the first steering
     displacement: float
 
     @property
     def stable(self) -> bool:
         """Return True if the yaw rate in either direction has fallen to 35 % after 1 s and to 20 % after 1.75 s."""
-        return abs(self.ratio_1) <= 0.35 and abs(self.ratio_1_75) <= 0.2
+        return abs(self.ratio_1) <= STABLE[0] and abs(self.ratio_1_75) <= STABLE[1]
 
 
 def sine_with_dwell(
@@ -241,7 +245,7 @@ def sine_with_dwell(
     lateral : ndarray, shape (n,)
         Lateral displacement of the vehicle from its straight path, m, positive to the left.
     begin, end : float
-        Begin and end of steering, s.
+        Begin and end of steering, s: ISO 19365 counts from 5 deg of the steering wheel.
 
     Raises
     ------
@@ -265,7 +269,7 @@ def mean_deceleration(time: np.ndarray, speed: np.ndarray) -> float:
         If the speed does not fall to 10 % of the first one.
     """
     distance = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(time))])
-    first, second = (_first(time, speed[0] - speed, (1 - part) * speed[0]) for part in (0.8, 0.1))
+    first, second = (first_time(time, speed[0] - speed, (1 - part) * speed[0]) for part in (0.8, 0.1))
     if not np.isfinite(second):
         raise InputError(f"found a lowest speed of {speed.min():.3g} m/s, expected {0.1 * speed[0]:.3g} m/s or less")
     braking_distance = np.interp(second, time, distance) - np.interp(first, time, distance)

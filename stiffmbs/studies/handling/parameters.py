@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final, TypeVar
@@ -72,6 +73,14 @@ class SineWithDwell:
     dwell: float = parameter(0.5, "time", "pause at the second peak", "ISO 19365, steering input")
     factors: tuple[float, ...] = parameter(
         (1.5, 3.0, 4.5, 5.5, 6.5), "number", "amplitudes over the unit A", "ISO 19365: 1.5 A to 6.5 A"
+    )
+    final: float = parameter(
+        math.radians(270), "angle", "least steering-wheel angle of the final run", "ISO 19365: max(6.5 A, 270 deg)"
+    )
+    largest: float = parameter(math.radians(300), "angle", "largest steering-wheel angle", "ISO 19365: 300 deg")
+    turn: float = parameter(0.05, "length", "travel of a rack per turn of the steering wheel, where a rack steers")
+    displacement: float = parameter(
+        1.83, "length", "least lateral displacement", "ISO 19365: 1.83 m up to 3.5 t, 1.52 m above"
     )
 
 

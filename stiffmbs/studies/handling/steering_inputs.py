@@ -6,10 +6,16 @@ import numpy as np
 
 from .car import Manoeuvre
 from .known import SEEN, Known, Metrics, Run
-from .metrics import FrequencyResponse, frequency_response, sine_with_dwell, step_response
+from .metrics import STABLE, FrequencyResponse, first_time, frequency_response, sine_with_dwell, step_response
 from .parameters import FrequencySweep, SineWithDwell, StepSteer
 
 STEER_BEGIN = 1.0
+SIDES = {"left": 1.0, "right": -1.0}
+"""Direction of the first steering, and its sign."""
+BEGUN = np.radians(5)
+"""Angle of the steering wheel at which a sine with dwell begins, rad. ISO 19365."""
+LAST, RESPONSIVE = 6.5, 5.0
+"""Amplitude of the last run and from which the displacement counts, over the unit A. ISO 19365."""
 SETTLING = 4.0
 """Time after a sweep within which a car comes to rest, s; the response of a car that does not is fitted with its rest."""
 
@@ -98,29 +104,52 @@ def dwell_formula(amplitude: float, test: SineWithDwell) -> str:
     return f"({amplitude!r})*sin(2*pi*{test.frequency!r}*min(max({time}, 0), {1 / test.frequency!r}))"
 
 
+def amplitudes(known: Known, test: SineWithDwell) -> dict[str, float]:
+    """Return the amplitudes of the steering joint by name: multiples of A up to the largest angle, and the final run."""
+    unit, wheel = known.steer_for(test.lateral_acceleration), _wheel_angle(known, test)
+    found = {f"{factor:g} A": factor * unit for factor in test.factors if abs(factor * unit) * wheel <= test.largest}
+    last = min(max(LAST * abs(unit), test.final / wheel), test.largest / wheel)
+    if not any(abs(abs(size) - last) < 1e-9 * last for size in found.values()):
+        found[f"{np.degrees(last * wheel):.0f} deg"] = float(np.copysign(last, unit))
+    return found
+
+
+def _wheel_angle(known: Known, test: SineWithDwell) -> float:
+    """Return the angle of the steering wheel per unit of the steering joint, rad/rad or rad/m."""
+    return 1.0 if known.car.angular else 2 * np.pi / test.turn
+
+
 def dwell(known: Known, test: SineWithDwell) -> list[Manoeuvre]:
-    """Return the series of amplitudes with the throttle released."""
-    unit, lifted = known.steer_for(test.lateral_acceleration), {"releases": STEER_BEGIN}
-    formulas = [dwell_formula(factor * unit, test) for factor in test.factors]
+    """Return the series of amplitudes to the left and to the right first, with the throttle released."""
+    lifted, sizes = {"releases": STEER_BEGIN}, amplitudes(known, test).values()
+    formulas = [dwell_formula(sign * size, test) for size in sizes for sign in SIDES.values()]
     return [Manoeuvre(test.speed, dwell_end(test) + 2.2, formula, lifted) for formula in formulas]
 
 
 def of_dwell(known: Known, test: SineWithDwell, runs: list[Run]) -> Metrics:
-    """Return the yaw-rate ratios of all amplitudes, the least displacement from 5 times on, and the verdict."""
-    found, stable = Metrics(), True
-    displacements = []
-    for factor, run in zip(test.factors, runs, strict=True):
+    """Return the yaw-rate ratios and lateral displacements of both series, and the verdicts."""
+    found, worst, displacements = Metrics(), [0.0, 0.0], []
+    unit, wheel = abs(known.steer_for(test.lateral_acceleration)), _wheel_angle(known, test)
+    names = [(size, name, side) for name, size in amplitudes(known, test).items() for side in SIDES]
+    for (size, name, side), run in zip(names, runs, strict=True):
+        time, steer = run["time"], run[SEEN]
+        begun = first_time(time, np.abs(steer) * wheel, BEGUN)
+        begin = begun if np.isfinite(begun) else STEER_BEGIN  # less steering than the angle at which it begins
         one = sine_with_dwell(
-            run["time"],
-            run[SEEN] * known.ratio,
-            run["vehicle.yaw_rate"],
-            run["vehicle.y"],
-            STEER_BEGIN,
-            dwell_end(test),
+            time, steer * known.ratio, run["vehicle.yaw_rate"], run["vehicle.y"], begin, dwell_end(test)
         )
-        found[f"yaw rate ratio after 1 s, {factor:g} A"] = 100 * one.ratio_1, "%"
-        found[f"yaw rate ratio after 1.75 s, {factor:g} A"] = 100 * one.ratio_1_75, "%"
-        stable = stable and one.stable
-        displacements += [one.displacement] if factor >= 5 else []
-    found["lateral displacement, 5 A and more"] = min(displacements, default=np.nan), "m"
-    return found | {"stable (1 yes, 0 no)": (float(stable), "")}
+        for n, (after, ratio) in enumerate((("1 s", one.ratio_1), ("1.75 s", one.ratio_1_75))):
+            found[f"yaw rate ratio after {after}, {name}, {side}"] = 100 * ratio, "%"
+            worst[n] = max(worst[n], abs(ratio))
+        if abs(size) >= RESPONSIVE * unit:
+            found[f"lateral displacement, {name}, {side}"] = one.displacement, "m"
+            displacements.append(one.displacement)
+    least = min(displacements, default=np.nan)
+    return found | {
+        "steering-wheel angle of A": (float(np.degrees(unit * wheel)), "deg"),
+        "largest yaw rate ratio after 1 s": (100 * worst[0], "%"),
+        "largest yaw rate ratio after 1.75 s": (100 * worst[1], "%"),
+        "lateral displacement, 5 A and more": (least, "m"),
+        "stable (1 yes, 0 no)": (float(worst[0] <= STABLE[0] and worst[1] <= STABLE[1]), ""),
+        "responsive (1 yes, 0 no)": (float(least >= test.displacement), ""),
+    }

@@ -386,7 +386,9 @@ def test_a_width_and_a_number_of_processes_are_checked(examples, given):
 def test_a_width_may_have_a_unit(examples, monkeypatch):
     widths = []
     monkeypatch.setattr(
-        study, "_preliminary", lambda scene, car, width, length: widths.append((width, length)) or Known(car, 1, 0, width, {})
+        study,
+        "_preliminary",
+        lambda scene, car, width, length: widths.append((width, length)) or Known(car, 1, 0, width, {}),
     )
     monkeypatch.setattr(study, "_solved", lambda *arguments: {})
     for width, length in (("1900 mm", "4.5 m"), (1.9, None)):
