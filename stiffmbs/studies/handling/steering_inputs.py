@@ -14,8 +14,10 @@ SIDES = {"left": 1.0, "right": -1.0}
 """Direction of the first steering, and its sign."""
 BEGUN = np.radians(5)
 """Angle of the steering wheel at which a sine with dwell begins, rad. ISO 19365."""
-LAST, RESPONSIVE = 6.5, 5.0
-"""Amplitude of the last run and from which the displacement counts, over the unit A. ISO 19365."""
+LAST = 6.5
+"""Amplitude of the last run over the unit A. ISO 19365."""
+RESPONSIVE = 5.0
+"""Amplitude from which on the displacement counts, over the unit A. ISO 19365."""
 SETTLING = 4.0
 """Time after a sweep within which a car comes to rest, s; the response of a car that does not is fitted with its rest."""
 
