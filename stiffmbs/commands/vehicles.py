@@ -201,7 +201,7 @@ def tyre(
     from ..results.files import write_text
     from ..show.style import write_sheet
     from ..show.tyre import tyre_figure, tyre_text
-    from ..studies.tyre_curves import TyreSweep, tyre_curves, tyre_states
+    from ..studies.tyre_curves import TyreSweep, finite, tyre_curves, tyre_states
 
     with refusing(file, as_json):
         refuse_file("-o", output, file, "figure")
@@ -221,7 +221,7 @@ def tyre(
     notes = list(properties.notes())
     printed = {
         "file": file, "version": properties.version, "camber": sweep.camber,
-        "curves": [curve.as_dict() for curve in curves], "states": found, "notes": notes,
+        "curves": [curve.as_dict() for curve in curves], "states": [finite(state) for state in found], "notes": notes,
     }  # fmt: skip
     click.echo(json.dumps(printed) if as_json else tyre_text(title, curves, found, notes))
     sys.exit(0 if written else Status.FAILED)

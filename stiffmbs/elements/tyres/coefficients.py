@@ -122,6 +122,11 @@ class TyreProperties(Component):
         return any(self.coefficients.get(name, 0.0) for name in names)
 
     @property
+    def has_stiffness(self) -> bool:
+        """True if the tyre has a vertical stiffness, without which forces at given loads are known alone."""
+        return "VERTICAL_STIFFNESS" in self.coefficients
+
+    @property
     def is_combined(self) -> bool:
         """True if there are weights of combined slip."""
         return self._has(COMBINED)
@@ -242,6 +247,8 @@ class TyreProperties(Component):
             yield "the gyroscopic couple of the belt (QTZ1) needs relaxation lengths, and there are none: it is left out"
         if self.formula.is_magic and not self.is_combined:
             yield "there are no coefficients of combined slip (RBX1, RCX1, RBY1, RCY1): forces are held on the friction ellipse"
+        if not self.has_stiffness:
+            yield "there is no VERTICAL_STIFFNESS: deflection and radii are not known, and no scene can use the tyre"
         if self.formula.is_magic:
             yield from active_notes(self)
 
@@ -323,7 +330,7 @@ class TyreProperties(Component):
             m); ``omega`` (rad/s), effective radius ``Re``, deflection ``rho``, loaded radius ``Rl`` (m); relaxation
             lengths ``sigma_x``, ``sigma_y`` (m, 0 without them); half length ``a`` and half width ``b`` of the contact patch (m).
             ``Kyg0``, ``a`` and ``b`` are of 6.1 and 6.2 alone; ``rho`` and ``Rl`` are NaN for a load that no loaded
-            radius carries. The arguments broadcast.
+            radius carries, and with ``Re`` and ``omega`` of a tyre without VERTICAL_STIFFNESS. The arguments broadcast.
 
         Raises
         ------
