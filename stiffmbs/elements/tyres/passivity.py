@@ -22,8 +22,8 @@ COEFFICIENTS = {"Kxk": "PKX1 and PKX2", "Kya": "PKY1, PKY2, PKY3 and PKY4"}
 def active_notes(tyre: TyreProperties) -> Iterator[str]:
     """Yield a note for each stiffness or relaxation length that has the wrong sign within the tyre's own range.
 
-    The range is that of the load from FZMIN to FZMAX, at the pressure of the file and at PRESMIN and PRESMAX, without
-    camber and at CAMMIN and CAMMAX.
+    Loads range from FZMIN to FZMAX. Pressures are that of the file, PRESMIN and PRESMAX, and cambers are 0, CAMMIN and
+    CAMMAX.
     """
     p = SimpleNamespace(**tyre.numbers)
     most = tyre.coefficients.get("FZMAX", WITHOUT_LIMIT * p.FNOMIN)

@@ -78,9 +78,8 @@ def path_through(
 ) -> np.ndarray:
     """Return points of the smoothest path of a vehicle's centre through lanes.
 
-    The squares of the second and third derivatives of y(x) are minimal, while the vehicle, a rectangle along the path,
-    stays within part of the free width of each lane: its corners between the rows of cones, and its sides at their ends.
-    Before the first and after the last lane their corridors continue. `width`, `length`: of the vehicle, m. `before`,
+    The squares of the second and third derivatives of y(x) are minimal. The vehicle is a rectangle along the path, and
+    uses part of the free width of each lane: its corners between the rows of cones, and its sides at their ends. Before the first and after the last lane their corridors continue. `width`, `length`: of the vehicle, m. `before`,
     `after`: distances before the first and after the last lane, m. The result of shape (n, 2): x and y, m.
 
     Raises ValueError if there is no such path.

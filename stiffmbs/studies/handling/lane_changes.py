@@ -80,9 +80,7 @@ def least_clearance(lanes: Sequence[Lane], known: Known, run: Run) -> float:
                     found = min(found, float(np.min(free, initial=np.inf)))
             for end in (lane.start, lane.end):
                 u, v = cos * (end - x) + sin * (side - y), cos * (side - y) - sin * (end - x)
-                abreast = (np.abs(u) <= known.length / 2) & (
-                    np.abs(v) <= known.length
-                )  # not far beside a car that spins
+                abreast = (np.abs(u) <= known.length / 2) & (np.abs(v) <= known.length)  # not far from a car that spins
                 free = sign * v[abreast] - known.width / 2
                 found = min(found, float(np.min(free, initial=np.inf)))
     return found
