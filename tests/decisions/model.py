@@ -335,6 +335,6 @@ EXPECTED = {
     "model.parts.hard_points:FARTHEST": 23, "model.parts.instances:MOST_NESTED": 10, "model.parts.instances:MOST_INSTANCES": 27,
     "model.parts.instances:MOST_VALUES": 27, "model.paths.curves:SPACING": 401, "model.paths.curves:MOST_STATIONS": 2001,
     "model.paths.curves:SAMPLES": 8.0, "model.paths.lanes:ROUGHNESS": 30.0, "model.paths.lanes:ANCHOR": 0.001,
-    "model.paths.lanes:USED": 0.6, "model.paths.lanes:STRAIGHT": 34, "model.paths.lanes:LENGTH": 156, "model.paths.lanes:MARGIN": 60, "model.settings:DEFAULT_RTOL": 1e-06, "model.settings:DEFAULT_POINTS": 1001,
+    "model.paths.lanes:USED": 0.5, "model.paths.lanes:STRAIGHT": 34, "model.paths.lanes:LENGTH": 156, "model.paths.lanes:MARGIN": 60, "model.settings:DEFAULT_RTOL": 1e-06, "model.settings:DEFAULT_POINTS": 1001,
     "model.settings:FEWEST_APART": 63, "model.settings:ROUNDINGS_APART": 63, "model.tuning:MOST": 27,
 }  # fmt: skip

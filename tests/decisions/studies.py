@@ -507,6 +507,7 @@ DECISIONS = {
         {"time": np.array([5.0, 6.0]), steady_state_cornering.SEEN: np.array([1.0, 2.0])}
     ),
     "studies.handling.known:Known.lag": lambda: Known(AT_THE_MIDDLE, 1.0, 0.0, 1.8, {}).driver(SPEED)["anticipation"],
+    "studies.handling.known:STEERING_LAG": lambda: Known(AT_THE_MIDDLE, 1.0, 0.0, 1.8, {}, lag=0.0).driver(SPEED)["shaping"],
     "studies.handling.known:Known.length": lambda: Known(None, 1.0, 0.0, 1.8, {}).length,
     "studies.handling.known:LEAST_GROWTH": lag_of_an_oversteering_car,
     "studies.handling.lane_changes:RELEASED": lambda: coasting()[0] - lane_changes.BEFORE,
@@ -573,7 +574,7 @@ EXPECTED = {
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.follows": 4.01,
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.ramp_begin": 3.0, "studies.handling.known:Known.lag": 0.12,
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.settled": 45.0, "studies.handling.steering_inputs:STEER_BEGIN": 2.0,
-    "studies.handling.known:Known.length": 4.3, "studies.handling.known:LEAST_GROWTH": 2439.4944444444445, "studies.handling.lane_changes:RELEASED": 2.0,
+    "studies.handling.known:STEERING_LAG": -0.00125, "studies.handling.known:Known.length": 4.3, "studies.handling.known:LEAST_GROWTH": 2439.4944444444445, "studies.handling.lane_changes:RELEASED": 2.0,
     "studies.handling.lane_changes:COASTING": 91.5, "studies.handling.metrics:AT_REST": 40, "studies.handling.metrics:STABLE": 378,
     "studies.handling.steering_inputs:LAST": 6.5, "studies.handling.steering_inputs:RESPONSIVE": 8, "studies.handling.steering_inputs:SETTLING": 4.000001,
     "studies.handling.study:OVERHANGS": 0.6,

@@ -16,7 +16,7 @@ ROUGHNESS = 30.0
 """Length below which a change of curvature costs more than curvature itself, m: steering stays below 1 Hz at 30 m/s."""
 ANCHOR = 1e-3
 """Weight of the distance from the centre of a lane, 1/m^2, against that of curvature: it selects one of equal paths."""
-USED = 0.6
+USED = 0.5
 """Part of the free width of a lane on either side of the vehicle that its corners use at most; the rest is the driver's."""
 LENGTH = 4.3
 """Length of a vehicle unless it is given, m: that of a compact car."""

@@ -14,6 +14,8 @@ from .parameters import SPEED
 
 SEEN = STEER + "_seen"
 """Request of the angle or displacement of the steering joint."""
+STEERING_LAG = 0.05
+"""Own lag of the driver's steering, s: the default of the part `driver`."""
 LEAST_GROWTH = 0.2
 """Least 1 + V^2/V_ch^2 of an oversteering car, which is zero at its critical speed."""
 Run = Mapping[str, np.ndarray]
@@ -41,9 +43,15 @@ class Known:
         return self.car.wheelbase / self.per_curvature
 
     def driver(self, speed: float) -> dict[str, float]:
-        """Return the driver's parameters of this car at a speed, m/s."""
+        """Return the driver's parameters of this car at a speed, m/s.
+
+        Car and steering respond as two first-order lags a and b, whose inverse is (1 + a s)(1 + b s). Steering ahead by
+        both is 1 + (a + b) s + (a + b)^2 s^2/2, which has (a^2 + b^2)/2 more of the second derivative.
+        """
+        lag = self.lag_at(speed)
         return {
-            "per_curvature": self.per_curvature, "understeer": self.understeer, "anticipation": self.lag_at(speed),
+            "per_curvature": self.per_curvature, "understeer": self.understeer, "anticipation": lag,
+            "shaping": -(lag**2 + STEERING_LAG**2) / 2,
         }  # fmt: skip
 
     def lag_at(self, speed: float) -> float:
