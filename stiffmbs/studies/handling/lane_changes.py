@@ -54,7 +54,7 @@ def of_lanes(standard: str) -> Callable[[Known, LaneChange | ObstacleAvoidance, 
             "largest yaw rate": (float(np.max(np.abs(run["vehicle.yaw_rate"]))), "rad/s"),
             "largest steering": (float(np.max(np.abs(run[SEEN]))), "rad" if known.car.angular else "m"),
             ENTRY: (float(np.interp(lanes[0].end, x, speed)), "m/s"),
-            "speed at the end of the last lane": (float(np.interp(lanes[-1].end, x, speed)), "m/s"),
+            "speed at the end of the last lane": (float(np.interp(lanes[-1].end, x, speed, right=np.nan)), "m/s"),
         }
 
     return metrics
