@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterator
 
 import numpy as np
 
 from ..elements.forces.springs import AngleSpring, LineSpring
 from ..reading.fields import Described
+from ..reading.formula.formula import Formula
 from ..reading.table import Table
 from .table_values import parts_of
 
@@ -30,13 +32,22 @@ def active_damper_notes(data: Described) -> Iterator[str]:
 
 def _notes(force: Described) -> Iterator[str]:
     damping = getattr(force, "damping", None)
-    table = getattr(force, "damper_law", None)
-    if isinstance(force, LineSpring | AngleSpring) and isinstance(table, Table):
+    table = _table(getattr(force, "damper_law", None))
+    if isinstance(force, LineSpring | AngleSpring) and table is not None:
         yield from _of_table(table, damping or 0.0, "m/s" if isinstance(force, LineSpring) else "rad/s")
     elif isinstance(damping, float) and damping < 0:
         yield f"its damping is negative, {damping:g}, so that its force adds energy"
     elif isinstance(damping, tuple) and all(isinstance(row, tuple) for row in damping):
         yield from _of_matrix(np.array([[part or 0.0 for part in row] for row in damping], dtype=float))
+
+
+def _table(law: object) -> Table | None:
+    """Return a law that is a table of the rate, or a call of one by its name; None for any other law."""
+    if isinstance(law, Formula):
+        match law.tree:
+            case ast.Call(ast.Name(name), [ast.Name("v")]):
+                return law.tables.get(name)
+    return law if isinstance(law, Table) else None
 
 
 def _of_matrix(damping: np.ndarray) -> Iterator[str]:

@@ -48,6 +48,14 @@ def test_a_damper_that_adds_energy_is_noted_with_its_range():
     (note,) = notes("spring_damper", damper_law={"table": DROOPING, "lines": True})
     assert "between v = 0.9" in note
     assert "and 1 m/s, within its own range of -1 to 1 m/s" in note
+    scene = {
+        "dimensions": 2, "bodies": {"a": BODIES[2]}, "tables": {"curve": {"table": DROOPING}},
+        "forces": {"f": {"type": "spring_damper", "i": "a", "j": "ground", "damper_law": "curve(v)"}},
+    }  # fmt: skip
+    assert any(
+        "the table of its damper_law" in note
+        for note in stiffmbs.check(stiffmbs.read_scene(json.dumps(scene))).messages
+    )
     (note,) = notes("torsion_spring", damper_law={"table": [[0, 0], [2, -70]]})
     assert "and 2 rad/s" in note
 
