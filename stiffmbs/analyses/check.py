@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Unpack
 
+from ..compile.active_dampers import active_damper_notes
 from ..compile.system import System
 from ..compile.written_values import table_notes
 from ..dynamics.initial import InitialValues
@@ -164,7 +165,8 @@ def _of_run(found: Examined) -> Report:
         unknowns=unknowns(system, subsystems, dynamics), presolve=tuple(presolve_sentences(system, subsystems, dynamics)),
         moved=start.moved if start else (),
         messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free),
-                  *(opposed_sentences(system, found.data, start.q, found.grid) if start else ()), *notes_of(found.data), *table_notes(found.data)), sound=not problems,
+                  *(opposed_sentences(system, found.data, start.q, found.grid) if start else ()), *notes_of(found.data), *table_notes(found.data),
+                  *active_damper_notes(found.data)), sound=not problems,
     )  # fmt: skip
 
 

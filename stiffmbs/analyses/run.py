@@ -9,6 +9,7 @@ from typing import Unpack
 
 import numpy as np
 
+from ..compile.active_dampers import active_damper_notes
 from ..compile.callbacks import fault_of, notes_on_functions
 from ..compile.system import System
 from ..compile.written_values import table_notes
@@ -267,6 +268,7 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
     yield from notes_of(job.data)
     if system.has_laws:
         yield from table_notes(job.data)
+    yield from active_damper_notes(job.data)
     yield from structure.of_joints
     if any(joint.kind == "drive" for joint in job.data.joints.values()):
         yield from job.dynamics.kept("opposed actuators", None, partial(_opposed, job))

@@ -125,6 +125,7 @@ def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
 @option("--body TEXT", "Sprung body; by default that of the section vehicle, or chassis.")
 @option("--steering TEXT", "Joint that steers; by default steering_wheel, or the only joint named guide.")
 @option("--width FLOAT", "Width of the vehicle, m; by default the track plus 0.2 m.")
+@option("--length FLOAT", "Length of the vehicle, m; by default 1.6 wheelbases.")
 @option("--workers INTEGER RANGE", "Number of processes; by default one for each core.")
 @option(
     "--set-test NAME=VALUE ...",
@@ -137,7 +138,7 @@ def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
 @CHANGES
 def handling(
     scene: str, tests: tuple[str, ...], body: str | None, steering: str | None, width: float | None,
-    workers: int | None, parameters: list[tuple[str, str]], output: Path | None, as_json: bool, changes: list[tuple[str, str]],
+    length: float | None, workers: int | None, parameters: list[tuple[str, str]], output: Path | None, as_json: bool, changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
     """Drive the car of SCENE through tests of the standards, and print their metrics.
 
@@ -161,6 +162,7 @@ def handling(
                 body=body,
                 steering=steering,
                 width=width,
+                length=length,
                 workers=workers,
                 parameters=dict(parameters),
             )
@@ -202,7 +204,7 @@ def tyre(
     from ..results.files import write_text
     from ..show.style import write_sheet
     from ..show.tyre import tyre_figure, tyre_text
-    from ..studies.tyre_curves import TyreSweep, tyre_curves, tyre_states
+    from ..studies.tyre_curves import TyreSweep, finite, tyre_curves, tyre_states
 
     with refusing(file, as_json):
         refuse_file("-o", output, file, "figure")
@@ -222,7 +224,7 @@ def tyre(
     notes = list(properties.notes())
     printed = {
         "file": file, "version": properties.version, "camber": sweep.camber,
-        "curves": [curve.as_dict() for curve in curves], "states": found, "notes": notes,
+        "curves": [curve.as_dict() for curve in curves], "states": [finite(state) for state in found], "notes": notes,
     }  # fmt: skip
     click.echo(json.dumps(printed) if as_json else tyre_text(title, curves, found, notes))
     sys.exit(0 if written else Status.FAILED)

@@ -28,9 +28,9 @@ body { font-family: sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1e
 img { max-width: 100%; height: auto; } pre { overflow-x: auto; }
 table { border-collapse: collapse; } td, th { padding: 0.2em 0.8em; border-bottom: 1px solid #ccc; text-align: left; }
 </style></head><body><h1>{{ name }}: handling</h1>
-<p>Wheelbase {{ wheelbase }} m, track {{ track }} m; the wheels steer by {{ ratio }} for a unit of steering.</p>
+<p>Wheelbase {{ wheelbase }} m, track {{ track }} m; the wheels steer by {{ ratio }} for a unit of steering; {{ measured }}.</p>
 {% for title, message, rows, figure in sections %}<h2>{{ title }}</h2>
-{% if message %}<p>Not done: {{ message }}</p>{% else %}
+{% if message %}<p>Not done: {{ message }}</p>{% endif %}{% if rows %}
 <table><tr><th>metric</th><th>value</th><th>unit</th></tr>
 {% for row in rows %}<tr>{% for cell in row %}<td>{{ cell }}</td>{% endfor %}</tr>
 {% endfor %}</table><p><img src="{{ figure }}" alt="{{ title }}"></p>{% endif %}
@@ -41,11 +41,22 @@ table { border-collapse: collapse; } td, th { padding: 0.2em 0.8em; border-botto
 def handling_text(scene: str, found: Handling) -> str:
     """Return a line for each metric of each test."""
     car = found.car
-    lines = [f"{scene}: wheelbase {car.wheelbase:.4g} m, track {car.track:.4g} m, steered by {car.steering}"]
+    lines = [
+        f"{scene}: wheelbase {car.wheelbase:.4g} m, track {car.track:.4g} m, steered by {car.steering}",
+        _measured(found),
+    ]
     for name, one in found.tests.items():
         lines.append(f"{name}: {_title(name, one)}" + (f": not done: {one.message}" if one.message else ""))
         lines += [f"  {metric:52} {value:>10} {unit}" for metric, value, unit in _rows(one)]
     return "\n".join(lines)
+
+
+def _measured(found: Handling) -> str:
+    """Return a sentence on the point at which channels of the vehicle are measured."""
+    car = found.car
+    name = "point of the section vehicle" if car.stated else "centre of mass as described"
+    ahead, height = car.behind(car.measured), car.measured[2]
+    return f"measured at the {name}, {ahead:.4g} m ahead of the rear axle, {height:.4g} m above the road"
 
 
 def write_handling(path: Path, found: Handling, origin: Provenance | None = None) -> None:
@@ -58,14 +69,14 @@ def write_handling(path: Path, found: Handling, origin: Provenance | None = None
             _title(name, one),
             one.message,
             _rows(one),
-            "" if one.message else data_url(handling_figure(found, name, one), "svg", 100),
+            data_url(handling_figure(found, name, one), "svg", 100) if one.runs else "",
         )
         for name, one in found.tests.items()
     ]
     template = environment().from_string(PAGE)
     page = template.render(
         name=found.name, wheelbase=f"{found.car.wheelbase:.4g}", track=f"{found.car.track:.4g}", ratio=f"{found.ratio:.4g}",
-        sections=sections,
+        measured=_measured(found), sections=sections,
     )  # fmt: skip
     write_text(path, page_with_origin(page, origin))
 

@@ -93,7 +93,14 @@ def _words(found: KinematicsAndCompliance) -> list[str]:
     """Return the numbers of the vehicle that the measures refer to, and which are assumed."""
     vehicle = found.vehicle
     if not vehicle.wheelbase or vehicle.height is None or vehicle.front is None:
-        return ["no wheelbase and height of the centre of mass: without anti-dive, anti-lift, anti-squat"]
+        missing = {
+            "wheelbase (--wheelbase)": not vehicle.wheelbase,
+            "height of the centre of mass (--cg-height)": vehicle.height is None,
+            "position as front or rear axle (an axle of that name, or the wheels of the other one)": vehicle.front
+            is None,
+        }
+        names = ", ".join(name for name, lacks in missing.items() if lacks)
+        return [f"without anti-dive, anti-lift and anti-squat, as these are unknown: {names}"]
     sentence = f"wheelbase {vehicle.wheelbase:.4g} m, centre of mass at {vehicle.height:.4g} m"
     return [f"{sentence}; assumed: {', '.join(vehicle.assumed)}" if vehicle.assumed else sentence]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,7 +63,12 @@ class TyreCurve:
         names = {"kappa": self.kappa, "Fx": self.fx, "alpha": self.alpha, "Fy": self.fy, "Mz": self.mz}
         ellipse = {name: x.tolist() for name, x in zip(("Fx", "Fy"), self.ellipse, strict=True)}
         curves = {name: x.tolist() for name, x in names.items()}
-        return {"load": self.load, "pressure": self.pressure, **self.constants, **curves, "ellipse": ellipse}
+        return {"load": self.load, "pressure": self.pressure, **finite(self.constants), **curves, "ellipse": ellipse}
+
+
+def finite(found: Mapping[str, float]) -> dict[str, float | None]:
+    """Return numbers for JSON, None for those that are not known."""
+    return {name: x if math.isfinite(x) else None for name, x in found.items()}
 
 
 def tyre_curves(tyre: TyreProperties, sweep: TyreSweep) -> list[TyreCurve]:

@@ -7,7 +7,7 @@ from unittest.mock import patch
 import numpy as np
 import sympy as sp
 
-from stiffmbs.compile import callbacks, gaps, law_intervals, table_values, written_values
+from stiffmbs.compile import active_dampers, callbacks, gaps, law_intervals, table_values, written_values
 from stiffmbs.compile.inputs import ends, features, pieces, table_ranges, zeros
 from stiffmbs.compile.machine import compiler
 from stiffmbs.compile.machine.geometry import common_normal, ellipsoids
@@ -423,6 +423,9 @@ def largest_overshoot():
 
 
 DECISIONS = {
+    "compile.active_dampers:ROUNDING": lambda: count_while(
+        lambda part: not [*active_dampers._of_matrix(np.array([[1.0, 1.0], [1.0, 1.0 - 2e-12 * part]]))], DOUBLES
+    ),
     "compile.callbacks:DIFFERENCE": step_at_zero,
     "compile.callbacks:LEAST_ARGUMENT": step_at_zero,
     "compile.gaps:MOST_MOVES": moves_of_a_body,
@@ -491,6 +494,7 @@ DECISIONS = {
     "compile.written_values:BEYOND": largest_overshoot,
 }  # fmt: skip
 EXPECTED = {
+    "compile.active_dampers:ROUNDING": 40,
     "compile.callbacks:DIFFERENCE": 6.05545445239334e-09, "compile.callbacks:LEAST_ARGUMENT": 6.05545445239334e-09,
     "compile.gaps:MOST_MOVES": 60, "compile.gaps:CLOSED": 159, "compile.inputs.ends:MOST_DIVISIONS": 500,
     "compile.inputs.ends:FARTHER_SIDE": 1e-06, "compile.inputs.ends:NEARER_SIDE": 1e-10, "compile.inputs.ends:GROWS": 6,

@@ -13,7 +13,7 @@ from stiffmbs.elements.joints import point_on_curve
 from stiffmbs.elements.roads import crg, crg_grid, grid, iso8608, reference_line, rolling_filter
 from stiffmbs.elements.spatial import body, branches, massless, orientation, relaxation
 from stiffmbs.elements.spatial.forces import plane_impact, solid_impact, sphere_impact
-from stiffmbs.elements.tyres import fiala, file_fields, steady_state
+from stiffmbs.elements.tyres import fiala, file_fields, passivity, steady_state
 from stiffmbs.errors import InputError
 from tests.decisions.common import BELOW, Record, executed, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
@@ -316,6 +316,12 @@ def largest_tracks():
     return limit
 
 
+def checked_loads():
+    tyre = Record(numbers={"FNOMIN": 1.0}, coefficients={}, ranges={}, nominal_pressure=None)
+    with patch.object(passivity, "_expected_positive", lambda _tyre, _p, loads, *_: reach(loads)):
+        return reached(lambda: [*passivity.active_notes(tyre)])
+
+
 DECISIONS = {
     "elements.forces.friction:TINY": lambda: float(friction.magnitude()),
     "elements.forces.friction:AT_REST": slowest_sliding,
@@ -370,6 +376,8 @@ DECISIONS = {
     "elements.tyres.file_fields:SLIGHTLY": lambda: file_fields.nominal_load(
         {"UNLOADED_RADIUS": 1.0, "VERTICAL_STIFFNESS": 1.0}
     ),
+    "elements.tyres.passivity:WITHOUT_LIMIT": lambda: checked_loads()[-1],
+    "elements.tyres.passivity:LOADS": lambda: len(checked_loads()),
     "elements.tyres.property_file:UNLIMITED": lambda: executed("elements.tyres.property_file")._OF_FIALA["FZMAX"],
     "elements.tyres.property_file:NOMINAL_PRESSURE": lambda: executed("elements.tyres.property_file")._OF_6["NOMPRES"],
     "elements.tyres.steady_state:MOST_ITERATIONS": iterations_without_a_root,
@@ -393,7 +401,7 @@ EXPECTED = {
     "elements.spatial.relaxation:LEAST_RELAXATION_LENGTH": 100.0, "elements.spatial.relaxation:DAMPING": 0.02,
     "elements.spatial.relaxation:RENEWED": -1.0, "elements.tyres.fiala:TINY": 1e-30, "elements.tyres.file_fields:DEEP": 0.1,
     "elements.tyres.file_fields:PRESSED": 40, "elements.tyres.file_fields:RELAXED": 40, "elements.tyres.file_fields:WIDEST": 5.0,
-    "elements.tyres.file_fields:SLIGHTLY": 0.05, "elements.tyres.property_file:UNLIMITED": 1000000000000.0,
+    "elements.tyres.file_fields:SLIGHTLY": 0.05, "elements.tyres.passivity:WITHOUT_LIMIT": 1.5, "elements.tyres.passivity:LOADS": 401, "elements.tyres.property_file:UNLIMITED": 1000000000000.0,
     "elements.tyres.property_file:NOMINAL_PRESSURE": 200000.0, "elements.tyres.steady_state:MOST_ITERATIONS": 200,
     "elements.tyres.steady_state:LEAST_LOAD": 1e-09, "elements.tyres.steady_state:UNCARRIED": 27, "elements.tyres.steady_state:BEYOND": 1.2,
 }  # fmt: skip

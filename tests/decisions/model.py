@@ -220,16 +220,37 @@ def samples_between_stations():
 
 
 def smoothest_path():
-    """Return the weights of curvature and of the distance from the centre, and the part of a lane that is used."""
-    lane = Record(start=0.0, end=50.0, left=1.0, right=-1.0, centre=0.0)
+    """Return the weights of curvature and anchor, the part of a lane that is used, and numbers of stations and limits."""
+    lane = lanes.Lane(start=0.0, end=50.0, left=1.0, right=-1.0)
 
-    def solved(rows, _right, bounds, **_):
-        count = rows.shape[1]
-        widths = bounds[1][np.isfinite(bounds[1])]
-        reach((np.abs(rows[count - 2, 0]) * lanes.SPACING**3, rows[-1, -1], np.max(widths) / 2.0))
+    def solved(rows, _right, within, least):
+        reach(
+            (
+                np.max(np.abs(rows)) * lanes.SPACING**3 / 3,
+                np.max(np.abs(rows[-40:])),
+                np.max(np.abs(least)),
+                rows.shape[1],
+            )
+        )
 
-    with patch("scipy.optimize.lsq_linear", solved):
-        return reached(lambda: lanes.path_through((lane,), 0.0, 10.0, 10.0))
+    with patch.object(lanes, "_least_squares_within", solved):
+        return reached(lambda: lanes.path_through((lane,), 0.0, 10.0, 100.0))
+
+
+def limits_of_a_path():
+    """Return the number of limits of a path for a vehicle of the default length."""
+    lane = lanes.Lane(start=0.0, end=50.0, left=1.0, right=-1.0)
+    with patch.object(lanes, "_least_squares_within", lambda _rows, _right, within, _least: reach(len(within))):
+        return reached(lambda: lanes.path_through((lane,), 0.0, 9.0, 100.0))
+
+
+def farthest_limit():
+    one = np.eye(1)
+
+    def accepts(least):
+        return lanes._least_squares_within(one, np.zeros(1), one, np.array([least])) is not None
+
+    return count_while(accepts, DOUBLES)
 
 
 def latest_distinguished_run():
@@ -289,6 +310,9 @@ DECISIONS = {
     "model.paths.lanes:ROUGHNESS": lambda: smoothest_path()[0],
     "model.paths.lanes:ANCHOR": lambda: smoothest_path()[1],
     "model.paths.lanes:USED": lambda: smoothest_path()[2],
+    "model.paths.lanes:STRAIGHT": lambda: smoothest_path()[3],
+    "model.paths.lanes:LENGTH": limits_of_a_path,
+    "model.paths.lanes:MARGIN": farthest_limit,
     "model.settings:DEFAULT_RTOL": lambda: executed("model.settings").RunSettings.model_fields["rtol"].default,
     "model.settings:DEFAULT_POINTS": lambda: len(
         grids.output_grid(Record(points=None, output=None, start=0.0, duration=1.0)).times
@@ -311,6 +335,6 @@ EXPECTED = {
     "model.parts.hard_points:FARTHEST": 23, "model.parts.instances:MOST_NESTED": 10, "model.parts.instances:MOST_INSTANCES": 27,
     "model.parts.instances:MOST_VALUES": 27, "model.paths.curves:SPACING": 401, "model.paths.curves:MOST_STATIONS": 2001,
     "model.paths.curves:SAMPLES": 8.0, "model.paths.lanes:ROUGHNESS": 30.0, "model.paths.lanes:ANCHOR": 0.001,
-    "model.paths.lanes:USED": 0.3000005, "model.settings:DEFAULT_RTOL": 1e-06, "model.settings:DEFAULT_POINTS": 1001,
+    "model.paths.lanes:USED": 0.5, "model.paths.lanes:STRAIGHT": 34, "model.paths.lanes:LENGTH": 156, "model.paths.lanes:MARGIN": 60, "model.settings:DEFAULT_RTOL": 1e-06, "model.settings:DEFAULT_POINTS": 1001,
     "model.settings:FEWEST_APART": 63, "model.settings:ROUNDINGS_APART": 63, "model.tuning:MOST": 27,
 }  # fmt: skip

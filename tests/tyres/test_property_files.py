@@ -1,13 +1,21 @@
 """Files of tyre properties: units, notes, and clear errors with their lines."""
 
+import json
+
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy import constants
 
+import stiffmbs
 from stiffmbs import InputError, load_scene
+from stiffmbs.commands.main import main
 from stiffmbs.elements.tyres.names import AS_BEFORE, LATER, OF_PAC2002
 from stiffmbs.elements.tyres.property_file import UNITS
 from stiffmbs.spatial import MagicFormulaTyre
+from stiffmbs.tyres import TyreProperties
+
+from ..conftest import EXAMPLES
 
 FILE = """$ a tyre
 [UNITS]
@@ -319,3 +327,46 @@ def test_missing_sections_are_named(read):
     start, _, end = FILE.partition("[VERTICAL]")
     with pytest.raises(InputError, match=r"found no FNOMIN, expected one in \[VERTICAL\]"):
         read(f"{start}[LONGITUDINAL_COEFFICIENTS]{end.partition('[LONGITUDINAL_COEFFICIENTS]')[2]}")
+
+
+def test_a_key_without_a_value_that_no_formula_uses_is_noted_alone(tmp_path):
+    """Any empty value stopped the file; one that a formula uses still does."""
+    text = (EXAMPLES / "car.tir").read_text()
+    file = tmp_path / "empty.tir"
+    file.write_text(text.replace("[DIMENSION]", "[COMMENTS]\nAUTHOR =\nTYRESIZE =   $ not known\n[DIMENSION]"))
+    found = TyreProperties.from_file(file)
+    assert found.coefficients == TyreProperties.from_file(EXAMPLES / "car.tir").coefficients
+    assert any("AUTHOR" in note and "TYRESIZE" in note for note in found.notes())
+    file.write_text(text.replace("PKX2 = 0.5", "PKX2 ="))
+    with pytest.raises(InputError, match=r"line 28: found nothing behind '=' of PKX2, expected a number"):
+        TyreProperties.from_file(file)
+
+
+@pytest.mark.parametrize("version", ["5.2", "6.2"])
+def test_a_tyre_without_vertical_stiffness_has_its_forces_alone(tmp_path, version):
+    file = tmp_path / "forces.tir"
+    text = (
+        (EXAMPLES / "car.tir")
+        .read_text()
+        .replace("PROPERTY_FILE_FORMAT = 'PAC2002'", f"FITTYP = {6 if version == '5.2' else 62}")
+    )
+    file.write_text(text)
+    whole = TyreProperties.from_file(file)
+    assert whole.version == version
+    file.write_text(text.replace("VERTICAL_STIFFNESS = 220000\n", ""))
+    found = TyreProperties.from_file(file)
+    assert any("there is no VERTICAL_STIFFNESS" in note for note in found.notes())
+    expected, forces = (each.steady_state([2000.0, 5000.0], 0.05, -0.04, 0.02) for each in (whole, found))
+    for name in ("Fx", "Fy", "Mz", "Kxk", "Kya"):
+        assert forces[name] == pytest.approx(expected[name], rel=1e-12)
+    for name in ("rho", "Rl", "Re"):
+        assert np.all(np.isnan(forces[name])), name
+    with pytest.raises(InputError, match="found no VERTICAL_STIFFNESS, expected one: the load follows"):
+        stiffmbs.read_scene(f"""
+dimensions: 3
+bodies: {{wheel: {{mass: 20, inertia: [1, 2, 1]}}}}
+roads: {{flat: {{type: flat}}}}
+forces: {{tyre: {{type: magic_formula_tyre, i: wheel, properties: {file}, road: flat}}}}
+""")
+    printed = CliRunner().invoke(main, ["tyre", str(file), "--json"])
+    assert json.loads(printed.stdout)["curves"][0]["rho"] is None

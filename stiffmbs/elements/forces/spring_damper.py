@@ -10,7 +10,7 @@ class SpringDamper(LineSpring[Marker]):
     With the deflection s = L - L0 and its rate v = L' the tension is k s + spring_law(s) + c v + damper_law(v) +
     preload; tension pulls the points together.
 
-    Negative damping is allowed; it adds energy. The points must not coincide if the spring has a free length. A spring
+    Negative damping is allowed; it adds energy, which a note reports. The points must not coincide if the spring has a free length. A spring
     law that is a table or a polynomial in s has a potential. With any other formula the element has none, and
     energy.total is not conserved.
 

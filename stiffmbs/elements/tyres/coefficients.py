@@ -23,6 +23,7 @@ from ..roads.envelope import MOST_TRACKS, Envelope
 from . import file_fields
 from .file_fields import Bottoming
 from .names import COMBINED, OF_PAC2002, OF_PRESSURE, OF_THE_FILE, ONE_SIDED, POSITIVE, REASONS, TURN_SLIP
+from .passivity import active_notes
 from .property_file import NOMINAL_PRESSURE, VERSIONS, PropertyFile, Version, digits, read_property_file
 
 if TYPE_CHECKING:
@@ -119,6 +120,11 @@ class TyreProperties(Component):
     def _has(self, names: Iterable[str]) -> bool:
         """Return True if one of some coefficients is given and not zero."""
         return any(self.coefficients.get(name, 0.0) for name in names)
+
+    @property
+    def has_stiffness(self) -> bool:
+        """True if the tyre has a vertical stiffness, without which forces at given loads are known alone."""
+        return "VERTICAL_STIFFNESS" in self.coefficients
 
     @property
     def is_combined(self) -> bool:
@@ -230,7 +236,7 @@ class TyreProperties(Component):
         return numbers
 
     def notes(self) -> Iterator[str]:
-        """Yield sentences on settings that the equations do not use."""
+        """Yield sentences on settings that the equations do not use, and on loads at which the tyre adds energy."""
         yield from self.remarks
         if self._lags and not self.has_lengths:
             missing = ", ".join(self.names_of_lengths)
@@ -241,6 +247,10 @@ class TyreProperties(Component):
             yield "the gyroscopic couple of the belt (QTZ1) needs relaxation lengths, and there are none: it is left out"
         if self.formula.is_magic and not self.is_combined:
             yield "there are no coefficients of combined slip (RBX1, RCX1, RBY1, RCY1): forces are held on the friction ellipse"
+        if not self.has_stiffness:
+            yield "there is no VERTICAL_STIFFNESS: deflection and radii are not known, and no scene can use the tyre"
+        if self.formula.is_magic:
+            yield from active_notes(self)
 
     def wrench(
         self,
@@ -320,7 +330,7 @@ class TyreProperties(Component):
             m); ``omega`` (rad/s), effective radius ``Re``, deflection ``rho``, loaded radius ``Rl`` (m); relaxation
             lengths ``sigma_x``, ``sigma_y`` (m, 0 without them); half length ``a`` and half width ``b`` of the contact patch (m).
             ``Kyg0``, ``a`` and ``b`` are of 6.1 and 6.2 alone; ``rho`` and ``Rl`` are NaN for a load that no loaded
-            radius carries. The arguments broadcast.
+            radius carries, and with ``Re`` and ``omega`` of a tyre without VERTICAL_STIFFNESS. The arguments broadcast.
 
         Raises
         ------

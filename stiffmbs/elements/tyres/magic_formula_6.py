@@ -262,14 +262,11 @@ FORMULA = earlier.Formula(wrench, uncombined)
 
 
 def relaxation_lengths(p: Symbolic, load: Expr, dpi: Expr, gamma: Expr, f: Name) -> tuple[Expr, Expr]:
-    """Return the longitudinal and lateral relaxation length, m, Kxk/Cx and Kya/Cy.
+    """Return the longitudinal and lateral relaxation length, m, Kxk/Cx and -Kya/Cy, negative where a stiffness has the wrong sign.
 
     Besselink, Schmeitz, Pacejka (2010), eq. 17 to 19.
     """
     dfz = earlier.increment(p, load, f)
     along = p.LONGITUDINAL_STIFFNESS * (1 + p.PCFX1 * dfz + p.PCFX2 * dfz**2) * (1 + p.PCFX3 * dpi)
     across = p.LATERAL_STIFFNESS * (1 + p.PCFY1 * dfz + p.PCFY2 * dfz**2) * (1 + p.PCFY3 * dpi)
-    return (
-        f(magnitude(slip_stiffness(p, load, dpi, dfz) / along)),
-        f(magnitude(cornering_stiffness(p, load, dpi, gamma) / across)),
-    )
+    return (f(slip_stiffness(p, load, dpi, dfz) / along), f(-cornering_stiffness(p, load, dpi, gamma) / across))

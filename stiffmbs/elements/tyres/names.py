@@ -32,7 +32,7 @@ DIMENSIONS = {
     "BREFF": "", "DREFF": "", "FREFF": "", "LONGVL": "velocity", "FZMAX": "force",
 }  # fmt: skip
 """Other numbers that are used, with their dimensions."""
-REQUIRED = ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS", "PCX1", "PDX1", "PKX1", "PCY1", "PDY1", "PKY1", "PKY2")
+REQUIRED = ("FNOMIN", "UNLOADED_RADIUS", "PCX1", "PDX1", "PKX1", "PCY1", "PDY1", "PKY1", "PKY2")
 LATER = _words(
     """
     PPX1 PPX2 PPX3 PPX4 PPY1 PPY2 PPY3 PPY4 PPY5 PPZ1 PPZ2 PPMX1 PKY4 PKY5 PKY6 PKY7 PEY5 RBX3 RBY4 QDZ10 QDZ11

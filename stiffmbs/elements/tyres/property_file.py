@@ -57,7 +57,7 @@ _QUOTED = re.compile(r"^'([^']*)'|^\"([^\"]*)\"")
 
 @dataclass(frozen=True)
 class Entry:
-    """Value of a key: text without quotes and comment, line, and section."""
+    """Value of a key: text without quotes and comment, which may be empty, line, and section."""
 
     text: str
     line: int
@@ -115,6 +115,8 @@ class PropertyFile:
         entry = self.entry(key, home)
         if entry is None:
             raise InputError(f"{self.source}: found no {key}, expected one" + (f" in [{home}]" if home else ""))
+        if not entry.text:
+            raise InputError(f"{self.source}, line {entry.line}: found nothing behind '=' of {key}, expected a number")
         return finite_number(entry.text, f"{self.source}, line {entry.line}: {key}") * self.factor(dimension)
 
     def factor(self, dimension: str) -> float:
@@ -161,7 +163,7 @@ def parse_properties(text: str, source: str) -> PropertyFile:
             section = _section(content, where)
         elif key := _KEY.match(content):
             name, own = key[1].upper(), sections.setdefault(section, {})
-            entry = Entry(_value(key[2], where), number, section)
+            entry = Entry(_value(key[2]), number, section)
             if own.setdefault(name, entry).text != entry.text:
                 raise InputError(f"{where}: found {name} again, which line {own[name].line} has too, expected it once")
         elif section:
@@ -191,12 +193,9 @@ def _uncommented(text: str) -> str:
     return re.split(r"[$!#]", text)[0].strip()
 
 
-def _value(text: str, where: str) -> str:
+def _value(text: str) -> str:
     within = _QUOTED.match(text)
-    value = (within[1] or within[2] or "").strip() if within else _uncommented(text)
-    if not value and not within:
-        raise InputError(f"{where}: found nothing behind '=', expected a value")
-    return value
+    return (within[1] or within[2] or "").strip() if within else _uncommented(text)
 
 
 UNLIMITED = 1e12
@@ -253,12 +252,12 @@ class Version:
 
 _OF_5 = {
     **dict.fromkeys((*names.COEFFICIENTS, *names.OF_PRESSURE, *names.OF_PAC2002), 0.0),
-    **dict.fromkeys((*names.SCALES, "LIP"), 1.0), "VERTICAL_DAMPING": 0.0, "BREFF": 0.0, "DREFF": 0.0, "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
+    **dict.fromkeys((*names.SCALES, "LIP"), 1.0), "VERTICAL_STIFFNESS": math.nan, "VERTICAL_DAMPING": 0.0, "BREFF": 0.0, "DREFF": 0.0, "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
 }  # fmt: skip
-"""Default values; FREFF gives the unloaded radius less a third of the deflection as rolling radius."""
+"""Default values; a tyre without VERTICAL_STIFFNESS has no deflection and radii, and FREFF gives the unloaded radius less a third of the deflection as rolling radius."""
 _OF_6 = {
     **dict.fromkeys((*names.COEFFICIENTS_6, *names.DIMENSIONS_6), 0.0), **dict.fromkeys(names.SCALES_6, 1.0),
-    "LMUV": 0.0, "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "INFLPRES": 0.0, "NOMPRES": NOMINAL_PRESSURE, "Q_RE0": 1.0,
+    "LMUV": 0.0, "VERTICAL_STIFFNESS": math.nan, "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "INFLPRES": 0.0, "NOMPRES": NOMINAL_PRESSURE, "Q_RE0": 1.0,
     "PKY4": names.AS_BEFORE["PKY4"], "QSY7": names.AS_BEFORE["QSY7"], "PHYP1": 1.0, "QDRP1": 1.0,
 }  # fmt: skip
 """Default values; those of omitted coefficients of 6.1 have the effect of MF-Tyre 5.2, INFLPRES = 0 means NOMPRES."""

@@ -13,7 +13,7 @@ from ...reading.fields import Described, located
 from ...reading.files.yaml_text import Content
 from ...reading.units import si
 from .curves import Curve, circle, curve_through
-from .lanes import STANDARDS, path_through
+from .lanes import LENGTH, STANDARDS, path_through
 
 PATH = "path"
 COURSES = ("points", "circle", "lanes")
@@ -39,6 +39,7 @@ class Path(Described):
         None, description="the standard whose lanes it leads through"
     )
     width: si.PositiveLength = Field(1.8, description="of the vehicle, which determines the lanes, m")
+    length: si.PositiveLength = Field(LENGTH, description="of the vehicle, whose corners stay within the lanes, m")
     start: si.LengthOrZero = Field(30.0, description="straight line before the first lane, m")
     speed: tuple[Station, ...] = Field(
         (), description="speed profile: arc length, m, and speed, m/s; the table path_speed"
@@ -56,12 +57,12 @@ class Path(Described):
         return self
 
     def curve(self) -> Curve:
-        """Return the course over its arc length; ValueError if two consecutive points coincide."""
+        """Return the course over its arc length; ValueError if two points coincide, or lanes are too narrow."""
         if self.circle is not None:
             return circle(self.circle, self.entry, self.transition, self.turns)
         if self.lanes is not None:
             lanes = tuple(lane.shifted(self.start) for lane in STANDARDS[self.lanes](self.width))
-            return curve_through(path_through(lanes, self.width, self.start, 100.0))
+            return curve_through(path_through(lanes, self.width, self.start, 100.0, self.length))
         return curve_through(np.array(self.points, dtype=float), self.closed)
 
 
@@ -72,7 +73,7 @@ def with_path(raw: dict[str, object], parameters: Mapping[str, object]) -> dict[
     """
     with located(PATH):
         path = Path.model_validate(raw[PATH], context={"parameters": parameters})
-    with located(f"{PATH}.points"):
+    with located(f"{PATH}.{'lanes' if path.lanes else 'points'}"):
         curve = path.curve()
     tables = raw.get("tables") or {}
     own = tables_of(curve)

@@ -34,7 +34,7 @@ def _moving(speed: np.ndarray) -> np.ndarray:
 def braking_in_a_turn(known: Known, test: BrakingInATurn) -> list[Manoeuvre]:
     """Return braking on a circle with the steering held."""
     speed, brakes = _turn(test)
-    driver = {**known.driver(), "brakes": brakes, "holds": brakes - 0.2, "pressing": 0.2, **_pressed(test.pedal)}
+    driver = {**known.driver(speed), "brakes": brakes, "holds": brakes - 0.2, "pressing": 0.2, **_pressed(test.pedal)}
     duration = brakes + 3.0
     return [Manoeuvre(speed, duration, driver=driver, path=circle(test.radius, 60.0, speed * duration))]
 
@@ -74,5 +74,5 @@ def of_straight_braking(known: Known, test: StraightBraking, runs: list[Run]) ->
         "mean fully developed deceleration": (mean_deceleration(time, speed), "m/s^2"),
         "distance": (float(distance), "m"),
         "largest braking slip": (-100 * slip, "%"),
-        "lateral deviation": (float(np.max(np.abs(run["vehicle.y"]))), "m"),
+        "lateral deviation": (float(np.max(np.abs(run["vehicle.y"] - run["vehicle.y"][0]))), "m"),
     }

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...elements.spatial.forces.wheel_torque import WheelTorque
-from ...elements.spatial.orientation import IDENTITY
+from ...elements.spatial.marker import Point
+from ...elements.spatial.orientation import IDENTITY, conjugate, rotated
 from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
 from ...model.files.expand import set_value, unshared
@@ -19,6 +20,8 @@ from ...model.scene import Scene
 from ...model.vehicle import Vehicle
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.yaml_text import Content, read_yaml
+from ...reading.marker import GROUND
+from ..suspension.axle import bodies_at
 
 DRIVER = "handling_driver"
 STEER = "handling_steer"
@@ -52,8 +55,20 @@ class Car:
     wheelbase: float
     track: float
     radius: float  # mean height of the wheels' centres, m
-    rear: float  # distance from the body's origin back to the rear axle, m
-    height: float  # height of the centre of mass of all bodies in the described pose, m
+    # middle, centre, measured: centre of the four wheels, centre of mass of the car, and reference point at which the
+    # channels of the vehicle are measured, in the described pose, ground axes, m
+    middle: Point
+    centre: Point
+    measured: Point
+    # reference, frame: the reference point, and the origin of the driver's frame, which is at the centre of mass and
+    # halfway between left and right wheels, in the axes of the sprung body, m
+    reference: Point
+    frame: Point
+    stated: bool  # True if the section `vehicle` has a `point`
+
+    def behind(self, place: Point) -> float:
+        """Return the distance from a place back to the rear axle, m."""
+        return place[0] - self.middle[0] + self.wheelbase / 2
 
 
 def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -> Car:
@@ -85,10 +100,15 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
         corners |= {f"{axle}_left": left, f"{axle}_right": right}
     wheels = {corner: scene.forces[name].i.body for corner, name in corners.items()}
     at = {corner: places[name] for corner, name in corners.items()}
-    masses = {name: each.mass for name, each in scene.bodies.items()}
-    centre = sum(masses[name] * np.array(each.coordinates()[:3]) for name, each in scene.bodies.items()) / sum(
-        masses.values()
-    )
+    middle, centre, own = np.mean([*places.values()], axis=0), _centre_of_mass(scene, body), scene.bodies[body]
+
+    def on_body(place: np.ndarray) -> Point:
+        """Return a place in ground axes as a point in the axes of the sprung body."""
+        return _point(rotated(conjugate(own.orientation), place - np.array(own.position)))
+
+    stated = vehicle is not None and "point" in vehicle.model_fields_set
+    reference = vehicle.point if vehicle is not None and stated else on_body(centre)
+    measured = np.array(own.position) + rotated(own.orientation, reference)
     joint = _steering(scene, steering)
     return Car(
         body, vehicle, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()},
@@ -96,9 +116,26 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
         scene.joints[joint].kind == "revolute",
         float((at["front_left"] + at["front_right"] - at["rear_left"] - at["rear_right"])[0] / 2),
         float((at["front_left"] - at["front_right"] + at["rear_left"] - at["rear_right"])[1] / 2),
-        float(np.mean([place[2] for place in at.values()])),
-        float(scene.bodies[body].position[0] - at["rear_left"][0]), float(centre[2]),
+        float(middle[2]), _point(middle), _point(centre), _point(measured), reference,
+        on_body(np.array([centre[0], middle[1], centre[2]])), stated,
     )  # fmt: skip
+
+
+def _point(place: np.ndarray) -> Point:
+    x, y, z = map(float, place)
+    return x, y, z
+
+
+def _centre_of_mass(scene: Scene, body: str) -> np.ndarray:
+    """Return the centre of mass of the described car, m: of the bodies that joints and forces connect, except by ground."""
+    ends = [set(bodies_at(each)) - {GROUND} for each in (*scene.joints.values(), *scene.forces.values())]
+    found, grown = set[str](), {body}
+    while grown != found:
+        found = grown
+        grown = found.union(*(each for each in ends if each & found))
+    bodies = [each for name, each in scene.bodies.items() if name in found]
+    masses, places = np.array([each.mass for each in bodies]), np.array([each.coordinates()[:3] for each in bodies])
+    return np.asarray(masses @ places / masses.sum())
 
 
 def _check_place(scene: Scene, body: str, places: Mapping[str, np.ndarray]) -> None:
@@ -272,7 +309,7 @@ def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
     }  # fmt: skip
     parameters = {
         **{name: x for name, x in (own.get("parameters") or {}).items() if name not in OF_ANOTHER_MANOEUVRE},
-        "target": manoeuvre.speed, "begins": -1, "radius": car.radius, "rear": car.rear,
+        "target": manoeuvre.speed, "begins": -1, "radius": car.radius, "rear": car.behind(car.centre),
         "largest": 10.0 if car.angular else 0.12, "fastest": 20.0 if car.angular else 0.6, **(manoeuvre.driver or {}),
     }  # fmt: skip
     if car.angular:
@@ -282,7 +319,8 @@ def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
             if isinstance(parameters.get(name), int | float)
         }
     driver = {
-        "part": "driver", "on": car.body, "orientation": list(car.vehicle.orientation if car.vehicle else IDENTITY),
+        "part": "driver", "on": car.body, "position": list(car.frame),
+        "orientation": list(car.vehicle.orientation if car.vehicle else IDENTITY),
         "drive": own.get("drive", "rear"), "mounts": {**mounts, "steering": car.steering}, "parameters": parameters,
         "path": "course" if manoeuvre.path else "none", "pace": "given",
     }  # fmt: skip
@@ -291,10 +329,10 @@ def _attach(content: Content, car: Car, manoeuvre: Manoeuvre) -> None:
     content["use"] = {**use, DRIVER: driver}
     content["roads"] = {**(content.get("roads") or {}), ROAD: dict(manoeuvre.road or {"type": "flat"})}
     vehicle = {key: value for key, value in (content.get("vehicle") or {}).items() if key != "steering"}
-    content["vehicle"] = {"body": car.body, **vehicle}
+    content["vehicle"] = {"body": car.body, **vehicle, "point": list(car.reference)}
     content["requests"] = {STEER + "_seen": f"{car.steering}.{'angle' if car.angular else 'displacement'}"}
     if manoeuvre.spun:
-        at_rear = f"vehicle.sideslip - ({car.rear!r})*vehicle.yaw_rate/vehicle.speed"
+        at_rear = f"vehicle.sideslip - ({car.behind(car.measured)!r})*vehicle.yaw_rate/vehicle.speed"
         content["requests"] |= {SPINNING: f"sqrt(({at_rear})^2 + vehicle.roll^2)"}
         content["stages"] = [{"until": {"spun": {"request": SPINNING, "at_least": manoeuvre.spun}}}]
     if manoeuvre.path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, Final, TypeVar
@@ -73,6 +74,14 @@ class SineWithDwell:
     factors: tuple[float, ...] = parameter(
         (1.5, 3.0, 4.5, 5.5, 6.5), "number", "amplitudes over the unit A", "ISO 19365: 1.5 A to 6.5 A"
     )
+    final: float = parameter(
+        math.radians(270), "angle", "least steering-wheel angle of the final run", "ISO 19365: max(6.5 A, 270 deg)"
+    )
+    largest: float = parameter(math.radians(300), "angle", "largest steering-wheel angle", "ISO 19365: 300 deg")
+    turn: float = parameter(0.05, "length", "travel of a rack per turn of the steering wheel, where a rack steers")
+    displacement: float = parameter(
+        1.83, "length", "least lateral displacement", "ISO 19365: 1.83 m up to 3.5 t, 1.52 m above"
+    )
 
 
 @dataclass(frozen=True)
@@ -86,7 +95,9 @@ class LaneChange:
 class ObstacleAvoidance:
     """Parameters of `obstacle_avoidance`."""
 
-    speed: float = parameter(50 / 3.6, "velocity", "entry speed")
+    speed: float = parameter(
+        50 / 3.6, "velocity", "before the course; the throttle is released in its first lane", "ISO 3888-2, test method"
+    )
     slowest: float = parameter(30 / 3.6, "velocity", "lower end of the search of the highest entry speed")
     fastest: float = parameter(80 / 3.6, "velocity", "upper end of the search")
     resolution: float = parameter(1 / 3.6, "velocity", "width of the interval at which the search ends")

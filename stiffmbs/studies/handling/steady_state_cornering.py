@@ -104,7 +104,7 @@ def of_constant_speed(known: Known, test: ConstantSpeed, runs: list[Run]) -> Met
     return found | {
         "largest lateral acceleration": (float(np.max(ay)), "m/s^2"),
         "rollover threshold": (rollover_threshold(ay, inner), "m/s^2"),
-        "static stability factor": (static_stability_factor(known.car.track, known.car.height), "g"),
+        "static stability factor": (static_stability_factor(known.car.track, known.car.centre[2]), "g"),
     }
 
 
@@ -119,7 +119,7 @@ def constant_radius(known: Known, test: ConstantRadius) -> list[Manoeuvre]:
     settled = TURNS.settled / test.first
     duration = settled + 1 + (test.last - test.first) / test.acceleration
     path = circle(test.radius, 30.0, test.last * duration)
-    driver = {**known.driver(), "acceleration": test.acceleration, "accelerates": settled}
+    driver = {**known.driver((test.first + test.last) / 2), "acceleration": test.acceleration, "accelerates": settled}
     return [Manoeuvre(test.first, duration, driver=driver, path=path, output=0.05)]
 
 

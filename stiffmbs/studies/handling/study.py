@@ -29,13 +29,16 @@ from .steady_state_cornering import TURNS, lag_of, probe, quasi_steady, ramp
 
 WIDER = 0.2
 """Width of the body beyond the track, m, unless given: tyres and wings."""
+OVERHANGS = 0.6
+"""Length of the body beyond the wheelbase, in wheelbases, unless given: that of a compact car."""
 
 
 @dataclass(frozen=True)
 class Tested:
     """Result of one test."""
 
-    metrics: Metrics = field(default_factory=dict)  # value and unit by name; empty if the test failed
+    # value and unit by name; empty if the test failed, those of its first run if a search did
+    metrics: Metrics = field(default_factory=dict)
     runs: list[Run] = field(default_factory=list)  # channels of its runs
     message: str = ""  # why it failed; empty if it was done
     parameters: dict[str, Any] = field(default_factory=dict)  # parameters of the test, SI units
@@ -84,13 +87,14 @@ class Handling:
         return {
             "scene": scene, "status": "stopped" if failed else "done",
             "message": "; ".join(f"{test}: {self.tests[test].message}" for test in failed),
-            "wheelbase": self.car.wheelbase, "track": self.car.track, "steer_per_steering": self.ratio, "tests": found,
+            "wheelbase": self.car.wheelbase, "track": self.car.track, "steer_per_steering": self.ratio,
+            "reference_point": list(self.car.reference), "tests": found,
         }  # fmt: skip
 
 
 def handling(
     model: Scene | str | Path, tests: Sequence[str] | None = None, *, body: str | None = None, steering: str | None = None,
-    width: float | str | None = None, workers: int | None = None, parameters: Mapping[str, float | str | Sequence[float]] | None = None,
+    width: float | str | None = None, length: float | str | None = None, workers: int | None = None, parameters: Mapping[str, float | str | Sequence[float]] | None = None,
 ) -> Handling:  # fmt: skip
     """Run handling and ride tests of the standards on a car.
 
@@ -108,6 +112,8 @@ def handling(
         Sprung body and joint that steers; see `stiffmbs.studies.handling.car.car_of`.
     width : float or str, optional
         Width of the vehicle, m, or text with a unit; by default the track and 0.2 m.
+    length : float or str, optional
+        Length of the vehicle, m, or text with a unit; by default 1.6 wheelbases. Its middle is halfway between the axles.
     workers : int, optional
         Number of processes; by default one for each core.
     parameters : mapping of str to number or str, optional
@@ -127,6 +133,8 @@ def handling(
     """
     if width is not None:
         width = positive("width", width, "length")
+    if length is not None:
+        length = positive("length", length, "length")
     refuse_workers(workers)
     refuse_text("tests", tests, "tests")
     scene = model if isinstance(model, Scene) else load_scene(model)
@@ -139,11 +147,11 @@ def handling(
     with ExitStack() as stack:
         count = workers or os.cpu_count() or 1
         pool = stack.enter_context(process_pool(count)) if count > 1 else None
-        known = _preliminary(scene, car, width or car.track + WIDER)
+        known = _preliminary(scene, car, width or car.track + WIDER, length or (1 + OVERHANGS) * car.wheelbase)
         return Handling(scene.name, car, known.ratio, _solved(scene, car, known, changed, pool), known.width)
 
 
-def _preliminary(scene: Scene, car: Car, width: float) -> Known:
+def _preliminary(scene: Scene, car: Car, width: float, length: float) -> Known:
     first = solved(with_manoeuvre(scene, car, probe(car)))
     curvature = first["vehicle.yaw_rate"][-1] / first["vehicle.speed"][-1]
     low = float(first["handling_steer_seen"][-1] / curvature)
@@ -153,7 +161,7 @@ def _preliminary(scene: Scene, car: Car, width: float) -> Known:
     at = int(np.argmax(ay >= min(4.0, 0.7 * ay[-1])))
     over = SPEED**2 - TURNS.probe**2
     at_no_speed, driven = low - (linear - low) / over * TURNS.probe**2, float(slow[SEEN][at] / curvature[at])
-    return Known(car, at_no_speed, (driven - low) / over, width, slow, lag_of(slow))
+    return Known(car, at_no_speed, (driven - low) / over, width, slow, lag_of(slow), length)
 
 
 def _solved(scene: Scene, car: Car, known: Known, tests: Mapping[str, Any], pool: Executor | None) -> dict[str, Tested]:
@@ -176,10 +184,11 @@ def _solved(scene: Scene, car: Car, known: Known, tests: Mapping[str, Any], pool
         test, parameters = TESTS[name], tests[name]
         try:
             runs = [job.result() if pool else solved(job) for job in jobs]
-            metrics = test.metrics(of_test, parameters, runs) | (
-                test.search(of_test, parameters, solve) if test.search else {}
-            )
+            metrics = test.metrics(of_test, parameters, runs)
             found[name] = replace(found[name], metrics=metrics, runs=runs or [of_test.ramp])
+            if test.search:
+                searched = test.search(of_test, parameters, solve)
+                found[name] = replace(found[name], metrics=metrics | searched)
         except StiffmbsError as error:
             found[name] = replace(found[name], message=str(error))
     return found

@@ -16,7 +16,6 @@ import numpy as np
 from ...dynamics.dynamics import Dynamics
 from ...elements.forces.springs import AngleSpring, LineSpring, Spring
 from ...model.model_data import ModelData
-from ...reading.marker import GROUND
 from .axle import Axle, Wheel
 from .rig import STEER, centre, contact_at, contact_from, contact_velocity, pad
 from .steering_axis import SteeringAxis, steering_axis
@@ -54,8 +53,8 @@ class Setup:
 
     @property
     def plane(self) -> float:
-        """Position of the plane y = 0 of the body that carries the axle, along y of the ground, m."""
-        return 0.0 if self.axle.body == GROUND else float(self.model.bodies[self.axle.body].position[1])
+        """Position of the middle of the contacts as described, along y of the ground, m."""
+        return float(np.mean([wheel.contact[1] for wheel in self.axle.wheels]))
 
 
 def setup_of(model: ModelData, axle: Axle, vehicle: Vehicle) -> Setup:

@@ -72,6 +72,8 @@ def vehicle_of(model: ModelData, axle: Axle, given: VehicleOptions) -> Vehicle:
     one = bool(others) and max(others) - min(others) < SAME_AXLE
     front = bool(own > np.mean(others)) if others and (own > max(others) or own < min(others)) else None
     assumed = []
+    if front is None and not others and (front := _by_name(axle)) is not None:
+        assumed.append("the front axle" if front else "the rear axle")
     brake = given.brake_share
     if brake is None:
         brake = 1.0 if front is None else BRAKE_SHARES[front]
@@ -90,6 +92,14 @@ def vehicle_of(model: ModelData, axle: Axle, given: VehicleOptions) -> Vehicle:
         outboard_drive=axle.solid if given.outboard_drive is None else given.outboard_drive,
         assumed=tuple(assumed),
     )
+
+
+def _by_name(axle: Axle) -> bool | None:
+    """Return True for a front axle and False for a rear one by its name or its steering, if there is no other axle."""
+    name = axle.name.rpartition(".")[2]
+    if name in ("front", "rear"):
+        return name == "front"
+    return True if axle.steering is not None else None
 
 
 def _contacts(model: ModelData) -> list[float]:

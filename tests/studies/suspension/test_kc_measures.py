@@ -9,6 +9,7 @@ from click.testing import CliRunner
 import stiffmbs
 from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError
+from stiffmbs.show.suspension import kc_text
 
 NONE = dict.fromkeys(
     ("bump", "roll", "steer", "lateral", "lateral_parallel", "brake", "traction", "aligning", "aligning_parallel"), 0
@@ -53,6 +54,27 @@ def test_anti_lift_and_anti_squat_of_a_trailing_arm():
     found = measures(scene(parts, bodies=chassis), "rear", vehicle=inboard)
     assert found["left.anti_lift"] == pytest.approx(100 * 0.4 * -0.02 / 0.42 * 5)
     assert found["left.anti_squat"] == pytest.approx(100 * 0.28 / 0.42 * 5)
+
+
+def test_an_axle_alone_has_its_anti_measures_by_its_name():
+    """Wheelbase and height were given, and the message said that there was 'no wheelbase and height'."""
+    chassis = {"chassis": {"mass": 1000, "inertia": [300, 1000, 1000], "position": [1, 0, 0.5]}}
+    entry = {**corner("trailing_arm", **STRAIGHT), "on": "chassis", "position": [-1, 0, -0.5]}
+
+    def measured(name, **given):
+        parts = {f"{name}.left": entry, f"{name}.right": {**entry, "mirror": "y"}}
+        model, vehicle = scene(parts, bodies=chassis), stiffmbs.VehicleOptions(**given)
+        return stiffmbs.kinematics_and_compliance(model, name, vehicle=vehicle, **NONE)
+
+    rear = measured("rear", wheelbase=2.5, cg_height=0.5)
+    assert rear.measures["left.anti_squat"] == pytest.approx(100 * -0.02 / 0.42 * 2.5 / 0.5, rel=1e-9)
+    assert rear.vehicle.assumed[0] == "the rear axle"
+    assert "wheelbase 2.5 m, centre of mass at 0.5 m; assumed: the rear axle, brake share 0.4" in kc_text("car", rear)
+    assert "left.anti_dive" in measured("front", wheelbase=2.5, cg_height=0.5).measures
+    text = kc_text("car", measured("middle", wheelbase=2.5, cg_height=0.5))
+    assert "as these are unknown: position as front or rear axle" in text
+    assert "wheelbase (" not in text
+    assert "as these are unknown: wheelbase (--wheelbase)\n" in kc_text("car", measured("rear"))
 
 
 @pytest.mark.long

@@ -84,6 +84,10 @@ class MagicFormulaTyre(Tyre):
         p = self.properties
         if abs(self.hand) != 1:
             raise ValueError(f"hand: found {self.hand:g}, expected 1 or -1")
+        if not p.has_stiffness:
+            raise ValueError(
+                "properties: found no VERTICAL_STIFFNESS, expected one: the load follows from the deflection"
+            )
         if self.transient and not p.has_lengths:
             missing = " and ".join(p.names_of_lengths)
             raise ValueError(f"transient: found properties without {missing}, expected relaxation lengths")
