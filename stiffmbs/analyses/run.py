@@ -25,6 +25,7 @@ from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
 from ..results.solution import Solution
 from ..run_checks.growth import motion_within_tolerance, senseless
+from ..run_checks.left_tables import departure_notes, left_tables, records_tables, refused_departure, stopped_at
 from ..run_checks.motion import motion_notes
 from ..run_checks.uncertain_forces import uncertain_forces
 from ..solve.error_control.accumulated_errors import ACCUMULATED
@@ -148,6 +149,7 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
         *missed_events,
         *computed.left_out,
         *_range_notes(job, rows),
+        *departure_notes(left_tables(system, trajectory, records_tables(job.settings))),
         *flexible_body_notes(system, rows),
         *impossible,
         *uncertain,
@@ -210,8 +212,20 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and compute its output rows."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
+    recorded = records_tables(job.settings)
+    if departure := refused_departure(job.dynamics.system, trajectory, recorded):
+        trajectory = stopped_at(departure, _up_to(job, departure.first, trajectory))
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)
     return Computed(trajectory, rows, left_out)
+
+
+def _up_to(job: Job, end: float, trajectory: Trajectory) -> Trajectory:
+    """Repeat a run up to an earlier time, with a row there; return the given one if that is its start."""
+    grid = job.grid
+    if not end > grid.start:
+        return trajectory
+    times = None if grid.times is None else np.append(grid.times[grid.times < end], end)
+    return replace(job, grid=replace(grid, end=end, times=times)).integrate()
 
 
 def _reported_at(job: Job, times: np.ndarray) -> OutputRows:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .system import System
-from .table_values import ends_of, value_of
+from .table_values import REPEATS, ends_of, value_of
 
 
 def _on_both_sides(*breakpoints: float) -> np.ndarray:
@@ -150,7 +150,7 @@ def _of_table(data: bytes) -> tuple[np.ndarray, np.ndarray, float]:
     y = (((a * z + b) * z + c) * z + d).ravel()
     allowed = CLOSE * float(np.ptp(y))
     starts = list(_intervals(x, y, 0, count - 1, allowed))
-    period = float(knots[-1] - knots[0]) if numbers[1] else 0.0
+    period = float(knots[-1] - knots[0]) if numbers[1] == REPEATS else 0.0
     at = np.array(starts if period else [*starts, count - 1])
     return knots[at], _overlaps(numbers, at, _narrower(knots[at], period)), period
 

@@ -11,7 +11,7 @@ from ..reading.formula.formula import Formula
 from ..reading.table import Table
 from .group import Group
 from .system import System
-from .table_values import parts_of
+from .table_values import parts_of, spline_data
 from .terms import TERM_SETS
 
 
@@ -48,6 +48,24 @@ def values_of(system: System, values: np.ndarray, term_set: str, element: str) -
                 first = system.places[term_set][g, 1 + k] + e * width
                 found[term] = values[first : first + width]
     return found
+
+
+def table_arguments(system: System) -> Iterator[tuple[str, str, Table | None]]:
+    """Yield the element, and the label and table of each argument of a law; None if it is no table of the element's own.
+
+    The order is that of the values of the set ``event_function`` after the event functions.
+    """
+    for group in system.groups:
+        own = group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ()
+        for name, element, start in zip(group.names, group.elements, own, strict=False):
+            tables = {spline_data(table).tobytes(): (label, table) for label, table in _tables(element, "")}
+            for law, number in group.record.laws:
+                found: tuple[str, Table | None] = "", None
+                if law == "table":
+                    at = int(start + group.numbers[start + number])
+                    count = int(group.numbers[at])
+                    found = tables.get(group.numbers[at : at + 2 + count + 4 * (count - 1)].tobytes(), found)
+                yield name, *found
 
 
 BEYOND = 0.1

@@ -100,7 +100,9 @@ class Numbering:
 
         Raises Refusal if Adams has no such interpolation, or the table has too few points.
         """
-        method = table.ends if table.interpolation == "spline" or table.ends == "periodic" else table.interpolation
+        if table.beyond in ("hold", "error"):
+            raise Refusal(f"found the table {name} with beyond: {table.beyond}, expected extend: Adams extrapolates")
+        method = "periodic" if table.repeats else table.ends if table.interpolation == "spline" else table.interpolation
         if method is None or method not in CURVES:
             raise Refusal(f"found the table {name} ({method or 'natural'}), expected akima, lines, or ends: not-a-knot")
         if len(table.table) < FEWEST_POINTS and method != "lines":

@@ -12,6 +12,7 @@ from ...compile.system import System
 from ...compile.terms import TERM_SETS
 from ...compile.written_values import writer
 from .chattering import CHATTERING
+from .departures import Departure, departures
 from .long_steps import WHOLE
 from .native.layouts import EVENT_SEARCH, STEP_BOUND
 
@@ -54,6 +55,7 @@ class EventSearch:
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_breakpoint": intervals.first, "breakpoints": intervals.breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": WHOLE, "weight": weight,
+            "lowest": np.empty(n), "highest": np.empty(n), "outside": np.empty(n), "left": np.empty(n),
             **_calls(system), "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
         fill(self.table, EVENT_SEARCH, self._arrays)
@@ -81,8 +83,20 @@ class EventSearch:
             ("begins", np.inf),
             ("narrow", 0),
             ("passed", -np.inf),
+            ("noted", np.inf),
         ):
             self._cells[cell] = value
+        if self.n:
+            for name, nothing in (("lowest", np.inf), ("highest", -np.inf), ("outside", 0.0), ("left", np.inf)):
+                self._arrays[name][:] = nothing
+
+    def departures(self) -> tuple[Departure, ...]:
+        """Return the tables whose points were left in the steps of the last run."""
+        if not self.n or np.isinf(self._arrays["left"]).all():
+            return ()
+        names = "lowest", "highest", "outside", "left"
+        found = zip(*(self._arrays[name][self.n_event_functions :].tolist() for name in names), strict=True)
+        return departures(self._system, found)
 
     def note(self) -> str:
         """Return a sentence on a periodic law with more periods than steps; empty if there is none."""

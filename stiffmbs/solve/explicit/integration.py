@@ -15,6 +15,7 @@ from ...dynamics.storage import FAILURES
 from ...model.settings import RunSettings
 from ..error_control.tolerances import absolute_tolerances
 from ..events.event_functions import EventSearch, StepBound
+from ..events.departures import Departure
 from ..events.long_steps import LongStepLog, LongSteps
 from ..trajectory import Grid, Rows
 from .native.parameters import CONTROL
@@ -105,6 +106,10 @@ class Integration:
     def unresolved(self) -> str:
         """Return a sentence on force laws that repeat within a step, or an empty string."""
         return self._watch.note()
+
+    def departures(self) -> tuple[Departure, ...]:
+        """Return the tables whose points the steps have left."""
+        return self._watch.departures()
 
     def long_steps(self) -> tuple[LongSteps, ...]:
         """Return the recorded steps that are much longer than their predecessors."""
