@@ -25,7 +25,7 @@ from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
 from ..results.solution import Solution
 from ..run_checks.growth import motion_within_tolerance, senseless
-from ..run_checks.left_tables import departure_notes, left_tables, records_tables, refused_departure, stopped_at
+from ..run_checks.left_tables import departure_notes, left_tables, refused_departure, stopped_at
 from ..run_checks.motion import motion_notes
 from ..run_checks.uncertain_forces import uncertain_forces
 from ..solve.error_control.accumulated_errors import ACCUMULATED
@@ -149,7 +149,7 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
         *missed_events,
         *computed.left_out,
         *_range_notes(job, rows),
-        *departure_notes(left_tables(system, trajectory, records_tables(job.settings))),
+        *(departure_notes(left_tables(system, trajectory, job.settings)) if system.has_tables else ()),
         *flexible_body_notes(system, rows),
         *impossible,
         *uncertain,
@@ -212,20 +212,22 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and compute its output rows."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
-    recorded = records_tables(job.settings)
-    if departure := refused_departure(job.dynamics.system, trajectory, recorded):
-        trajectory = stopped_at(departure, _up_to(job, departure.first, trajectory))
+    if job.dynamics.system.has_tables:
+        trajectory = _within_tables(job, trajectory)
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)
     return Computed(trajectory, rows, left_out)
 
 
-def _up_to(job: Job, end: float, trajectory: Trajectory) -> Trajectory:
-    """Repeat a run up to an earlier time, with a row there; return the given one if that is its start."""
-    grid = job.grid
-    if not end > grid.start:
+def _within_tables(job: Job, trajectory: Trajectory) -> Trajectory:
+    """Return a run up to where it leaves a table with ``beyond: error``, repeated with a row there."""
+    departure, grid = refused_departure(left_tables(job.dynamics.system, trajectory, job.settings)), job.grid
+    if departure is None:
         return trajectory
-    times = None if grid.times is None else np.append(grid.times[grid.times < end], end)
-    return replace(job, grid=replace(grid, end=end, times=times)).integrate()
+    end = departure.first
+    if end > grid.start:
+        times = None if grid.times is None else np.append(grid.times[grid.times < end], end)
+        trajectory = replace(job, grid=replace(grid, end=end, times=times)).integrate()
+    return stopped_at(departure, trajectory)
 
 
 def _reported_at(job: Job, times: np.ndarray) -> OutputRows:
@@ -281,6 +283,7 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
     yield from structure.of_joints
     if any(joint.kind == "drive" for joint in job.data.joints.values()):
         yield from job.dynamics.kept("opposed actuators", None, partial(_opposed, job))
+        yield from _tabled_drives(job)
     yield from job.start.notes
     if system.has_functions:
         yield from notes_on_functions(system)
@@ -297,6 +300,13 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
     if system.size == 1.0 and job.settings.atol is None and "rtol" in traits_of(job.settings).reads:
         yield from motion_within_tolerance(system, job.settings, trajectory)
     yield from settings_notes(job.settings, system)
+
+
+def _tabled_drives(job: Job) -> Iterator[str]:
+    """Yield notes on drives by tables of positions."""
+    from ..run_checks.tabled_drives import tabled_drive_notes  # models without drives do not load it
+
+    yield from tabled_drive_notes(job.dynamics.system, job.data.joints)
 
 
 def _opposed(job: Job) -> tuple[str, ...]:

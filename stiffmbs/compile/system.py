@@ -130,6 +130,11 @@ class System:
         return self.of_body.straight(len(self.bodies))
 
     @cached_property
+    def has_tables(self) -> bool:
+        """True if an element has a table, or a formula that calls one."""
+        return any(group.kind.has_tables for group in self.groups)
+
+    @cached_property
     def algebraic_coordinates(self) -> np.ndarray:
         """Indices of the coordinates that are algebraic states."""
         return self.first_state + np.flatnonzero(self.algebraic)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 
@@ -49,6 +50,8 @@ def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
             return _closed(monotone_pieces, x, y) if table.repeats else monotone_pieces(x, y)
     from scipy.interpolate import CubicSpline
 
+    if table.smoothing is not None:
+        y = smoothed(table)
     ends = "periodic" if table.repeats else table.ends or "natural"
     if table.repeats:
         y = np.append(y[:-1], y[0])
@@ -60,6 +63,40 @@ def _closed(pieces: Callable[[np.ndarray, np.ndarray], np.ndarray], x: np.ndarra
     period, count = x[-1] - x[0], len(x) - 1
     around = np.concatenate([x[:-1] - period, x[:-1], x + period])
     return pieces(around, np.concatenate([y[:-1], y[:-1], y[:-1], y[:1]]))[:, count : 2 * count]
+
+
+@lru_cache(maxsize=64)
+def smoothed(table: Table) -> np.ndarray:
+    """Return the values at the points of the natural cubic spline of least curvature within a root mean square distance.
+
+    Reinsch, Smoothing by spline functions, Numer. Math. 10 (1967) 177-183. If a straight line is that near, it is returned.
+    """
+    from scipy.interpolate import make_smoothing_spline
+    from scipy.optimize import brentq
+
+    assert table.smoothing is not None
+    allowed = table.smoothing
+    x, y = np.array(table.table, dtype=float).T
+    x = (x - x[0]) / (x[-1] - x[0])
+    line = np.polyval(np.polyfit(x, y, 1), x)
+    if _distance(line, y) <= allowed:
+        return line
+
+    def departure(power: float) -> float:
+        return _distance(make_smoothing_spline(x, y, lam=10.0**power)(x), y) - allowed
+
+    low, high = SMOOTHEST
+    while departure(low) > 0:  # points with much noise for their distance
+        low -= 4.0
+    return np.asarray(make_smoothing_spline(x, y, lam=10.0 ** brentq(departure, low, high, xtol=1e-3))(x))
+
+
+SMOOTHEST = -16.0, 8.0
+"""Powers of ten of the weight of the curvature between which that of a smoothing spline is searched, over a unit length."""
+
+
+def _distance(curve: np.ndarray, y: np.ndarray) -> float:
+    return float(np.sqrt(np.mean((curve - y) ** 2)))
 
 
 def curve(table: Table) -> Curve:

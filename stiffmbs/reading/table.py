@@ -41,12 +41,20 @@ class Table(Described):
         False, description="a cubic spline with continuous curvature, which may overshoot its points (Adams: CUBSPL)"
     )
 
+    smoothing: si.Anything | None = Field(
+        None,
+        gt=0,
+        description="root mean square distance from the points, such as their measuring error, of a smoothing spline: the straightest cubic spline that comes that near",
+    )
+
     _argument: Known = PrivateAttr(UNKNOWN)
     _value: Known = PrivateAttr(UNKNOWN)
 
     @property
-    def interpolation(self) -> Literal["monotone", "lines", "akima", "spline"]:
+    def interpolation(self) -> Literal["monotone", "lines", "akima", "spline", "smoothing"]:
         """Name the interpolation between the points."""
+        if self.smoothing is not None:
+            return "smoothing"
         if self.lines or self.akima:
             return "lines" if self.lines else "akima"
         return "spline" if self.spline or self.ends else "monotone"
@@ -68,7 +76,9 @@ class Table(Described):
         if isinstance(found, dict):
             parameters = (info.context or {}).get("parameters") or {}
             columns = zip(*found["table"], strict=True)
-            table._argument, table._value = (_of_column(column, parameters) for column in columns)
+            argument, values = columns
+            table._argument = _of_column(argument, parameters)
+            table._value = _of_column([*values, found.get("smoothing")], parameters)
         return table
 
     @field_validator("table")
@@ -94,6 +104,14 @@ class Table(Described):
             raise ValueError("found akima with lines or ends, expected it alone")
         if self.lines and (self.spline or self.ends in ("clamped", "not-a-knot")):
             raise ValueError("found lines with a spline or its ends, expected lines alone or with periodic ends")
+        if self.smoothing is not None and (
+            self.lines or self.akima or self.repeats or self.ends not in (None, "natural")
+        ):
+            raise ValueError(
+                "found smoothing with another interpolation or periodic ends, expected it alone or with natural ends"
+            )
+        if self.smoothing is not None and len(self.table) < 5:
+            raise ValueError(f"found {len(self.table)} points, expected 5 or more for smoothing")
         if self.ends == "not-a-knot" and len(self.table) < 4:
             raise ValueError(f"found {len(self.table)} points, expected 4 or more for not-a-knot ends")
         return self

@@ -19,6 +19,7 @@ from ..compile.state import State
 from ..compile.system import System
 from ..compile.table_values import curve, ends_of, spline_data
 from ..compile.written_values import table_arguments
+from ..elements.states.amount import TABLE as INPUT_TABLE
 from ..model.settings import RunSettings
 from ..reading.table import Table
 from ..solve.events.departures import Departure, merged
@@ -31,21 +32,17 @@ OF_FIELD = "the table "
 """Beginning of the text of an input that is the table of a field."""
 
 
-def records_tables(settings: RunSettings) -> bool:
-    """Return True if a solver records the arguments of tables in its steps, which it searches for events."""
+def left_tables(system: System, trajectory: Trajectory, settings: RunSettings) -> list[Departure]:
+    """Return the departures of a run, those of its steps if the solver searches them for events, or at output times."""
     traits = traits_of(settings)
-    return not (traits.fixed_steps or traits.exact)
-
-
-def left_tables(system: System, trajectory: Trajectory, recorded: bool) -> list[Departure]:
-    """Return the departures of a run, those of recorded steps or at output times."""
+    recorded = not (traits.fixed_steps or traits.exact)
     of_state = trajectory.departures if recorded else _at_outputs(system, trajectory)
     return list(merged([*of_state, *_of_time(system, float(trajectory.t[0]), float(trajectory.t[-1]))]))
 
 
-def refused_departure(system: System, trajectory: Trajectory, recorded: bool) -> Departure | None:
+def refused_departure(found: list[Departure]) -> Departure | None:
     """Return the first departure from a table with ``beyond: error``, or None."""
-    errors = (each for each in left_tables(system, trajectory, recorded) if each.table.beyond == "error")
+    errors = (each for each in found if each.table.beyond == "error")
     return min(errors, key=lambda each: each.first, default=None)
 
 
@@ -106,15 +103,19 @@ def _of_time(system: System, start: float, end: float) -> Iterator[Departure]:
     given = given_to(system)
     t = np.linspace(start, end, SAMPLES)
     for group in system.groups:
-        if not (group.kind.has_tables or (given.tables and group.has_inputs)):
+        if not group.has_inputs:
             continue
         for name, element in zip(group.names, group.elements, strict=True):
             for tree, text, values, tables in expressions_of(element, given):
+                if name in given.tables and INPUT_TABLE in tables:
+                    continue  # the value of an input, which is noted where it is used
                 known = Input(tree, text, values, {label: TableRanges(table) for label, table in tables.items()})
                 for node in ast.walk(tree):
                     match node:
                         case ast.Call(ast.Name(label), [argument]) if label in tables:
-                            label = text.removeprefix(OF_FIELD) if text.startswith(OF_FIELD) else label.removesuffix("(t)")
+                            label = (
+                                text.removeprefix(OF_FIELD) if text.startswith(OF_FIELD) else label.removesuffix("(t)")
+                            )
                             with np.errstate(all="ignore"):
                                 x = known.at(t, argument)
                             yield from _departure(name, label, tables[node.func.id], t, x)  # type: ignore[union-attr, attr-defined]

@@ -102,6 +102,8 @@ class Numbering:
         """
         if table.beyond in ("hold", "error"):
             raise Refusal(f"found the table {name} with beyond: {table.beyond}, expected extend: Adams extrapolates")
+        if table.smoothing is not None:
+            raise Refusal(f"found the table {name} with smoothing, expected its points to be interpolated")
         method = "periodic" if table.repeats else table.ends if table.interpolation == "spline" else table.interpolation
         if method is None or method not in CURVES:
             raise Refusal(f"found the table {name} ({method or 'natural'}), expected akima, lines, or ends: not-a-knot")

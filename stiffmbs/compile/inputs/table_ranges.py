@@ -23,7 +23,7 @@ class TableRanges:
         self.table = table
         self._values = curve(table)
         self._x, self._pieces = parts_of(table)
-        self._smooth = {"lines": 1, "spline": 3}.get(table.interpolation, 2)
+        self._smooth = {"lines": 1, "spline": 3, "smoothing": 3}.get(table.interpolation, 2)
         self.period = self._x[-1] - self._x[0] if table.repeats else 0.0
         self._holds = table.beyond == "hold"
         self.breakpoints = _breakpoints(table, self._x)
@@ -93,7 +93,11 @@ class TableRanges:
                 ends = self._values(np.array([a, b]))
                 return np.where(outside, hull(found, ends[[0, 0]], ends[[1, 1]]), found)
             if k > 1 or self._holds:
-                crossed = hull(found, np.zeros_like(found)) if k == (1 if self._holds else 2) else np.broadcast_to(EVERYWHERE, found.shape)
+                crossed = (
+                    hull(found, np.zeros_like(found))
+                    if k == (1 if self._holds else 2)
+                    else np.broadcast_to(EVERYWHERE, found.shape)
+                )
                 return np.where(beyond, 0.0, np.where(outside, crossed, found))
             return found
 

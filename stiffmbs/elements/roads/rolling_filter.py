@@ -122,6 +122,8 @@ def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
         slope = np.diff(heights) / np.diff(at)
         ends = np.where(x < at[0], slope[0], slope[-1])
         return np.interp(inside, at, heights) + ends * outside
+    if table.smoothing is not None:
+        raise InputError("found a road with smoothing and a filter, expected one of them")
     local = {"akima": Akima1DInterpolator, "monotone": PchipInterpolator}.get(table.interpolation)
     if local and table.repeats:
         count, length = len(at) - 1, at[-1] - at[0]

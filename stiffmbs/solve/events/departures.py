@@ -61,7 +61,7 @@ def merged(parts: Iterable[Departure]) -> Iterator[Departure]:
     """Yield the departures from each table of each element in all parts of a run."""
     found: dict[tuple[str, str], Departure] = {}
     for part in parts:
-        before = found.get((part.element, part.label), None)
+        before = found.get((part.element, part.label))
         if before:
             low, high = zip(before.reached, part.reached, strict=True)
             part = replace(

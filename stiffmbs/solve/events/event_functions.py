@@ -50,12 +50,13 @@ class EventSearch:
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "interval_low", "interval_high", "apart")  # fmt: skip
+        self._extent = {name: np.empty(n) for name in ("lowest", "highest", "outside", "left")}
         self._arrays = {
             "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "n_with_intervals": intervals.zoned,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_breakpoint": intervals.first, "breakpoints": intervals.breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": WHOLE, "weight": weight,
-            "lowest": np.empty(n), "highest": np.empty(n), "outside": np.empty(n), "left": np.empty(n),
+            **self._extent,
             **_calls(system), "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
         fill(self.table, EVENT_SEARCH, self._arrays)
@@ -88,14 +89,13 @@ class EventSearch:
             self._cells[cell] = value
         if self.n:
             for name, nothing in (("lowest", np.inf), ("highest", -np.inf), ("outside", 0.0), ("left", np.inf)):
-                self._arrays[name][:] = nothing
+                self._extent[name][:] = nothing
 
     def departures(self) -> tuple[Departure, ...]:
         """Return the tables whose points were left in the steps of the last run."""
-        if not self.n or np.isinf(self._arrays["left"]).all():
+        if not self.n or np.isinf(self._extent["left"]).all():
             return ()
-        names = "lowest", "highest", "outside", "left"
-        found = zip(*(self._arrays[name][self.n_event_functions :].tolist() for name in names), strict=True)
+        found = zip(*(values[self.n_event_functions :].tolist() for values in self._extent.values()), strict=True)
         return departures(self._system, found)
 
     def note(self) -> str:

@@ -14,8 +14,8 @@ from ...dynamics.initial import InitialValues
 from ...dynamics.storage import FAILURES
 from ...model.settings import RunSettings
 from ..error_control.tolerances import absolute_tolerances
-from ..events.event_functions import EventSearch, StepBound
 from ..events.departures import Departure
+from ..events.event_functions import EventSearch, StepBound
 from ..events.long_steps import LongStepLog, LongSteps
 from ..trajectory import Grid, Rows
 from .native.parameters import CONTROL
