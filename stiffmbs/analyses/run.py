@@ -22,7 +22,7 @@ from ..model.settings import RunSettings, Settings, takes_settings
 from ..redundancy.messages.presolve_report import StructureNotes, structure_notes
 from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
-from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
+from ..results.energy_balance_notes import broken_balance, is_broken, range_notes, undefined_values
 from ..results.solution import Solution
 from ..run_checks.growth import motion_within_tolerance, senseless
 from ..run_checks.left_tables import departure_notes, left_tables, refused_departure, stopped_at
@@ -136,9 +136,8 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
             f"no accelerations could be computed at the start: {failure(job.dynamics, rows.status, job.grid.start)}"
         )
     outcome, message = _ending(job, rows, trajectory)
-    system, steps = job.dynamics.system, trajectory.step_times
-    balance = energy_balance(system, rows, steps)
-    broken = tuple(balance_notes(system, balance, rows, job.settings, steps)) if balance.may_be_broken else ()
+    system = job.dynamics.system
+    balance, broken = _balance(job, trajectory, rows)
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
     impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or broken
     uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job)))
@@ -158,6 +157,21 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     )
     headline = _headline(outcome, message, (*computed.doubts, *impossible))
     return Finished(job, trajectory, rows, outcome, headline, notes, structure, balance, channels)
+
+
+def _balance(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balance, tuple[str, ...]]:
+    """Return the energy balance of a run, and a sentence if it is certainly broken."""
+    system, settings = job.dynamics.system, job.settings
+    balance = energy_balance(system, rows)
+    if not is_broken(system, balance, rows, settings):
+        return balance, ()
+    from .balance_within_steps import balance_within_steps  # few runs need it
+
+    within = balance_within_steps(job, trajectory, rows)
+    balance, rows = within or (balance, rows)
+    if balance.resolved and is_broken(system, balance, rows, settings):
+        return balance, (broken_balance(system, balance, rows, settings),)
+    return balance, ()
 
 
 def flexible_body_notes(system: System, rows: OutputRows) -> Iterator[str]:
