@@ -13,7 +13,7 @@ from ..results.energy_balance import Balance, balance_of_steps
 from ..results.energy_balance_notes import PER_TOLERANCE, is_broken
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.missing_rows import reported
-from ..solve.settings import near_constraints
+from ..solve.settings import near_constraints, traits_of
 from ..solve.trajectory import Outcome, Trajectory
 from .job import Job
 
@@ -34,7 +34,7 @@ def balance_within_steps(job: Job, trajectory: Trajectory, rows: OutputRows) -> 
     found = None
     for nodes in NODES:
         steps = _steps(job, trajectory, rows, nodes)
-        again = _at_nodes(job, steps, nodes) if len(steps) else None
+        again: OutputRows | None = _at_nodes(job, steps, nodes) if len(steps) else None
         if again is None:
             return found
         balance = balance_of_steps(
@@ -51,7 +51,9 @@ def _steps(job: Job, trajectory: Trajectory, rows: OutputRows, nodes: int) -> np
     start, end = float(rows.t[0]), float(rows.t[-1])
     known = trajectory.step_times
     inside = known[(known > start) & (known < end)]
-    if not len(known):
+    if not len(known) and traits_of(job.settings).exact:  # the motion between outputs is as exact as at them
+        inside = np.linspace(start, end, int(trajectory.statistics["steps"]) + 1)[1:-1]
+    elif not len(known):
         return np.empty((0, 2))
     edges = np.concatenate([[start], np.unique(inside), [end]])
     resolution = 1e3 * np.finfo(float).eps * max(abs(start), abs(end)) / INSIDE
@@ -83,7 +85,7 @@ def _at_nodes(job: Job, steps: np.ndarray, nodes: int) -> OutputRows | None:
     grid = replace(job.grid, end=float(steps[-1, 1]), times=np.concatenate([[job.grid.start], times, [steps[-1, 1]]]))
     trajectory = replace(job, grid=grid).integrate()
     found, _ = reported(job.dynamics, trajectory, near_constraints(job.settings), job.settings.rtol)
-    if trajectory.outcome is not Outcome.DONE or len(found.t) != len(grid.times):
+    if trajectory.outcome is not Outcome.DONE or len(found.t) != len(times) + 2:
         return None
     return found.at(np.arange(1, len(times) + 1))
 

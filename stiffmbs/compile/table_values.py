@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Final
 
 import numpy as np
 
@@ -11,7 +12,8 @@ from ..errors import InputError
 from ..reading.table import Table
 
 Curve = Callable[[np.ndarray], np.ndarray]
-REPEATS, HOLDS = 1.0, 2.0
+REPEATS: Final = 1.0
+HOLDS: Final = 2.0
 """End codes in the data of a table that is periodic, or keeps the value of its ends (as in `native.spline`)."""
 
 
@@ -85,14 +87,12 @@ def smoothed(table: Table) -> np.ndarray:
     def departure(power: float) -> float:
         return _distance(make_smoothing_spline(x, y, lam=10.0**power)(x), y) - allowed
 
-    low, high = SMOOTHEST
-    while departure(low) > 0:  # points with much noise for their distance
+    low = high = 0.0
+    while departure(low) > 0.0:
         low -= 4.0
+    while departure(high) < 0.0:
+        high += 4.0
     return np.asarray(make_smoothing_spline(x, y, lam=10.0 ** brentq(departure, low, high, xtol=1e-3))(x))
-
-
-SMOOTHEST = -16.0, 8.0
-"""Powers of ten of the weight of the curvature between which that of a smoothing spline is searched, over a unit length."""
 
 
 def _distance(curve: np.ndarray, y: np.ndarray) -> float:

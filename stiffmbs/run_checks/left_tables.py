@@ -101,7 +101,7 @@ def _keeps_value(table: Table, side: int) -> bool:
 def _of_time(system: System, start: float, end: float) -> Iterator[Departure]:
     """Yield the departures from tables whose arguments depend on time alone."""
     given = given_to(system)
-    t = np.linspace(start, end, SAMPLES)
+    t = _samples(start, end)
     for group in system.groups:
         if not group.has_inputs:
             continue
@@ -119,6 +119,10 @@ def _of_time(system: System, start: float, end: float) -> Iterator[Departure]:
                             with np.errstate(all="ignore"):
                                 x = known.at(t, argument)
                             yield from _departure(name, label, tables[node.func.id], t, x)  # type: ignore[union-attr, attr-defined]
+
+
+def _samples(start: float, end: float) -> np.ndarray:
+    return np.linspace(start, end, SAMPLES)
 
 
 def _departure(element: str, label: str, table: Table, t: np.ndarray, x: np.ndarray) -> Iterator[Departure]:

@@ -7,7 +7,18 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.analyses import beam_elements, check, far_away, given_inputs, job, rerun, settled, staged, steady
+from stiffmbs.analyses import (
+    balance_within_steps,
+    beam_elements,
+    check,
+    far_away,
+    given_inputs,
+    job,
+    rerun,
+    settled,
+    staged,
+    steady,
+)
 from stiffmbs.analyses.linearised import modes, sides, transfer
 from stiffmbs.errors import SolverError
 from tests.decisions.common import BELOW, Reached, Record, nothing, reach, reached, refused
@@ -333,7 +344,26 @@ def in_steady_motion(imbalance=0.0):
     return times[0], balances
 
 
+def within_steps(record):
+    """Record the nodes of the quadratures of a balance that stays broken, or the steps that it examines."""
+    rows = Record(t=np.array([0.0, 1.0]), values=np.zeros((1, 1)))
+    job = Record(dynamics=Record(system=Record(n_q=999, n_u=0, keeps_energy=False)), settings=None)
+    trajectory = Record(step_times=np.linspace(0.0, 1.0, 10_001))
+    if record == "steps":
+        return len(balance_within_steps._steps(job, trajectory, rows, 5))
+    found = []
+    changes = {
+        "_steps": lambda *_: np.array([[0.0, 1.0]]), "_at_nodes": lambda *asked: found.append(asked[2]) or rows,
+        "balance_of_steps": lambda *_: None, "is_broken": lambda *_: True, "_weights_and_jumps": lambda *_: (None, None),
+    }  # fmt: skip
+    with patch.multiple(balance_within_steps, **changes):
+        balance_within_steps.balance_within_steps(job, trajectory, rows)
+    return found[0] ** 2 + 10 * found[1]
+
+
 DECISIONS = {
+    "analyses.balance_within_steps:NODES": lambda: within_steps("nodes"),
+    "analyses.balance_within_steps:MOST_NUMBERS": lambda: within_steps("steps"),
     "analyses.beam_elements:MOST": most_elements_of_a_beam,
     "analyses.check:MOST_MOVES": moves_of_a_message,
     "analyses.far_away:FAR": lambda: farthest_equilibrium(far_away.far_away),
@@ -381,6 +411,7 @@ DECISIONS = {
     "analyses.steady:VELOCITY_ERROR": lambda: count_while(lambda x: steady._rounded([x], 1.0) != [0.0], BELOW),
 }  # fmt: skip
 EXPECTED = {
+    "analyses.balance_within_steps:NODES": 115, "analyses.balance_within_steps:MOST_NUMBERS": 4000,
     "analyses.beam_elements:MOST": 512, "analyses.check:MOST_MOVES": 50, "analyses.far_away:FAR": 18, "analyses.far_away:BEYOND": 31, "analyses.given_inputs:FEWEST": 513,
     "analyses.given_inputs:MOST": 65579, "analyses.given_inputs:FOLLOWED": 27, "analyses.given_inputs:JUMP": 4,
     "analyses.given_inputs:ROUNDINGS": 9.094947017729282e-13, "analyses.job:DEPENDENT": 120, "analyses.linearised.modes:AT_REST": 27,

@@ -1,10 +1,12 @@
 """Evaluation of tables in kernels."""
 
 from math import floor
+from typing import Final
 
 from .access import compiled
 
-REPEATS, HOLDS = 1.0, 2.0
+REPEATS: Final = 1.0
+HOLDS: Final = 2.0
 """End codes of tables (`stiffmbs.compile.table_values`)."""
 
 
