@@ -37,6 +37,7 @@ from ..tuning import in_use
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
 from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
+from .start_forces import start_force_notes
 from .start_from import StartFrom
 
 
@@ -144,7 +145,7 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     imprecise = tuple(uncertain_forces(job.dynamics, trajectory, rows))
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     notes = (
-        *_notes(job, trajectory, structure),
+        *_notes(job, trajectory, rows, structure),
         *missed_events,
         *computed.left_out,
         *_range_notes(job, rows),
@@ -288,7 +289,7 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
     return Outcome.STOPPED, sentence + suspect(job.dynamics, t, q, u)
 
 
-def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Iterator[str]:
+def _notes(job: Job, trajectory: Trajectory, rows: OutputRows, structure: StructureNotes) -> Iterator[str]:
     """Yield the notes on the model, its start, the solver and the settings."""
     system = job.dynamics.system
     yield from notes_of(job.data)
@@ -303,6 +304,8 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
         yield from notes_on_functions(system)
     if job.start.moved:
         yield job.start.sentence()
+    if job.start_from is None:
+        yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, rows)
     if trajectory.note:
         yield trajectory.note
     # relative to the mechanism's size, with any tolerances

@@ -17,6 +17,7 @@ from stiffmbs.analyses import (
     rerun,
     settled,
     staged,
+    start_forces,
     steady,
 )
 from stiffmbs.analyses.linearised import modes, sides, transfer
@@ -344,6 +345,22 @@ def in_steady_motion(imbalance=0.0):
     return times[0], balances
 
 
+def force_at_start(kind, **equilibrium):
+    """Return the force of an element, in quarter octaves of the weight, up to which it has no note."""
+    system = Record(
+        mass=np.array([1.0 / start_forces.STANDARD_GRAVITY, 0.0, 0.0]), of_body=Record(n_u=3, linear=2), size=1.0
+    )
+    start = Record(u=np.zeros(3), moved=())
+
+    def is_silent(force):
+        element = start_forces.Stretched("e", kind, True, force)
+        with patch.multiple(start_forces, _in_equilibrium=lambda *_: equilibrium.get("settled", [])):
+            worst = start_forces._suspect(system, start, [element])
+            return not worst or not [*start_forces._notes(Record(system=system), start, 0.0, worst, 0.0)]
+
+    return count_while(is_silent, DOUBLES)
+
+
 def within_steps(record):
     """Record the nodes of the quadratures of a balance that stays broken, or the steps that it examines."""
     rows = Record(t=np.array([0.0, 1.0]), values=np.zeros((1, 1)))
@@ -362,6 +379,10 @@ def within_steps(record):
 
 
 DECISIONS = {
+    "analyses.start_forces:OF_WEIGHT": lambda: force_at_start("spring_damper"),
+    "analyses.start_forces:OF_EQUILIBRIUM": lambda: force_at_start(
+        "bushing", settled=[start_forces.Stretched("e", "bushing", True, 3.0)]
+    ),
     "analyses.balance_within_steps:NODES": lambda: within_steps("nodes"),
     "analyses.balance_within_steps:MOST_NUMBERS": lambda: within_steps("steps"),
     "analyses.beam_elements:MOST": most_elements_of_a_beam,
@@ -411,6 +432,7 @@ DECISIONS = {
     "analyses.steady:VELOCITY_ERROR": lambda: count_while(lambda x: steady._rounded([x], 1.0) != [0.0], BELOW),
 }  # fmt: skip
 EXPECTED = {
+    "analyses.start_forces:OF_WEIGHT": 40, "analyses.start_forces:OF_EQUILIBRIUM": 20,
     "analyses.balance_within_steps:NODES": 115, "analyses.balance_within_steps:MOST_NUMBERS": 4000,
     "analyses.beam_elements:MOST": 512, "analyses.check:MOST_MOVES": 50, "analyses.far_away:FAR": 18, "analyses.far_away:BEYOND": 31, "analyses.given_inputs:FEWEST": 513,
     "analyses.given_inputs:MOST": 65579, "analyses.given_inputs:FOLLOWED": 27, "analyses.given_inputs:JUMP": 4,
