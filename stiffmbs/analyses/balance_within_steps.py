@@ -23,6 +23,8 @@ MOST_NUMBERS = 20_000_000
 """Numbers in the rows of the repeated run; steps of a longer run are examined from its start as far as these allow."""
 INSIDE: Final = 1e-6
 """Distance of the outer nodes from the ends of a step, in steps: there, rows belong to this step on both sides of a restart."""
+SHORTEST: Final = 1000.0
+"""Length of the shortest examined step, in roundings of time: a restart begins with steps that do no work."""
 
 
 def balance_within_steps(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balance, OutputRows] | None:
@@ -41,7 +43,7 @@ def balance_within_steps(job: Job, trajectory: Trajectory, rows: OutputRows) -> 
             again, *_weights_and_jumps(job, steps, again, nodes), job.dynamics.system.keeps_energy
         )
         if not is_broken(job.dynamics.system, balance, again, job.settings):
-            return (balance, again) if steps[-1, 1] == rows.t[-1] else None
+            return (balance, again) if rows.t[-1] - steps[-1, 1] <= SHORTEST * np.spacing(rows.t[-1]) else None
         found = balance, again
     return found
 
@@ -56,13 +58,11 @@ def _steps(job: Job, trajectory: Trajectory, rows: OutputRows, nodes: int) -> np
     elif not len(known):
         return np.empty((0, 2))
     edges = np.concatenate([[start], np.unique(inside), [end]])
-    resolution = 1e3 * np.finfo(float).eps * max(abs(start), abs(end)) / INSIDE
-    kept = np.append(np.diff(edges) > resolution, True)
-    kept[-1] = True
-    edges = edges[kept]
+    steps = np.stack([edges[:-1], edges[1:]], axis=1)
+    steps = steps[np.diff(edges) > SHORTEST * np.spacing(max(abs(start), abs(end)))]
     width = job.dynamics.system.n_q + 3 * job.dynamics.system.n_u + rows.values.shape[1]
     most = max(MOST_NUMBERS // (width * nodes), 1)
-    return np.stack([edges[:-1], edges[1:]], axis=1)[:most]
+    return steps[:most]
 
 
 def _lobatto(nodes: int) -> tuple[np.ndarray, np.ndarray]:
@@ -76,10 +76,15 @@ def _lobatto(nodes: int) -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * (x + 1.0), 1.0 / (nodes * (nodes - 1) * legendre.legval(x, polynomial) ** 2)
 
 
+def _inside(steps: np.ndarray) -> np.ndarray:
+    """Return the distance of the outer nodes from the ends of each step, in steps, shape (n, 1); above rounding of time."""
+    return np.maximum(INSIDE, 4.0 * np.spacing(np.abs(steps).max()) / np.diff(steps))
+
+
 def _at_nodes(job: Job, steps: np.ndarray, nodes: int) -> OutputRows | None:
     """Return the rows at the nodes of steps, from a repeated run; None if it ends earlier."""
-    place = INSIDE + (1.0 - 2.0 * INSIDE) * _lobatto(nodes)[0]
-    times = (steps[:, :1] + np.diff(steps) * place).ravel()
+    inside = _inside(steps)
+    times = (steps[:, :1] + np.diff(steps) * (inside + (1.0 - 2.0 * inside) * _lobatto(nodes)[0])).ravel()
     if not (np.diff(times) > 0).all() or not times[0] > job.grid.start:
         return None
     grid = replace(job.grid, end=float(steps[-1, 1]), times=np.concatenate([[job.grid.start], times, [steps[-1, 1]]]))
@@ -92,7 +97,7 @@ def _at_nodes(job: Job, steps: np.ndarray, nodes: int) -> OutputRows | None:
 
 def _weights_and_jumps(job: Job, steps: np.ndarray, rows: OutputRows, nodes: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the weights of the nodes of each step, s, and whether velocities jump between two steps."""
-    weights = np.diff(steps) * (1.0 - 2.0 * INSIDE) * _lobatto(nodes)[1]
+    weights = np.diff(steps) * (1.0 - 2.0 * _inside(steps)) * _lobatto(nodes)[1]
     u = rows.u.reshape(len(steps), nodes, -1)
     before, after = u[:-1, -1], u[1:, 0]
     system = job.dynamics.system

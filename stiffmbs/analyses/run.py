@@ -64,8 +64,8 @@ def run(
         State to start from instead of the described one, at its time unless `start` is given: the last of a solution or
         of a results file, or ``solution.state(at=2.0)``.
     inputs : mapping of str to float, callable, (times, values) or Table, optional
-        Values of the model's inputs: constants, functions of t, s, or times and values with linear interpolation.  A
-        smooth function becomes a spline; another is sampled at the output instants.
+        Values of the model's inputs: constants, functions of t, s, or times and values with linear interpolation, which
+        is extrapolated with a note; a `Table` states what is beyond its points.  A smooth function becomes a spline; another is sampled at the output instants.
     **changes
         Fields of the settings to change: ``duration=2.0, rtol=1e-8``.
 
