@@ -188,7 +188,7 @@ def _range_notes(job: Job, rows: OutputRows) -> Iterator[str]:
     limited = {name: x for name, x in job.data.forces.items() if type(x).valid_ranges is not Force.valid_ranges}
     ranges = {name: found for name, force in limited.items() if (found := force.valid_ranges())}
     if ranges:
-        yield from range_notes(ranges, partial(series_of, job.data, job.dynamics.system, rows))
+        yield from range_notes(ranges, partial(series_of, job.data, job.dynamics.system, rows), rows.t)
 
 
 def _headline(outcome: Outcome, message: str, doubts: Sequence[str]) -> str:

@@ -24,30 +24,32 @@ ACTING = "load"
 
 
 def range_notes(
-    ranges: Mapping[str, Mapping[str, tuple[float, float]]], series: Callable[[str], np.ndarray]
+    ranges: Mapping[str, Mapping[str, tuple[float, float]]], series: Callable[[str], np.ndarray], t: np.ndarray
 ) -> Iterator[str]:
     """Yield a sentence for each element, with the extremes of its channels outside their ranges.
 
-    `ranges`: valid ranges by element and channel. `series`: returns the values of a channel at the output times.
+    `ranges`: valid ranges by element and channel. `series`: returns the values of a channel at the output times t, s.
     """
     for name, of_element in ranges.items():
-        acts = series(f"{name}.{ACTING}") > 0 if ACTING in of_element else slice(None)
+        acts = series(f"{name}.{ACTING}") > 0 if ACTING in of_element else np.full(len(t), True)
         found = [
             sentence
             for channel, (low, high) in of_element.items()
-            if (sentence := _beyond(channel, series(f"{name}.{channel}")[acts], low, high))
+            if (sentence := _beyond(channel, np.where(acts, series(f"{name}.{channel}"), np.nan), low, high, t))
         ]
         if found:
             yield f"'{name}' leaves the valid ranges of its data: {', '.join(found)}"
 
 
-def _beyond(channel: str, values: np.ndarray, low: float, high: float) -> str:
-    """Return a clause with the extremes of a channel and its range, or an empty string within it."""
+def _beyond(channel: str, values: np.ndarray, low: float, high: float, t: np.ndarray) -> str:
+    """Return a clause with the extremes of a channel, its range, and the time outside, or an empty string within it."""
+    outside = (values < low) | (values > high)  # values that are not finite are not outside
+    duration = float(np.sum(np.diff(t) * (outside[1:] + outside[:-1].astype(float)) / 2))
     values = values[np.isfinite(values)]
     if not len(values) or (low <= values.min() and values.max() <= high):
         return ""
     reached = [x for x, beyond in ((values.min(), values.min() < low), (values.max(), values.max() > high)) if beyond]
-    return f"{channel} reaches {' and '.join(f'{x:.4g}' for x in reached)} (valid from {low:.4g} to {high:.4g})"
+    return f"{channel} reaches {' and '.join(f'{x:.4g}' for x in reached)} (valid from {low:.4g} to {high:.4g}; outside for {duration:.3g} s)"
 
 
 def undefined_values(rows: OutputRows, channels: Mapping[str, np.ndarray]) -> Iterator[str]:
