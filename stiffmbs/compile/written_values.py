@@ -58,7 +58,7 @@ def table_arguments(system: System) -> Iterator[tuple[str, str, Table | None]]:
     for group in system.groups:
         own = group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ()
         for name, element, start in zip(group.names, group.elements, own, strict=False):
-            tables = {spline_data(table).tobytes(): (label, table) for label, table in _tables(element, "")}
+            tables = {spline_data(table).tobytes(): (label, table) for label, table in tables_in(element, "")}
             for law, number in group.record.laws:
                 found: tuple[str, Table | None] = "", None
                 if law == "table":
@@ -80,14 +80,14 @@ def table_notes(data: Described) -> Iterator[str]:
     users: dict[str, list[str]] = {}
     for section in SECTIONS:
         for name, element in getattr(data, section, {}).items():
-            for label, table in _tables(element, ""):
+            for label, table in tables_in(element, ""):
                 if note := _beyond(table):
                     users.setdefault(f"the table '{label}' {note}", []).append(name)
     for note, names in users.items():
         yield f"{', '.join(dict.fromkeys(names))}: {note}"
 
 
-def _tables(value: object, label: str) -> Iterator[tuple[str, Table]]:
+def tables_in(value: object, label: str) -> Iterator[tuple[str, Table]]:
     """Yield the tables in a field, with their names in the scene or the name of the field."""
     match value:
         case Table():
@@ -96,13 +96,13 @@ def _tables(value: object, label: str) -> Iterator[tuple[str, Table]]:
             yield from value.tables.items()
         case Described():
             for name in type(value).model_fields:
-                yield from _tables(getattr(value, name), name)
+                yield from tables_in(getattr(value, name), name)
         case Mapping():
             for name, part in value.items():
-                yield from _tables(part, name)
+                yield from tables_in(part, name)
         case tuple():
             for part in value:
-                yield from _tables(part, label)
+                yield from tables_in(part, label)
 
 
 def _beyond(table: Table) -> str:

@@ -18,8 +18,9 @@ from ..compile.inputs.table_ranges import TableRanges
 from ..compile.state import State
 from ..compile.system import System
 from ..compile.table_values import curve, ends_of, spline_data
-from ..compile.written_values import table_arguments
+from ..compile.written_values import table_arguments, tables_in
 from ..elements.states.amount import TABLE as INPUT_TABLE
+from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..reading.table import Table
 from ..solve.events.departures import Departure, merged
@@ -36,7 +37,7 @@ def left_tables(system: System, trajectory: Trajectory, settings: RunSettings) -
     """Return the departures of a run, those of its steps if the solver searches them for events, or at output times."""
     traits = traits_of(settings)
     recorded = not (traits.fixed_steps or traits.exact)
-    of_state = trajectory.departures if recorded else _at_outputs(system, trajectory)
+    of_state = trajectory.departures if recorded else _at_states(system, trajectory.t, trajectory.q, trajectory.u)
     return list(merged([*of_state, *_of_time(system, float(trajectory.t[0]), float(trajectory.t[-1]))]))
 
 
@@ -50,11 +51,14 @@ def stopped_at(first: Departure, trajectory: Trajectory) -> Trajectory:
     """Return a trajectory that ends at a departure, with the reason."""
     rows = max(int(np.searchsorted(trajectory.t, first.first, side="right")), 1)
     t, q, u = (array[:rows] for array in (trajectory.t, trajectory.q, trajectory.u))
-    message = (
+    return replace(trajectory, t=t, q=q, u=u, outcome=Outcome.STOPPED, message=_refusal(first))
+
+
+def _refusal(first: Departure) -> str:
+    return (
         f"stopped at t = {first.first:.9g} s: the table '{first.label}' of '{first.element}' was left (beyond: error): its "
         f"argument passes its {_end(first, int(first.beyond[1] > first.beyond[0]))}; expected more points, or another 'beyond'"
     )
-    return replace(trajectory, t=t, q=q, u=u, outcome=Outcome.STOPPED, message=message)
 
 
 def departure_notes(found: list[Departure]) -> Iterator[str]:
@@ -151,18 +155,31 @@ def _outside(t: np.ndarray, x: np.ndarray, table: Table) -> tuple[float, float]:
     return duration, first
 
 
-def _at_outputs(system: System, trajectory: Trajectory) -> Iterator[Departure]:
-    """Yield the departures that output times show."""
+def may_refuse(system: System) -> bool:
+    """Return True if an element has a table with ``beyond: error``."""
+    elements = (element for group in system.groups if group.kind.has_tables for element in group.elements)
+    return any(table.beyond == "error" for element in elements for _, table in tables_in(element, ""))
+
+
+def refuse_departure(system: System, t: float, q: np.ndarray, u: np.ndarray) -> None:
+    """Raise a SolverError if a state is outside a table with ``beyond: error``; names the table."""
+    found = [*_at_states(system, np.array([t]), q[None], u[None]), *_of_time(system, t, t)]
+    if first := refused_departure(found):
+        raise SolverError(_refusal(first))
+
+
+def _at_states(system: System, times: np.ndarray, q: np.ndarray, u: np.ndarray) -> Iterator[Departure]:
+    """Yield the departures that states at given times show."""
     arguments = list(table_arguments(system))
     if all(table is None for *_, table in arguments):
         return
-    state, values = State(system), np.empty((len(trajectory.t), len(arguments)))
+    state, values = State(system), np.empty((len(times), len(arguments)))
     own = slice(system.n_event_functions, system.n_values("event_function"))
     state.load("event_function")
-    for k, t in enumerate(trajectory.t.tolist()):
-        state.q[:], state.u[:] = trajectory.q[k], trajectory.u[k]
+    for k, t in enumerate(times.tolist()):
+        state.q[:], state.u[:] = q[k], u[k]
         state.evaluate("event_function", t)
         values[k] = state.values["event_function"][own]
     for (element, label, table), x in zip(arguments, values.T, strict=True):
         if table is not None and np.isfinite(x).all():
-            yield from _departure(element, label, table, trajectory.t, x)
+            yield from _departure(element, label, table, times, x)

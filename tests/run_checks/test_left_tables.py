@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from stiffmbs import Body, Drive, InputError, Model, Prismatic, Table, read_scene, run
+from stiffmbs import Body, Drive, InputError, Model, Prismatic, SolverError, Table, read_scene, run, simulation
 from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.table_ranges import TableRanges
 from stiffmbs.compile.table_values import curve, parts_of
@@ -147,6 +147,16 @@ def test_a_run_stops_where_a_table_with_error_is_left(solver: str) -> None:
     assert stopped["b.x"][-1] == pytest.approx(0.2, abs=1e-6)
     timed = run(pulse(", lines: true, beyond: error"), solver=solver)
     assert timed.time[-1] == pytest.approx(0.2, abs=1e-9)
+
+
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+def test_a_simulation_stops_before_a_table_with_error_is_left(solver: str) -> None:
+    sim = simulation(spring(options=", beyond: error"), solver=solver)
+    with pytest.raises(SolverError, match="its argument passes its last point"):
+        for _ in range(20):
+            sim.step(0.01)
+    assert sim.t == pytest.approx(0.04)
+    assert sim["b.x"] < 0.2
 
 
 def test_the_pulse_of_a_table_in_time() -> None:
