@@ -28,17 +28,20 @@ OF_EQUILIBRIUM = 10.0
 """Force of a mount at the start, in the largest force of the static equilibrium, above which it is noted."""
 OF_WEIGHT = 1000.0
 """Force of any elastic element at the start, in the weight of all bodies, above which it is noted, or a mount's if no equilibrium is found."""
+STIFF = 1e-3
+"""Deflection of a mount by the weight of all bodies, in sizes of the mechanism, above which it is a spring, and stretched on purpose."""
 STANDARD_GRAVITY: Final = 9.80665
 """Gravity by which bodies are weighed in scenes without, or with less, m/s^2."""
 
 
 class Stretched(NamedTuple):
-    """An element with a potential at a state. `force`: N; a torque over the size of the mechanism."""
+    """A force element at a state. `force`: N; a torque over the size of the mechanism."""
 
     name: str
     kind: str
     elastic: bool
     force: float
+    turned: bool = False  # True if the torque is the larger one
 
     def deflection(self, energy: float) -> float:
         """Return the deflection of a linear element with this force and an energy, J, in m."""
@@ -61,23 +64,28 @@ def start_force_notes(
             rows = dynamics.report(np.array([t]), start.q[None], start.u[None], True)
     if not len(rows.t):
         return
-    if worst := _suspect(dynamics.system, start, stretched(dynamics.system, rows.values[0])):
-        with dynamics.state.unchanged():
-            yield from _notes(dynamics, start, t, worst, _energy(dynamics.system, rows, worst.name))
+    system, heavy = dynamics.system, weight(dynamics.system)
+    for worst in _suspects(system, start, stretched(system, rows.values[0])):
+        energy = _energy(system, rows, worst.name)
+        if worst.force > OF_WEIGHT * heavy or heavy * worst.deflection(energy) < STIFF * system.size * worst.force:
+            with dynamics.state.unchanged():
+                yield from _notes(dynamics, start, t, worst, energy)
+            return
 
 
 def stretched(system: System, values: np.ndarray) -> list[Stretched]:
-    """Return all elements with a potential and a force at a state, from the values of its output terms."""
+    """Return all force elements with a force at a state, from the values of its output terms."""
     found, reported = [], system.reported
     for group in system.groups:
-        if not (group.record.patterns.get("potential") and group.kind.element.kind):
+        if group.record.n_equations or not group.kind.element.kind:
             continue
         for name in group.names:
             at = [reported.get(f"{name}.{label}", -1) for label in system.of_body.reactions]
             parts = np.array([values[k] if k >= 0 else 0.0 for k in at])
-            force = _size_of_force(system, parts)
-            if force > 0.0:
-                found.append(Stretched(name, group.kind.element.kind, _is_elastic(group), force))
+            force, torque = _forces(system, parts)
+            if max(force, torque) > 0.0:
+                larger = max(force, torque), torque > force
+                found.append(Stretched(name, group.kind.element.kind, _is_elastic(group), *larger))
     return found
 
 
@@ -91,10 +99,10 @@ def _is_elastic(group: Group) -> bool:
     return "stiffness" in group.kind.element.__pydantic_fields__ and bool(group.record.patterns.get("potential"))
 
 
-def _size_of_force(system: System, parts: np.ndarray) -> float:
-    """Return the larger of a reaction's force, N, and its torque over the size of the mechanism."""
+def _forces(system: System, parts: np.ndarray) -> tuple[float, float]:
+    """Return the force of a reaction, N, and its torque over the size of the mechanism."""
     linear = system.of_body.linear
-    return float(max(np.linalg.norm(parts[:linear]), np.linalg.norm(parts[linear:]) / system.size))
+    return float(np.linalg.norm(parts[:linear])), float(np.linalg.norm(parts[linear:]) / system.size)
 
 
 def weight(system: System) -> float:
@@ -112,38 +120,52 @@ def inertia(system: System, u: np.ndarray) -> float:
     return float(np.sum(masses * velocities**2) / system.size)
 
 
-def _suspect(system: System, start: InitialValues, elements: list[Stretched]) -> Stretched | None:
-    """Return the elastic element with the largest force, if weight and motion do not explain it."""
+def _suspects(system: System, start: InitialValues, elements: list[Stretched]) -> list[Stretched]:
+    """Return the elastic elements whose forces weight and motion do not explain, the largest first."""
     if not elements:
-        return None
+        return []
     heavy, moving = weight(system), OF_EQUILIBRIUM * inertia(system, start.u)
-    found = (
+    found = [
         each
         for each in elements
         if each.elastic and each.force > max(heavy if each.kind in MOUNTS else OF_WEIGHT * heavy, moving)
-    )
-    return max(found, key=lambda each: each.force, default=None)
+    ]
+    return sorted(found, key=lambda each: -each.force)
 
 
 def _notes(dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched, energy: float) -> Iterator[str]:
     """Yield the note on an element, unless forces of its size act in the equilibrium."""
-    heavy = weight(dynamics.system)
+    system, heavy = dynamics.system, weight(dynamics.system)
     settled = _in_equilibrium(dynamics, start, t)
     usual = OF_EQUILIBRIUM * max(each.force for each in settled) if settled else OF_WEIGHT * heavy
-    if not worst.force > usual:
+    loads = OF_EQUILIBRIUM * max((each.force for each in settled if not each.elastic), default=0.0)
+    if not worst.force > min(usual, max(loads, OF_WEIGHT * heavy)):
         return
     at_rest = next((each.force for each in settled if each.name == worst.name), 0.0)
     compared = (
-        f"in the static equilibrium it carries {at_rest:.3g} N"
+        f"in the static equilibrium it carries {_written(at_rest, worst, system)}"
         if settled
         else f"{worst.force / heavy:.2g} times the weight of all bodies"
     )
-    deflected = f", deflected by {1e3 * worst.deflection(energy):.3g} mm, with {energy:.3g} J" if energy > 0 else ""
-    yield (
-        f"'{worst.name}' starts with {worst.force:.3g} N{deflected}; {compared}{_by_assembly(dynamics, start, t, worst, energy)}. The "
-        "vibration that follows comes from the drawn pose: correct markers and positions, or use 'start: settled', which starts "
-        "from the equilibrium"
+    deflected = f", {_deflected(worst.deflection(energy), worst, system)}, with {energy:.3g} J" if energy > 0 else ""
+    remedy = (
+        "The vibration that follows comes from the drawn pose: correct markers and positions, or use 'start: settled', which "
+        "starts from the equilibrium"
+        if worst.force > OF_EQUILIBRIUM * at_rest
+        else "Bodies are held in a drawn pose that does not fit: correct markers and positions"
     )
+    opened = _by_assembly(dynamics, start, t, worst, energy)
+    yield f"'{worst.name}' starts with {_written(worst.force, worst, system)}{deflected}; {compared}{opened}. {remedy}"
+
+
+def _written(force: float, element: Stretched, system: System) -> str:
+    return f"{force * system.size:.3g} N m" if element.turned else f"{force:.3g} N"
+
+
+def _deflected(deflection: float, element: Stretched, system: System) -> str:
+    if element.turned:
+        return f"turned by {np.degrees(deflection / system.size):.3g} deg"
+    return f"deflected by {1e3 * deflection:.3g} mm"
 
 
 def _in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> list[Stretched]:
@@ -166,4 +188,5 @@ def _by_assembly(dynamics: Dynamics, start: InitialValues, t: float, worst: Stre
     drawn = [each for each in stretched(system, rows.values[0]) if each.name == worst.name] if len(rows.t) else []
     before = drawn[0].deflection(_energy(system, rows, worst.name)) if drawn else 0.0
     opened = worst.deflection(energy) - before
-    return f"; assembly closed the joints alone and opened it by {1e3 * opened:.3g} mm" if opened > 0 else ""
+    by = _deflected(opened, worst, system).removeprefix("deflected ").removeprefix("turned ")
+    return f"; assembly closed the joints alone and opened it {by}" if opened > 0 else ""

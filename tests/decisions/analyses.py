@@ -345,20 +345,30 @@ def in_steady_motion(imbalance=0.0):
     return times[0], balances
 
 
-def force_at_start(kind, **equilibrium):
+def force_at_start(kind, energy=0.0, **equilibrium):
     """Return the force of an element, in quarter octaves of the weight, up to which it has no note."""
-    system = Record(
-        mass=np.array([1.0 / start_forces.STANDARD_GRAVITY, 0.0, 0.0]), of_body=Record(n_u=3, linear=2), size=1.0
-    )
-    start = Record(u=np.zeros(3), moved=())
+    mass = np.array([1.0 / start_forces.STANDARD_GRAVITY, 0.0, 0.0])
+    system = Record(mass=mass, of_body=Record(n_u=3, linear=2), size=1.0, groups=[None])
+    start = Record(u=np.zeros(3), moved=(), q=np.zeros(1))
+    dynamics = Record(system=system, state=Record(unchanged=nullcontext))
+    rows = Record(t=np.zeros(1), values=np.zeros((1, 1)))
 
     def is_silent(force):
-        element = start_forces.Stretched("e", kind, True, force)
-        with patch.multiple(start_forces, _in_equilibrium=lambda *_: equilibrium.get("settled", [])):
-            worst = start_forces._suspect(system, start, [element])
-            return not worst or not [*start_forces._notes(Record(system=system), start, 0.0, worst, 0.0)]
+        elements = [start_forces.Stretched("e", kind, True, force)]
+        changes = {
+            "_in_equilibrium": lambda *_: equilibrium.get("settled", []), "_is_elastic": lambda _: True,
+            "stretched": lambda *_: elements, "_energy": lambda *_: energy * force**2,
+        }  # fmt: skip
+        with patch.multiple(start_forces, **changes):
+            return not [*start_forces.start_force_notes(None, dynamics, start, 0.0, rows)]
 
     return count_while(is_silent, DOUBLES)
+
+
+def softest_mount():
+    """Return the deflection of a mount by the weight, in quarter octaves of 1e-5 m, from which on it is a spring."""
+    at_rest = [start_forces.Stretched("e", "bushing", True, 1e-3)]
+    return count_while(lambda soft: force_at_start("bushing", 0.5e-5 * soft, settled=at_rest) < 10, DOUBLES)
 
 
 def within_steps(record):
@@ -383,6 +393,7 @@ DECISIONS = {
     "analyses.start_forces:OF_EQUILIBRIUM": lambda: force_at_start(
         "bushing", settled=[start_forces.Stretched("e", "bushing", True, 3.0)]
     ),
+    "analyses.start_forces:STIFF": softest_mount,
     "analyses.balance_within_steps:NODES": lambda: within_steps("nodes"),
     "analyses.balance_within_steps:MOST_NUMBERS": lambda: within_steps("steps"),
     "analyses.beam_elements:MOST": most_elements_of_a_beam,
@@ -432,7 +443,7 @@ DECISIONS = {
     "analyses.steady:VELOCITY_ERROR": lambda: count_while(lambda x: steady._rounded([x], 1.0) != [0.0], BELOW),
 }  # fmt: skip
 EXPECTED = {
-    "analyses.start_forces:OF_WEIGHT": 40, "analyses.start_forces:OF_EQUILIBRIUM": 20,
+    "analyses.start_forces:OF_WEIGHT": 40, "analyses.start_forces:OF_EQUILIBRIUM": 20, "analyses.start_forces:STIFF": 27,
     "analyses.balance_within_steps:NODES": 115, "analyses.balance_within_steps:MOST_NUMBERS": 4000,
     "analyses.beam_elements:MOST": 512, "analyses.check:MOST_MOVES": 50, "analyses.far_away:FAR": 18, "analyses.far_away:BEYOND": 31, "analyses.given_inputs:FEWEST": 513,
     "analyses.given_inputs:MOST": 65579, "analyses.given_inputs:FOLLOWED": 27, "analyses.given_inputs:JUMP": 4,
