@@ -62,6 +62,7 @@ class Intervals(NamedTuple):
     - `radians`: radians per unit of such an argument: 1 for a sine, 2 pi divided by the period for a table.
     - `kinks` of shape (n,): 1 for arguments of tables with a kink, 0 for others.
     - `zoned`: number of functions with breakpoints.
+    - `tables` of shape (n,): 1 for arguments of tables that end at their first and last breakpoint, 0 for others.
     """
 
     first: np.ndarray
@@ -72,6 +73,7 @@ class Intervals(NamedTuple):
     radians: np.ndarray
     kinks: np.ndarray
     zoned: int
+    tables: np.ndarray
 
     def of_kinked(self, values: np.ndarray) -> list[int]:
         """Return the number of the interval of each argument of a table with a kink, from the values of all functions."""
@@ -112,6 +114,7 @@ def _intervals_of(system: System) -> Intervals:
             dtype=np.int64,
         ),
         int(np.count_nonzero(counts)),
+        np.array([name == "table" and period == 0.0 for name, _, _, period in found], dtype=np.int64),
     )
 
 

@@ -52,7 +52,7 @@ class EventSearch:
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "interval_low", "interval_high", "apart")  # fmt: skip
         self._extent = {name: np.empty(n) for name in ("lowest", "highest", "outside", "left")}
         self._arrays = {
-            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "n_with_intervals": intervals.zoned,
+            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "tables": intervals.tables, "n_with_intervals": intervals.zoned,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_breakpoint": intervals.first, "breakpoints": intervals.breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": WHOLE, "weight": weight,

@@ -132,7 +132,7 @@ def narrowest_peak():
 def time_outside():
     """Return the part of a step for which a straight function is noted as outside, which it is for 4.5 % of it."""
     w = Record(
-        begun=0.0, noted=np.inf, n=1, n_event_functions=0, first_breakpoint=[0, 2], breakpoints=[-1.0, 0.955], period=[0.0],
+        begun=0.0, noted=np.inf, n=1, n_event_functions=0, first_breakpoint=[0, 2], breakpoints=[-1.0, 0.955], tables=[1],
         value_before=[0.0], value_after=[1.0], rate_before=[1.0], rate_after=[1.0], near=[0], call=[0], lowest=[0.0],
         highest=[0.0], outside=[0.0], left=[np.inf], m=[0.0],
     )  # fmt: skip

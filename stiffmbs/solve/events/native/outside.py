@@ -1,4 +1,4 @@
-"""Record of the steps in which arguments of laws are outside the first and last breakpoint, such as the ends of tables."""
+"""Record of the steps in which arguments of tables are outside the points of these."""
 
 from math import isfinite
 
@@ -45,7 +45,7 @@ def _at(k, w, h, place):
 
 @compiled
 def note_outside(w, t):
-    """Note the range of each argument of a law in a step up to t, and the time that it spends outside its breakpoints.
+    """Note the range of each argument of a table in a step up to t, and the time that it spends outside the table.
 
     Values and rates at both ends define a cubic.  A law near a breakpoint is known at `LOOKED_AT` too.
     """
@@ -53,10 +53,9 @@ def note_outside(w, t):
     passed = max(w.begun - w.noted, 0.0)
     w.noted = t
     for k in range(w.n_event_functions, w.n):
-        first, end = w.first_breakpoint[k], w.first_breakpoint[k + 1]
-        if first == end or w.period[k] > 0.0:
+        if not w.tables[k]:
             continue
-        low, high = w.breakpoints[first], w.breakpoints[end - 1]
+        low, high = w.breakpoints[w.first_breakpoint[k]], w.breakpoints[w.first_breakpoint[k + 1] - 1]
         start, last = w.value_before[k], w.value_after[k]
         away = max(abs(last - start), h * max(abs(w.rate_before[k]), abs(w.rate_after[k])))
         if min(start, last) - away >= low and max(start, last) + away <= high:
