@@ -95,8 +95,8 @@ def tables_in(value: object, label: str) -> Iterator[tuple[str, Table]]:
         case Formula():
             yield from value.tables.items()
         case Described():
-            for name in type(value).model_fields:
-                yield from tables_in(getattr(value, name), name)
+            for name, field in type(value).model_fields.items():
+                yield from tables_in(getattr(value, name), field.alias or name)
         case Mapping():
             for name, part in value.items():
                 yield from tables_in(part, name)

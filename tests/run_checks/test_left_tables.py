@@ -170,6 +170,23 @@ def test_the_pulse_of_a_table_in_time() -> None:
     assert number_after(note, "continues it to ") == pytest.approx(-1800.0)
 
 
+@pytest.mark.parametrize("solver", ["bdf", "kinematic", "auto"])
+def test_the_pump_of_the_manual(solver: str) -> None:
+    """A drive by a table of velocities turns at ten times its last speed after ten times its duration."""
+    scene = """
+bodies: {s: {mass: 1, inertia: 1}}
+joints: {p: {type: revolute, i: s, j: ground}, pump: {type: drive, joint: p, velocity: {table: [[0, 0], [1, 300 rpm]]OPTIONS}}}
+run: {duration: 10}
+"""
+    extended = run(read_scene(scene.replace("OPTIONS", "")), solver=solver)
+    (note,) = departures(extended)
+    assert note.startswith("pump: the table 'velocity' was left for 9 s, first at t = 1 s")
+    assert extended["s.omega"][-1] == pytest.approx(100 * np.pi)
+    held = run(read_scene(scene.replace("OPTIONS", ", beyond: hold")), solver=solver)
+    assert held["s.omega"][-1] == pytest.approx(10 * np.pi)
+    assert not departures(held)
+
+
 def test_an_input_array_that_ends_before_the_run_is_noted() -> None:
     scene = PULSE.format(options="").replace("tables:", "inputs: {f: 0}\ntables:").replace("pulse(t)", "f")
     given = {"f": ([0.0, 0.5, 1.0], [0.0, 1.0, 3.0])}
