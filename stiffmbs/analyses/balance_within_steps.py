@@ -19,7 +19,7 @@ from .job import Job
 
 NODES = 5, 9
 """Nodes of the quadrature in a step; more are used if the balance does not close. They are exact to degrees 7 and 15."""
-MOST_NUMBERS = 20_000_000
+MOST_NUMBERS = 1_000_000
 """Numbers in the rows of the repeated run; steps of a longer run are examined from its start as far as these allow."""
 INSIDE: Final = 1e-6
 """Distance of the outer nodes from the ends of a step, in steps: there, rows belong to this step on both sides of a restart."""
