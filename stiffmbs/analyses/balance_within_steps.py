@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ..dynamics.dynamics import OutputRows
-from ..results.energy_balance import Balance, balance_of_steps
+from ..results.energy_balance import Balance, balance_of_steps, energy_balance
 from ..results.energy_balance_notes import PER_TOLERANCE, is_broken
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.missing_rows import reported
@@ -30,8 +30,8 @@ SHORTEST: Final = 1000.0
 def balance_within_steps(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balance, OutputRows] | None:
     """Return the balance of a run by quadratures in its steps, and the rows at their nodes; None without known steps.
 
-    Other numbers of nodes are tried while it is broken. A balance of the first part of a long run is returned if it is
-    broken there, else None.
+    Other numbers of nodes are tried while it is broken. If the first part of a long run is not, the balance at output times is
+    returned with the energy that this part exchanges.
     """
     found = None
     for nodes in NODES:
@@ -43,7 +43,12 @@ def balance_within_steps(job: Job, trajectory: Trajectory, rows: OutputRows) -> 
             again, *_weights_and_jumps(job, steps, again, nodes), job.dynamics.system.keeps_energy
         )
         if not is_broken(job.dynamics.system, balance, again, job.settings):
-            return (balance, again) if rows.t[-1] - steps[-1, 1] <= SHORTEST * np.spacing(rows.t[-1]) else None
+            if rows.t[-1] - steps[-1, 1] <= SHORTEST * np.spacing(rows.t[-1]):
+                return balance, again
+            first = energy_balance(
+                job.dynamics.system, rows
+            )  # its scale may miss what is exchanged between output times
+            return replace(first, scale=max(first.scale, balance.scale)), rows
         found = balance, again
     return found
 
