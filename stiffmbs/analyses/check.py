@@ -29,6 +29,7 @@ from ..redundancy.overconstraint import Overconstraint, listed, overconstraints
 from ..solve.subsystems import Subsystem, presolved
 from ..tuning import in_use
 from .job import Examined, Runnable, assembled, data_of, examined
+from .start_forces import start_force_notes
 
 MOST_MOVES = 50
 """Number of moved bodies that a message names at most; `Report.moved` lists all."""
@@ -165,6 +166,7 @@ def _of_run(found: Examined) -> Report:
         unknowns=unknowns(system, subsystems, dynamics), presolve=tuple(presolve_sentences(system, subsystems, dynamics)),
         moved=start.moved if start else (),
         messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free),
+                  *(start_force_notes(found.data, dynamics, start, found.grid.start) if start else ()),
                   *(opposed_sentences(system, found.data, start.q, found.grid) if start else ()), *notes_of(found.data), *table_notes(found.data),
                   *active_damper_notes(found.data)), sound=not problems,
     )  # fmt: skip

@@ -66,7 +66,7 @@ def solution_of_rows(
     nothing = np.empty(0)
     return Solution(
         name=name, time=rows.t, channels=channels_of(data, system, rows), outcome=Outcome.DONE, message=message, notes=notes,
-        solver=solver, history=History(nothing, np.empty(0, dtype=int)), balance=energy_balance(system, rows, nothing),
+        solver=solver, history=History(nothing, np.empty(0, dtype=int)), balance=energy_balance(system, rows),
         not_unique=not_unique, requested=units(data.outputs()), turns=turns_of(system, rows.q), provenance=provenance_of(data),
     )  # fmt: skip
 

@@ -23,10 +23,11 @@ from ..model.settings import RunSettings, Settings, takes_settings
 from ..redundancy.messages.presolve_report import StructureNotes, structure_notes
 from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
-from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
+from ..results.energy_balance_notes import broken_balance, is_broken, range_notes, undefined_values
 from ..results.provenance import provenance_of
 from ..results.solution import Solution
 from ..run_checks.growth import motion_within_tolerance, senseless
+from ..run_checks.left_tables import departure_notes, left_tables, refused_departure, stopped_at
 from ..run_checks.motion import motion_notes
 from ..run_checks.uncertain_forces import uncertain_forces
 from ..solve.error_control.accumulated_errors import ACCUMULATED
@@ -38,6 +39,7 @@ from ..tuning import in_use
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
 from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
+from .start_forces import start_force_notes
 from .start_from import StartFrom
 
 
@@ -64,8 +66,8 @@ def run(
         State to start from instead of the described one, at its time unless `start` is given: the last of a solution or
         of a results file, or ``solution.state(at=2.0)``.
     inputs : mapping of str to float, callable, (times, values) or Table, optional
-        Values of the model's inputs: constants, functions of t, s, or times and values with linear interpolation.  A
-        smooth function becomes a spline; another is sampled at the output instants.
+        Values of the model's inputs: constants, functions of t, s, or times and values with linear interpolation, which
+        is extrapolated with a note; a `Table` states what is beyond its points.  A smooth function becomes a spline; another is sampled at the output instants.
     **changes
         Fields of the settings to change: ``duration=2.0, rtol=1e-8``.
 
@@ -138,19 +140,19 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
             f"no accelerations could be computed at the start: {failure(job.dynamics, rows.status, job.grid.start)}"
         )
     outcome, message = _ending(job, rows, trajectory)
-    system, steps = job.dynamics.system, trajectory.step_times
-    balance = energy_balance(system, rows, steps)
-    broken = tuple(balance_notes(system, balance, rows, job.settings, steps)) if balance.may_be_broken else ()
+    system = job.dynamics.system
+    balance, broken = _balance(job, trajectory, rows)
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
     impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or broken
     uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job)))
     imprecise = tuple(uncertain_forces(job.dynamics, trajectory, rows))
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     notes = (
-        *_notes(job, trajectory, structure),
+        *_notes(job, trajectory, rows, structure),
         *missed_events,
         *computed.left_out,
         *_range_notes(job, rows),
+        *(departure_notes(left_tables(system, trajectory, job.settings)) if system.has_tables else ()),
         *flexible_body_notes(system, rows),
         *impossible,
         *uncertain,
@@ -159,6 +161,21 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     )
     headline = _headline(outcome, message, (*computed.doubts, *impossible))
     return Finished(job, trajectory, rows, outcome, headline, notes, structure, balance, channels)
+
+
+def _balance(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balance, tuple[str, ...]]:
+    """Return the energy balance of a run, and a sentence if it is certainly broken."""
+    system, settings = job.dynamics.system, job.settings
+    balance = energy_balance(system, rows)
+    if not is_broken(system, balance, rows, settings):
+        return balance, ()
+    from .balance_within_steps import balance_within_steps  # few runs need it
+
+    within = balance_within_steps(job, trajectory, rows)
+    balance, rows = within or (balance, rows)
+    if balance.resolved and is_broken(system, balance, rows, settings):
+        return balance, (broken_balance(system, balance, rows, settings),)
+    return balance, ()
 
 
 def flexible_body_notes(system: System, rows: OutputRows) -> Iterator[str]:
@@ -174,7 +191,7 @@ def _range_notes(job: Job, rows: OutputRows) -> Iterator[str]:
     limited = {name: x for name, x in job.data.forces.items() if type(x).valid_ranges is not Force.valid_ranges}
     ranges = {name: found for name, force in limited.items() if (found := force.valid_ranges())}
     if ranges:
-        yield from range_notes(ranges, partial(series_of, job.data, job.dynamics.system, rows))
+        yield from range_notes(ranges, partial(series_of, job.data, job.dynamics.system, rows), rows.t)
 
 
 def _headline(outcome: Outcome, message: str, doubts: Sequence[str]) -> str:
@@ -214,8 +231,22 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and compute its output rows."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
+    if job.dynamics.system.has_tables:
+        trajectory = _within_tables(job, trajectory)
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)
     return Computed(trajectory, rows, left_out)
+
+
+def _within_tables(job: Job, trajectory: Trajectory) -> Trajectory:
+    """Return a run up to where it leaves a table with ``beyond: error``, repeated with a row there."""
+    departure, grid = refused_departure(left_tables(job.dynamics.system, trajectory, job.settings)), job.grid
+    if departure is None:
+        return trajectory
+    end = departure.first
+    if end > grid.start:
+        times = None if grid.times is None else np.append(grid.times[grid.times < end], end)
+        trajectory = replace(job, grid=replace(grid, end=end, times=times)).integrate()
+    return stopped_at(departure, trajectory)
 
 
 def _reported_at(job: Job, times: np.ndarray) -> OutputRows:
@@ -262,7 +293,7 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
     return Outcome.STOPPED, sentence + suspect(job.dynamics, t, q, u)
 
 
-def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Iterator[str]:
+def _notes(job: Job, trajectory: Trajectory, rows: OutputRows, structure: StructureNotes) -> Iterator[str]:
     """Yield the notes on the model, its start, the solver and the settings."""
     system = job.dynamics.system
     yield from notes_of(job.data)
@@ -272,11 +303,14 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
     yield from structure.of_joints
     if any(joint.kind == "drive" for joint in job.data.joints.values()):
         yield from job.dynamics.kept("opposed actuators", None, partial(_opposed, job))
+        yield from _tabled_drives(job)
     yield from job.start.notes
     if system.has_functions:
         yield from notes_on_functions(system)
     if job.start.moved:
         yield job.start.sentence()
+    if job.start_from is None:
+        yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, rows)
     if trajectory.note:
         yield trajectory.note
     # relative to the mechanism's size, with any tolerances
@@ -288,6 +322,13 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
     if system.size == 1.0 and job.settings.atol is None and "rtol" in traits_of(job.settings).reads:
         yield from motion_within_tolerance(system, job.settings, trajectory)
     yield from settings_notes(job.settings, system)
+
+
+def _tabled_drives(job: Job) -> Iterator[str]:
+    """Yield notes on drives by tables of positions."""
+    from ..run_checks.tabled_drives import tabled_drive_notes  # models without drives do not load it
+
+    yield from tabled_drive_notes(job.dynamics.system, job.data.joints)
 
 
 def _opposed(job: Job) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -123,9 +124,27 @@ class Kind:
         """Return True if a field, or one of its values, has one of the given forms."""
         return any(_holds(shape, forms) for _, shape in self.fields)
 
+    @cached_property
+    def has_tables(self) -> bool:
+        """True if a field, or a formula in it, has a table."""
+        return any(_has_tables(shape) for _, shape in self.fields)
+
 
 def _holds(shape: Shape, forms: tuple[str, ...]) -> bool:
     return shape[0] in forms or (shape[0] == "several" and any(_holds(part, forms) for part in shape[1]))
+
+
+def _has_tables(shape: Shape) -> bool:
+    match shape:
+        case ("table",):
+            return True
+        case ("formula", _, (_, _, n_tables), *_):
+            return bool(n_tables)
+        case ("several", parts):
+            return any(map(_has_tables, parts))
+        case ("component", _, fields):
+            return any(_has_tables(part) for _, part in fields)
+    return False
 
 
 def with_place(kind: Kind, place: str) -> str:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .system import System
-from .table_values import ends_of, value_of
+from .table_values import REPEATS, ends_of, value_of
 
 
 def _on_both_sides(*breakpoints: float) -> np.ndarray:
@@ -64,6 +64,7 @@ class Intervals(NamedTuple):
       whose argument jumps by full turns, as the angle of a direction does.
     - `kinks` of shape (n,): 1 for arguments of tables with a kink, 0 for others.
     - `zoned`: number of functions with breakpoints.
+    - `tables` of shape (n,): 1 for arguments of tables that end at their first and last breakpoint, 0 for others.
     """
 
     first: np.ndarray
@@ -74,6 +75,7 @@ class Intervals(NamedTuple):
     radians: np.ndarray
     kinks: np.ndarray
     zoned: int
+    tables: np.ndarray
 
     def of_kinked(self, values: np.ndarray) -> list[int]:
         """Return the number of the interval of each argument of a table with a kink, from the values of all functions."""
@@ -115,6 +117,7 @@ def _intervals_of(system: System) -> Intervals:
             dtype=np.int64,
         ),
         int(np.count_nonzero(counts)),
+        np.array([name == "table" and period == 0.0 for name, _, _, period in found], dtype=np.int64),
     )
 
 
@@ -153,7 +156,7 @@ def _of_table(data: bytes) -> tuple[np.ndarray, np.ndarray, float]:
     y = (((a * z + b) * z + c) * z + d).ravel()
     allowed = CLOSE * float(np.ptp(y))
     starts = list(_intervals(x, y, 0, count - 1, allowed))
-    period = float(knots[-1] - knots[0]) if numbers[1] else 0.0
+    period = float(knots[-1] - knots[0]) if numbers[1] == REPEATS else 0.0
     at = np.array(starts if period else [*starts, count - 1])
     return knots[at], _overlaps(numbers, at, _narrower(knots[at], period)), period
 

@@ -67,7 +67,8 @@ class System:
     - `n_q`, `n_u`, `n_c`: numbers of coordinates, velocities and constraint equations.
     - `n_pose`, `n_counters`: numbers of body coordinates, which come first, and of turn counters.
     - `first_state`: index of the first state among the coordinates.
-    - `has_inputs`, `has_functions`: True if an element has a formula or a table, or calls a Python function.
+    - `has_inputs`, `has_functions`, `has_tables`: True if an element has a formula or a table, calls a Python function, or
+      has or calls a table.
     - `has_coupled_inertia`: True if the mass matrix is not diagonal, as that of flexible bodies.
     - `has_laws`: True if forces or joints have breakpoints or laws (formulas, tables), which may change within one
       step.
@@ -104,6 +105,7 @@ class System:
     has_inputs: bool = field(init=False)
     has_laws: bool = field(init=False)
     has_functions: bool = field(init=False)
+    has_tables: bool = field(init=False)
     has_coupled_inertia: bool = field(init=False)
     forces_by_reactions: tuple[str, ...] = field(init=False)
 
@@ -114,6 +116,7 @@ class System:
             n_q=n_q, n_u=len(self.u), n_c=len(self.equations), n_pose=n_pose, first_state=first_state,
             n_counters=first_state - n_pose, has_inputs=any(group.has_inputs for group in self.groups),
             has_functions=any(group.has_functions for group in self.groups),
+            has_tables=any(group.kind.has_tables for group in self.groups),
             has_coupled_inertia=any(group.entries["inertia"] for group in self.groups),
             has_laws=any(group.has_law for group in self.groups if group.entries["f"] or group.record.n_equations),
             forces_by_reactions=tuple(name for group in self.groups if group.record.patterns.get("f_lam") for name in group.names),

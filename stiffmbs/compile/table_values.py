@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
+from typing import Final
 
 import numpy as np
 
@@ -10,10 +12,15 @@ from ..errors import InputError
 from ..reading.table import Table
 
 Curve = Callable[[np.ndarray], np.ndarray]
+REPEATS: Final = 1.0
+HOLDS: Final = 2.0
+"""End codes in the data of a table that is periodic, or keeps the value of its ends (as in `native.spline`)."""
 
 
 def spline_data(table: Table) -> np.ndarray:
-    """Return the kernel data of a table: count, 1 if it is periodic, knots, and the coefficients of each piece (highest first).
+    """Return the kernel data of a table: count, its end code, knots, and the coefficients of each piece (highest first).
+
+    The end code is `REPEATS`, `HOLDS`, or 0 for a table that is extrapolated with the slope of its ends.
 
     Splines are those of SciPy, monotone and Akima's cubics those of `stiffmbs.compile.table_values`; straight lines
     are pieces without curvature. Raises InputError if points are so close that a coefficient is not finite.
@@ -29,7 +36,8 @@ def spline_data(table: Table) -> np.ndarray:
             f"found points of a table that are {np.diff(x).min():.3g} apart, where its slope or curvature has no finite "
             "value, expected them further apart"
         )
-    return np.concatenate([[len(x), table.ends == "periodic"], x, pieces.T.ravel()])
+    code = REPEATS if table.repeats else HOLDS if table.beyond == "hold" else 0.0
+    return np.concatenate([[len(x), code], x, pieces.T.ravel()])
 
 
 def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -39,18 +47,60 @@ def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
             slope = np.diff(y) / np.diff(x)
             return np.stack([np.zeros_like(slope), np.zeros_like(slope), slope, y[:-1]])
         case "akima":
-            return akima_pieces(x, y)
+            return _closed(akima_pieces, x, y) if table.repeats else akima_pieces(x, y)
         case "monotone":
-            return monotone_pieces(x, y)
+            return _closed(monotone_pieces, x, y) if table.repeats else monotone_pieces(x, y)
     from scipy.interpolate import CubicSpline
 
-    if table.ends == "periodic":
+    if table.smoothing is not None:
+        y = smoothed(table)
+    ends = "periodic" if table.repeats else table.ends or "natural"
+    if table.repeats:
         y = np.append(y[:-1], y[0])
-    return np.asarray(CubicSpline(x, y, bc_type=table.ends or "natural").c)
+    return np.asarray(CubicSpline(x, y, bc_type=ends).c)
+
+
+def _closed(pieces: Callable[[np.ndarray, np.ndarray], np.ndarray], x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the pieces of a period whose interpolant is smooth where it repeats: its neighbours are periods too."""
+    period, count = x[-1] - x[0], len(x) - 1
+    around = np.concatenate([x[:-1] - period, x[:-1], x + period])
+    return pieces(around, np.concatenate([y[:-1], y[:-1], y[:-1], y[:1]]))[:, count : 2 * count]
+
+
+@lru_cache(maxsize=64)
+def smoothed(table: Table) -> np.ndarray:
+    """Return the values at the points of the natural cubic spline of least curvature within a root mean square distance.
+
+    Reinsch, Smoothing by spline functions, Numer. Math. 10 (1967) 177-183. If a straight line is that near, it is returned.
+    """
+    from scipy.interpolate import make_smoothing_spline
+    from scipy.optimize import brentq
+
+    assert table.smoothing is not None
+    allowed = table.smoothing
+    x, y = np.array(table.table, dtype=float).T
+    x = (x - x[0]) / (x[-1] - x[0])
+    line = np.polyval(np.polyfit(x, y, 1), x)
+    if _distance(line, y) <= allowed:
+        return line
+
+    def departure(power: float) -> float:
+        return _distance(make_smoothing_spline(x, y, lam=10.0**power)(x), y) - allowed
+
+    low = high = 0.0
+    while departure(low) > 0.0:
+        low -= 4.0
+    while departure(high) < 0.0:
+        high += 4.0
+    return np.asarray(make_smoothing_spline(x, y, lam=10.0 ** brentq(departure, low, high, xtol=1e-3))(x))
+
+
+def _distance(curve: np.ndarray, y: np.ndarray) -> float:
+    return float(np.sqrt(np.mean((curve - y) ** 2)))
 
 
 def curve(table: Table) -> Curve:
-    """Return a function of the table's values as computed by kernels: extrapolated linearly, or periodic."""
+    """Return a function of the table's values as computed by kernels, also outside its points."""
     data = spline_data(table)
     return lambda arguments: value_of(data, np.asarray(arguments, dtype=float))
 
@@ -58,14 +108,16 @@ def curve(table: Table) -> Curve:
 def value_of(data: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Return the values of a table of `spline_data` at an array of arguments."""
     x, pieces = _taken_apart(data)
-    if data[1]:
+    if data[1] == REPEATS:
         at = x[0] + np.mod(at - x[0], x[-1] - x[0])
     inside = np.clip(at, x[0], x[-1])
     k = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
     a, b, c, d = np.moveaxis(pieces[k], -1, 0)
     h = inside - x[k]
-    slope = (3 * a * h + 2 * b) * h + c
-    return np.asarray(((a * h + b) * h + c) * h + d + slope * (at - inside))
+    value = ((a * h + b) * h + c) * h + d
+    if data[1] == HOLDS:
+        return np.asarray(value)
+    return np.asarray(value + ((3 * a * h + 2 * b) * h + c) * (at - inside))
 
 
 def ends_of(data: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -74,9 +126,8 @@ def ends_of(data: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
     h = np.diff(x)
     a, b, c, _ = pieces.T
     at_ends = (3 * a * h + 2 * b) * h + c
-    periodic = bool(data[1])
-    before = np.append(at_ends[-1] if periodic else c[0], at_ends)
-    after = np.append(c, c[0] if periodic else at_ends[-1])
+    outer = {REPEATS: (at_ends[-1], c[0]), HOLDS: (0.0, 0.0)}.get(float(data[1]), (c[0], at_ends[-1]))
+    before, after = np.append(outer[0], at_ends), np.append(c, outer[1])
     return x, value_of(data, x), before, after
 
 

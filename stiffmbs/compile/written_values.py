@@ -11,7 +11,7 @@ from ..reading.formula.formula import Formula
 from ..reading.table import Table
 from .group import Group
 from .system import System
-from .table_values import parts_of
+from .table_values import parts_of, spline_data
 from .terms import TERM_SETS
 
 
@@ -50,6 +50,24 @@ def values_of(system: System, values: np.ndarray, term_set: str, element: str) -
     return found
 
 
+def table_arguments(system: System) -> Iterator[tuple[str, str, Table | None]]:
+    """Yield the element, and the label and table of each argument of a law; None if it is no table of the element's own.
+
+    The order is that of the values of the set ``event_function`` after the event functions.
+    """
+    for group in system.groups:
+        own = group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ()
+        for name, element, start in zip(group.names, group.elements, own, strict=False):
+            tables = {spline_data(table).tobytes(): (label, table) for label, table in tables_in(element, "")}
+            for law, number in group.record.laws:
+                found: tuple[str, Table | None] = "", None
+                if law == "table":
+                    at = int(start + group.numbers[start + number])
+                    count = int(group.numbers[at])
+                    found = tables.get(group.numbers[at : at + 2 + count + 4 * (count - 1)].tobytes(), found)
+                yield name, *found
+
+
 BEYOND = 0.1
 """Overshoot, relative to the range of a table's values, that is not reported."""
 SECTIONS = "joints", "forces", "states"
@@ -62,14 +80,14 @@ def table_notes(data: Described) -> Iterator[str]:
     users: dict[str, list[str]] = {}
     for section in SECTIONS:
         for name, element in getattr(data, section, {}).items():
-            for label, table in _tables(element, ""):
+            for label, table in tables_in(element, ""):
                 if note := _beyond(table):
                     users.setdefault(f"the table '{label}' {note}", []).append(name)
     for note, names in users.items():
         yield f"{', '.join(dict.fromkeys(names))}: {note}"
 
 
-def _tables(value: object, label: str) -> Iterator[tuple[str, Table]]:
+def tables_in(value: object, label: str) -> Iterator[tuple[str, Table]]:
     """Yield the tables in a field, with their names in the scene or the name of the field."""
     match value:
         case Table():
@@ -77,14 +95,14 @@ def _tables(value: object, label: str) -> Iterator[tuple[str, Table]]:
         case Formula():
             yield from value.tables.items()
         case Described():
-            for name in type(value).model_fields:
-                yield from _tables(getattr(value, name), name)
+            for name, field in type(value).model_fields.items():
+                yield from tables_in(getattr(value, name), field.alias or name)
         case Mapping():
             for name, part in value.items():
-                yield from _tables(part, name)
+                yield from tables_in(part, name)
         case tuple():
             for part in value:
-                yield from _tables(part, label)
+                yield from tables_in(part, label)
 
 
 def _beyond(table: Table) -> str:

@@ -18,8 +18,8 @@ from .units.units import Quantity, named_unit
 class Table(Described):
     """Function through points, by default a monotone piecewise cubic with continuous slope (PCHIP).
 
-    Outside its points a table is extrapolated with the slope of its end (zero for ``clamped``); a periodic table
-    repeats. Akima, A new method of interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602.
+    Outside its points a table follows `beyond`, by default the slope of its end; a run that leaves the points notes how
+    far and how long. Akima, A new method of interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602.
     """
 
     table: tuple[tuple[si.Anything, si.Anything], ...] = Field(
@@ -29,6 +29,10 @@ class Table(Described):
         None,
         description="end condition, which selects a cubic spline: natural (zero curvature, the default of a spline), clamped (zero slope), not-a-knot, periodic (equal first and last value; also for lines)",
     )
+    beyond: Literal["extend", "hold", "error", "repeat"] | None = Field(
+        None,
+        description="values outside the points: extend (the slope of the end; the default, as in Adams and Modelica, with a note), hold (the value of the end), error (the run stops there), repeat (periodic, the default of 'ends: periodic'; equal first and last value)",
+    )
     lines: bool = Field(False, description="straight lines between the points, which are breakpoints")
     akima: bool = Field(
         False, description="Akima's local cubics, which may overshoot unevenly spaced points (Adams: AKISPL)"
@@ -37,15 +41,28 @@ class Table(Described):
         False, description="a cubic spline with continuous curvature, which may overshoot its points (Adams: CUBSPL)"
     )
 
+    smoothing: si.Anything | None = Field(
+        None,
+        gt=0,
+        description="root mean square distance from the points, such as their measuring error, of a smoothing spline: the straightest cubic spline that comes that near",
+    )
+
     _argument: Known = PrivateAttr(UNKNOWN)
     _value: Known = PrivateAttr(UNKNOWN)
 
     @property
-    def interpolation(self) -> Literal["monotone", "lines", "akima", "spline"]:
+    def interpolation(self) -> Literal["monotone", "lines", "akima", "spline", "smoothing"]:
         """Name the interpolation between the points."""
+        if self.smoothing is not None:
+            return "smoothing"
         if self.lines or self.akima:
             return "lines" if self.lines else "akima"
         return "spline" if self.spline or self.ends else "monotone"
+
+    @property
+    def repeats(self) -> bool:
+        """Return True if the table is periodic."""
+        return self.beyond == "repeat" or self.ends == "periodic"
 
     @property
     def dimensions(self) -> tuple[Known, Known]:
@@ -59,7 +76,9 @@ class Table(Described):
         if isinstance(found, dict):
             parameters = (info.context or {}).get("parameters") or {}
             columns = zip(*found["table"], strict=True)
-            table._argument, table._value = (_of_column(column, parameters) for column in columns)
+            argument, values = columns
+            table._argument = _of_column(argument, parameters)
+            table._value = _of_column([*values, found.get("smoothing")], parameters)
         return table
 
     @field_validator("table")
@@ -73,14 +92,26 @@ class Table(Described):
     @model_validator(mode="after")
     def _closed(self) -> Table:
         first, last = self.table[0][1], self.table[-1][1]
-        if self.ends == "periodic" and abs(first - last) > 1e-9 * max(abs(first), abs(last), 1e-300):
+        if self.repeats and abs(first - last) > 1e-9 * max(abs(first), abs(last), 1e-300):
             raise ValueError(
                 f"found {first:g} at the start and {last:g} at the end, expected a periodic table to close"
+            )
+        if self.ends and self.beyond and self.repeats and (self.ends, self.beyond) != ("periodic", "repeat"):
+            raise ValueError(
+                f"found beyond: {self.beyond} with ends: {self.ends}, expected periodic ends for a table that repeats"
             )
         if self.akima and (self.lines or self.ends or self.spline):
             raise ValueError("found akima with lines or ends, expected it alone")
         if self.lines and (self.spline or self.ends in ("clamped", "not-a-knot")):
             raise ValueError("found lines with a spline or its ends, expected lines alone or with periodic ends")
+        if self.smoothing is not None and (
+            self.lines or self.akima or self.repeats or self.ends not in (None, "natural")
+        ):
+            raise ValueError(
+                "found smoothing with another interpolation or periodic ends, expected it alone or with natural ends"
+            )
+        if self.smoothing is not None and len(self.table) < 5:
+            raise ValueError(f"found {len(self.table)} points, expected 5 or more for smoothing")
         if self.ends == "not-a-knot" and len(self.table) < 4:
             raise ValueError(f"found {len(self.table)} points, expected 4 or more for not-a-knot ends")
         return self

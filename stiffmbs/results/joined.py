@@ -122,16 +122,13 @@ def _statistics(solutions: Sequence[Solution]) -> dict[str, object]:
 def _balance(balances: Sequence[Balance]) -> Balance:
     """Return the balance over all runs; changes between them are not work."""
     change, work = (_one_after_the_other([getattr(b, name) for b in balances]) for name in ("change", "work"))
-    between = np.zeros(1)
     return Balance(
         t=np.concatenate([b.t for b in balances]),
         change=change,
         work=work,
-        within=np.concatenate([part for b in balances for part in (between, b.within)][1:]),
-        steps=np.concatenate([part for b in balances for part in (between.astype(int), b.steps)][1:]),
-        resolved=max(b.resolved for b in balances),
         scale=max(b.scale for b in balances),
         keeps_energy=all(b.keeps_energy for b in balances),
+        within_steps=all(b.resolved for b in balances),
     )
 
 

@@ -70,7 +70,7 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
         )
     about = json.loads(str(arrays[ABOUT]))
     channels = {name: array for name, array in arrays.items() if "/" not in name and name not in ("time", "not_unique")}
-    balance = {part.name: arrays[BALANCE + part.name] for part in fields(Balance)}
+    balance = {part.name: arrays[name] for part in fields(Balance) if (name := BALANCE + part.name) in arrays}
     texts: dict[str, Any] = {name: tuple(about[name]) for name in TEXTS}
     return Solution(
         name=about["name"], time=arrays["time"], channels=channels, outcome=Outcome[about["outcome"]], message=about["message"],

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..results.energy_balance_notes import balance_words, unresolved_work
+from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import Outcome
@@ -192,8 +192,7 @@ def _print(scene: str, solution: Solution, console: Console | PlainConsole, all:
     for label, sentences in (("presolve", solution.presolve), ("verified", solution.verification)):
         for sentence in sentences:
             line(label, sentence)
-    unresolved = unresolved_work(solution.balance)
-    for number, note in enumerate([*solution.notes, *([unresolved] if unresolved else [])], 1):
+    for number, note in enumerate(solution.notes, 1):
         line("notes" if number == 1 else "", f"{number}. {note}")
     return line
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..results.energy_balance_notes import unresolved_work
 from ..results.scales import kind_of, scales
 from ..results.solution import Solution
 from ..solve.trajectory import IN_DOUBT, Outcome
@@ -51,9 +50,7 @@ def verdict(solution: Solution) -> Verdict:
     headline = f"{start:g} s to {end:g} s: {solution.message}"
     if status == "done":
         headline = f"Completed: {start:g} s to {end:g} s"
-    unresolved = unresolved_work(solution.balance)
-    notes = (*solution.notes, *([unresolved] if unresolved else []))
-    return Verdict(status, headline, dict(_digits(solution)), notes)
+    return Verdict(status, headline, dict(_digits(solution)), solution.notes)
 
 
 def _digits(solution: Solution) -> Iterator[tuple[str, int]]:

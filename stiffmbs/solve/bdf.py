@@ -103,6 +103,7 @@ def integrated(
         integrator.note(),
         long_steps=integrator.long_steps(),
         displaced=integrator.engine.displaced(),
+        departures=integrator.engine.ida.watch.departures(),
     )
 
 

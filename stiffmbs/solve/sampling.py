@@ -191,6 +191,7 @@ def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: E
         ", ".join(dict.fromkeys(part.solver for part in parts if part.solver)),
         tuple(steps for part in parts for steps in part.long_steps),
         np.sum(known, axis=0) if known else None,
+        tuple(each for part in parts for each in part.departures),
     )  # fmt: skip
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from ..compile.system import System
     from ..dynamics.dynamics import Dynamics
     from ..dynamics.initial import InitialValues
+    from .events.departures import Departure
     from .events.long_steps import LongSteps
 
 ProgressCallback = Callable[[float], None]
@@ -111,6 +112,8 @@ class Trajectory:
     displaced : ndarray, shape (n_u,), or None
         Estimated position errors at the end, as displacements along the velocities, m and rad
         (`stiffmbs.solve.error_control.accumulated_errors`); None if unknown.
+    departures : tuple of Departure
+        Tables whose points the steps have left.
     """
 
     t: np.ndarray
@@ -124,6 +127,7 @@ class Trajectory:
     solver: str = ""
     long_steps: tuple[LongSteps, ...] = ()
     displaced: np.ndarray | None = None
+    departures: tuple[Departure, ...] = ()
 
     @property
     def step_times(self) -> np.ndarray:

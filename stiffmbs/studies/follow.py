@@ -111,7 +111,7 @@ def _so_far(job: Job, t: np.ndarray, states: States, lengths: np.ndarray, outcom
     return Solution(
         name=job.data.name, time=rows.t, channels=channels, outcome=outcome, message=message, notes=(),
         solver={"name": job.settings.solver}, history=History(np.empty(0), np.empty(0, dtype=int)), not_unique=job.redundancy.not_unique,
-        balance=energy_balance(system, rows, np.empty(0)),
+        balance=energy_balance(system, rows),
         requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
         provenance=job.provenance(),
     )  # fmt: skip

@@ -24,6 +24,7 @@ from ..results.instant import Instant
 from ..results.joint_angles import joint_angles
 from ..results.provenance import PROVENANCE
 from ..results.saved_state import TURNS, SavedState
+from ..run_checks.left_tables import may_refuse, refuse_departure
 from ..solve.error_control.relaxation import drift_at
 from ..solve.events.restart import restarted
 from ..solve.settings import changed
@@ -100,6 +101,7 @@ class Simulation:
         job = prepare(scene, settings)
         self._job: Job = job if renumberable(job) else prepare(scene, changed(settings, {"presolve": False}))
         self._first = dict(inputs)
+        self._bounded = may_refuse(self._job.dynamics.system)
         self._inputs = InputNumbers(self._job, solver, self._first)
         self.reset()
 
@@ -159,17 +161,27 @@ class Simulation:
             raise InputError(f"step: found dt = {dt}, expected a time greater than 0 s")
         if inputs:
             self.set_inputs(inputs)
-        end = self.t + dt
+        end, before = self.t + dt, (self.q, self.u) if self._bounded else None
         self._steps += 1
         with in_use(self._job.settings.tuning):
             if self._relaxed and (self._steps % DRIFT_CHECK_INTERVAL == 0 or self._steps & (self._steps - 1) == 0):
                 self._advance_without_drift(end)
             else:
                 self._advance(end)
+        if before:
+            self._stay_within_tables(end, *before)
         self.t = end
         if self._turns.any:
             self._turns.note(end, self._stepper.q, self._stepper.u)
         self._forget()
+
+    def _stay_within_tables(self, end: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Return to a state, and raise a SolverError, if the current one is outside a table with ``beyond: error``."""
+        try:
+            refuse_departure(self._job.dynamics.system, end, self._stepper.q, self._stepper.u)
+        except SolverError:
+            self._stepper.restart(self.t, q, u)
+            raise
 
     def _forget(self) -> None:
         """Discard the channels of an earlier state."""

@@ -11,7 +11,6 @@ from functools import cached_property
 import numpy as np
 
 from ..analyses.job import Job
-from ..results.energy_balance_notes import CERTAIN
 from ..results.error_bars import ErrorBar
 from ..results.scales import kind_of
 from ..results.solution import Solution
@@ -215,8 +214,6 @@ def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None
             f"the results depend on the step length: {different} in {shorter.name}, but not at a smaller tolerance alone; "
             "set max_step to this value, and reduce it until two runs agree"
         )
-    elif along.balance is not None and not any("energy balance" in note for note in comparison.first.notes):
-        yield from _open_balance(along)
 
 
 def by_luck(comparison: Comparison, shorter: Again | None) -> bool:
@@ -272,14 +269,3 @@ def _different(comparison: Comparison, shorter: Again | None) -> str:
     if len(tight["energy.total"]) < len(comparison.first.time):
         return ""
     return _parts(comparison, tight, shorter)
-
-
-def _open_balance(along: Along) -> Iterator[str]:
-    balance = along.balance
-    assert balance is not None
-    if balance.imbalance > max(along.missing, CERTAIN * balance.resolved):
-        k = int(np.argmax(np.abs(balance.open)))
-        yield (
-            f"the energy balance is broken: {balance.imbalance:.3g} J of the {balance.scale:.3g} J exchanged are missing at "
-            f"t = {balance.t[k]:.6g} s; use a smaller rtol or set max_step"
-        )

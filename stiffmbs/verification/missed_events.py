@@ -19,8 +19,6 @@ from ..compile.reactions import reactions
 from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
 from ..errors import StiffmbsError
-from ..results.energy_balance import Balance, energy_balance
-from ..results.energy_balance_notes import may_be_missing
 from ..results.error_bars import Fine
 from ..results.frames import from_own_axes
 from ..results.scales import ROUNDING, kind_of
@@ -57,15 +55,11 @@ class SteppedOver:
 class Along:
     """Result of the search along a run.
 
-    - `balance`: energy balance at all samples; None if the repeated run stopped early or differs.
-    - `missing`: largest imbalance that is not reported, J.
     - `stretches`: missed events of the run.
     - `elsewhere`: missed events of the repeated run if it differs.
     - `obstacle`: why no search was made, or an empty string.
     """
 
-    balance: Balance | None
-    missing: float = 0.0
     stretches: tuple[SteppedOver, ...] = ()
     elsewhere: tuple[SteppedOver, ...] = ()
     obstacle: str = ""
@@ -82,17 +76,15 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     try:
         trajectory = replace(job, grid=grid).integrate(Deadline(grid.start, grid.end, allowed, job.evaluations))
     except StiffmbsError as error:
-        return Along(None, obstacle=str(error))
+        return Along(obstacle=str(error))
     if trajectory.outcome is Outcome.INTERRUPTED:
-        return Along(None, obstacle="missed events were not searched: the limit of evaluations is reached")
+        return Along(obstacle="missed events were not searched: the limit of evaluations is reached")
     rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings), job.settings.rtol)
-    system = job.dynamics.system
-    balance = energy_balance(system, rows, trajectory.step_times)
     left = allowed - (job.evaluations() - begun)
     stretches = tuple(_stepped_over(job, rows, trajectory.step_times, left))
     if not _same_motion(first, rows.t, rows.kinetic):
-        return Along(None, elsewhere=stretches)
-    return Along(balance, may_be_missing(system, balance, rows, job.settings), stretches)
+        return Along(elsewhere=stretches)
+    return Along(stretches)
 
 
 def _same_motion(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:

@@ -125,7 +125,7 @@ class _Verification:
         self._tighter: dict[int, Again] = {}
         self._other: Again | None = None
         self._other_settings: dict[str, object] = {}
-        self._along = Along(None)
+        self._along = Along()
         self._shorter: Again | None = None
         self._narrow: tuple[SteppedOver, ...] = ()
         self._skipped: list[str] = []
@@ -143,7 +143,7 @@ class _Verification:
         messages = () if steps_decide else tuple(diagnostics(comparison))  # their only remedy is the tolerance
         return replace(
             self._first, errors=comparison.bars, verification=tuple(self._messages()),
-            notes=(*self._first.notes, *messages, *of_steps), balance=self._along.balance or self._first.balance,
+            notes=(*self._first.notes, *messages, *of_steps), balance=self._first.balance,
         )  # fmt: skip
 
     def _solve(self) -> None:

@@ -7,7 +7,19 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.analyses import beam_elements, check, far_away, given_inputs, job, rerun, settled, staged, steady
+from stiffmbs.analyses import (
+    balance_within_steps,
+    beam_elements,
+    check,
+    far_away,
+    given_inputs,
+    job,
+    rerun,
+    settled,
+    staged,
+    start_forces,
+    steady,
+)
 from stiffmbs.analyses.linearised import modes, sides, transfer
 from stiffmbs.errors import SolverError
 from tests.decisions.common import BELOW, Reached, Record, nothing, reach, reached, refused
@@ -348,7 +360,57 @@ def in_steady_motion(imbalance=0.0):
     return times[0], balances
 
 
+def force_at_start(kind, energy=0.0, **equilibrium):
+    """Return the force of an element, in quarter octaves of the weight, up to which it has no note."""
+    mass = np.array([1.0 / start_forces.STANDARD_GRAVITY, 0.0, 0.0])
+    system = Record(mass=mass, of_body=Record(n_u=3, linear=2), size=1.0, groups=[None])
+    start = Record(u=np.zeros(3), moved=(), q=np.zeros(1))
+    dynamics = Record(system=system, state=Record(unchanged=nullcontext))
+    rows = Record(t=np.zeros(1), values=np.zeros((1, 1)))
+
+    def is_silent(force):
+        elements = [start_forces.Stretched("e", kind, True, force)]
+        changes = {
+            "_in_equilibrium": lambda *_: equilibrium.get("settled", []), "_is_elastic": lambda _: True,
+            "stretched": lambda *_: elements, "_energy": lambda *_: energy * force**2,
+        }  # fmt: skip
+        with patch.multiple(start_forces, **changes):
+            return not [*start_forces.start_force_notes(None, dynamics, start, 0.0, rows)]
+
+    return count_while(is_silent, DOUBLES)
+
+
+def softest_mount():
+    """Return the deflection of a mount by the weight, in quarter octaves of 1e-5 m, from which on it is a spring."""
+    at_rest = [start_forces.Stretched("e", "bushing", True, 1e-3)]
+    return count_while(lambda soft: force_at_start("bushing", 0.5e-5 * soft, settled=at_rest) < 10, DOUBLES)
+
+
+def within_steps(record):
+    """Record the nodes of the quadratures of a balance that stays broken, or the steps that it examines."""
+    rows = Record(t=np.array([0.0, 1.0]), values=np.zeros((1, 1)))
+    job = Record(dynamics=Record(system=Record(n_q=999, n_u=0, keeps_energy=False)), settings=None)
+    trajectory = Record(step_times=np.linspace(0.0, 1.0, 10_001))
+    if record == "steps":
+        return len(balance_within_steps._steps(job, trajectory, rows, 5))
+    found = []
+    changes = {
+        "_steps": lambda *_: np.array([[0.0, 1.0]]), "_at_nodes": lambda *asked: found.append(asked[2]) or rows,
+        "balance_of_steps": lambda *_: None, "is_broken": lambda *_: True, "_weights_and_jumps": lambda *_: (None, None),
+    }  # fmt: skip
+    with patch.multiple(balance_within_steps, **changes):
+        balance_within_steps.balance_within_steps(job, trajectory, rows)
+    return found[0] ** 2 + 10 * found[1]
+
+
 DECISIONS = {
+    "analyses.start_forces:OF_WEIGHT": lambda: force_at_start("spring_damper"),
+    "analyses.start_forces:OF_EQUILIBRIUM": lambda: force_at_start(
+        "bushing", settled=[start_forces.Stretched("e", "bushing", True, 3.0)]
+    ),
+    "analyses.start_forces:STIFF": softest_mount,
+    "analyses.balance_within_steps:NODES": lambda: within_steps("nodes"),
+    "analyses.balance_within_steps:MOST_NUMBERS": lambda: within_steps("steps"),
     "analyses.beam_elements:MOST": most_elements_of_a_beam,
     "analyses.check:MOST_MOVES": moves_of_a_message,
     "analyses.far_away:FAR": lambda: farthest_equilibrium(far_away.far_away),
@@ -398,6 +460,8 @@ DECISIONS = {
     "analyses.steady:VELOCITY_ERROR": lambda: count_while(lambda x: steady._rounded([x], 1.0) != [0.0], BELOW),
 }  # fmt: skip
 EXPECTED = {
+    "analyses.start_forces:OF_WEIGHT": 40, "analyses.start_forces:OF_EQUILIBRIUM": 20, "analyses.start_forces:STIFF": 27,
+    "analyses.balance_within_steps:NODES": 115, "analyses.balance_within_steps:MOST_NUMBERS": 200,
     "analyses.beam_elements:MOST": 512, "analyses.check:MOST_MOVES": 50, "analyses.far_away:FAR": 18, "analyses.far_away:BEYOND": 31, "analyses.given_inputs:FEWEST": 513,
     "analyses.given_inputs:MOST": 65579, "analyses.given_inputs:FOLLOWED": 27, "analyses.given_inputs:JUMP": 4,
     "analyses.given_inputs:ROUNDINGS": 9.094947017729282e-13, "analyses.job:DEPENDENT": 120, "analyses.linearised.modes:AT_REST": 27,

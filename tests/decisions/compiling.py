@@ -152,7 +152,7 @@ def is_estimated(count, bound):
 
 def flattest_piece():
     def bends(change):
-        table = Record(table=[(0, 0.0), (1, change), (2, 1.0), (3, 2.0)], lines=False, ends="natural")
+        table = Record(table=[(0, 0.0), (1, change), (2, 1.0), (3, 2.0)], lines=False, repeats=False)
         return len(table_ranges._breakpoints(table, np.arange(4.0))) == 2
 
     return count_while(bends, BELOW)

@@ -356,7 +356,7 @@ def checks_of_drift():
     """Return the number of checks in 1000 steps."""
     checks = []
     running = Record(
-        t=0.0, _steps=0, _job=Record(settings=Record(tuning={})), _relaxed=True, _turns=Record(any=False), _forget=nothing,
+        t=0.0, _steps=0, _job=Record(settings=Record(tuning={})), _relaxed=True, _bounded=False, _turns=Record(any=False), _forget=nothing,
         _advance=nothing, _advance_without_drift=checks.append,
     )  # fmt: skip
     for _ in range(1000):

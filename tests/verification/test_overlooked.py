@@ -49,6 +49,7 @@ def no_search(monkeypatch):
             np.empty(0),
             np.zeros(count, dtype=np.int64),
             count,
+            np.zeros(count, dtype=np.int64),
         )
 
     monkeypatch.setattr(event_watch, "intervals_of", far_away)

@@ -34,7 +34,6 @@ def test_a_bump_that_no_step_has_seen_is_found_along_the_run(monkeypatch):
     (stretch,) = found.stretches
     assert stretch.element == "push"
     assert stretch.at == pytest.approx(0.52371, abs=1e-3)
-    assert found.balance.imbalance > 0.3 * found.balance.scale
 
 
 def _unaware(monkeypatch, job):
@@ -82,7 +81,6 @@ def test_nothing_is_found_along_runs_with_impacts_and_stiff_bushings(name):
     job = prepare(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"))
     found = looked_along(job, solved(job), 1e7)
     assert found.stretches == () and found.elsewhere == ()
-    assert found.balance.imbalance < 1e-4 * found.balance.scale
 
 
 def test_a_run_with_another_longest_step_where_the_scene_has_laws():

@@ -101,9 +101,13 @@ class Numbering:
 
         Raises Refusal if Adams has no such interpolation, or the table has too few points.
         """
-        if others := unwritten(table, "table", "ends", "lines", "akima", "spline"):
+        if table.beyond in ("hold", "error"):
+            raise Refusal(f"found the table {name} with beyond: {table.beyond}, expected extend: Adams extrapolates")
+        if table.smoothing is not None:
+            raise Refusal(f"found the table {name} with smoothing, expected its points to be interpolated")
+        if others := unwritten(table, "table", "ends", "lines", "akima", "spline", "beyond", "smoothing"):
             raise Refusal(f"found {others} of the table {name}, expected none")
-        method = table.ends if table.interpolation == "spline" or table.ends == "periodic" else table.interpolation
+        method = "periodic" if table.repeats else table.ends if table.interpolation == "spline" else table.interpolation
         if method is None or method not in CURVES:
             raise Refusal(f"found the table {name} ({method or 'natural'}), expected akima, lines, or ends: not-a-knot")
         if len(table.table) < FEWEST_POINTS and method != "lines":

@@ -223,4 +223,4 @@ def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amp
         f"{found.data.name or 'model'}, mode {number}", found.data, system, rows, found.redundancy.not_unique, message, (),
         {"name": "modes", "steps": 0},
     )  # fmt: skip
-    return replace(solution, time=time, balance=energy_balance(system, replace(rows, t=time), np.empty(0)))
+    return replace(solution, time=time, balance=energy_balance(system, replace(rows, t=time)))

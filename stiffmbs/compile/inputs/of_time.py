@@ -235,7 +235,8 @@ def expressions_of(
     for name, table in element.parts(Table):
         if _is_of_time(element, name):
             called = ast.Call(ast.Name(TABLE, ast.Load()), [ast.Name(TIME, ast.Load())], [])
-            yield called, f"the table {name}", {}, {TABLE: table}
+            written = type(element).model_fields[name].alias or name
+            yield called, f"the table {written}", {}, {TABLE: table}
 
 
 def _is_of_time(element: Element, name: str) -> bool:

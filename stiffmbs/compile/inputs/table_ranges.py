@@ -23,8 +23,9 @@ class TableRanges:
         self.table = table
         self._values = curve(table)
         self._x, self._pieces = parts_of(table)
-        self._smooth = {"lines": 1, "spline": 3}.get(table.interpolation, 2)
-        self.period = self._x[-1] - self._x[0] if table.ends == "periodic" else 0.0
+        self._smooth = {"lines": 1, "spline": 3, "smoothing": 3}.get(table.interpolation, 2)
+        self.period = self._x[-1] - self._x[0] if table.repeats else 0.0
+        self._holds = table.beyond == "hold"
         self.breakpoints = _breakpoints(table, self._x)
         h = np.diff(self._x)
         whole = np.array([np.zeros_like(h), h])
@@ -70,7 +71,7 @@ class TableRanges:
         return hull(before, behind) if k <= self._smooth else np.broadcast_to(EVERYWHERE, before.shape)
 
     def _over(self, a: np.ndarray, b: np.ndarray) -> Callable[[int], Range]:
-        """Return the ranges of Taylor coefficients over intervals; a table extrapolates linearly."""
+        """Return the ranges of Taylor coefficients over intervals; outside, a table is straight."""
         x = self._x
         inside = np.clip([a, b], x[0], x[-1])
         first, last = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
@@ -91,8 +92,12 @@ class TableRanges:
             if k == 0:
                 ends = self._values(np.array([a, b]))
                 return np.where(outside, hull(found, ends[[0, 0]], ends[[1, 1]]), found)
-            if k > 1:
-                crossed = hull(found, np.zeros_like(found)) if k == 2 else np.broadcast_to(EVERYWHERE, found.shape)
+            if k > 1 or self._holds:
+                crossed = (
+                    hull(found, np.zeros_like(found))
+                    if k == (1 if self._holds else 2)
+                    else np.broadcast_to(EVERYWHERE, found.shape)
+                )
                 return np.where(beyond, 0.0, np.where(outside, crossed, found))
             return found
 
@@ -121,7 +126,7 @@ def _breakpoints(table: Table, x: np.ndarray) -> np.ndarray:
     else:
         flat = np.abs(np.diff(y)) <= FLAT * np.max(np.abs(y), initial=0.0)
         bends = np.flatnonzero(flat[1:] != flat[:-1]) + 1
-        if table.ends == "periodic" and not flat.any():
+        if table.repeats and not flat.any():
             return np.empty(0)
     return x[np.unique(np.concatenate([[0], bends, [len(x) - 1]]))]
 

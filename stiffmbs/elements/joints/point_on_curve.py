@@ -93,7 +93,7 @@ class PointOnCurve(KeepsDescribedTurns, Curve[Marker]):
 def repeating(law: Formula | Table | None) -> Formula | Table | None:
     """Return a law of the polar angle that is periodic over a turn. Raises ValueError if it is not periodic."""
     match law:
-        case Table(ends="periodic", table=((first, _), *_, (last, _))) if abs(last - first - TURN) <= 1e-9 * TURN:
+        case Table(repeats=True, table=((first, _), *_, (last, _))) if abs(last - first - TURN) <= 1e-9 * TURN:
             return law
         case Table(ends=ends, table=((first, _), *_, (last, _))):
             raise ValueError(

@@ -63,9 +63,10 @@ def rolled(table: Table, shape: Shape) -> Table:
     points = np.array(table.table)
     x, centre = _centres(partial(heights_of, table), (points[0, 0], points[-1, 0]), shape)
     _take_in(centre, x, points, shape)
-    if table.ends == "periodic":
+    if table.repeats:
         centre[-1] = centre[0]
-    return table_of(x, centre - _height(shape), "periodic" if table.ends == "periodic" else None)
+    filtered = table_of(x, centre - _height(shape), "periodic" if table.repeats else None)
+    return filtered.model_copy(update={"beyond": table.beyond})
 
 
 def rolled_profile(heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], shape: Shape) -> Table:
@@ -112,17 +113,25 @@ def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
     from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolator
 
     at, heights = np.array(table.table).T
-    if table.ends == "periodic":
+    if table.repeats:
         x = at[0] + np.mod(x - at[0], at[-1] - at[0])
         heights = np.append(heights[:-1], heights[0])
     inside = np.clip(x, at[0], at[-1])
+    outside = 0.0 if table.beyond == "hold" else x - inside
     if table.lines:
         slope = np.diff(heights) / np.diff(at)
         ends = np.where(x < at[0], slope[0], slope[-1])
-        return np.interp(inside, at, heights) + ends * (x - inside)
+        return np.interp(inside, at, heights) + ends * outside
+    if table.smoothing is not None:
+        raise InputError("found a road with smoothing and a filter, expected one of them")
     local = {"akima": Akima1DInterpolator, "monotone": PchipInterpolator}.get(table.interpolation)
-    found = local(at, heights) if local else CubicSpline(at, heights, bc_type=table.ends or "natural")
-    return np.asarray(found(inside) + found(inside, 1) * (x - inside))
+    if local and table.repeats:
+        count, length = len(at) - 1, at[-1] - at[0]
+        at = np.concatenate([at[:-1] - length, at[:-1], at + length])
+        heights = np.concatenate([heights[:count], heights[:count], heights])
+    ends = "periodic" if table.repeats else table.ends or "natural"
+    found = local(at, heights) if local else CubicSpline(at, heights, bc_type=ends)
+    return np.asarray(found(inside) + found(inside, 1) * outside)
 
 
 def of_arrays(value: object) -> object:

@@ -12,6 +12,7 @@ from ...compile.system import System
 from ...compile.terms import TERM_SETS
 from ...compile.written_values import writer
 from .chattering import CHATTERING
+from .departures import Departure, departures
 from .long_steps import WHOLE
 from .native.layouts import EVENT_SEARCH, STEP_BOUND
 
@@ -49,11 +50,13 @@ class EventSearch:
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "interval_low", "interval_high", "apart")  # fmt: skip
+        self._extent = {name: np.empty(n) for name in ("lowest", "highest", "outside", "left")}
         self._arrays = {
-            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "n_with_intervals": intervals.zoned,
+            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "tables": intervals.tables, "n_with_intervals": intervals.zoned,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_breakpoint": intervals.first, "breakpoints": intervals.breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": WHOLE, "weight": weight,
+            **self._extent,
             **_calls(system), "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
         fill(self.table, EVENT_SEARCH, self._arrays)
@@ -81,8 +84,19 @@ class EventSearch:
             ("begins", np.inf),
             ("narrow", 0),
             ("passed", -np.inf),
+            ("noted", np.inf),
         ):
             self._cells[cell] = value
+        if self.n:
+            for name, nothing in (("lowest", np.inf), ("highest", -np.inf), ("outside", 0.0), ("left", np.inf)):
+                self._extent[name][:] = nothing
+
+    def departures(self) -> tuple[Departure, ...]:
+        """Return the tables whose points were left in the steps of the last run."""
+        if not self.n or np.isinf(self._extent["left"]).all():
+            return ()
+        found = zip(*(values[self.n_event_functions :].tolist() for values in self._extent.values()), strict=True)
+        return departures(self._system, found)
 
     def note(self) -> str:
         """Return a sentence on a periodic law with more periods than steps; empty if there is none."""

@@ -104,6 +104,7 @@ class AdaptiveRun:
             note,
             long_steps=self.work.long_steps(),
             displaced=self.work.displaced(),
+            departures=self.work.departures(),
         )
 
     def _reason(self, status: int) -> str:

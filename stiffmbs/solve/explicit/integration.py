@@ -14,6 +14,7 @@ from ...dynamics.initial import InitialValues
 from ...dynamics.storage import FAILURES
 from ...model.settings import RunSettings
 from ..error_control.tolerances import absolute_tolerances
+from ..events.departures import Departure
 from ..events.event_functions import EventSearch, StepBound
 from ..events.long_steps import LongStepLog, LongSteps
 from ..trajectory import Grid, Rows
@@ -106,6 +107,10 @@ class Integration:
     def unresolved(self) -> str:
         """Return a sentence on force laws that repeat within a step, or an empty string."""
         return self._watch.note()
+
+    def departures(self) -> tuple[Departure, ...]:
+        """Return the tables whose points the steps have left."""
+        return self._watch.departures()
 
     def long_steps(self) -> tuple[LongSteps, ...]:
         """Return the recorded steps that are much longer than their predecessors."""

@@ -190,7 +190,7 @@ def first_check_of_drift(name, counts):
         made = []
         integrator = Record(
             dynamics=job, run=lambda *_, **__: [reached], equations=Record(states=lambda rows: (rows, rows)),
-            engine=Record(last_step=nothing, history=nothing, displaced=nothing), steps=lambda: steps,
+            engine=Record(last_step=nothing, history=nothing, displaced=nothing, ida=Record(watch=Record(departures=nothing))), steps=lambda: steps,
             split=lambda y: (y, y), settings=None, statistics=dict, note=str, long_steps=nothing,
         )  # fmt: skip
         checks = {"refuse_drift": nothing, "refuse_beyond_sense": nothing, name: lambda *_: made.append(1)}

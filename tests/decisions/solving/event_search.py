@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from stiffmbs.reading.table import Table
 from stiffmbs.solve.events import narrow_inputs
-from stiffmbs.solve.events.native import bounds, from_zero, nearby, sides, within_step
+from stiffmbs.solve.events.departures import Departure
+from stiffmbs.solve.events.native import bounds, from_zero, nearby, outside, sides, within_step
 from tests.decisions.common import Record, never, nothing, searched
 from tests.interpreted import interpreted
-from tests.solve.test_parameter_thresholds import HALVES, count_while
+from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
 
 def deviation_from_a_cubic():
@@ -127,7 +129,27 @@ def narrowest_peak():
     return count_while(is_seen, HALVES)
 
 
+def time_outside():
+    """Return the part of a step for which a straight function is noted as outside, which it is for 4.5 % of it."""
+    w = Record(
+        begun=0.0, noted=np.inf, n=1, n_event_functions=0, first_breakpoint=[0, 2], breakpoints=[-1.0, 0.955], tables=[1],
+        value_before=[0.0], value_after=[1.0], rate_before=[1.0], rate_after=[1.0], near=[0], call=[0], lowest=[0.0],
+        highest=[0.0], outside=[0.0], left=[np.inf], m=[0.0],
+    )  # fmt: skip
+    with interpreted(outside):
+        outside.note_outside(w, 1.0)
+    return w.outside[0]
+
+
+def farthest_that_is_no_departure():
+    """Return the distance from a table, in quarter octaves of 1e-12 of its range, that is rounding."""
+    table = Table(table=((0.0, 0.0), (1.0, 1.0)))
+    return count_while(lambda d: not Departure("", "", table, (0.0, 1.0 + 1e-12 * d), 0.0, 0.0).matters, DOUBLES)
+
+
 DECISIONS = {
+    "solve.events.native.outside:PARTS": time_outside,
+    "solve.events.departures:ROUNDING": farthest_that_is_no_departure,
     "event_search.margin": lambda: bounds._bound(1.0, 0.0, 2.0, 0.0, 0.0, 1) - 2.0,
     "event_search.unknown": lambda: bounds._bound(1.0, 0.0, 1.0, 0.0, 0.01, 1) - 1.0,
     "event_search.steep": steepest_without_an_extremum,
@@ -149,6 +171,7 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
+    "solve.events.native.outside:PARTS": 0.0625, "solve.events.departures:ROUNDING": 40,
     "event_search.margin": 0.1, "event_search.unknown": 0.08, "event_search.steep": 51, "event_search.turned": 100, "event_search.clear": 40,
     "event_search.hardly_turned": 30, "event_search.fits": 0.25, "event_search.precision": 120, "event_search.shallow": 1e-05,
     "event_search.well": 21, "event_search.finest": 0.0001, "event_search.few_parts": 9, "event_search.difference": 1e-06,

@@ -1,8 +1,13 @@
 """Evaluation of tables in kernels."""
 
 from math import floor
+from typing import Final
 
 from .access import compiled
+
+REPEATS: Final = 1.0
+HOLDS: Final = 2.0
+"""End codes of tables (`stiffmbs.compile.table_values`)."""
 
 
 @compiled
@@ -27,14 +32,15 @@ def _piece_area(number, piece, z):
 def spline(number, at, x, order):
     """Return the order-th derivative of the table at ``number[at]``, or its integral from the first point for order -1.
 
-    The data are those of `stiffmbs.compile.table_values.spline_data`; the table extrapolates linearly, or is periodic.
+    The data are those of `stiffmbs.compile.table_values.spline_data`; outside its points the table keeps its
+    slope or its value, or is periodic.
     """
     count = int(number[at])
     knots = at + 2
     first = number[knots]
     last = number[knots + count - 1]
     turns = 0.0
-    if number[at + 1] == 1.0:
+    if number[at + 1] == REPEATS:
         turns = floor((x - first) / (last - first))
         x = x - turns * (last - first)
     low = 0
@@ -51,6 +57,8 @@ def spline(number, at, x, order):
     z = inside - number[knots + low]
     slope = (3.0 * a * z + 2.0 * b) * z + c
     value = ((a * z + b) * z + c) * z + d
+    if number[at + 1] == HOLDS and x != inside:
+        slope = 0.0
     if order == 0:
         return value + (x - inside) * slope
     if order == -1:

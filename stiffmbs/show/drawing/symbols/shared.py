@@ -165,7 +165,7 @@ def _value(law: Any, name: str, x: float) -> float:
         variables: dict[str, Any] = {name: x}
         return formula_value(law, **variables)
     rows = np.array(law.table)
-    period = {"period": rows[-1, 0] - rows[0, 0]} if law.ends == "periodic" else {}
+    period = {"period": rows[-1, 0] - rows[0, 0]} if law.repeats else {}
     return float(np.interp(x, rows[:, 0], rows[:, 1], **period))
 
 

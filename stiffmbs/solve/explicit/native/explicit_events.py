@@ -21,6 +21,7 @@ from stiffmbs.solve.events.native.bounds import (
 )
 from stiffmbs.solve.events.native.from_zero import JUST_BEYOND, begin_sides, leave_zero, leaves_zero, note_sides
 from stiffmbs.solve.events.native.nearby import note_intervals
+from stiffmbs.solve.events.native.outside import note_outside
 from stiffmbs.solve.events.native.parameters import BISECTIONS, EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, keep_row
 from stiffmbs.solve.explicit.native.attempt import arrive, attempt
@@ -327,6 +328,7 @@ def _ended_at_event(x, c, s, m):
     if status == NO_EVENT:
         _note_repeats(x, w, 0)
         copied(x.signs, w.value_after, x.n_event_functions)
+        note_outside(w, x.t)
         shift_ends(w)
         if w.n_turns > 0:
             x.h = min(x.h, longest_by_turns(w, w.rate_before, SEARCH.turned))

@@ -24,6 +24,7 @@ from stiffmbs.solve.events.native.bounds import (
 )
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
+from stiffmbs.solve.events.native.outside import note_outside
 from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, first_event_or_change, keep_row
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
@@ -87,6 +88,7 @@ def _go_on(c, w, s):
         w.longest = longest_by_turns(w, w.rate_after, SEARCH.turned)
         if w.longest == float("inf") and turned_arguments(w, w.value_before, w.value_after) > pi:
             note_unresolved(w, w.begun, w.value_before, w.value_after)
+    note_outside(w, c.returned)
     keep_row(w, s, 0)
     w.begun = c.returned
     shift_ends(w)

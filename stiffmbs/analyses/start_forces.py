@@ -1,0 +1,192 @@
+"""Forces that elastic elements have at the start because of how the scene is drawn.
+
+A mount that is drawn off its place is a stretched spring: its force at the start has no other cause than the drawing. Assembly
+closes joints alone, and may stretch the elements between the bodies that it moves. The forces are compared with those in
+the static equilibrium, which is only computed if one of them is large, and with the weight of all bodies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from ..compile.group import Group
+from ..compile.system import System
+from ..dynamics.dynamics import Dynamics, OutputRows
+from ..dynamics.initial import InitialValues
+from ..equilibria.equilibrium import find_equilibrium
+from ..errors import StiffmbsError
+from ..model.model_data import ModelData
+from ..model.scene import Scene
+from ..results.energy_balance import potentials
+
+MOUNTS = ("bushing",)
+"""Kinds of elements that stand for joints, and are not stretched on purpose."""
+OF_EQUILIBRIUM = 10.0
+"""Force of a mount at the start, in the largest force of the static equilibrium, above which it is noted."""
+OF_WEIGHT = 1000.0
+"""Force of any elastic element at the start, in the weight of all bodies, above which it is noted, or a mount's if no equilibrium is found."""
+STIFF = 1e-3
+"""Deflection of a mount by the weight of all bodies, in sizes of the mechanism, above which it is a spring, and stretched on purpose."""
+STANDARD_GRAVITY: Final = 9.80665
+"""Gravity by which bodies are weighed in scenes without, or with less, m/s^2."""
+
+
+class Stretched(NamedTuple):
+    """A force element at a state. `force`: N; a torque over the size of the mechanism."""
+
+    name: str
+    kind: str
+    elastic: bool
+    force: float
+    turned: bool = False  # True if the torque is the larger one
+
+    def deflection(self, energy: float) -> float:
+        """Return the deflection of a linear element with this force and an energy, J, in m."""
+        return 2.0 * energy / self.force
+
+
+def start_force_notes(
+    data: ModelData, dynamics: Dynamics, start: InitialValues, t: float, rows: OutputRows | None = None
+) -> Iterator[str]:
+    """Yield a sentence for the element with by far the largest force that comes from the drawn or assembled pose.
+
+    `rows`: output rows whose first is the start, if known. A start in an equilibrium or from a saved state has no such forces.
+    """
+    if isinstance(data, Scene) and data.start != "described":
+        return
+    if not any(map(_is_elastic, dynamics.system.groups)):
+        return
+    if rows is None:
+        with dynamics.state.unchanged():
+            rows = dynamics.report(np.array([t]), start.q[None], start.u[None], True)
+    if not len(rows.t):
+        return
+    system, heavy = dynamics.system, weight(dynamics.system)
+    for worst in _suspects(system, start, stretched(system, rows.values[0])):
+        energy = _energy(system, rows, worst.name)
+        if worst.force > OF_WEIGHT * heavy or heavy * worst.deflection(energy) < STIFF * system.size * worst.force:
+            with dynamics.state.unchanged():
+                yield from _notes(dynamics, start, t, worst, energy)
+            return
+
+
+def stretched(system: System, values: np.ndarray) -> list[Stretched]:
+    """Return all force elements with a force at a state, from the values of its output terms."""
+    found, reported = [], system.reported
+    for group in system.groups:
+        if group.record.n_equations or not group.kind.element.kind:
+            continue
+        for name in group.names:
+            at = [reported.get(f"{name}.{label}", -1) for label in system.of_body.reactions]
+            parts = np.array([values[k] if k >= 0 else 0.0 for k in at])
+            force, torque = _forces(system, parts)
+            if max(force, torque) > 0.0:
+                larger = max(force, torque), torque > force
+                found.append(Stretched(name, group.kind.element.kind, _is_elastic(group), *larger))
+    return found
+
+
+def _energy(system: System, rows: OutputRows, name: str) -> float:
+    """Return the energy of an element at the first row, J."""
+    return float(potentials(system, rows.values[:1])[name][0])
+
+
+def _is_elastic(group: Group) -> bool:
+    """Return True for elements with a stiffness, whose forces come from their poses."""
+    return "stiffness" in group.kind.element.__pydantic_fields__ and bool(group.record.patterns.get("potential"))
+
+
+def _forces(system: System, parts: np.ndarray) -> tuple[float, float]:
+    """Return the force of a reaction, N, and its torque over the size of the mechanism."""
+    linear = system.of_body.linear
+    return float(np.linalg.norm(parts[:linear])), float(np.linalg.norm(parts[linear:]) / system.size)
+
+
+def weight(system: System) -> float:
+    """Return the weight of all bodies by standard gravity, N."""
+    masses = system.mass.reshape(-1, system.of_body.n_u)[:, 0]
+    return float(STANDARD_GRAVITY * masses.sum())
+
+
+def inertia(system: System, u: np.ndarray) -> float:
+    """Return the size of the inertia forces of a motion of the bodies relative to each other, N."""
+    masses, velocities = (x.reshape(-1, system.of_body.n_u).copy() for x in (system.mass, u))
+    linear = slice(0, system.of_body.linear)
+    momentum, total = np.sum(masses[:, linear] * velocities[:, linear], axis=0), np.sum(masses[:, linear], axis=0)
+    velocities[:, linear] -= np.divide(momentum, total, out=np.zeros_like(total), where=total > 0.0)
+    return float(np.sum(masses * velocities**2) / system.size)
+
+
+def _suspects(system: System, start: InitialValues, elements: list[Stretched]) -> list[Stretched]:
+    """Return the elastic elements whose forces weight and motion do not explain, the largest first."""
+    if not elements:
+        return []
+    heavy, moving = weight(system), OF_EQUILIBRIUM * inertia(system, start.u)
+    found = [
+        each
+        for each in elements
+        if each.elastic and each.force > max(heavy if each.kind in MOUNTS else OF_WEIGHT * heavy, moving)
+    ]
+    return sorted(found, key=lambda each: -each.force)
+
+
+def _notes(dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched, energy: float) -> Iterator[str]:
+    """Yield the note on an element, unless forces of its size act in the equilibrium."""
+    system, heavy = dynamics.system, weight(dynamics.system)
+    settled = _in_equilibrium(dynamics, start, t)
+    usual = OF_EQUILIBRIUM * max(each.force for each in settled) if settled else OF_WEIGHT * heavy
+    loads = OF_EQUILIBRIUM * max((each.force for each in settled if not each.elastic), default=0.0)
+    if not worst.force > min(usual, max(loads, OF_WEIGHT * heavy)):
+        return
+    at_rest = next((each.force for each in settled if each.name == worst.name), 0.0)
+    compared = (
+        f"in the static equilibrium it carries {_written(at_rest, worst, system)}"
+        if settled
+        else f"{worst.force / heavy:.2g} times the weight of all bodies"
+    )
+    deflected = f", {_deflected(worst.deflection(energy), worst, system)}, with {energy:.3g} J" if energy > 0 else ""
+    remedy = (
+        "The vibration that follows comes from the drawn pose: correct markers and positions, or use 'start: settled', which "
+        "starts from the equilibrium"
+        if worst.force > OF_EQUILIBRIUM * at_rest
+        else "Bodies are held in a drawn pose that does not fit: correct markers and positions"
+    )
+    opened = _by_assembly(dynamics, start, t, worst, energy)
+    yield f"'{worst.name}' starts with {_written(worst.force, worst, system)}{deflected}; {compared}{opened}. {remedy}"
+
+
+def _written(force: float, element: Stretched, system: System) -> str:
+    return f"{force * system.size:.3g} N m" if element.turned else f"{force:.3g} N"
+
+
+def _deflected(deflection: float, element: Stretched, system: System) -> str:
+    if element.turned:
+        return f"turned by {np.degrees(deflection / system.size):.3g} deg"
+    return f"deflected by {1e3 * deflection:.3g} mm"
+
+
+def _in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> list[Stretched]:
+    """Return the elements in the equilibrium near the start; none if it is not found."""
+    try:
+        dynamics.state.q[:] = start.q
+        found = find_equilibrium(dynamics, t)
+        rows = dynamics.report(np.array([t]), found.q[None], found.u[None], False)
+    except (StiffmbsError, ArithmeticError, ValueError):
+        return []
+    return stretched(dynamics.system, rows.values[0]) if len(rows.t) else []
+
+
+def _by_assembly(dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched, energy: float) -> str:
+    """Return a clause if assembly, which closes joints alone, has stretched an element."""
+    if not start.moved or not energy > 0.0:
+        return ""
+    system = dynamics.system
+    rows = dynamics.report(np.array([t]), system.q[None], start.u[None], False)
+    drawn = [each for each in stretched(system, rows.values[0]) if each.name == worst.name] if len(rows.t) else []
+    before = drawn[0].deflection(_energy(system, rows, worst.name)) if drawn else 0.0
+    opened = worst.deflection(energy) - before
+    by = _deflected(opened, worst, system).removeprefix("deflected ").removeprefix("turned ")
+    return f"; assembly closed the joints alone and opened it {by}" if opened > 0 else ""

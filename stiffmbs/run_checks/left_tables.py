@@ -1,0 +1,185 @@
+"""Tables whose points a run has left: which, how far and for how long.
+
+The steps of integrators record the arguments of tables in force laws (`stiffmbs.solve.events.native.outside`). Arguments
+that depend on time alone are known without a run. Solvers that do not search their steps for events are judged at the
+output times.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ..compile.inputs.of_time import Input, expressions_of, given_to
+from ..compile.inputs.table_ranges import TableRanges
+from ..compile.state import State
+from ..compile.system import System
+from ..compile.table_values import curve, ends_of, spline_data
+from ..compile.written_values import table_arguments, tables_in
+from ..elements.states.amount import TABLE as INPUT_TABLE
+from ..errors import SolverError
+from ..model.settings import RunSettings
+from ..reading.table import Table
+from ..solve.events.departures import Departure, merged
+from ..solve.settings import traits_of
+from ..solve.trajectory import Outcome, Trajectory
+
+SAMPLES = 2001
+"""Times between which arguments that depend on time alone are taken as straight lines."""
+OF_FIELD = "the table "
+"""Beginning of the text of an input that is the table of a field."""
+
+
+def left_tables(system: System, trajectory: Trajectory, settings: RunSettings) -> list[Departure]:
+    """Return the departures of a run, those of its steps if the solver searches them for events, or at output times."""
+    traits = traits_of(settings)
+    recorded = not (traits.fixed_steps or traits.exact)
+    of_state = trajectory.departures if recorded else _at_states(system, trajectory.t, trajectory.q, trajectory.u)
+    return list(merged([*of_state, *_of_time(system, float(trajectory.t[0]), float(trajectory.t[-1]))]))
+
+
+def refused_departure(found: list[Departure]) -> Departure | None:
+    """Return the first departure from a table with ``beyond: error``, or None."""
+    errors = (each for each in found if each.table.beyond == "error")
+    return min(errors, key=lambda each: each.first, default=None)
+
+
+def stopped_at(first: Departure, trajectory: Trajectory) -> Trajectory:
+    """Return a trajectory that ends at a departure, with the reason."""
+    rows = max(int(np.searchsorted(trajectory.t, first.first, side="right")), 1)
+    t, q, u = (array[:rows] for array in (trajectory.t, trajectory.q, trajectory.u))
+    return replace(trajectory, t=t, q=q, u=u, outcome=Outcome.STOPPED, message=_refusal(first))
+
+
+def _refusal(first: Departure) -> str:
+    return (
+        f"stopped at t = {first.first:.9g} s: the table '{first.label}' of '{first.element}' was left (beyond: error): its "
+        f"argument passes its {_end(first, int(first.beyond[1] > first.beyond[0]))}; expected more points, or another 'beyond'"
+    )
+
+
+def departure_notes(found: list[Departure]) -> Iterator[str]:
+    """Yield a sentence for each table that was extrapolated."""
+    users: dict[str, list[str]] = {}
+    for departure in found:
+        if sentence := _sentence(departure):
+            users.setdefault(sentence, []).append(departure.element)
+    for sentence, names in users.items():
+        yield f"{', '.join(dict.fromkeys(names))}: {sentence}"
+
+
+def _sentence(left: Departure) -> str:
+    """Return a sentence on an extrapolation; empty if the table keeps the value of its end as intended."""
+    if left.table.beyond not in (None, "extend"):
+        return ""
+    sides = [side for side in (0, 1) if left.beyond[side] > 0 and not _keeps_value(left.table, side)]
+    if not sides:
+        return ""
+    side = max(sides, key=lambda each: left.beyond[each])
+    reached = left.reached[side]
+    values = [value for _, value in left.table.table]
+    continued = float(curve(left.table)(np.array([reached]))[0])
+    remedy = "" if left.table.beyond else "; state 'beyond': hold, extend, error or repeat, or give more points"
+    return (
+        f"the table '{left.label}' was left for {left.duration:.3g} s, first at t = {left.first:.6g} s: its argument reaches "
+        f"{reached:.6g}, {left.beyond[side]:.3g} beyond its {_end(left, side)}, and the slope there continues it to "
+        f"{continued:.6g} (its points have values from {min(values):.6g} to {max(values):.6g}){remedy}"
+    )
+
+
+def _end(left: Departure, side: int) -> str:
+    return f"{('first', 'last')[side]} point at {left.extent[side]:.6g}"
+
+
+def _keeps_value(table: Table, side: int) -> bool:
+    """Return True if a table is level at an end: its outer points are equal, or its slope is clamped to zero."""
+    points = table.table[:2] if side == 0 else table.table[-2:]
+    _, _, before, after = ends_of(spline_data(table))
+    slope = before[0] if side == 0 else after[-1]
+    return slope == 0.0 and (points[0][1] == points[1][1] or table.ends == "clamped")
+
+
+def _of_time(system: System, start: float, end: float) -> Iterator[Departure]:
+    """Yield the departures from tables whose arguments depend on time alone."""
+    given = given_to(system)
+    t = _samples(start, end)
+    for group in system.groups:
+        if not group.has_inputs:
+            continue
+        for name, element in zip(group.names, group.elements, strict=True):
+            for tree, text, values, tables in expressions_of(element, given):
+                if name in given.tables and INPUT_TABLE in tables:
+                    continue  # the value of an input, which is noted where it is used
+                known = Input(tree, text, values, {label: TableRanges(table) for label, table in tables.items()})
+                for node in ast.walk(tree):
+                    match node:
+                        case ast.Call(ast.Name(label), [argument]) if label in tables:
+                            label = (
+                                text.removeprefix(OF_FIELD) if text.startswith(OF_FIELD) else label.removesuffix("(t)")
+                            )
+                            with np.errstate(all="ignore"):
+                                x = known.at(t, argument)
+                            yield from _departure(name, label, tables[node.func.id], t, x)  # type: ignore[union-attr, attr-defined]
+
+
+def _samples(start: float, end: float) -> np.ndarray:
+    return np.linspace(start, end, SAMPLES)
+
+
+def _departure(element: str, label: str, table: Table, t: np.ndarray, x: np.ndarray) -> Iterator[Departure]:
+    """Yield the departure from a table by an argument x, which is straight between the times t; if there is one."""
+    if table.repeats or not np.isfinite(x).all():
+        return
+    found = Departure(element, label, table, (float(x.min()), float(x.max())), *_outside(t, x, table))
+    if found.matters:
+        yield found
+
+
+def _outside(t: np.ndarray, x: np.ndarray, table: Table) -> tuple[float, float]:
+    """Return the time for which an argument is outside a table, and the first such time, s."""
+    duration, first = 0.0, np.inf
+    for sense, end in ((-1.0, table.table[0][0]), (1.0, table.table[-1][0])):
+        over = sense * (x - end)
+        a, b, h = over[:-1], over[1:], np.diff(t)
+        with np.errstate(all="ignore"):
+            crossing = np.where((a > 0) == (b > 0), 0.0, a / (a - b))
+        part = np.where((a > 0) & (b > 0), 1.0, np.where(b > 0, 1.0 - crossing, np.where(a > 0, crossing, 0.0)))
+        duration += float(part @ h)
+        out = np.flatnonzero(part > 0)
+        if len(out):
+            k = int(out[0])
+            first = min(first, float(t[k] + (0.0 if a[k] > 0 else crossing[k]) * h[k]))
+    return duration, first
+
+
+def may_refuse(system: System) -> bool:
+    """Return True if an element has a table with ``beyond: error``."""
+    elements = (element for group in system.groups if group.kind.has_tables for element in group.elements)
+    return any(table.beyond == "error" for element in elements for _, table in tables_in(element, ""))
+
+
+def refuse_departure(system: System, t: float, q: np.ndarray, u: np.ndarray) -> None:
+    """Raise a SolverError if a state is outside a table with ``beyond: error``; names the table."""
+    found = [*_at_states(system, np.array([t]), q[None], u[None]), *_of_time(system, t, t)]
+    if first := refused_departure(found):
+        raise SolverError(_refusal(first))
+
+
+def _at_states(system: System, times: np.ndarray, q: np.ndarray, u: np.ndarray) -> Iterator[Departure]:
+    """Yield the departures that states at given times show."""
+    arguments = list(table_arguments(system))
+    if all(table is None for *_, table in arguments):
+        return
+    state, values = State(system), np.empty((len(times), len(arguments)))
+    own = slice(system.n_event_functions, system.n_values("event_function"))
+    state.load("event_function")
+    for k, t in enumerate(times.tolist()):
+        state.q[:], state.u[:] = q[k], u[k]
+        state.evaluate("event_function", t)
+        values[k] = state.values["event_function"][own]
+    for (element, label, table), x in zip(arguments, values.T, strict=True):
+        if table is not None and np.isfinite(x).all():
+            yield from _departure(element, label, table, times, x)

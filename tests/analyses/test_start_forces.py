@@ -1,0 +1,118 @@
+"""A mount drawn off its place is reported by check and run, with its force, deflection and remedy; others are not."""
+
+from __future__ import annotations
+
+import pytest
+
+import stiffmbs
+from stiffmbs import read_scene, run
+from tests.conftest import EXAMPLES
+
+LEVER = """
+gravity: [0, -9.81]
+bodies:
+  lever: {{mass: 1 kg, inertia: 0.01, position: [0.1, {off}], markers: {{foot: {{point: [-0.1, 0]}}}}}}
+forces:
+  mount: {{type: {mount}}}
+run: {{duration: 0.01, output: 1 ms}}
+"""
+BUSHING = "bushing, i: lever.foot, j: ground, stiffness: [5e7, 5e7, 1e3], damping: [1e3, 1e3, 1]"
+IN_SPACE = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies: {hub: {mass: 8, inertia: [0.1, 0.1, 0.1], position: [0, 0.005, 0]}}
+forces: {mount: {type: bushing, i: hub, j: ground, stiffness: [1e8, 1e8, 1e8, 1e4, 1e4, 1e4]}}
+run: {duration: 0.001}
+"""
+PRESS = """
+gravity: [0, -9.81]
+bodies:
+  crank: {mass: 6 kg, inertia: 0.02, omega: 60 rpm, markers: {pin: {point: [80 mm, 0]}}}
+  coupler: {mass: 5 kg, inertia: 0.07, position: [280 mm, 0], markers: {a: {point: [-200 mm, 0]}, b: {point: [200 mm, 0]}}}
+  rocker: {mass: 8 kg, inertia: 0.05, position: [400 mm, -75 mm], angle: 80 deg, markers: {foot: {point: [-125 mm, 0]}, head: {point: [125 mm, 0]}}}
+joints:
+  main_bearing: {type: revolute, i: crank, j: ground}
+  crank_pin: {type: revolute, i: coupler.a, j: crank.pin}
+  knee: {type: revolute, i: coupler.b, j: rocker.head}
+  motor: {type: drive, joint: main_bearing, velocity: 60 rpm}
+forces:
+  foot: {type: bushing, i: rocker.foot, j: {body: ground, point: [350 mm, -150 mm]}, stiffness: [5e7, 5e7, 0], damping: [2e4, 2e4, 0]}
+run: {duration: 0.002, points: 3}
+"""
+
+
+def lever(off: float, mount: str = BUSHING) -> stiffmbs.Scene:
+    return read_scene(LEVER.format(off=off, mount=mount))
+
+
+def starts(sentences: object) -> list[str]:
+    return [sentence for sentence in sentences if "starts with" in sentence]  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("off", [0.02, -0.02, 0.0005])
+def test_a_mount_off_its_place_is_named_by_check_and_run(off: float) -> None:
+    """k d = 5e7 N/m times the offset, against the weight of 9.81 N in equilibrium."""
+    (note,) = starts(run(lever(off)).notes)
+    assert f"'mount' starts with {5e7 * abs(off):.3g} N, deflected by {1e3 * abs(off):.3g} mm" in note
+    assert f"{0.5 * 5e7 * off**2:.3g} J" in note
+    assert "in the static equilibrium it carries 9.81 N" in note
+    assert "start: settled" in note
+    assert starts(stiffmbs.check(lever(off)).messages) == [note]
+
+
+def test_a_mount_in_its_place_or_settled_has_no_note() -> None:
+    assert not starts(run(lever(0.0)).notes)
+    assert not starts(run(lever(-1e-7)).notes)
+    settled = lever(0.02).model_copy(update={"start": "settled"})
+    assert not starts(run(settled).notes)
+    assert not starts(run(lever(0.02), start_from=run(settled)).notes)
+
+
+def test_a_mount_in_space() -> None:
+    (note,) = starts(run(read_scene(IN_SPACE)).notes)
+    assert "'mount' starts with 5e+05 N, deflected by 5 mm" in note
+
+
+def test_assembly_that_opens_a_mount_is_named() -> None:
+    (note,) = starts(stiffmbs.check(read_scene(PRESS)).messages)
+    assert "'foot' starts with 6.15e+06 N, deflected by 123 mm" in note
+    assert "assembly closed the joints alone and opened it by 67.2 mm" in note
+
+
+def test_without_an_equilibrium_the_weight_decides() -> None:
+    pushed = LEVER.replace("forces:", "forces:\n  push: {{type: force, i: lever, force: [0, -20]}}")
+    free = "spring_damper, i: lever.foot, j: {{body: ground, point: [0, -1]}}, stiffness: 1e7, free_length: {length}"
+    (note,) = starts(run(read_scene(pushed.format(off=0, mount=free.format(length=0.98)))).notes)
+    assert "'mount' starts with 2e+05 N" in note
+
+
+@pytest.mark.parametrize(
+    "mount",
+    [
+        "spring_damper, i: lever.foot, j: {body: ground, point: [0, -1]}, stiffness: 1e4, free_length: 0.7",
+        "bushing, i: lever.foot, j: ground, stiffness: [300, 300, 3], damping: [1, 1, 0]",
+        "bushing, i: lever.foot, j: ground, stiffness: [5e7, 5e7, 1e3], preload: [0, 9.81, 0]",
+        "force, i: lever, force: [0, 2e5]",
+    ],
+)
+def test_springs_stretched_on_purpose_and_applied_forces_have_no_note(mount: str) -> None:
+    """A spring of 3000 N throws a lever of 1 kg; the offset of a soft bushing is 20 mm, and that of the preloaded one zero."""
+    off = 0.02 if "300, 300" in mount else 0.0
+    assert not starts(run(lever(off, mount), duration=1e-3).notes)
+
+
+def test_a_rotor_in_its_bearing_has_the_deflection_of_its_motion() -> None:
+    """A ring mass of 1 kg at 0.1 m turns at 2000 rad/s about a bushing that is deflected by what it carries: 4e5 N."""
+    scene = """
+bodies: {rotor: {mass: 1, inertia: 0.01, position: [0.104, 0], velocity: [0, 208], omega: 2000}}
+forces: {bearing: {type: bushing, i: {body: rotor, point: [-0.1, 0]}, j: ground, stiffness: [1.04e8, 1.04e8, 0]}}
+run: {duration: 1e-4}
+"""
+    assert not starts(run(read_scene(scene)).notes)
+
+
+@pytest.mark.parametrize(
+    "name", ["elastic_bearing", "half_car", "door", "governor", "cam_follower", "vehicles/quarter_car"]
+)
+def test_examples_start_without_a_note(name: str) -> None:
+    assert not starts(stiffmbs.check(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml")).messages)
