@@ -129,6 +129,10 @@ class Job:
     subsystems: tuple[Subsystem, ...] = ()
     start_from: SavedState | None = None
 
+    def shown(self, t: np.ndarray) -> np.ndarray:
+        """Return the times of rows as the user knows them: those just before or after a breakpoint at that breakpoint."""
+        return replace(self.grid, start=self.settings.start).shown(t)
+
     @cached_property
     def on_constraints(self) -> bool:
         """Return True if states satisfy the constraints up to the tolerance."""
@@ -145,6 +149,7 @@ class Job:
         LOGGER.info("solving %s by %s", self.data.name, self.settings.solver)
 
         def over(grid: Grid) -> Trajectory:
+            grid = grid.beside(self.dynamics.input_features(grid.start, grid.end))
             if self.subsystems:
                 return solve_subsystems(solve, self.subsystems, self.start, grid, self.settings, watch)
             return solve(self.dynamics, self.start, grid, self.settings, watch)
@@ -212,16 +217,19 @@ def prepare(
         dynamics = found.dynamics()
     LOGGER.info("assembling %s", found.data.name)
     before = FoundBefore(found.data, found.settings, found.start_from)
+    grid = found.grid
+    if dynamics.system.has_inputs and begins_at_breakpoint(dynamics.system, grid.start, grid.end):
+        grid = replace(grid, start=grid.start + grid.aside)
     with reported_faults(dynamics.system), in_use(found.settings.tuning):
-        start = before.get("start", lambda: _start(found.data, dynamics, found.grid.start, found.start_from))
+        start = before.get("start", lambda: _start(found.data, dynamics, grid.start, found.start_from))
         if before.name:
             dynamics.place(start.q, start.u, start.lam)
         if isinstance(found.data, Scene) and found.data.start != "described":
             start = replace(start, notes=(*start.notes, *held(dynamics.system)))
-        subsystems = presolved(found.data, dynamics, start, found.grid, found.settings, partial(before.get, "implicit"))
+        subsystems = presolved(found.data, dynamics, start, grid, found.settings, partial(before.get, "implicit"))
     before.keep()
     dynamics.system.known_terms.clear()
-    return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)
+    return Job(found.data, found.settings, grid, found.redundancy, dynamics, start, subsystems, found.start_from)
 
 
 def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:

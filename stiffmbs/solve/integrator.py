@@ -89,7 +89,8 @@ class Integrator:
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
         self._masked = MaskedEvents(self.dynamics, chattering)
         ready: InitialValues | None = start
-        stops = [*grid.with_stops(features.breakpoints).tolist(), grid.end]
+        self.engine.resume_after(2.0 * grid.aside)
+        stops = [*(grid.with_stops(features.breakpoints) - grid.aside).tolist(), grid.end]
         while stops:
             if just_after(t) >= stops[0]:
                 del stops[0]
@@ -113,12 +114,16 @@ class Integrator:
                 q, u = self.on_constraints(reached)
                 if self._masked.any:
                     self._masked.note(t, q, u, self.steps(), reached.fired)
-                if t >= stops[0]:  # min(2*t, 1) still rises at its breakpoint; its later branch holds after it
-                    t = just_after(t)
+                at_breakpoint = t >= stops[0]
+                if at_breakpoint:
+                    before = t = t + 2.0 * grid.aside
+                    yield from self._at_once(reached.t, t, grid, (q, u))
                 ready, t = self._restarted(q, u, before, t, self._ahead(reached, stops[0]), chattering)
-                yield from self._at_once(before, t, grid)
-                self._events += before < stops[0]
-                self._breakpoints += before >= stops[0]
+                if not at_breakpoint:
+                    state = self.dynamics.state
+                    yield from self._at_once(before, t, grid, (state.q, state.u))
+                self._events += not at_breakpoint
+                self._breakpoints += at_breakpoint
 
     def _restarted(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
@@ -172,17 +177,12 @@ class Integrator:
             return self.engine.by_steps(stops[0])
         return self.engine.to_times(grid.within(just_after(t), stops[-1]), stops)
 
-    def _at_once(self, before: float, t: float, grid: Grid) -> Iterator[Reached]:
-        """Yield the state at t for output times equal to t apart from rounding, such as 7 * 0.1 s and 0.7 s.
-
-        Output times up to `before` have been yielded already.
-        """
+    def _at_once(self, before: float, t: float, grid: Grid, state: States) -> Iterator[Reached]:
+        """Yield a state for output times from `before`, excluded, to t, up to rounding such as that of 7 * 0.1 s."""
         times = grid.within(before, just_after(t))
         if len(times):
             y = np.zeros(self.equations.n)
-            y[self.equations.independent] = self.equations.coordinates.state(
-                self.dynamics.state.q, self.dynamics.state.u
-            )
+            y[self.equations.independent] = self.equations.coordinates.state(*state)
             yield Reached(times, np.tile(y[self.equations.independent], (len(times), 1)), t, y)
 
     def _begin(self, start: InitialValues, t: float) -> None:

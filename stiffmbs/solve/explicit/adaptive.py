@@ -18,7 +18,7 @@ from ...tuning import tuned
 from ..events.chattering import MASKING, Chattering
 from ..events.discontinuity import VelocityJumps
 from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
-from ..events.restart import just_after, just_before, restarted
+from ..events.restart import restarted
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
@@ -67,6 +67,7 @@ class AdaptiveRun:
             self._rows.append(grid.start, start.q, start.u)
         features = dynamics.input_features(grid.start, grid.end)
         self._breakpoints, self._note = grid.with_stops(features.breakpoints), features.note
+        self._aside = grid.aside
         work.step_bound.follow(features)
         self._stable_step = StableStep(scheme, dynamics)
         self._jumps = VelocityJumps(dynamics)
@@ -79,7 +80,7 @@ class AdaptiveRun:
         work, status = self.work, AT_END
         with Ending() as ending:
             for breakpoint in (*self._breakpoints.tolist(), self._grid.end):
-                stop, status = just_before(breakpoint) if breakpoint < self._grid.end else breakpoint, AT_EVENT
+                stop, status = breakpoint - self._aside if breakpoint < self._grid.end else breakpoint, AT_EVENT
                 while status == AT_EVENT and not self.left:
                     status = self._segment(stop, leaving)
                 if status < 0 or self.left or breakpoint == self._grid.end:
@@ -174,10 +175,9 @@ class AdaptiveRun:
         return max(1, most // CHECKS.now_and_then) if leaving else most
 
     def _go_past(self, breakpoint: float) -> None:
-        """Restart after a breakpoint, where min(2*t, 1) has its new slope; output at it is the state before."""
-        self.work.t = breakpoint
+        """Restart just after a breakpoint; output at it is the state before."""
+        self.work.t = min(breakpoint + self._aside, self._grid.end)
         self._store_rows()
-        self.work.t = min(just_after(breakpoint), self._grid.end)
         before = self.work.u.copy()
         self._restart()
         self._jumps.note(breakpoint, self._start.u - before)

@@ -108,6 +108,10 @@ class NativeEngine:
         self._take_up(self._starts, t)
         return True
 
+    def resume_after(self, gap: float) -> None:
+        """Set the time from a stop to the restart after it, s."""
+        self._gap = gap
+
     def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
         """Restart after a state and events within `ahead`, s, by one compiled call; return None where it does not apply."""
         if self._starts is None or self._event_restarts is None:
@@ -189,6 +193,7 @@ class NativeEngine:
         if event_restarts is None:
             return *self.ida.advance(times, stops[0], rows), 0
         before = self.ida.history.count
+        event_restarts.resume_after(self._gap)
         served, status = self.ida.advance_past(event_restarts, times, np.array(stops), self._order.order, rows)
         passed, steps = event_restarts.passed
         if passed:

@@ -12,7 +12,6 @@ from ....compile.machine.routines import Routine
 from ....dynamics.dynamics import Dynamics
 from ...error_control.native.parameters import POLISHING
 from ...events.discontinuity import JUMP, VELOCITY_JUMP, direction_of
-from ...events.native.parameters import INDISTINCT
 from ..native.layouts import EVENT_RESTART
 from .starts import Starts, integers
 
@@ -52,7 +51,7 @@ class EventRestarts:
             "start": starts.table, "n_event_functions": n, "first_limit": system.first_limit,
             "n_counted": len(counted.row), "counted_source": integers(counted.source), "counted_row": integers(counted.row),
             "reach": JUMP.larger_move, "along_q": along_q, "along_u": along_u,
-            "amplified": POLISHING.amplified, "least": least, "largest_jump": VELOCITY_JUMP.least, "indistinct": INDISTINCT,
+            "amplified": POLISHING.amplified, "least": least, "largest_jump": VELOCITY_JUMP.least,
             "q": np.empty(system.n_q), "u": np.empty(system.n_u), "values": np.empty(n), "found": np.empty(n, dtype=np.int64),
         }  # fmt: skip
         self.starts, self._kept = starts, values
@@ -86,6 +85,10 @@ class EventRestarts:
             return False
         q[:], u[:] = own.q, own.u
         return True
+
+    def resume_after(self, gap: float) -> None:
+        """Set the time from a breakpoint to the restart after it, s."""
+        self._cells["gap"] = gap
 
     @property
     def t(self) -> float:

@@ -105,8 +105,8 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
         flag = advanced(c, ida, count, times, stop, most, y_out)
         if flag != STOP_RETURN or w.passed + 1 == n_stops or c.recorded + most > 2 * LOOP.most_steps:
             return int32(flag)
-        t = c.returned + w.indistinct * abs(c.returned)
-        same = t + w.indistinct * abs(t)
+        t = c.returned + w.gap
+        same = t + w.gap
         open_ = s.n_c > 0 and c.size > output_correction_view(c.output_correction).long
         if open_ or same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
             return int32(flag)
