@@ -14,6 +14,7 @@ import numpy as np
 
 from ..compile.callbacks import fault_of
 from ..compile.compile_model import compile_model
+from ..compile.inputs.features import begins_at_breakpoint
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
