@@ -15,7 +15,7 @@ from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
 from .error_control.relaxation import relax
 from .events.chattering import Chattering, MaskedEvents
-from .events.discontinuity import VELOCITY_JUMP, VelocityJumps
+from .events.discontinuity import VelocityJumps
 from .events.long_steps import LongSteps
 from .events.refusals import refuse_beyond_limits
 from .events.restart import just_after, restarted_past, straight_on
@@ -54,7 +54,7 @@ class Integrator:
         found = driven(dynamics, settings, control, memory, driver)
         self.equations, self.engine = found.equations, found.engine
         self.engine.forget()
-        self._jumps = VelocityJumps(dynamics)
+        self._jumps = VelocityJumps(dynamics, settings)
         self._of_inputs = ""
         self._events = self._breakpoints = 0
 
@@ -137,7 +137,7 @@ class Integrator:
         if begun is None:
             return self._consistent(q, u, before, t, ahead)
         state = self.dynamics.state
-        if begun.jump > VELOCITY_JUMP.least:
+        if begun.jumps:
             self._jumps.note(before, state.u - u)
         if begun.meets:
             chattering.begin(begun.t, state.q.copy(), state.u.copy())

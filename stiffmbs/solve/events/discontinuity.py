@@ -11,8 +11,10 @@ from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
+from ...model.settings import RunSettings
 from ...reading.files.quoted import MOST_LISTED
 from ...tuning import tuned
+from ..error_control.tolerances import absolute_tolerances
 from .native.parameters import BISECTIONS, SEARCH
 
 
@@ -204,29 +206,37 @@ class VelocityJumpParameters:
     """Parameters of the report."""
 
     least: float = 1e-2
-    """Velocity change at a breakpoint, relative to the largest velocity, above which it is a jump."""
+    """Velocity change at a breakpoint, relative to the largest velocity before or after it, above which it is a jump."""
 
 
 VELOCITY_JUMP = tuned("velocity_jumps", VelocityJumpParameters())
 
 
 class VelocityJumps:
-    """Velocity jumps of one run."""
+    """Velocity jumps of one run.
 
-    def __init__(self, dynamics: Dynamics) -> None:
-        self._dynamics = dynamics
+    `scale`, of shape (n_u,): factors from velocities to m/s, the mechanism's size for angular ones. `least`: velocity
+    change, m/s, that is no jump, whatever the velocities: the tolerance of the run.
+    """
+
+    def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
+        self._dynamics, system = dynamics, dynamics.system
+        self.scale = np.ascontiguousarray(system.per_velocity(1.0, system.size))
+        self.least = float(np.min(self.scale * absolute_tolerances(system, settings)[system.n_q :], initial=np.inf))
         self._messages: list[str] = []
 
     def note(self, t: float, change: np.ndarray) -> None:
         """Note a change of velocities at a breakpoint; the state of the dynamics is that after it."""
-        if not (np.abs(change) > VELOCITY_JUMP.least).any():
+        sizes, after = self.scale * np.abs(change), self._dynamics.state.u
+        k = int(np.argmax(sizes)) if len(sizes) else -1
+        if k < 0 or not sizes[k] > self.least:
             return
-        k = int(np.argmax(np.abs(change)))
-        if abs(change[k]) > VELOCITY_JUMP.least * max(1.0, float(np.max(np.abs(self._dynamics.state.u)))):
+        part = sizes[k] / float(np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change))))
+        if part > VELOCITY_JUMP.least:
             system = self._dynamics.system
-            name = system.name_of(k, system.of_body.velocities)
             self._messages.append(
-                f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); the reactions do not contain this impulse"
+                f"at t = {t:.6g} s a drive makes velocities jump ({system.name_of(k, system.of_body.velocities)} by {change[k]:.3g}, "
+                f"{100 * part:.3g} % of the largest velocity there); the reactions do not contain this impulse"
             )
 
     def clear(self) -> None:

@@ -70,7 +70,7 @@ class AdaptiveRun:
         self._aside = grid.aside
         work.step_bound.follow(features)
         self._stable_step = StableStep(scheme, dynamics)
-        self._jumps = VelocityJumps(dynamics)
+        self._jumps = VelocityJumps(dynamics, settings)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
         self._rounding = Rounding(dynamics, settings.rtol, grid.start, grid.end)
         self._begun = 0  # steps before the current segment

@@ -69,7 +69,7 @@ class NativeEngine:
             renewal=control.renewal,
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
-        self._rtol = settings.rtol
+        self._rtol, self._settings = settings.rtol, settings
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
         self._started = False
@@ -243,7 +243,7 @@ class NativeEngine:
         from .starting.after_event import EventRestarts
 
         least = NEWTON.precision / self._rtol
-        return EventRestarts(self._starts, self._dynamics, least) if self._starts else None
+        return EventRestarts(self._starts, self._dynamics, self._settings, least) if self._starts else None
 
     def present(self) -> np.ndarray:
         """Return a row of the same form for the current state."""

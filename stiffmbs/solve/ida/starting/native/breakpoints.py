@@ -73,7 +73,7 @@ def _restarted_at_breakpoint(w, b, c, t):
     s = state_view(m.state)
     e = equations_view(c.equations)
     _take_state(s, b, e, array_of(c, c.y), array_of(c, c.yp))
-    if back_with_jump(w, s, m, t) < 0 or w.jump > w.largest_jump:
+    if back_with_jump(w, s, m, t) < 0 or w.jumps:
         return UNFINISHED
     restart_counters(w, s, t)
     if not _same_offsets(s, b, e):
@@ -151,12 +151,15 @@ def _meets(w, s, m, t):
 
 @compiled
 def back_with_jump(w, s, m, t):
-    """Project the current state onto the constraints and note the largest velocity change; 0 or a negative status."""
+    """Project the current state onto the constraints and note if velocities jump; 0 or a negative status."""
     copied(w.u, s.u, s.n_u)
     status = brought_back(s, m, t)
-    w.jump = 0.0
+    jump = 0.0
+    fastest = 0.0
     for k in range(s.n_u):
-        w.jump = max(w.jump, abs(s.u[k] - w.u[k]))
+        jump = max(jump, w.speed[k] * abs(s.u[k] - w.u[k]))
+        fastest = max(fastest, w.speed[k] * max(abs(s.u[k]), abs(w.u[k])))
+    w.jumps = 1 if jump > max(w.least_jump, w.largest_jump * fastest) else 0
     return status
 
 
