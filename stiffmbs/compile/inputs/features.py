@@ -109,7 +109,7 @@ def input_features(system: System, start: float, end: float) -> InputFeatures:
 
 @lru_cache
 def _features(inputs: tuple[Input, ...], start: float, end: float) -> InputFeatures:
-    breakpoints, at_ends = _parted(breakpoint_times(inputs, start, end), start, end)
+    breakpoints, at_ends = _parted(breakpoints_from(inputs, start, end), start, end)
     pieces = [InputPieces(each, np.concatenate([[start], breakpoints, [end]])) for each in inputs]
     bounds = [each.bounds() for each in pieces]
     estimated = [given.text for given, each in zip(inputs, pieces, strict=True) if each.estimated]
@@ -135,7 +135,7 @@ def _parted(times: np.ndarray, start: float, end: float) -> tuple[np.ndarray, np
 def begins_at_breakpoint(system: System, start: float, end: float) -> bool:
     """Return True if an input of a run from `start` to `end` has a breakpoint at the start, s."""
     near = 2.0 * aside(start, end)
-    return bool(len(breakpoint_times(inputs_of(system), start, start + near)))
+    return bool(len(breakpoints_from(inputs_of(system), start, start + near)))
 
 
 def _together(
@@ -171,7 +171,13 @@ def _merged(starts: np.ndarray, longest: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
-    """Return the breakpoints in time of some inputs from start to end, in ascending order.
+    """Return the breakpoints in time of some inputs, strictly between start and end, in ascending order; errors as for `breakpoints_from`."""
+    times = breakpoints_from(inputs, start, end)
+    return times[(times > start) & (times < end)]
+
+
+def breakpoints_from(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
+    """Return the breakpoints in time of some inputs from start to end, both included, in ascending order.
 
     `start`, `end`: s.
     """
