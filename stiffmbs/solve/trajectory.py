@@ -87,8 +87,7 @@ class Grid:
 
         A solver and the evaluation of its rows thus have one side. `shown` returns the times of the grid itself.
         """
-        breakpoints = np.union1d(features.breakpoints, features.at_ends)
-        breakpoints = breakpoints[breakpoints > self.start + 2.0 * self.aside]
+        breakpoints = features.all_breakpoints[features.all_breakpoints > self.start + 2.0 * self.aside]
         before = breakpoints - self.aside
         times = None if self.times is None else np.maximum(_nearest(self.times, before, self.aside), self.start)
         return replace(self, end=float(_nearest(np.array([self.end]), before, self.aside)[0]), times=times)

@@ -45,6 +45,11 @@ class InputFeatures:
     at_ends: np.ndarray = field(default_factory=lambda: np.empty(0))
 
     @cached_property
+    def all_breakpoints(self) -> np.ndarray:
+        """Breakpoints within and at both ends, s."""
+        return np.union1d(self.breakpoints, self.at_ends)
+
+    @cached_property
     def ends(self) -> np.ndarray:
         """End of each interval."""
         return np.append(self.starts[1:], np.inf)
@@ -65,7 +70,7 @@ class InputFeatures:
         if not len(self.starts) and not len(self.breakpoints) and not len(self.at_ends):
             return self
         inside = (self.starts < end) & (self.ends > start)
-        within, at_ends = _parted(np.union1d(self.breakpoints, self.at_ends), start, end)
+        within, at_ends = _parted(self.all_breakpoints, start, end)
         return InputFeatures(within, self.starts[inside], self.longest[inside], self.note, at_ends)
 
     def narrowest(self) -> tuple[float, float]:
