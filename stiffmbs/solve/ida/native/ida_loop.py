@@ -188,12 +188,31 @@ def stepped(c, ida, toward, stop):
     if seen != NO_EVENT:
         flag = int32(ROOT_RETURN)
     if flag == ROOT_RETURN and _interpolates_stiffly(c):
-        corrected_at_event(c.output_correction, c.state, c.equations, c.returned, array_of(c, c.y))
+        corrected_at_event(c.output_correction, c.state, c.equations, _before_event(c, begun), array_of(c, c.y))
     if flag >= 0:
         _keep_if_long(c, begun)
     if flag >= 0 and c.trace:
         _keep_step(c, begun)
     return flag
+
+
+@compiled
+def _before_event(c, begun):
+    """Return a time just before the event at the returned state, at which event functions have the signs before it."""
+    w = event_search_view(c.watch)
+    s = state_view(c.state)
+    h = c.returned - begun
+    ahead = SEARCH.least_difference
+    changed = 1
+    while changed > 0 and ahead < SEARCH.finest:
+        ahead *= SEARCH.longer
+        call_int(c.interpolate, (c.memory, c.returned - ahead * h, int32(0), c.at_output))
+        load(s, equations_view(c.equations), c.output, array_of(c, c.yp))
+        values = evaluate(s, SWITCH, c.returned - ahead * h)
+        changed = 0
+        for k in range(c.n_event_functions):
+            changed += w.masked[k] == 0 and w.value_before[k] * values[k] < 0.0
+    return c.returned - ahead * h
 
 
 @compiled
