@@ -17,6 +17,7 @@ from .error_control.relaxation import relax
 from .events.chattering import Chattering, MaskedEvents
 from .events.discontinuity import VelocityJumps
 from .events.long_steps import LongSteps
+from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
 from .events.restart import just_after, restarted_past, straight_on
 from .ida.choice import Driven, driven_natively
@@ -138,7 +139,7 @@ class Integrator:
             return self._consistent(q, u, before, t, ahead)
         state = self.dynamics.state
         if begun.jumps:
-            self._jumps.note(before, state.u - u)
+            self._note_jump(before, t, q, u)
         if begun.meets:
             chattering.begin(begun.t, state.q.copy(), state.u.copy())
         return None, begun.t
@@ -148,8 +149,23 @@ class Integrator:
     ) -> tuple[InitialValues, float]:
         """Return consistent values near a state reached at `before`, past events within `ahead`, and their time."""
         start, t = restarted_past(self.dynamics, t, q, u, ahead)
-        self._jumps.note(before, start.u - u)
+        self._note_jump(before, t, q, u)
         return start, t
+
+    def _note_jump(self, before: float, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Note a jump of velocities at a restart; the current state is that after it.
+
+        Velocities that were interpolated to an event within a step may violate the constraints just before it as well.
+        """
+        dynamics, state = self.dynamics, self.dynamics.state
+        after, last = state.u.copy(), self.engine.last_step()
+        if last and self._jumps.is_jump(after - u):
+            with state.unchanged():
+                back = SEARCH.finest * last[0]
+                state.q[:], state.u[:] = dynamics.system.of_body.moved(q, -back * u), u
+                if dynamics.correct_velocities(before - back) >= 0:
+                    u = state.u.copy()
+        self._jumps.note(before, after - u)
 
     def _ahead(self, reached: Reached, stop: float) -> float:
         """Return the time after an event within which simultaneous events are passed, s."""

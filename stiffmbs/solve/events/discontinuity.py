@@ -225,15 +225,18 @@ class VelocityJumps:
         self.least = float(np.min(self.scale * absolute_tolerances(system, settings)[system.n_q :], initial=np.inf))
         self._messages: list[str] = []
 
+    def is_jump(self, change: np.ndarray) -> bool:
+        """Return True if a change of velocities to those of the current state is a jump."""
+        largest, after = float(np.max(self.scale * np.abs(change), initial=0.0)), self._dynamics.state.u
+        fastest = np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change)), initial=0.0)
+        return largest > max(self.least, VELOCITY_JUMP.least * float(fastest))
+
     def note(self, t: float, change: np.ndarray) -> None:
-        """Note a change of velocities at a breakpoint; the state of the dynamics is that after it."""
-        sizes, after = self.scale * np.abs(change), self._dynamics.state.u
-        k = int(np.argmax(sizes)) if len(sizes) else -1
-        if k < 0 or not sizes[k] > self.least:
-            return
-        part = sizes[k] / float(np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change))))
-        if part > VELOCITY_JUMP.least:
-            system = self._dynamics.system
+        """Note a change of velocities at a breakpoint, if it is a jump; the state of the dynamics is that after it."""
+        if self.is_jump(change):
+            k = int(np.argmax(self.scale * np.abs(change)))
+            system, after = self._dynamics.system, self._dynamics.state.u
+            part = self.scale[k] * abs(change[k]) / np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change)))
             self._messages.append(
                 f"at t = {t:.6g} s a drive makes velocities jump ({system.name_of(k, system.of_body.velocities)} by {change[k]:.3g}, "
                 f"{100 * part:.3g} % of the largest velocity there); the reactions do not contain this impulse"
