@@ -121,8 +121,9 @@ def solve_with_fixed_steps(
                 note = _jumps(dynamics, stepper, t, settings.step)
             if t in stops:
                 t += 2.0 * grid.aside
-                start = restarted(dynamics, t, stepper.q, stepper.u, settings.projection)
-                jumps.note(t, start.u - stepper.u)
+                before = stepper.u.copy()  # the stepper's state may be that of the dynamics
+                start = restarted(dynamics, t, stepper.q, before, settings.projection)
+                jumps.note(t, start.u - before)
                 stepper.begin(t, start)
             watch(t)
     statistics: dict[str, int | float | str] = {
