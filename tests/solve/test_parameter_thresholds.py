@@ -105,7 +105,7 @@ def finest_rtol(place, value):
 
 def smallest_velocity_jump():
     job = job_of("cart_pendulum")
-    job.dynamics.state.u[:] = 1.0
+    job.dynamics.state.u[:] = 1.0 / VelocityJumps(job.dynamics, job.settings).scale
 
     def is_noted(size):
         jumps = VelocityJumps(job.dynamics, job.settings)

@@ -236,7 +236,9 @@ class VelocityJumps:
         if self.is_jump(change):
             k = int(np.argmax(self.scale * np.abs(change)))
             system, after = self._dynamics.system, self._dynamics.state.u
-            part = self.scale[k] * abs(change[k]) / np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change)))
+            part = (
+                self.scale[k] * abs(change[k]) / np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change)))
+            )
             self._messages.append(
                 f"at t = {t:.6g} s a drive makes velocities jump ({system.name_of(k, system.of_body.velocities)} by {change[k]:.3g}, "
                 f"{100 * part:.3g} % of the largest velocity there); the reactions do not contain this impulse"

@@ -117,7 +117,7 @@ def solve_with_fixed_steps(
             while row < len(times) and outputs[row] <= t:
                 rows.append(times[row], stepper.q, stepper.u)
                 row += 1
-            if not note and row % apart == 0:
+            if not note and (row - 1) % apart == 0:
                 note = _jumps(dynamics, stepper, t, settings.step)
             if t in stops:
                 t += 2.0 * grid.aside

@@ -113,7 +113,9 @@ class Chain:
     def _part(self, rng: np.random.Generator, instants: list[float], size: float, of_force: bool) -> Signal:
         a, s = float(rng.uniform(-size, size)), float(rng.choice(instants))
         after = lambda t: float(t > s)  # noqa: E731
-        kind = str(rng.choice(["rate", "abs", "square", "step", "lines", "sine", *(["sign", "branch"] if of_force else [])]))
+        kind = str(
+            rng.choice(["rate", "abs", "square", "step", "lines", "sine", *(["sign", "branch"] if of_force else [])])
+        )
         match kind:
             case "rate":
                 return Signal(f"{a!r}*max(t - {s!r}, 0)", (s,), lambda t: (a * (t - s) * after(t), a * after(t), 0.0))
@@ -308,7 +310,9 @@ class Chain:
         x, v, force, notes = found
         part = GLOBAL * rtol * (BY_VELOCITIES if "I3" in name else 1.0)
         allowed = max(part, FIXED.get(name, 0.0))
-        errors = [float(np.max(np.abs(a - b))) / (1.0 + float(np.max(np.abs(b)))) for a, b in ((x, x_true), (v, v_true))]
+        errors = [
+            float(np.max(np.abs(a - b))) / (1.0 + float(np.max(np.abs(b)))) for a, b in ((x, x_true), (v, v_true))
+        ]
         of_forces = float(np.max(np.abs(force - force_true))) / (1.0 + float(np.max(np.abs(force_true))))
         error = max(*errors, of_forces * part / (OF_FORCES * rtol) if name not in FIXED else 0.0)
         reported = any("velocities jump" in note for note in notes)
