@@ -8,7 +8,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_pr
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
-from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, place, repeats
+from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, interval, place, repeats
 from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
 from stiffmbs.solve.events.native.step_bound import (
     STRETCHED,
@@ -198,21 +198,23 @@ def stepped(c, ida, toward, stop):
 
 @compiled
 def _before_event(c, begun):
-    """Return a time just before the event at the returned state, at which event functions have the signs before it."""
+    """Return a time just before the event at the returned state, at which all laws are those at the start of the step."""
     w = event_search_view(c.watch)
     s = state_view(c.state)
-    h = c.returned - begun
-    ahead = SEARCH.least_difference
+    ahead = SEARCH.least_difference * c.size
     changed = 1
-    while changed > 0 and ahead < SEARCH.finest:
+    while changed > 0 and SEARCH.longer * ahead < c.returned - begun:
         ahead *= SEARCH.longer
-        call_int(c.interpolate, (c.memory, c.returned - ahead * h, int32(0), c.at_output))
+        call_int(c.interpolate, (c.memory, c.returned - ahead, int32(0), c.at_output))
         load(s, equations_view(c.equations), c.output, array_of(c, c.yp))
-        values = evaluate(s, SWITCH, c.returned - ahead * h)
+        values = evaluate(s, SWITCH, c.returned - ahead)
         changed = 0
-        for k in range(c.n_event_functions):
-            changed += w.masked[k] == 0 and w.value_before[k] * values[k] < 0.0
-    return c.returned - ahead * h
+        for k in range(w.n):
+            if c.within and w.found[k]:
+                changed += interval(w, k, values[k]) != interval(w, k, w.value_before[k])
+            elif k < c.n_event_functions and w.masked[k] == 0:
+                changed += w.value_before[k] * values[k] < 0.0
+    return c.returned - ahead
 
 
 @compiled
