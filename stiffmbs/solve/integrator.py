@@ -15,7 +15,7 @@ from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
 from .error_control.relaxation import relax
 from .events.chattering import Chattering, MaskedEvents
-from .events.discontinuity import VelocityJumps
+from .events.discontinuity import Jumps
 from .events.long_steps import LongSteps
 from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
@@ -55,7 +55,7 @@ class Integrator:
         found = driven(dynamics, settings, control, memory, driver)
         self.equations, self.engine = found.equations, found.engine
         self.engine.forget()
-        self._jumps = VelocityJumps(dynamics, settings)
+        self._jumps = Jumps(dynamics, settings)
         self._of_inputs = ""
         self._events = self._breakpoints = 0
 
@@ -139,7 +139,7 @@ class Integrator:
             return self._consistent(q, u, before, t, ahead)
         state = self.dynamics.state
         if begun.jumps:
-            self._note_jump(before, t, q, u)
+            self._note_jump(before, q, u, ahead > 0.0)
         if begun.meets:
             chattering.begin(begun.t, state.q.copy(), state.u.copy())
         return None, begun.t
@@ -149,23 +149,24 @@ class Integrator:
     ) -> tuple[InitialValues, float]:
         """Return consistent values near a state reached at `before`, past events within `ahead`, and their time."""
         start, t = restarted_past(self.dynamics, t, q, u, ahead)
-        self._note_jump(before, t, q, u)
+        self._note_jump(before, q, u, ahead > 0.0)
         return start, t
 
-    def _note_jump(self, before: float, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Note a jump of velocities at a restart; the current state is that after it.
+    def _note_jump(self, before: float, q: np.ndarray, u: np.ndarray, event: bool) -> None:
+        """Note a jump at a restart; the current state is that after it.
 
-        Velocities that were interpolated to an event within a step may violate the constraints just before it as well.
+        A state that was interpolated to an event within a step may violate the constraints just before it as well.
         """
-        dynamics, state = self.dynamics, self.dynamics.state
-        after, last = state.u.copy(), self.engine.last_step()
-        if last and self._jumps.is_jump(after - u):
+        dynamics, state, last = self.dynamics, self.dynamics.state, self.engine.last_step()
+        if not event:
+            self._jumps.note(before, q, u)
+        elif last and self._jumps.is_jump(state.u - u):
+            back = SEARCH.finest * last[0]
             with state.unchanged():
-                back = SEARCH.finest * last[0]
                 state.q[:], state.u[:] = dynamics.system.of_body.moved(q, -back * u), u
-                if dynamics.correct_velocities(before - back) >= 0:
-                    u = state.u.copy()
-        self._jumps.note(before, after - u)
+                closed = dynamics.correct_velocities(before - back) >= 0
+                u = state.u.copy() if closed else u
+            self._jumps.note(before, state.q, u)
 
     def _ahead(self, reached: Reached, stop: float) -> float:
         """Return the time after an event within which simultaneous events are passed, s."""

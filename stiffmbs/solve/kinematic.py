@@ -17,7 +17,7 @@ from ..errors import InputError, SolverError
 from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..tuning import parameters_of
 from .driven_states import KINEMATIC, Instant, IntegratedMotion, states_after
-from .events.discontinuity import VelocityJumps
+from .events.discontinuity import Jumps
 from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
@@ -61,16 +61,16 @@ def solve(
         motion = IntegratedMotion(dynamics, start, times[0], max(longest, 2 * shortest))
     else:
         motion = _Motion(dynamics, start, times[0], shortest, features)
-    jumps, breakpoints = VelocityJumps(dynamics, settings), iter((*features.breakpoints, np.inf))
+    jumps, breakpoints = Jumps(dynamics, settings), iter((*features.breakpoints, np.inf))
     breakpoint = next(breakpoints)
     rows.append(times[0], motion.q, motion.u)
     with Ending() as ending:
         for t, place in zip(times[1:], replace(grid, times=times).beside(features).times[1:], strict=True):
             while breakpoint < place:
                 motion.go_to(breakpoint - grid.aside)
-                before = motion.u
+                before = motion.q, motion.u
                 motion.go_past(breakpoint + grid.aside)
-                jumps.note(breakpoint, motion.u - before)
+                jumps.note(breakpoint, *before)
                 breakpoint = next(breakpoints)
             motion.go_to(place)
             refuse_beyond_limits(dynamics, t, motion.q, motion.u)

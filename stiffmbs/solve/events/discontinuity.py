@@ -212,11 +212,11 @@ class VelocityJumpParameters:
 VELOCITY_JUMP = tuned("velocity_jumps", VelocityJumpParameters())
 
 
-class VelocityJumps:
-    """Velocity jumps of one run.
+class Jumps:
+    """Jumps of velocities, and of positions, at the breakpoints of one run.
 
-    `scale`, of shape (n_u,): factors from velocities to m/s, the mechanism's size for angular ones. `least`: velocity
-    change, m/s, that is no jump, whatever the velocities: the tolerance of the run.
+    `scale`, of shape (n_u,): factors from velocities to m/s, the mechanism's size for angular ones. `least`: change, m/s
+    or m, that is no jump, whatever the velocities: the tolerance of the run.
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
@@ -231,14 +231,19 @@ class VelocityJumps:
         fastest = np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change)), initial=0.0)
         return largest > max(self.least, VELOCITY_JUMP.least * float(fastest))
 
-    def note(self, t: float, change: np.ndarray) -> None:
-        """Note a change of velocities at a breakpoint, if it is a jump; the state of the dynamics is that after it."""
-        if self.is_jump(change):
-            k = int(np.argmax(self.scale * np.abs(change)))
-            system, after = self._dynamics.system, self._dynamics.state.u
-            part = (
-                self.scale[k] * abs(change[k]) / np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change)))
+    def note(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Note jumps from a state just before a breakpoint; the state of the dynamics is that just after it."""
+        system, state = self._dynamics.system, self._dynamics.state
+        move, change = system.move(q, state.q), state.u - u
+        if np.max(self.scale * np.abs(move), initial=0.0) > self.least:
+            k = int(np.argmax(self.scale * np.abs(move)))
+            self._messages.append(
+                f"at t = {t:.6g} s a drive makes positions jump ('{system.bodies[k // system.of_body.n_u]}' by {abs(move[k]):.3g}): no "
+                "motion leads there, and the results do not contain one; give the drive a continuous position"
             )
+        elif self.is_jump(change):
+            k = int(np.argmax(self.scale * np.abs(change)))
+            part = abs(change[k]) * self.scale[k] / np.max(self.scale * np.maximum(np.abs(u), np.abs(state.u)))
             self._messages.append(
                 f"at t = {t:.6g} s a drive makes velocities jump ({system.name_of(k, system.of_body.velocities)} by {change[k]:.3g}, "
                 f"{100 * part:.3g} % of the largest velocity there); the reactions do not contain this impulse"

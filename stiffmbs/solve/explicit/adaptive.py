@@ -16,7 +16,7 @@ from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..events.chattering import MASKING, Chattering
-from ..events.discontinuity import VelocityJumps
+from ..events.discontinuity import Jumps
 from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
 from ..events.restart import restarted
 from ..step_logging import is_logged, log_step
@@ -70,7 +70,7 @@ class AdaptiveRun:
         self._aside = grid.aside
         work.step_bound.follow(features)
         self._stable_step = StableStep(scheme, dynamics)
-        self._jumps = VelocityJumps(dynamics, settings)
+        self._jumps = Jumps(dynamics, settings)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
         self._rounding = Rounding(dynamics, settings.rtol, grid.start, grid.end)
         self._begun = 0  # steps before the current segment
@@ -178,9 +178,10 @@ class AdaptiveRun:
         """Restart just after a breakpoint; output at it is the state before."""
         self.work.t = min(breakpoint + self._aside, self._grid.end)
         self._store_rows()
-        before = self.work.u.copy()
+        before = self.work.q.copy(), self.work.u.copy()
         self._restart()
-        self._jumps.note(breakpoint, self._start.u - before)
+        self._dynamics.state.q[:], self._dynamics.state.u[:] = self._start.q, self._start.u
+        self._jumps.note(breakpoint, *before)
 
     def _restart(self) -> int:
         """Restart from consistent values at the current time; return the event function of an event there, or -1."""

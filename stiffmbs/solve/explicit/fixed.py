@@ -17,7 +17,7 @@ from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..events.chattering import CHATTERING, jump_sentence
-from ..events.discontinuity import JUMP, VelocityJumps, sliding
+from ..events.discontinuity import JUMP, Jumps, sliding
 from ..events.narrow_inputs import narrower_than_steps
 from ..events.refusals import refuse_beyond_limits
 from ..events.restart import restarted
@@ -97,7 +97,7 @@ def solve_with_fixed_steps(
     Between two output times, or breakpoints of inputs, the step is the largest that divides their distance and does not
     exceed the given one.
     """
-    features, jumps = dynamics.input_features(grid.start, grid.end), VelocityJumps(dynamics, settings)
+    features, jumps = dynamics.input_features(grid.start, grid.end), Jumps(dynamics, settings)
     times = grid.times if grid.times is not None else _own_steps(grid, settings.step)
     outputs = replace(grid, times=times).beside(features).times
     stops = grid.with_stops(features.breakpoints) - grid.aside
@@ -121,9 +121,9 @@ def solve_with_fixed_steps(
                 note = _jumps(dynamics, stepper, t, settings.step)
             if t in stops:
                 t += 2.0 * grid.aside
-                before = stepper.u.copy()  # the stepper's state may be that of the dynamics
-                start = restarted(dynamics, t, stepper.q, before, settings.projection)
-                jumps.note(t, start.u - before)
+                before = stepper.q.copy(), stepper.u.copy()  # the stepper's state may be that of the dynamics
+                start = restarted(dynamics, t, *before, settings.projection)
+                jumps.note(t, *before)
                 stepper.begin(t, start)
             watch(t)
     statistics: dict[str, int | float | str] = {

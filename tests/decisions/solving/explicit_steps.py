@@ -225,7 +225,7 @@ def checks_of_fixed_steps():
     settings = RunSettings(duration=1.0)
     jumps = Record(sentence=lambda: "")
     with patch.multiple(
-        fixed, refuse_beyond_limits=nothing, _jumps=lambda *_: count.append(1) and "", VelocityJumps=lambda *_: jumps
+        fixed, refuse_beyond_limits=nothing, _jumps=lambda *_: count.append(1) and "", Jumps=lambda *_: jumps
     ):
         fixed.solve_with_fixed_steps(dynamics, stepper, Grid(0.0, 1.0, np.linspace(0.0, 1.0, 1001)), settings, nothing)
     return len(count)

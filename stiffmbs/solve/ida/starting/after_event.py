@@ -12,7 +12,7 @@ from ....compile.machine.routines import Routine
 from ....dynamics.dynamics import Dynamics
 from ....model.settings import RunSettings
 from ...error_control.native.parameters import POLISHING
-from ...events.discontinuity import JUMP, VELOCITY_JUMP, VelocityJumps, direction_of
+from ...events.discontinuity import JUMP, VELOCITY_JUMP, Jumps, direction_of
 from ..native.layouts import EVENT_RESTART
 from .starts import Starts, integers
 
@@ -43,7 +43,7 @@ class EventRestarts:
     """
 
     def __init__(self, starts: Starts, dynamics: Dynamics, settings: RunSettings, least: float) -> None:
-        jumps = VelocityJumps(dynamics, settings)
+        jumps = Jumps(dynamics, settings)
         system, self._state = dynamics.system, dynamics.state
         for term_set in ("position", "event_function"):
             self._state.load(term_set)

@@ -151,7 +151,8 @@ def _meets(w, s, m, t):
 
 @compiled
 def back_with_jump(w, s, m, t):
-    """Project the current state onto the constraints and note if velocities jump; 0 or a negative status."""
+    """Project the current state onto the constraints and note if velocities or positions jump; 0 or a negative status."""
+    copied(w.q, s.q, s.n_q)
     copied(w.u, s.u, s.n_u)
     status = brought_back(s, m, t)
     jump = 0.0
@@ -159,7 +160,10 @@ def back_with_jump(w, s, m, t):
     for k in range(s.n_u):
         jump = max(jump, w.speed[k] * abs(s.u[k] - w.u[k]))
         fastest = max(fastest, w.speed[k] * max(abs(s.u[k]), abs(w.u[k])))
-    w.jumps = 1 if jump > max(w.least_jump, w.largest_jump * fastest) else 0
+    move = 0.0
+    for k in range(s.n_q):
+        move = max(move, abs(s.q[k] - w.q[k]))
+    w.jumps = 1 if move > w.least_jump or jump > max(w.least_jump, w.largest_jump * fastest) else 0
     return status
 
 
