@@ -1,9 +1,11 @@
 """Kinks of drives and forces at known times: a step ends before each and the next begins after it, in every solver."""
 
+import itertools
 import json
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs.compile.inputs.features import breakpoint_times
@@ -173,3 +175,83 @@ def test_breakpoints_of_straight_lines_are_exact():
         inputs = inputs_of(stiffmbs.compile_model(sled(f"max(3*(t - {number!r}), 0)")))
         (t,) = breakpoint_times(inputs, 0.0, 2.7)
         assert abs(t - number) <= 4 * np.spacing(number)
+
+
+ROADS = {
+    "a hole": [[-100, 0], [2, 0], [2.05, -0.06], [2.6, -0.06], [2.65, 0], [100, 0]],
+    "a crest": [[-100, 0], [2, 0], [2.3, 0.06], [2.6, 0], [100, 0]],
+}
+
+
+def quarter_car(road):
+    """Return a wheel under a car at 10 m/s, with a light hub on a stiff bushing; the tyre's force jumps with the slope."""
+    upright = [{"body": name, "angle": "90 deg"} for name in ("wheel", "hub", "car")]
+    slopes = " + ".join(
+        f"{(z_1 - z_0) / (x_1 - x_0)!r}*(branch(wheel.x - {x_0}, 0, 0, 1) - branch(wheel.x - {x_1}, 0, 0, 1))"
+        for (x_0, z_0), (x_1, z_1) in itertools.pairwise(road)
+    )
+    tyre = f"max(0, 441*9.81 - 2e5*(wheel.y - road(wheel.x)) - 500*(wheel.vy - wheel.vx*({slopes})))"
+    between = {
+        "strut": ("car", "400*9.81 - 2e4*(car.y - wheel.y) - 1500*(car.vy - wheel.vy)"),
+        "bush": ("hub", "9.81 - 1e8*(hub.y - wheel.y) - 1e3*(hub.vy - wheel.vy)"),
+    }
+    given = {
+        "gravity": [0, -9.81],
+        "tables": {"road": {"table": road, "lines": True}},
+        "bodies": {
+            name: {"mass": mass, "inertia": 1, "velocity": [10, 0]}
+            for name, mass in (("car", 400), ("wheel", 40), ("hub", 1))
+        },
+        "joints": {f"rail_{k}": {"type": "prismatic", "i": upright[k], "j": upright[2]} for k in (0, 1)},
+        "forces": {
+            **{n: {"type": "force", "i": i, "j": "wheel", "force": [0, law]} for n, (i, law) in between.items()},
+            "tyre": {"type": "force", "i": "wheel", "force": [0, tyre]},
+        },
+    }
+    return stiffmbs.read_scene(json.dumps(given))
+
+
+def velocity_of_the_wheel(road, times):
+    """Return the vertical velocity of the wheel of `quarter_car`, integrated from kink to kink of the road by SciPy."""
+    x, z = np.transpose(road)
+    ends = np.unique([times[0], *(t for t in x / 10 if times[0] < t < times[-1]), times[-1]])
+    state, found = np.zeros(6), [0.0]
+    for begin, end in itertools.pairwise(ends):
+        k = int(np.searchsorted(x, 10 * (begin + end) / 2)) - 1
+        slope = (z[k + 1] - z[k]) / (x[k + 1] - x[k])
+
+        def rates(t, s, k=k, slope=slope):
+            car, wheel, hub, v_car, v_wheel, v_hub = s
+            height = z[k] + slope * (10 * t - x[k])
+            strut = 400 * 9.81 - 2e4 * (car - wheel) - 1500 * (v_car - v_wheel)
+            bush = 9.81 - 1e8 * (hub - wheel) - 1e3 * (v_hub - v_wheel)
+            tyre = max(0.0, 441 * 9.81 - 2e5 * (wheel - height) - 500 * (v_wheel - 10 * slope))
+            of_wheel = (tyre - strut - bush) / 40 - 9.81
+            return [v_car, v_wheel, v_hub, strut / 400 - 9.81, of_wheel, bush - 9.81]
+
+        inside = times[(times > begin) & (times <= end)]
+        run = solve_ivp(
+            rates,
+            (begin, end),
+            state,
+            method="Radau",
+            rtol=1e-9,
+            atol=1e-12,
+            max_step=1e-3,
+            t_eval=np.unique([*inside, end]),
+        )
+        found += run.y[4][np.isin(run.t, inside)].tolist()
+        state = run.y[:, -1]
+    return np.array(found)
+
+
+@pytest.mark.parametrize("duration", [0.235, 0.28, 0.3])
+@pytest.mark.parametrize("road", ROADS)
+def test_a_state_at_the_edge_of_a_road_is_that_before_it(road, duration):
+    """A step out of steady motion passes over the hole; forces beyond its edge must not move the state at the edge."""
+    scene = quarter_car(ROADS[road])
+    times = np.linspace(0, duration, 41)
+    expected = velocity_of_the_wheel(ROADS[road], times)
+    for rtol in (1e-4, 1e-5, 1e-6):
+        solution = stiffmbs.run(scene, duration=duration, points=41, solver="bdf", rtol=rtol)
+        np.testing.assert_allclose(solution["wheel.vy"], expected, atol=30 * rtol + 2e-5)
