@@ -244,7 +244,7 @@ class Chain:
                 if len(free):
                     y[len(free) :] -= member.T @ (self.mass * change) / mass
                 after = bodies(until, y, small)[1]
-                fastest = max(np.max(np.abs(speeds)), np.max(np.abs(after)), 1e-300)
+                fastest = max(np.max(np.abs(speeds)), np.max(np.abs(after)), 1e-3)
                 jump = max(jump, float(np.max(np.abs(after - speeds)) / fastest))
         x, v, force = (np.array(column) for column in zip(*rows, strict=True))
         return x, v, force, jump
