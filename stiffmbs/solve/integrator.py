@@ -119,6 +119,7 @@ class Integrator:
                 if at_breakpoint:
                     before = t = t + 2.0 * grid.aside
                     yield from self._at_once(reached.t, t, grid, (q, u))
+                    q = self.dynamics.system.of_body.moved(q, 2.0 * grid.aside * u)
                 ready, t = self._restarted(q, u, before, t, self._ahead(reached, stops[0]), chattering)
                 if not at_breakpoint:
                     state = self.dynamics.state

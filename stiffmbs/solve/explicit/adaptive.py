@@ -178,7 +178,8 @@ class AdaptiveRun:
         """Restart just after a breakpoint; output at it is the state before."""
         self.work.t = min(breakpoint + self._aside, self._grid.end)
         self._store_rows()
-        before = self.work.q.copy(), self.work.u.copy()
+        before = self._dynamics.system.of_body.moved(self.work.q, 2.0 * self._aside * self.work.u), self.work.u.copy()
+        self.work.q[:] = before[0]
         self._restart()
         self._dynamics.state.q[:], self._dynamics.state.u[:] = self._start.q, self._start.u
         self._jumps.note(breakpoint, *before)

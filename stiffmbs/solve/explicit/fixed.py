@@ -121,7 +121,8 @@ def solve_with_fixed_steps(
                 note = _jumps(dynamics, stepper, t, settings.step)
             if t in stops:
                 t += 2.0 * grid.aside
-                before = stepper.q.copy(), stepper.u.copy()  # the stepper's state may be that of the dynamics
+                u = stepper.u.copy()  # the stepper's state may be that of the dynamics
+                before = dynamics.system.of_body.moved(stepper.q, 2.0 * grid.aside * u), u
                 start = restarted(dynamics, t, *before, settings.projection)
                 jumps.note(t, *before)
                 stepper.begin(t, start)

@@ -6,6 +6,7 @@ from stiffmbs.compile.machine.native.access import compiled, equations_view, int
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import POSITION, SWITCH, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past
@@ -73,6 +74,8 @@ def _restarted_at_breakpoint(w, b, c, t):
     s = state_view(m.state)
     e = equations_view(c.equations)
     _take_state(s, b, e, array_of(c, c.y), array_of(c, c.yp))
+    copied(w.u, s.u, s.n_u)
+    add_rates(s, w.u, w.gap, s.q)
     if back_with_jump(w, s, m, t) < 0 or w.jumps:
         return UNFINISHED
     restart_counters(w, s, t)
