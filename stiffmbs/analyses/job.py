@@ -132,6 +132,8 @@ class Job:
 
     def shown(self, t: np.ndarray) -> np.ndarray:
         """Return the times of rows as the user knows them: those just before or after a breakpoint at that breakpoint."""
+        if not self.dynamics.system.has_inputs:
+            return t
         return replace(self.grid, start=self.settings.start).shown(t)
 
     @cached_property
@@ -150,7 +152,8 @@ class Job:
         LOGGER.info("solving %s by %s", self.data.name, self.settings.solver)
 
         def over(grid: Grid) -> Trajectory:
-            grid = grid.beside(self.dynamics.input_features(grid.start, grid.end))
+            if self.dynamics.system.has_inputs:
+                grid = grid.before_breakpoints(self.dynamics.input_features(grid.start, grid.end))
             if self.subsystems:
                 return solve_subsystems(solve, self.subsystems, self.start, grid, self.settings, watch)
             return solve(self.dynamics, self.start, grid, self.settings, watch)

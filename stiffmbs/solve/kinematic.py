@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -65,7 +64,7 @@ def solve(
     breakpoint = next(breakpoints)
     rows.append(times[0], motion.q, motion.u)
     with Ending() as ending:
-        for t, place in zip(times[1:], replace(grid, times=times).beside(features).times[1:], strict=True):
+        for t, place in zip(times[1:], grid.before(times, features)[1:], strict=True):
             while breakpoint < place:
                 motion.go_to(breakpoint - grid.aside)
                 before = motion.q, motion.u

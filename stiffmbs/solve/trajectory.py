@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from ..compile.inputs.features import InputFeatures, aside
+from ..compile.inputs.enclosure import ROUNDING
+from ..compile.inputs.features import InputFeatures
 from ..dynamics.storage import STORAGE, allocated, release
 from ..errors import SolverError
 from ..model.settings import RunSettings
@@ -80,20 +81,24 @@ class Grid:
     @property
     def aside(self) -> float:
         """Distance from a breakpoint at which steps end and begin, s."""
-        return aside(self.start, self.end)
+        return ROUNDING * max(abs(self.start), abs(self.end))
 
-    def beside(self, features: InputFeatures) -> Grid:
+    def before(self, t: np.ndarray, features: InputFeatures) -> np.ndarray:
+        """Return times, s, of which those at breakpoints are just before them; the start of the grid is just after one."""
+        breakpoints = features.all_breakpoints
+        before = breakpoints[breakpoints > self.start + 2.0 * self.aside] - self.aside
+        return np.maximum(_nearest(t, before, self.aside), self.start)
+
+    def before_breakpoints(self, features: InputFeatures) -> Grid:
         """Return the grid with its output times and end just before breakpoints at them.
 
         A solver and the evaluation of its rows thus have one side. `shown` returns the times of the grid itself.
         """
-        breakpoints = features.all_breakpoints[features.all_breakpoints > self.start + 2.0 * self.aside]
-        before = breakpoints - self.aside
-        times = None if self.times is None else np.maximum(_nearest(self.times, before, self.aside), self.start)
-        return replace(self, end=float(_nearest(np.array([self.end]), before, self.aside)[0]), times=times)
+        times = None if self.times is None else self.before(self.times, features)
+        return replace(self, end=float(self.before(np.array([self.end]), features)[0]), times=times)
 
     def shown(self, t: np.ndarray) -> np.ndarray:
-        """Return times in which those beside a time of this grid are that time."""
+        """Return times of which those next to a time of this grid are that time."""
         own = np.array([self.start, self.end]) if self.times is None else self.times
         return _nearest(t, own, self.aside)
 
@@ -112,7 +117,7 @@ class Grid:
 
 
 def _nearest(t: np.ndarray, known: np.ndarray, apart: float) -> np.ndarray:
-    """Return times in which those that are as near to a known one as breakpoint and time just before it are that one."""
+    """Return times of which those as near to a known one as the sides of a breakpoint are to each other are that one."""
     if not len(known):
         return t
     k = np.minimum(known.searchsorted(t - 3.0 * apart), len(known) - 1)

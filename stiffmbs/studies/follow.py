@@ -81,7 +81,7 @@ def follow(
 
 def _followed(job: Job, every: float) -> Iterator[Solution]:
     grid = job.grid
-    grid = grid.beside(job.dynamics.input_features(grid.start, grid.end))
+    grid = grid.before_breakpoints(job.dynamics.input_features(grid.start, grid.end))
     instants = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, DEFAULT_POINTS)
     stepper = stepper_of(job, job.start, job.grid.start)
     q = np.empty((len(instants), len(job.start.q)))

@@ -141,7 +141,9 @@ class ImplicitSteps:
     def _begin(self, start: InitialValues, t: float) -> None:
         self._t, self._jumped, self._ended = t, False, False
         self._engine.ida.pause_after(1)
-        self._steps: Iterator[Reached] = self._integrator.run(start, Grid(t, self._end, None).beside(self._features))
+        self._steps: Iterator[Reached] = self._integrator.run(
+            start, Grid(t, self._end, None).before_breakpoints(self._features)
+        )
 
     def advance(self, t: float) -> None:
         """See `Stepper`."""

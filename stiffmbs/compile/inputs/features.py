@@ -47,7 +47,7 @@ class InputFeatures:
     @cached_property
     def all_breakpoints(self) -> np.ndarray:
         """Breakpoints within and at both ends, s."""
-        return np.union1d(self.breakpoints, self.at_ends)
+        return np.union1d(self.breakpoints, self.at_ends) if len(self.at_ends) else self.breakpoints
 
     @cached_property
     def ends(self) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -220,10 +221,19 @@ class Jumps:
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
-        self._dynamics, system = dynamics, dynamics.system
-        self.scale = np.ascontiguousarray(system.per_velocity(1.0, system.size))
-        self.least = float(np.min(self.scale * absolute_tolerances(system, settings)[system.n_q :], initial=np.inf))
+        self._dynamics, self._settings = dynamics, settings
         self._messages: list[str] = []
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        system = self._dynamics.system
+        return np.ascontiguousarray(system.per_velocity(1.0, system.size))
+
+    @cached_property
+    def least(self) -> float:
+        system = self._dynamics.system
+        tolerances = absolute_tolerances(system, self._settings)[system.n_q :]
+        return float(np.min(self.scale * tolerances, initial=np.inf))
 
     def is_jump(self, change: np.ndarray) -> bool:
         """Return True if a change of velocities to those of the current state is a jump."""

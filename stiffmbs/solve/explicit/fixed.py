@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -99,14 +99,14 @@ def solve_with_fixed_steps(
     """
     features, jumps = dynamics.input_features(grid.start, grid.end), Jumps(dynamics, settings)
     times = grid.times if grid.times is not None else _own_steps(grid, settings.step)
-    outputs = replace(grid, times=times).beside(features).times
+    outputs = grid.before(times, features)
     stops = grid.with_stops(features.breakpoints) - grid.aside
     rows = Rows(len(stepper.q), len(stepper.u), len(times))
     rows.append(times[0], stepper.q, stepper.u)
     t, steps, longest, note, row = grid.start, 0, 0.0, "", 1
     apart = max(1, len(times) // FIXED_STEP.checks)
     with Ending() as ending:
-        for end in np.union1d(outputs[1:], stops).tolist():
+        for end in sorted({*outputs[1:].tolist(), *stops.tolist()}):
             count = max(1, math.ceil((end - t) / settings.step - SAME_TIME))
             longest = max(longest, (end - t) / count)
             status = stepper.take(t, (end - t) / count, count)
