@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.interpolate import PchipInterpolator
 
 import stiffmbs
 from stiffmbs.compile.inputs.features import breakpoint_times
@@ -82,6 +83,30 @@ def test_a_drive_with_a_kink_pushes_the_body_that_carries_it(kink, how):
     elif at >= 0:
         np.testing.assert_allclose(channels, 0.0, atol=1e-9)
         assert any("a drive makes velocities jump (rotor.omega by 1.82, 100 %" in note for note in solution.notes)
+
+
+@EVERY
+def test_forces_jump_at_the_points_of_a_curve_that_a_drive_follows(how):
+    """The second derivative of a monotone curve (PCHIP) jumps at its points, and the body that carries the drive feels it."""
+    x, y = np.array([0, 0.13, 0.31, 0.4, 0.66, 0.9, 1.2]), np.array([0, 0.6, -0.5, 0.6, 0.2, -0.8, -0.1])
+    curve = PchipInterpolator(x, y)
+    state, expected = np.array([0.0, -curve.derivative()(0.0) / 11]), [-curve.derivative()(0.0) / 11]
+    for k, (begin, end) in enumerate(itertools.pairwise(x)):
+        a, b = curve.c[:2, k]
+        run = solve_ivp(
+            lambda t, s, a=a, b=b, begin=begin: [s[1], -(1e5 * s[0] + 3000 * s[1] + 6 * a * (t - begin) + 2 * b) / 11],
+            (begin, end), state, method="Radau", rtol=1e-10, atol=1e-13,
+        )  # fmt: skip
+        state = run.y[:, -1]
+        expected.append(state[1])
+    rtol = 1e-7
+    scene = platform({"table": np.column_stack([x, y]).tolist()})
+    solution = stiffmbs.run(scene, duration=1.2, output=0.01, rtol=rtol, **how)
+    rows = [int(np.argmin(np.abs(solution.time - t))) for t in x]
+    allowed = 5e-5 if how.get("formulation") == "I3" else 20 * rtol
+    np.testing.assert_allclose(
+        solution["platform.omega"][rows], expected, atol=max(allowed, 2e-8 if "step" in how else 0)
+    )
 
 
 @pytest.mark.parametrize("name", ["bdf", "radau", "auto", "dop853", "rk4"])

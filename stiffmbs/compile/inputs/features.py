@@ -218,7 +218,7 @@ def _conditions(given: Input, node: ast.expr, start: float, end: float) -> Itera
     """Yield expressions and the levels that they cross at the breakpoints of a function or table."""
     match node:
         case ast.Call(ast.Name(name), [argument]) if name in given.tables:
-            yield argument, given.tables[name].breakpoints_between(*_range(given, argument, start, end))
+            yield argument, given.tables[name].breakpoints_between(*_range(given, argument, start, end), given.of_joint)
         case ast.Call(ast.Name(name)):
             yield from ((condition, ZERO) for condition in _breakpoints(node, IN_FORMULAS[name].breakpoints))
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.interpolate import PchipInterpolator, PPoly
 
 import stiffmbs
 from stiffmbs.errors import StiffmbsError
@@ -115,7 +116,9 @@ class Chain:
         a, s = float(rng.uniform(-size, size)), float(rng.choice(instants))
         after = lambda t: float(t > s)  # noqa: E731
         kind = str(
-            rng.choice(["rate", "abs", "square", "step", "lines", "sine", *(["sign", "branch"] if of_force else [])])
+            rng.choice(
+                ["rate", "abs", "square", "step", "lines", "curve", "sine", *(["sign", "branch"] if of_force else [])]
+            )
         )
         match kind:
             case "rate":
@@ -136,22 +139,25 @@ class Chain:
             case "step":
                 width = float(rng.choice([0.03, 0.2]))
                 return Signal(f"step(t, {s!r}, 0, {s + width!r}, {a!r})", (s, s + width), _step(s, width, a))
-            case "lines":
-                return self._lines(rng, s, a)
+            case "lines" | "curve":
+                return self._table(rng, s, a, kind)
             case "sign":
                 return Signal(f"{a!r}*sign(t - {s!r})", (s,), lambda t: (a if t > s else -a, 0.0, 0.0))
         return Signal(f"branch(t - {s!r}, 0, 0, {a!r})", (s,), lambda t: (a * after(t), 0.0, 0.0))
 
-    def _lines(self, rng: np.random.Generator, s: float, a: float) -> Signal:
+    def _table(self, rng: np.random.Generator, s: float, a: float, kind: str) -> Signal:
+        """Return a table of straight lines, or a monotone curve, whose curvature jumps at its points."""
         x = np.unique([-1.0, s, s + 0.1, s + 0.25, 5.0])
         y = a * rng.uniform(-1, 1, len(x))
-        name = f"lines_{len(self.tables)}"
-        self.tables[name] = {"table": np.column_stack([x, y]).tolist(), "lines": True}
+        name = f"table_{len(self.tables)}"
+        self.tables[name] = {"table": np.column_stack([x, y]).tolist(), **({"lines": True} if kind == "lines" else {})}
+        curve = PPoly([np.diff(y) / np.diff(x), y[:-1]], x) if kind == "lines" else PchipInterpolator(x, y)
+        others = (
+            [curve.derivative(order) for order in (1, 2)] if kind == "curve" else [curve.derivative(1), lambda t: 0.0]
+        )
 
         def at(t: float) -> Derivatives:
-            k = int(np.clip(np.searchsorted(x, t) - 1, 0, len(x) - 2))
-            slope = (y[k + 1] - y[k]) / (x[k + 1] - x[k])
-            return float(y[k] + slope * (t - x[k])), float(slope), 0.0
+            return float(curve(t)), float(others[0](t)), float(others[1](t))
 
         return Signal(f"{name}(t)", tuple(x.tolist()), at)
 
