@@ -245,7 +245,7 @@ class Jumps:
         """Note jumps from a state just before a breakpoint; the state of the dynamics is that just after it."""
         system, state = self._dynamics.system, self._dynamics.state
         move, change = system.move(q, state.q), state.u - u
-        if np.max(self.scale * np.abs(move), initial=0.0) > self.least:
+        if np.max(self.scale * np.abs(move), initial=0.0) > self.least and self._leads_on(t, q) > self.least:
             k = int(np.argmax(self.scale * np.abs(move)))
             self._messages.append(
                 f"at t = {t:.6g} s a drive makes positions jump ('{system.bodies[k // system.of_body.n_u]}' by {abs(move[k]):.3g}): no "
@@ -258,6 +258,17 @@ class Jumps:
                 f"at t = {t:.6g} s a drive makes velocities jump ({system.name_of(k, system.of_body.velocities)} by {change[k]:.3g}, "
                 f"{100 * part:.3g} % of the largest velocity there); the reactions do not contain this impulse"
             )
+
+    def _leads_on(self, t: float, q: np.ndarray) -> float:
+        """Return the largest change of a constraint at a time, with the positions before it; drift is no jump."""
+        state, around = self._dynamics.state, SEARCH.precision * max(abs(t), self._settings.duration)
+        sides = []
+        with state.unchanged():
+            state.q[:] = q
+            for at in (t - around, t + around):
+                state.evaluate("position", at)
+                sides.append(state.vector("position", "C").copy())
+        return float(np.max(np.abs(sides[1] - sides[0]), initial=0.0))
 
     def clear(self) -> None:
         """Forget the jumps before another run."""
