@@ -289,11 +289,12 @@ class Chain:
             if i + 1 < self.count and not self.signal[i + 1]:
                 k, c = float(self.stiffness[i + 1]), float(self.damping[i + 1])
                 law += f" + {k!r}*({x_1} - {x}) + {c!r}*({v_1} - {v})"
-            acting: dict[str, Any] = {
-                "slides": {"type": "force", "force": [law, 0]}, "turns": {"type": "torque", "torque": law},
+            acting: dict[str, dict[str, Any]] = {
+                "slides": {"type": "force", "force": [law, 0]},
+                "turns": {"type": "torque", "torque": law},
                 "turns in space": {"type": "torque", "torque": [0, 0, law]},
-            }[self.kind]  # fmt: skip
-            given["forces"][f"f{i}"] = {**acting, "i": f"b{i}"}
+            }
+            given["forces"][f"f{i}"] = {**acting[self.kind], "i": f"b{i}"}
         if self.kind == "turns in space":
             given["dimensions"] = 3
         if self.tables:
