@@ -14,6 +14,7 @@ import numpy as np
 
 from ..compile.callbacks import fault_of
 from ..compile.compile_model import compile_model
+from ..compile.inputs.features import begins_at_breakpoint
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
@@ -139,6 +140,12 @@ class Job:
         """Return a model of the same bodies in the pose in which the elements of the job were set up."""
         return with_turns(in_pose_of(self.start_from, data), self.turns)
 
+    def shown(self, t: np.ndarray) -> np.ndarray:
+        """Return the times of rows as the user knows them: those just before or after a breakpoint at that breakpoint."""
+        if not self.dynamics.system.has_inputs:
+            return t
+        return replace(self.grid, start=self.settings.start).shown(t)
+
     @cached_property
     def on_constraints(self) -> bool:
         """Return True if states satisfy the constraints up to the tolerance."""
@@ -161,6 +168,8 @@ class Job:
         LOGGER.info("solving %s by %s", self.data.name, self.settings.solver)
 
         def over(grid: Grid) -> Trajectory:
+            if self.dynamics.system.has_inputs:
+                grid = grid.before_breakpoints(self.dynamics.input_features(grid.start, grid.end))
             if self.subsystems:
                 return solve_subsystems(solve, self.subsystems, self.start, grid, self.settings, watch)
             return solve(self.dynamics, self.start, grid, self.settings, watch)
@@ -228,20 +237,21 @@ def prepare(
         dynamics = found.dynamics()
     LOGGER.info("assembling %s", found.data.name)
     before = FoundBefore(found.data, found.settings, found.start_from)
+    grid = found.grid
+    if dynamics.system.has_inputs and begins_at_breakpoint(dynamics.system, grid.start, grid.end):
+        grid = replace(grid, start=grid.start + grid.aside)
     with reported_faults(dynamics.system), in_use(found.settings.tuning):
-        start = before.get("start", lambda: _start(found.data, dynamics, found.grid.start, found.start_from))
+        start = before.get("start", lambda: _start(found.data, dynamics, grid.start, found.start_from))
         if before.name:
             dynamics.place(start.q, start.u, start.lam)
         if found.turns and found.data.dimensions == 2:
             start = replace(start, notes=(*start.notes, *note_on_turns(found.turns)))
         if isinstance(found.data, Scene) and found.data.start != "described":
             start = replace(start, notes=(*start.notes, *held(dynamics.system)))
-        subsystems = presolved(
-            found.placed, dynamics, start, found.grid, found.settings, partial(before.get, "implicit")
-        )
+        subsystems = presolved(found.placed, dynamics, start, grid, found.settings, partial(before.get, "implicit"))
     before.keep()
     dynamics.system.known_terms.clear()
-    parts = found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems
+    parts = found.data, found.settings, grid, found.redundancy, dynamics, start, subsystems
     return Job(*parts, found.turns, found.start_from)
 
 

@@ -107,7 +107,7 @@ def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
         return None
     long_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.long_steps
     found = [
-        overlooked(system, computed.rows, trajectory, job.settings),
+        overlooked(job.dynamics, computed.rows, trajectory, job.settings),
         *(overlooked_in_long_steps(steps, job.settings, float(trajectory.t[-1])) for steps in long_steps),
     ]
     return together([each for each in found if each is not None])

@@ -112,7 +112,7 @@ class Finished:
     @property
     def time(self) -> np.ndarray:
         """Output instants, s."""
-        return self.rows.t
+        return self.job.shown(self.rows.t)
 
     def __getitem__(self, channel: str) -> np.ndarray:
         if self.examined:
@@ -211,7 +211,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     requested = units(job.data.outputs()) if job.data.requests else {}
     return Solution(
         name=job.data.name,
-        time=rows.t,
+        time=found.time,
         channels=found.channels,
         outcome=found.outcome,
         message=found.message,

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
-from ..compile.inputs.features import NO_FEATURES, InputFeatures, input_features
+from ..compile.inputs.features import NO_FEATURES, InputFeatures, aside, input_features
 from ..compile.machine.compiler import SHORT
 from ..compile.machine.layout import address, addresses, packed
 from ..compile.machine.routines import together
@@ -224,6 +224,15 @@ class Dynamics:
             found = input_features(self.system, start, end)
             self._features = start, end, found
         return found.within(start, end)
+
+    def sides(self, t: float) -> tuple[float, float]:
+        """Return the times just before and just after t if an input has a known breakpoint there, else t twice."""
+        start, end, found = self._features
+        if not len(found.all_breakpoints):
+            return t, t
+        apart = aside(start, end)
+        near = found.all_breakpoints[np.abs(found.all_breakpoints - t) <= 2.0 * apart]
+        return (float(near[0]) - apart, float(near[-1]) + apart) if len(near) else (t, t)
 
     def input_end(self, start: float, end: float) -> InputEnd | None:
         """Return the first end of a formula of time between two times, cached for runs over the same interval."""

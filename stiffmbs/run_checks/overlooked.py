@@ -3,7 +3,8 @@
 The integrator has a polynomial in each step, and the block system gives accelerations at every output time. Between two
 output times in one step, the mean of their accelerations times the interval is the velocity change. For smooth motions
 the difference is small, and errors within the tolerance cause a limited number of tolerances. A force that acts within
-the step only, and at an output time, exceeds both.
+the step only, and at an output time, exceeds both. Velocities that joints and drives prescribe follow no force, so that
+differences in them are left out.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from ..compile.machine.layout import addresses
 from ..compile.machine.routines import Routine
 from ..compile.reactions import reactions
 from ..compile.system import System
-from ..dynamics.dynamics import OutputRows
+from ..dynamics.dynamics import Dynamics, OutputRows
 from ..model.settings import RunSettings
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.events.long_steps import LONG_STEP, LongSteps, Motion
@@ -72,9 +73,11 @@ def together(found: Sequence[Overlooked]) -> Overlooked | None:
     )
 
 
-def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings) -> Overlooked | None:
+def overlooked(
+    dynamics: Dynamics, rows: OutputRows, trajectory: Trajectory, settings: RunSettings
+) -> Overlooked | None:
     """Return the events that the steps of a run missed; None if there are none or no force law has breakpoints."""
-    steps = trajectory.step_times
+    system, steps = dynamics.system, trajectory.step_times
     if len(steps) < 2 or not system.has_laws:
         return None
     absolute = absolute_tolerances(system, settings)[system.n_q :]
@@ -86,7 +89,8 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     number = np.searchsorted(steps, rows.t[pairs])
     step = steps[number] - steps[number - 1]
     tolerance = absolute + settings.rtol * np.abs(rows.u[pairs])
-    over_step = np.abs(_contradictions(rows, pairs)) * step[:, None] / (RUN_CHECKS.overlooked_tolerances * tolerance)
+    off = _free_part(dynamics, rows, pairs, _contradictions(rows, pairs))
+    over_step = np.abs(off) * step[:, None] / (RUN_CHECKS.overlooked_tolerances * tolerance)
     found = np.flatnonzero((over_step > 1).any(axis=1))
     if not len(found):
         return None
@@ -119,6 +123,24 @@ def _contradictions(rows: OutputRows, pairs: np.ndarray) -> np.ndarray:
     change = (rows.u[following] - rows.u[pairs]) / (rows.t[following] - rows.t[pairs])[:, None]
     mean: np.ndarray = 0.5 * (rows.acceleration[pairs] + rows.acceleration[following])
     return change - mean
+
+
+def _free_part(dynamics: Dynamics, rows: OutputRows, numbers: np.ndarray, off: np.ndarray) -> np.ndarray:
+    """Return the parts of differences of accelerations, one for each of some rows, that no joint or drive prescribes."""
+    state, free = dynamics.state, off.copy()
+    if not dynamics.system.n_c:
+        return free
+    with state.unchanged():
+        for part, k in zip(free, numbers.tolist(), strict=True):
+            prescribed = []
+            for u in (part, np.zeros_like(part)):
+                state.q[:], state.u[:] = rows.q[k], u
+                if dynamics.correct_velocities(float(rows.t[k])) < 0:
+                    break
+                prescribed.append(state.u.copy())
+            else:
+                part[:] = prescribed[0] - prescribed[1]
+    return free
 
 
 def acting(system: System, rows: OutputRows, k: int) -> str:
@@ -180,6 +202,8 @@ def _judged(
     off = rows.acceleration - rate
     size = np.fmax(rows.acceleration**2 @ system.mass, rate**2 @ system.mass)
     places = np.flatnonzero(off**2 @ system.mass > RUN_CHECKS.overlooked_part**2 * size)
+    off[places] = _free_part(found.dynamics, rows, places, off[places])
+    places = places[off[places] ** 2 @ system.mass > RUN_CHECKS.overlooked_part**2 * size[places]]
     if not len(places):
         return None
     length = (found.end - found.begin)[steps]

@@ -17,7 +17,6 @@ from . import cost
 from .auto_decisions import AUTO, ExplicitSteps, Thresholds, saving_by_return, steps_of_decay
 from .auto_implicit import Implicit
 from .error_control.tolerances import absolute_tolerances
-from .events.restart import just_after, just_before
 from .explicit import DOP853
 from .explicit.integration import Integration
 from .explicit.stable_step import Rates, rates_at
@@ -160,8 +159,8 @@ class Choice:
         return of_steps + restarts * cost.COSTS.restart_steps * self.explicit_step
 
     def is_breakpoint(self, t: float) -> bool:
-        """Return True if t is within rounding of an input breakpoint, where no integrator can start."""
-        return bool(np.any((self._breakpoints >= just_before(t)) & (self._breakpoints <= just_after(t))))
+        """Return True if t is an input breakpoint, or just before or after one; no integrator can start there."""
+        return bool(np.any(np.abs(self._breakpoints - t) <= 2.0 * self._grid.aside))
 
     def first_check(self) -> int:
         """Return the explicit steps of a segment that cost as much as a switch."""

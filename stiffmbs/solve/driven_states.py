@@ -105,12 +105,12 @@ class IntegratedMotion:
     """Motion determined by position and velocity equations together; it has the methods of `kinematic._Motion`.
 
     All velocities follow from J u + C_t = 0. SciPy's DOP853 (Hairer, Noersett, Wanner, sec. II.10) integrates q' = Z u
-    between output times, where positions are projected onto C = 0. `t`, `shortest`: s; no state is computed within
-    `shortest` of a breakpoint. `longest`: longest step, s, which resolves the drives.
+    between output times, where positions are projected onto C = 0. `t`: s. `longest`: longest
+    step, s, which resolves the drives.
     """
 
-    def __init__(self, dynamics: Dynamics, start: InitialValues, t: float, shortest: float, longest: float) -> None:
-        self._dynamics, self._shortest, self._longest = dynamics, shortest, longest
+    def __init__(self, dynamics: Dynamics, start: InitialValues, t: float, longest: float) -> None:
+        self._dynamics, self._longest = dynamics, longest
         self.t, self.steps, self.moves = t, 0, 0
         self.q, self.u = start.q, start.u
         dynamics.state.q[:], dynamics.state.u[:] = start.q, start.u
@@ -135,11 +135,10 @@ class IntegratedMotion:
         self._dynamics.state.q[:] = found.y[:, -1]
         self._take(end)
 
-    def go_past(self, breakpoint: float) -> None:
-        """Integrate to a breakpoint, then recompute velocities on its far side."""
-        self.go_to(breakpoint - self._shortest)
-        self._dynamics.state.q[:] = self.q + 2 * self._shortest * self._rates(self.t, self.q)
-        self._take(breakpoint + self._shortest)
+    def go_past(self, t: float) -> None:
+        """Recompute velocities just after a breakpoint."""
+        self._dynamics.state.q[:] = self.q + (t - self.t) * self._rates(self.t, self.q)
+        self._take(t)
 
     def _rates(self, t: float, q: np.ndarray) -> np.ndarray:
         """Return q' of the prescribed motion, NaN where it has no solution."""

@@ -15,8 +15,9 @@ from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
 from .error_control.relaxation import relax
 from .events.chattering import Chattering, MaskedEvents
-from .events.discontinuity import VELOCITY_JUMP, VelocityJumps
+from .events.discontinuity import Jumps
 from .events.long_steps import LongSteps
+from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
 from .events.restart import just_after, restarted_past, straight_on
 from .ida.choice import Driven, driven_natively
@@ -54,7 +55,7 @@ class Integrator:
         found = driven(dynamics, settings, control, memory, driver)
         self.equations, self.engine = found.equations, found.engine
         self.engine.forget()
-        self._jumps = VelocityJumps(dynamics)
+        self._jumps = Jumps(dynamics, settings)
         self._of_inputs = ""
         self._events = self._breakpoints = 0
 
@@ -89,7 +90,8 @@ class Integrator:
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
         self._masked = MaskedEvents(self.dynamics, chattering)
         ready: InitialValues | None = start
-        stops = [*grid.with_stops(features.breakpoints).tolist(), grid.end]
+        self.engine.resume_after(2.0 * grid.aside)
+        stops = [*(grid.with_stops(features.breakpoints) - grid.aside).tolist(), grid.end]
         while stops:
             if just_after(t) >= stops[0]:
                 del stops[0]
@@ -113,12 +115,17 @@ class Integrator:
                 q, u = self.on_constraints(reached)
                 if self._masked.any:
                     self._masked.note(t, q, u, self.steps(), reached.fired)
-                if t >= stops[0]:  # min(2*t, 1) still rises at its breakpoint; its later branch holds after it
-                    t = just_after(t)
+                at_breakpoint = t >= stops[0]
+                if at_breakpoint:
+                    before = t = t + 2.0 * grid.aside
+                    yield from self._at_once(reached.t, t, grid, (q, u))
+                    q = self.dynamics.system.of_body.moved(q, 2.0 * grid.aside * u)
                 ready, t = self._restarted(q, u, before, t, self._ahead(reached, stops[0]), chattering)
-                yield from self._at_once(before, t, grid)
-                self._events += before < stops[0]
-                self._breakpoints += before >= stops[0]
+                if not at_breakpoint:
+                    state = self.dynamics.state
+                    yield from self._at_once(before, t, grid, (state.q, state.u))
+                self._events += not at_breakpoint
+                self._breakpoints += at_breakpoint
 
     def _restarted(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
@@ -132,8 +139,8 @@ class Integrator:
         if begun is None:
             return self._consistent(q, u, before, t, ahead)
         state = self.dynamics.state
-        if begun.jump > VELOCITY_JUMP.least:
-            self._jumps.note(before, state.u - u)
+        if begun.jumps:
+            self._note_jump(before, q, u, ahead > 0.0)
         if begun.meets:
             chattering.begin(begun.t, state.q.copy(), state.u.copy())
         return None, begun.t
@@ -143,8 +150,24 @@ class Integrator:
     ) -> tuple[InitialValues, float]:
         """Return consistent values near a state reached at `before`, past events within `ahead`, and their time."""
         start, t = restarted_past(self.dynamics, t, q, u, ahead)
-        self._jumps.note(before, start.u - u)
+        self._note_jump(before, q, u, ahead > 0.0)
         return start, t
+
+    def _note_jump(self, before: float, q: np.ndarray, u: np.ndarray, event: bool) -> None:
+        """Note a jump at a restart; the current state is that after it.
+
+        A state that was interpolated to an event within a step may violate the constraints just before it as well.
+        """
+        dynamics, state, last = self.dynamics, self.dynamics.state, self.engine.last_step()
+        if not event:
+            self._jumps.note(before, q, u)
+        elif last and self._jumps.is_jump(state.u - u):
+            back = SEARCH.finest * last[0]
+            with state.unchanged():
+                state.q[:], state.u[:] = dynamics.system.of_body.moved(q, -back * u), u
+                closed = dynamics.correct_velocities(before - back) >= 0
+                u = state.u.copy() if closed else u
+            self._jumps.note(before, state.q, u)
 
     def _ahead(self, reached: Reached, stop: float) -> float:
         """Return the time after an event within which simultaneous events are passed, s."""
@@ -172,17 +195,12 @@ class Integrator:
             return self.engine.by_steps(stops[0])
         return self.engine.to_times(grid.within(just_after(t), stops[-1]), stops)
 
-    def _at_once(self, before: float, t: float, grid: Grid) -> Iterator[Reached]:
-        """Yield the state at t for output times equal to t apart from rounding, such as 7 * 0.1 s and 0.7 s.
-
-        Output times up to `before` have been yielded already.
-        """
+    def _at_once(self, before: float, t: float, grid: Grid, state: States) -> Iterator[Reached]:
+        """Yield a state for output times from `before`, excluded, to t, up to rounding such as that of 7 * 0.1 s."""
         times = grid.within(before, just_after(t))
         if len(times):
             y = np.zeros(self.equations.n)
-            y[self.equations.independent] = self.equations.coordinates.state(
-                self.dynamics.state.q, self.dynamics.state.u
-            )
+            y[self.equations.independent] = self.equations.coordinates.state(*state)
             yield Reached(times, np.tile(y[self.equations.independent], (len(times), 1)), t, y)
 
     def _begin(self, start: InitialValues, t: float) -> None:

@@ -16,6 +16,7 @@ from ..errors import InputError, SolverError
 from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..tuning import parameters_of
 from .driven_states import KINEMATIC, Instant, IntegratedMotion, states_after
+from .events.discontinuity import Jumps
 from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
@@ -56,24 +57,28 @@ def solve(
     motion: _Motion | IntegratedMotion
     if _by_velocities(dynamics):
         longest = float(np.min(features.longest, initial=np.inf))
-        motion = IntegratedMotion(dynamics, start, times[0], shortest, max(longest, 2 * shortest))
+        motion = IntegratedMotion(dynamics, start, times[0], max(longest, 2 * shortest))
     else:
         motion = _Motion(dynamics, start, times[0], shortest, features)
-    breakpoints = iter((*features.breakpoints, np.inf))
+    jumps, breakpoints = Jumps(dynamics, settings), iter((*features.breakpoints, np.inf))
     breakpoint = next(breakpoints)
     rows.append(times[0], motion.q, motion.u)
     with Ending() as ending:
-        for t in times[1:]:
-            while breakpoint <= t:
-                motion.go_past(breakpoint)
+        for t, place in zip(times[1:], grid.before(times, features)[1:], strict=True):
+            while breakpoint < place:
+                motion.go_to(breakpoint - grid.aside)
+                before = motion.q, motion.u
+                motion.go_past(breakpoint + grid.aside)
+                jumps.note(breakpoint, *before)
                 breakpoint = next(breakpoints)
-            motion.go_to(t)
+            motion.go_to(place)
             refuse_beyond_limits(dynamics, t, motion.q, motion.u)
             rows.append(t, motion.q, motion.u)
             watch(t)
     statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": ending.seconds}
     narrow = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
-    note = narrow or hidden_peak(inputs_of(system), features, times)
+    hidden = narrow or hidden_peak(inputs_of(system), features, times)
+    note = "; ".join(filter(None, (jumps.sentence(), hidden)))
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
 
@@ -113,7 +118,6 @@ class _Motion:
     ) -> None:
         self._dynamics, self._shortest, self._features = dynamics, shortest, features
         self.t, self.steps, self.moves = t, 0, 0
-        self._begun = t
         self._status = 0
         self._parameters = parameters_of(KINEMATIC)
         self.q, self.u, self.a = start.q, start.u, start.acceleration
@@ -135,16 +139,12 @@ class _Motion:
                 h *= 2
             elif h > self._shortest:
                 h /= 2
-            elif self.t == self._begun:  # a drive such as max(0, t) has a kink at the start
-                self.go_past(self.t)
-                h = end - self.t
             else:
                 raise SolverError(self._stuck())
 
-    def go_past(self, breakpoint: float) -> None:
-        """Compute the motion to a breakpoint, then recompute velocities and accelerations on its far side."""
-        self.go_to(breakpoint - self._shortest)
-        state, t = self._dynamics.state, breakpoint + self._shortest
+    def go_past(self, t: float) -> None:
+        """Recompute velocities and accelerations just after a breakpoint."""
+        state = self._dynamics.state
         state.q[:], state.u[:] = self.q, self.u
         self._status = min(self._dynamics.assemble(t), 0) or self._dynamics.correct_velocities(t)
         if self._status < 0 or not self._take(t):

@@ -165,12 +165,12 @@ def _up_to_row(part: Trajectory, row: int) -> Trajectory:
     """Return a trajectory that ends at a row."""
     if row == len(part.t) - 1 and part.outcome is Outcome.DONE:
         return part
-    taken = part.history.t <= part.t[row]
-    order = part.history.order[taken] if len(part.history.order) == len(taken) else part.history.order
+    taken = slice(int(part.history.t.searchsorted(part.t[row])) + 1)  # and the step that contains the row, up to it
     rows = slice(row + 1)
+    history = History(np.minimum(part.history.t[taken], part.t[row]), part.history.order[taken])
     return replace(
         part, t=part.t[rows], q=part.q[rows], u=part.u[rows], outcome=Outcome.DONE, message=Outcome.DONE.value,
-        history=History(part.history.t[taken], order), long_steps=(),
+        history=history, long_steps=(),
     )  # fmt: skip
 
 

@@ -14,12 +14,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from ..compile.inputs.enclosure import ROUNDING
+from ..compile.inputs.features import InputFeatures
 from ..dynamics.storage import STORAGE, allocated, release
 from ..errors import SolverError
 from ..model.settings import RunSettings
@@ -67,13 +69,39 @@ class History:
 class Grid:
     """Ends of the run, and output times (ends included) or None for the solver's own steps.
 
-    Solvers with variable steps restart at `stops`, as at input breakpoints.
+    Solvers restart at `stops`, as at input breakpoints: a step ends just before a breakpoint, where every formula has
+    its earlier side, and the next one begins just after it. Output at a breakpoint is the state just before it, output at
+    the start of a run that just after it.
     """
 
     start: float
     end: float
     times: np.ndarray | None
     stops: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+    @property
+    def aside(self) -> float:
+        """Distance from a breakpoint at which steps end and begin, s."""
+        return ROUNDING * max(abs(self.start), abs(self.end))
+
+    def before(self, t: np.ndarray, features: InputFeatures) -> np.ndarray:
+        """Return times, s, of which those at breakpoints are just before them; the start of the grid is just after one."""
+        breakpoints = features.all_breakpoints
+        before = breakpoints[breakpoints > self.start + 2.0 * self.aside] - self.aside
+        return np.maximum(_nearest(t, before, self.aside), self.start)
+
+    def before_breakpoints(self, features: InputFeatures) -> Grid:
+        """Return the grid with its output times and end just before breakpoints at them.
+
+        A solver and the evaluation of its rows thus have one side. `shown` returns the times of the grid itself.
+        """
+        times = None if self.times is None else self.before(self.times, features)
+        return replace(self, end=float(self.before(np.array([self.end]), features)[0]), times=times)
+
+    def shown(self, t: np.ndarray) -> np.ndarray:
+        """Return times of which those next to a time of this grid are that time."""
+        own = np.array([self.start, self.end]) if self.times is None else self.times
+        return _nearest(t, own, self.aside)
 
     def with_stops(self, breakpoints: np.ndarray) -> np.ndarray:
         """Return the restart times: input breakpoints, and the stops within the run."""
@@ -87,6 +115,14 @@ class Grid:
             return np.empty(0)
         first, end = self.times.searchsorted((after, until), side="right")
         return self.times[first:end]
+
+
+def _nearest(t: np.ndarray, known: np.ndarray, apart: float) -> np.ndarray:
+    """Return times of which those as near to a known one as the sides of a breakpoint are to each other are that one."""
+    if not len(known):
+        return t
+    k = np.minimum(known.searchsorted(t - 3.0 * apart), len(known) - 1)
+    return np.where(np.abs(t - known[k]) <= 3.0 * apart, known[k], t)
 
 
 @dataclass(frozen=True)

@@ -81,6 +81,7 @@ def follow(
 
 def _followed(job: Job, every: float) -> Iterator[Solution]:
     grid = job.grid
+    grid = grid.before_breakpoints(job.dynamics.input_features(grid.start, grid.end))
     instants = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, DEFAULT_POINTS)
     stepper = stepper_of(job, job.start, job.grid.start)
     q = np.empty((len(instants), len(job.start.q)))
@@ -109,7 +110,7 @@ def _so_far(job: Job, t: np.ndarray, states: States, lengths: np.ndarray, outcom
         rows = with_stiff_forces(job.dynamics, states, rows, lengths, job.settings.rtol)
     channels = channels_of(job.data, system, rows)
     return Solution(
-        name=job.data.name, time=rows.t, channels=channels, outcome=outcome, message=message, notes=(),
+        name=job.data.name, time=job.shown(rows.t), channels=channels, outcome=outcome, message=message, notes=(),
         solver={"name": job.settings.solver}, history=History(np.empty(0), np.empty(0, dtype=int)), not_unique=job.redundancy.not_unique,
         balance=energy_balance(system, rows),
         requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,

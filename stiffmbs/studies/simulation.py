@@ -110,9 +110,9 @@ class Simulation:
         job = self._job
         self._inputs.set(self._first)
         job.dynamics.forget_pivots()
-        self.t = job.grid.start
+        self.t = job.settings.start
         with in_use(job.settings.tuning):
-            self._stepper = stepper_of(job, job.start, self.t)
+            self._stepper = stepper_of(job, job.start, job.grid.start)
         self._steps, self._relaxed = 0, relaxed(job)
         self._places = self._places_of_bodies()
         self._follow_from(self.t, {})
@@ -205,7 +205,7 @@ class Simulation:
         dynamics, settings = self._job.dynamics, self._job.settings
         with dynamics.state.unchanged():
             dynamics.state.q[:] = self._stepper.q
-            drift = drift_at(dynamics, end, self._stepper.u, settings)
+            drift = drift_at(dynamics, self._stepper.time, self._stepper.u, settings)
         if drift > DRIFTED:
             with suppress(SolverError):  # in a singular pose, which only relaxed constraints pass
                 exact = self._steps_of(exactly(self._job), q, u)
@@ -214,7 +214,8 @@ class Simulation:
 
     def _steps_of(self, job: Job, q: np.ndarray, u: np.ndarray) -> Stepper:
         """Return a stepper from a state at the current time."""
-        return stepper_of(job, restarted(job.dynamics, self.t, q, u), self.t)
+        t = job.dynamics.sides(self.t)[1]
+        return stepper_of(job, restarted(job.dynamics, t, q, u), t)
 
     def _go_on_with(self, stepper: Stepper, relaxed: bool) -> None:
         self._stepper, self._relaxed = stepper, relaxed
@@ -277,7 +278,7 @@ class Simulation:
         dynamics = self._job.dynamics
         with dynamics.state.unchanged():
             q, u = self.q[None], self.u[None]
-            rows = dynamics.report(np.array([self.t]), q, u, project=True)
+            rows = dynamics.report(np.array([self._stepper.time]), q, u, project=True)
             lengths, rtol = np.array([self._stepper.length]), self._job.settings.rtol
             rows = with_stiff_forces(dynamics, (q, u), rows, lengths, rtol)
         if not len(rows.t):

@@ -82,10 +82,12 @@ def _finer(settings: RunSettings) -> RunSettings:
 class Stepper(Protocol):
     """Stepper from consistent values.
 
-    `q`, `u`: current state, overwritten by each step. `length`: length of the implicit step that contains it, s; 0 for
-    explicit steps.
+    `q`, `u`: current state, overwritten by each step. `time`: time at which equations hold for it, s: just before a
+    breakpoint of an input that was reached, just after one at a start. `length`: length of the implicit step that contains
+    it, s; 0 for explicit steps.
     """
 
+    time: float
     q: np.ndarray
     u: np.ndarray
     length: float
@@ -121,7 +123,7 @@ class ImplicitSteps:
         self._first = self._end = t
         self._look_through(t)
         self._begin(start, t)
-        self._present, self.q, self.u, self.length = t, start.q.copy(), start.u.copy(), 0.0
+        self._present, self.time, self.q, self.u, self.length = t, t, start.q.copy(), start.u.copy(), 0.0
 
     @cached_property
     def _started(self) -> StartedSteps:
@@ -139,31 +141,36 @@ class ImplicitSteps:
     def _begin(self, start: InitialValues, t: float) -> None:
         self._t, self._jumped, self._ended = t, False, False
         self._engine.ida.pause_after(1)
-        self._steps: Iterator[Reached] = self._integrator.run(start, Grid(t, self._end, None))
+        self._steps: Iterator[Reached] = self._integrator.run(
+            start, Grid(t, self._end, None).before_breakpoints(self._features)
+        )
 
     def advance(self, t: float) -> None:
         """See `Stepper`."""
+        place = self._dynamics.sides(t)[0]
         if self._jumped or self._ended:
             self._look_through(self._t)
             self.q[:], self.u[:] = self._integrator.closed(self._t, (self.q, self.u), self.length)
+            begin = self._dynamics.sides(self._t)[1]
             if self._jumped and t <= self._end:
-                if t > just_after(self._t):
-                    self._started.advance(self._t, t, self._features)
+                if place > just_after(begin):
+                    self._started.advance(begin, place, self._features)
                     self.length = t - self._t
-                self._t, self._present, self._jumped, self._ended = t, t, False, True
+                self._t, self._present, self.time, self._jumped, self._ended = t, t, place, False, True
                 return
-            self._begin(restarted(self._dynamics, self._t, self.q, self.u), self._t)
-        while self._t < t:
+            self._begin(restarted(self._dynamics, begin, self.q, self.u), begin)
+        while self._t < place:
             reached = next(self._steps, None)
             if reached is None:  # end of the interval with known input features, up to rounding
                 self._end = self._t
                 self._look_through(self._t)
                 state = self._integrator.closed(self._t, self._at(self._t), self._last_step())
-                self._begin(restarted(self._dynamics, self._t, *state), self._t)
+                begin = self._dynamics.sides(self._t)[1]
+                self._begin(restarted(self._dynamics, begin, *state), begin)
             else:
                 self._t = sound(self._integrator, reached).t
-        self.q[:], self.u[:] = self._at(t)
-        self._present, self.length = t, self._last_step()
+        self.q[:], self.u[:] = self._at(place)
+        self._present, self.time, self.length = t, place, self._last_step()
 
     def _last_step(self) -> float:
         return float(self._engine.ida.cells["size"])
@@ -179,7 +186,7 @@ class ImplicitSteps:
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """See `Stepper`."""
-        self._t, self._present, self._jumped = t, t, True
+        self._t, self._present, self.time, self._jumped = t, t, self._dynamics.sides(t)[1], True
         self.q[:], self.u[:], self.length = q, u, 0.0
 
 
@@ -187,7 +194,7 @@ class ShortRuns:
     """Runs from each instant to the next, by a solver without history. `t`: time, s."""
 
     def __init__(self, job: Job, start: InitialValues, t: float) -> None:
-        self._job, self._start, self._t = job, start, t
+        self._job, self._start, self._t, self.time = job, start, t, t
         self._settings, self._end = job.settings, t
         self.q, self.u, self.length = start.q.copy(), start.u.copy(), 0.0
 
@@ -197,7 +204,8 @@ class ShortRuns:
             if t > self._end:  # input features are determined once for all following steps
                 self._end = t + self._settings.duration
                 self._job.dynamics.input_features(self._t, self._end)
-            grid = Grid(self._t, t, np.array([self._t, t]))
+            place = self._job.dynamics.sides(t)[0]
+            grid = Grid(self._t, place, np.array([self._t, place]))
             run = SOLVERS[self._settings.solver].solve
             found = run(self._job.dynamics, self._start, grid, self._settings, lambda _: None)
             if found.outcome is Outcome.INTERRUPTED:
@@ -205,7 +213,10 @@ class ShortRuns:
             if found.outcome is not Outcome.DONE:
                 raise SolverError(found.message)
             self.length = float(lengths_of_steps(found)[-1])
-            self.restart(t, *projected(self._job.dynamics, t, (found.q[-1], found.u[-1]), self.length))
+            q, u = projected(self._job.dynamics, place, (found.q[-1], found.u[-1]), self.length)
+            self.restart(t, q, u)
+            if place < t:
+                self.time, self.q[:], self.u[:] = place, q, u
 
     def jump(self) -> None:
         """See `Stepper`."""
@@ -213,5 +224,6 @@ class ShortRuns:
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """See `Stepper`."""
-        self._t, self._start = t, restarted(self._job.dynamics, t, q, u)
+        self._t = self.time = self._job.dynamics.sides(t)[1]
+        self._start = restarted(self._job.dynamics, self._t, q, u)
         self.q[:], self.u[:] = self._start.q, self._start.u

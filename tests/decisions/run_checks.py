@@ -204,11 +204,14 @@ def largest_contradiction():
 
 def velocity_within_tolerances():
     """Return the contradiction of a velocity, in quarter octaves of tolerances, that is accepted."""
-    system = Record(has_laws=True, mass=np.ones(1), n_q=0, of_body=Record(velocities=None), name_of=lambda *_: "a.vx")
+    system = Record(
+        has_laws=True, mass=np.ones(1), n_q=0, n_c=0, of_body=Record(velocities=None), name_of=lambda *_: "a.vx"
+    )
+    dynamics = Record(system=system, state=None)
 
     def accepted(tolerances):
         with patch.multiple(overlooked, absolute_tolerances=lambda *_: np.array([1e-6]), acting=lambda *_: ""):
-            found = overlooked.overlooked(system, rows_of(1e-6 * tolerances, 0.0), Record(step_times=STEPS), SETTINGS)
+            found = overlooked.overlooked(dynamics, rows_of(1e-6 * tolerances, 0.0), Record(step_times=STEPS), SETTINGS)
         return found is None
 
     return count_while(accepted, DOUBLES)
@@ -216,8 +219,8 @@ def velocity_within_tolerances():
 
 def judged(off, acceleration):
     """Return whether the midpoint of a step of 1 s shows a missed event; `off` is in tolerances."""
-    system = Record(mass=np.ones(1), n_q=0, of_body=Record(velocities=None), name_of=lambda *_: "a.vx")
-    found = Record(dynamics=Record(system=system), begin=np.zeros(1), end=np.ones(1), whole=False)
+    system = Record(mass=np.ones(1), n_q=0, n_c=0, of_body=Record(velocities=None), name_of=lambda *_: "a.vx")
+    found = Record(dynamics=Record(system=system, state=None), begin=np.zeros(1), end=np.ones(1), whole=False)
     rows = Record(t=np.zeros(1), u=np.zeros((1, 1)), acceleration=np.array([[acceleration]]))
     replaced = {
         "absolute_tolerances": lambda *_: np.ones(1), "acting": lambda *_: "", "_of_errors": lambda *_: np.zeros(1)

@@ -9,9 +9,10 @@ from unittest.mock import Mock, patch
 import numpy as np
 import pytest
 
+from stiffmbs.compile.inputs.features import NO_FEATURES
 from stiffmbs.errors import SolverError
 from stiffmbs.model.settings import SteadyMotion
-from stiffmbs.solve.trajectory import Outcome
+from stiffmbs.solve.trajectory import Grid, Outcome
 from stiffmbs.studies import (
     case_solver,
     executors,
@@ -129,7 +130,8 @@ def reports_of_a_run():
     """Return the number of reports of a run of 100 s, in which a report takes 1 s."""
     clock = [0.0]
     start = Record(q=np.zeros(1), u=np.zeros(1))
-    job = Record(grid=Record(times=np.arange(101.0), start=0.0, end=100.0), start=start)
+    dynamics = Record(input_features=lambda *_: NO_FEATURES)
+    job = Record(grid=Grid(0.0, 100.0, np.arange(101.0)), start=start, dynamics=dynamics)
     found = Record(advance=lambda _: after(1.0), q=np.zeros(1), u=np.zeros(1), length=0.0)
 
     def after(seconds):

@@ -169,7 +169,7 @@ def test_the_rate_is_asked_for_once_where_explicit_steps_to_the_end_cost_less_th
     scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e5")])
     solution = stiffmbs.run(scene, solver="auto", rtol=1e-4)
     assert solution.solver["name"] == "projected"
-    assert asked == [0.0]
+    assert asked == pytest.approx([0.0], abs=1e-12)  # just after a breakpoint at the start
 
 
 def let_fall(height, damping):

@@ -26,7 +26,7 @@ from stiffmbs.solve.error_control.stability_limit import (
     limits_steps,
 )
 from stiffmbs.solve.events.chattering import Chattering, MaskedEvents
-from stiffmbs.solve.events.discontinuity import VelocityJumps
+from stiffmbs.solve.events.discontinuity import Jumps
 from stiffmbs.solve.events.narrow_inputs import hidden_peak
 from stiffmbs.solve.events.refusals import exponential, refuse_beyond_sense
 from stiffmbs.solve.events.restart import straight_on
@@ -105,10 +105,12 @@ def finest_rtol(place, value):
 
 def smallest_velocity_jump():
     job = job_of("cart_pendulum")
+    state = job.dynamics.state
+    state.u[:] = 1.0 / Jumps(job.dynamics, job.settings).scale
 
     def is_noted(size):
-        jumps = VelocityJumps(job.dynamics)
-        jumps.note(0.0, np.full(len(job.start.u), size))
+        jumps = Jumps(job.dynamics, job.settings)
+        jumps.note(0.0, state.q, state.u - size * (np.arange(len(state.u)) == 0))
         return bool(jumps.sentence())
 
     return count_while(is_noted, HALVES)

@@ -18,6 +18,7 @@ from ...errors import InputError
 from ...reading.formula.functions import EACH, IN_FORMULAS, Breakpoints
 from ...reading.formula.nodes import TIME, reading_order
 from ..system import System
+from .enclosure import ROUNDING
 from .of_time import Input, inputs_of
 from .pieces import Bounds, InputPieces
 from .zeros import FIRST_STRETCHES, SHORTEST_STRETCH, ZERO, TooMany, zeros
@@ -33,13 +34,20 @@ class InputFeatures:
     """Features of all inputs between two times.
 
     `breakpoints`: times to stop and restart at, s. `starts`, `longest`: start of each interval and longest step that
-    may touch it, s; empty if nothing limits steps. `note`: note for the user, or ''.
+    may touch it, s; empty if nothing limits steps. `note`: note for the user, or ''. `at_ends`: breakpoints at the
+    first and the last time, s.
     """
 
     breakpoints: np.ndarray = field(default_factory=lambda: np.empty(0))
     starts: np.ndarray = field(default_factory=lambda: np.empty(0))
     longest: np.ndarray = field(default_factory=lambda: np.empty(0))
     note: str = ""
+    at_ends: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+    @cached_property
+    def all_breakpoints(self) -> np.ndarray:
+        """Breakpoints within and at both ends, s."""
+        return np.union1d(self.breakpoints, self.at_ends) if len(self.at_ends) else self.breakpoints
 
     @cached_property
     def ends(self) -> np.ndarray:
@@ -59,11 +67,11 @@ class InputFeatures:
 
     def within(self, start: float, end: float) -> InputFeatures:
         """Return the features between two times."""
-        if not len(self.starts) and not len(self.breakpoints):
+        if not len(self.starts) and not len(self.breakpoints) and not len(self.at_ends):
             return self
         inside = (self.starts < end) & (self.ends > start)
-        breakpoints = self.breakpoints[(self.breakpoints > start) & (self.breakpoints < end)]
-        return InputFeatures(breakpoints, self.starts[inside], self.longest[inside], self.note)
+        within, at_ends = _parted(self.all_breakpoints, start, end)
+        return InputFeatures(within, self.starts[inside], self.longest[inside], self.note, at_ends)
 
     def narrowest(self) -> tuple[float, float]:
         """Return length and start of the narrowest feature, s; infinite length if there is none."""
@@ -106,14 +114,33 @@ def input_features(system: System, start: float, end: float) -> InputFeatures:
 
 @lru_cache
 def _features(inputs: tuple[Input, ...], start: float, end: float) -> InputFeatures:
-    breakpoints = breakpoint_times(inputs, start, end)
+    breakpoints, at_ends = _parted(breakpoints_from(inputs, start, end), start, end)
     pieces = [InputPieces(each, np.concatenate([[start], breakpoints, [end]])) for each in inputs]
     bounds = [each.bounds() for each in pieces]
     estimated = [given.text for given, each in zip(inputs, pieces, strict=True) if each.estimated]
     note = (
         f"'{estimated[0]}' has too many features to be listed: steps follow from a sample of them" if estimated else ""
     )
-    return InputFeatures(breakpoints, *_together(bounds, breakpoints, start, end), note)
+    return InputFeatures(breakpoints, *_together(bounds, breakpoints, start, end), note, at_ends)
+
+
+def aside(start: float, end: float) -> float:
+    """Return the distance from a breakpoint at which formulas surely have one of its sides, s, in a run between two times."""
+    return ROUNDING * max(abs(start), abs(end))
+
+
+def _parted(times: np.ndarray, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the breakpoints within a run, and those at its ends up to rounding."""
+    near = 2.0 * aside(start, end)
+    times = times[(times >= start - near) & (times <= end + near)]
+    within = (times > start + near) & (times < end - near)
+    return times[within], times[~within]
+
+
+def begins_at_breakpoint(system: System, start: float, end: float) -> bool:
+    """Return True if an input of a run from `start` to `end` has a breakpoint at the start, s."""
+    near = 2.0 * aside(start, end)
+    return bool(len(breakpoints_from(inputs_of(system), start, start + near)))
 
 
 def _together(
@@ -149,7 +176,13 @@ def _merged(starts: np.ndarray, longest: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
-    """Return the breakpoints in time of some inputs, strictly between start and end, in ascending order.
+    """Return the breakpoints in time of some inputs, strictly between start and end, in ascending order; errors as for `breakpoints_from`."""
+    times = breakpoints_from(inputs, start, end)
+    return times[(times > start) & (times < end)]
+
+
+def breakpoints_from(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
+    """Return the breakpoints in time of some inputs from start to end, both included, in ascending order.
 
     `start`, `end`: s.
     """
@@ -160,7 +193,7 @@ def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.nd
         except TooMany as error:
             raise InputError(f"'{each.text}': {error}") from None
     times = np.concatenate(found)
-    times = np.sort(times[(times > start) & (times < end)])
+    times = np.sort(times[(times >= start) & (times <= end)])
     apart = SHORTEST_STRETCH * max(abs(start), abs(end), np.finfo(float).tiny)
     return times[np.diff(times, prepend=-np.inf) > apart]
 
@@ -185,7 +218,7 @@ def _conditions(given: Input, node: ast.expr, start: float, end: float) -> Itera
     """Yield expressions and the levels that they cross at the breakpoints of a function or table."""
     match node:
         case ast.Call(ast.Name(name), [argument]) if name in given.tables:
-            yield argument, given.tables[name].breakpoints_between(*_range(given, argument, start, end))
+            yield argument, given.tables[name].breakpoints_between(*_range(given, argument, start, end), given.of_joint)
         case ast.Call(ast.Name(name)):
             yield from ((condition, ZERO) for condition in _breakpoints(node, IN_FORMULAS[name].breakpoints))
 

@@ -11,7 +11,7 @@ from typing import Any, get_args
 
 import numpy as np
 
-from ...elements.element import Element
+from ...elements.element import Element, Joint
 from ...reading.formula.field import FormulaOf
 from ...reading.formula.formula import Formula
 from ...reading.formula.functions import IN_FORMULAS
@@ -35,18 +35,20 @@ TABLE = "table"
 class Input:
     """Expression of time only, compared by content.
 
-    `text`: for messages. `values`: parameters, units and constants by name.
+    `text`: for messages. `values`: parameters, units and constants by name. `of_joint`: true if it may prescribe a
+    position, whose second derivative acts.
     """
 
     tree: ast.expr
     text: str
     values: Mapping[str, float]
     tables: Mapping[str, TableRanges]
+    of_joint: bool = False
 
     @cached_property
     def _says(self) -> tuple[Hashable, ...]:
         tables = tuple((name, id(ranges.table)) for name, ranges in sorted(self.tables.items()))
-        return self.text, _written(self.tree), tuple(sorted(self.values.items())), tables
+        return self.text, _written(self.tree), tuple(sorted(self.values.items())), tables, self.of_joint
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Input) and self._says == other._says
@@ -176,7 +178,7 @@ def inputs_of(system: System) -> list[Input]:
         for element in group.elements if group.has_inputs else ():
             for expression, text, values, tables in expressions_of(element, given):
                 ranges = {name: ranges_of(table) for name, table in tables.items()}
-                found.setdefault(Input(expression, text, values, ranges))
+                found.setdefault(Input(expression, text, values, ranges, isinstance(element, Joint)))
     return list(found)
 
 

@@ -15,8 +15,8 @@ from .zeros import MOST_STRETCHES, TooMany
 class TableRanges:
     """Table as a function of arrays and of enclosures.
 
-    `breakpoints`: arguments of its breakpoints, within one period for a periodic table. `period`: zero if it is not
-    periodic.
+    `breakpoints`: arguments of its breakpoints, within one period for a periodic table. `bends`: these, and the points at
+    which its curvature jumps: forces jump there if it prescribes a position. `period`: zero if it is not periodic.
     """
 
     def __init__(self, table: Table) -> None:
@@ -27,6 +27,7 @@ class TableRanges:
         self.period = self._x[-1] - self._x[0] if table.repeats else 0.0
         self._holds = table.beyond == "hold"
         self.breakpoints = _breakpoints(table, self._x)
+        self.bends = np.union1d(self.breakpoints, _jumps_of_curvature(self._x, self._pieces))
         h = np.diff(self._x)
         whole = np.array([np.zeros_like(h), h])
         with np.errstate(all="ignore"):
@@ -36,17 +37,18 @@ class TableRanges:
         """Return the values as computed by kernels."""
         return self._values(arguments)
 
-    def breakpoints_between(self, low: float, high: float) -> np.ndarray:
-        """Return the breakpoints between two arguments."""
+    def breakpoints_between(self, low: float, high: float, bends: bool = False) -> np.ndarray:
+        """Return the breakpoints between two arguments, with jumps of the curvature if `bends` is true."""
+        breakpoints = self.bends if bends else self.breakpoints
         if not self.period:
-            return self.breakpoints[(self.breakpoints >= low) & (self.breakpoints <= high)]
+            return breakpoints[(breakpoints >= low) & (breakpoints <= high)]
         first, last = np.floor((low - self._x[0]) / self.period), np.ceil((high - self._x[0]) / self.period)
-        if not (last - first) * len(self.breakpoints) <= MOST_STRETCHES:
+        if not (last - first) * len(breakpoints) <= MOST_STRETCHES:
             raise TooMany(
                 f"a periodic table has more than {MOST_STRETCHES:.0e} breakpoints between {low:g} and {high:g}, expected fewer"
             )
         turns = np.arange(first, last + 1)
-        found = np.unique((self.breakpoints + turns[:, None] * self.period).ravel())
+        found = np.unique((breakpoints + turns[:, None] * self.period).ravel())
         return found[(found >= low) & (found <= high)]
 
     def enclosed(self, argument: Enclosure) -> Enclosure:
@@ -131,6 +133,16 @@ def _breakpoints(table: Table, x: np.ndarray) -> np.ndarray:
     return x[np.unique(np.concatenate([[0], bends, [len(x) - 1]]))]
 
 
+def _jumps_of_curvature(x: np.ndarray, pieces: np.ndarray) -> np.ndarray:
+    """Return the inner points of a table at which its second derivative jumps by more than rounding."""
+    a, b, _, _ = pieces.T
+    before, after = (6 * a * np.diff(x) + 2 * b)[:-1], 2 * b[1:]
+    size = np.max(np.abs([before, after]), initial=0.0)
+    return x[1:-1][np.abs(after - before) > CONTINUOUS * size]
+
+
+CONTINUOUS = 1e-6
+"""Jump of a second derivative, relative to the largest one of a table, that is rounding."""
 FLAT = 1e-12
 """Change between two points of a table, relative to its largest value, below which it is flat."""
 

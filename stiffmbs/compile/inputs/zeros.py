@@ -39,11 +39,21 @@ def zeros(values: Values, ranges: Ranges, start: float, end: float, levels: np.n
         first, last = values(np.array([start, end]))
         slope = ranges(np.array([start]), np.array([end])).slope[:, 0]
         if np.isfinite(slope[0]) and slope[0] == slope[1]:
-            found = start + (end - start) * (levels - first) / (last - first) if first != last else np.empty(0)
-            return found[(found >= start) & (found <= end)]
+            if first == last:
+                return np.empty(0)
+            found = start + (end - start) * (levels - first) / (last - first)
+            near = (found >= start) & (found <= end)
+            return _of_line(values, found[near], levels[near], bool(last > first), max(abs(start), abs(end)))
         stretches = list(_stretches(values, ranges, start, end, levels))
         low, high = np.concatenate([np.empty((2, 0)), *stretches], axis=1)
         return _passages(values, low, high, levels)
+
+
+def _of_line(values: Values, found: np.ndarray, levels: np.ndarray, rising: bool, size: float) -> np.ndarray:
+    """Return the crossings of a straight line to the last digit, from values that rounding has moved."""
+    low, high = found - RANGE_ROUNDING * size, found + RANGE_ROUNDING * size
+    closed = ((values(low) < levels) == rising) & ((values(high) > levels) == rising) & (values(found) != levels)
+    return np.where(closed, _bisected(values, low, high, levels, np.full(len(found), rising)), found)
 
 
 def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels: np.ndarray) -> Iterator[np.ndarray]:
@@ -117,8 +127,12 @@ def _passages(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndar
     stretch = np.repeat(np.arange(len(low)), count)
     within = np.arange(len(stretch)) - np.repeat(np.cumsum(count) - count, count)
     level = levels[from_level[stretch] + within]
-    low, high, rising = low[stretch], high[stretch], (last > first)[stretch]
+    return np.concatenate([at_ends, _bisected(values, low[stretch], high[stretch], level, (last > first)[stretch])])
+
+
+def _bisected(values: Values, low: np.ndarray, high: np.ndarray, level: np.ndarray, rising: np.ndarray) -> np.ndarray:
+    """Return the first numbers beyond a level in monotonic intervals that hold one crossing each."""
     while np.any((low < (middle := (low + high) / 2)) & (middle < high)):
         beyond = (values(middle) > level) == rising
         low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
-    return np.concatenate([at_ends, high])
+    return high

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -11,8 +12,10 @@ from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
+from ...model.settings import RunSettings
 from ...reading.files.quoted import MOST_LISTED
 from ...tuning import tuned
+from ..error_control.tolerances import absolute_tolerances
 from .native.parameters import BISECTIONS, SEARCH
 
 
@@ -204,30 +207,68 @@ class VelocityJumpParameters:
     """Parameters of the report."""
 
     least: float = 1e-2
-    """Velocity change at a breakpoint, relative to the largest velocity, above which it is a jump."""
+    """Velocity change at a breakpoint, relative to the largest velocity before or after it, above which it is a jump."""
 
 
 VELOCITY_JUMP = tuned("velocity_jumps", VelocityJumpParameters())
 
 
-class VelocityJumps:
-    """Velocity jumps of one run."""
+class Jumps:
+    """Jumps of velocities, and of positions, at the breakpoints of one run.
 
-    def __init__(self, dynamics: Dynamics) -> None:
-        self._dynamics = dynamics
+    `scale`, of shape (n_u,): factors from velocities to m/s, the mechanism's size for angular ones. `least`: change, m/s
+    or m, that is no jump, whatever the velocities: the tolerance of the run.
+    """
+
+    def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
+        self._dynamics, self._settings = dynamics, settings
         self._messages: list[str] = []
 
-    def note(self, t: float, change: np.ndarray) -> None:
-        """Note a change of velocities at a breakpoint; the state of the dynamics is that after it."""
-        if not (np.abs(change) > VELOCITY_JUMP.least).any():
-            return
-        k = int(np.argmax(np.abs(change)))
-        if abs(change[k]) > VELOCITY_JUMP.least * max(1.0, float(np.max(np.abs(self._dynamics.state.u)))):
-            system = self._dynamics.system
-            name = system.name_of(k, system.of_body.velocities)
+    @cached_property
+    def scale(self) -> np.ndarray:
+        system = self._dynamics.system
+        return np.ascontiguousarray(system.per_velocity(1.0, system.size))
+
+    @cached_property
+    def least(self) -> float:
+        system = self._dynamics.system
+        tolerances = absolute_tolerances(system, self._settings)[system.n_q :]
+        return float(np.min(self.scale * tolerances, initial=np.inf))
+
+    def is_jump(self, change: np.ndarray) -> bool:
+        """Return True if a change of velocities to those of the current state is a jump."""
+        largest, after = float(np.max(self.scale * np.abs(change), initial=0.0)), self._dynamics.state.u
+        fastest = np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change)), initial=0.0)
+        return largest > max(self.least, VELOCITY_JUMP.least * float(fastest))
+
+    def note(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Note jumps from a state just before a breakpoint; the state of the dynamics is that just after it."""
+        system, state = self._dynamics.system, self._dynamics.state
+        move, change = system.move(q, state.q), state.u - u
+        if np.max(self.scale * np.abs(move), initial=0.0) > self.least and self._leads_on(t, q) > self.least:
+            k = int(np.argmax(self.scale * np.abs(move)))
             self._messages.append(
-                f"at t = {t:.6g} s a drive makes velocities jump ({name} by {change[k]:.3g}); the reactions do not contain this impulse"
+                f"at t = {t:.6g} s a drive makes positions jump ('{system.bodies[k // system.of_body.n_u]}' by {abs(move[k]):.3g}): no "
+                "motion leads there, and the results do not contain one; give the drive a continuous position"
             )
+        elif self.is_jump(change):
+            k = int(np.argmax(self.scale * np.abs(change)))
+            part = abs(change[k]) * self.scale[k] / np.max(self.scale * np.maximum(np.abs(u), np.abs(state.u)))
+            self._messages.append(
+                f"at t = {t:.6g} s a drive makes velocities jump ({system.name_of(k, system.of_body.velocities)} by {change[k]:.3g}, "
+                f"{100 * part:.3g} % of the largest velocity there); the reactions do not contain this impulse"
+            )
+
+    def _leads_on(self, t: float, q: np.ndarray) -> float:
+        """Return the largest change of a constraint at a time, with the positions before it; drift is no jump."""
+        state, around = self._dynamics.state, SEARCH.precision * max(abs(t), self._settings.duration)
+        sides = []
+        with state.unchanged():
+            state.q[:] = q
+            for at in (t - around, t + around):
+                state.evaluate("position", at)
+                sides.append(state.vector("position", "C").copy())
+        return float(np.max(np.abs(sides[1] - sides[0]), initial=0.0))
 
     def clear(self) -> None:
         """Forget the jumps before another run."""

@@ -16,9 +16,9 @@ from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..events.chattering import MASKING, Chattering
-from ..events.discontinuity import VelocityJumps
+from ..events.discontinuity import Jumps
 from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
-from ..events.restart import just_after, just_before, restarted
+from ..events.restart import restarted
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
@@ -67,9 +67,10 @@ class AdaptiveRun:
             self._rows.append(grid.start, start.q, start.u)
         features = dynamics.input_features(grid.start, grid.end)
         self._breakpoints, self._note = grid.with_stops(features.breakpoints), features.note
+        self._aside = grid.aside
         work.step_bound.follow(features)
         self._stable_step = StableStep(scheme, dynamics)
-        self._jumps = VelocityJumps(dynamics)
+        self._jumps = Jumps(dynamics, settings)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
         self._rounding = Rounding(dynamics, settings.rtol, grid.start, grid.end)
         self._begun = 0  # steps before the current segment
@@ -79,7 +80,7 @@ class AdaptiveRun:
         work, status = self.work, AT_END
         with Ending() as ending:
             for breakpoint in (*self._breakpoints.tolist(), self._grid.end):
-                stop, status = just_before(breakpoint) if breakpoint < self._grid.end else breakpoint, AT_EVENT
+                stop, status = breakpoint - self._aside if breakpoint < self._grid.end else breakpoint, AT_EVENT
                 while status == AT_EVENT and not self.left:
                     status = self._segment(stop, leaving)
                 if status < 0 or self.left or breakpoint == self._grid.end:
@@ -175,13 +176,14 @@ class AdaptiveRun:
         return max(1, most // CHECKS.now_and_then) if leaving else most
 
     def _go_past(self, breakpoint: float) -> None:
-        """Restart after a breakpoint, where min(2*t, 1) has its new slope; output at it is the state before."""
-        self.work.t = breakpoint
+        """Restart just after a breakpoint; output at it is the state before."""
+        self.work.t = min(breakpoint + self._aside, self._grid.end)
         self._store_rows()
-        self.work.t = min(just_after(breakpoint), self._grid.end)
-        before = self.work.u.copy()
+        before = self._dynamics.system.of_body.moved(self.work.q, 2.0 * self._aside * self.work.u), self.work.u.copy()
+        self.work.q[:] = before[0]
         self._restart()
-        self._jumps.note(breakpoint, self._start.u - before)
+        self._dynamics.state.q[:], self._dynamics.state.u[:] = self._start.q, self._start.u
+        self._jumps.note(breakpoint, *before)
 
     def _restart(self) -> int:
         """Restart from consistent values at the current time; return the event function of an event there, or -1."""

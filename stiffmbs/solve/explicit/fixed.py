@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,9 +17,10 @@ from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..events.chattering import CHATTERING, jump_sentence
-from ..events.discontinuity import JUMP, sliding
+from ..events.discontinuity import JUMP, Jumps, sliding
 from ..events.narrow_inputs import narrower_than_steps
 from ..events.refusals import refuse_beyond_limits
+from ..events.restart import restarted
 from ..trajectory import SAME_TIME, Ending, Grid, ProgressCallback, Rows, Trajectory
 from .integration import REASONS, Integration
 from .scheme import Scheme
@@ -50,25 +50,29 @@ class Stepper(NamedTuple):
     """Integrator that takes steps of fixed length from its state.
 
     `q`, `u`: current state. `take`: ``take(t, h, steps)`` takes steps from time t and returns 0 or a negative status.
-    `accelerations`: accelerations computed in a step.
+    `begin`: ``begin(t, start)`` restarts from consistent values. `accelerations`: accelerations computed in a step.
     """
 
     scheme: str
     q: np.ndarray
     u: np.ndarray
     take: Callable[[float, float, int], int]
+    begin: Callable[[float, InitialValues], None]
     accelerations: int
 
 
 def euler_cromer(dynamics: Dynamics, start: InitialValues, settings: RunSettings) -> Stepper:
     """Return a semi-implicit Euler stepper: u_{n+1} = u_n + h u'(q_n, u_n), q_{n+1} = q_n + h u_{n+1}, projected."""
     state, table, steps_of = dynamics.state, dynamics.table.ctypes.data, EULER_CROMER.call
-    state.q[:], state.u[:] = start.q, start.u
+
+    def begin(t: float, values: InitialValues) -> None:
+        state.q[:], state.u[:] = values.q, values.u
 
     def take(t: float, h: float, steps: int) -> int:
         return steps_of(t, h, steps, settings.projection, CONSISTENCY.position_tolerance, table)
 
-    return Stepper("euler_cromer", state.q, state.u, take, 1)
+    begin(0.0, start)
+    return Stepper("euler_cromer", state.q, state.u, take, begin, 1)
 
 
 def runge_kutta(scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> Stepper:
@@ -78,7 +82,11 @@ def runge_kutta(scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: 
     def take(t: float, h: float, steps: int) -> int:
         return steps_of(t, h, steps, work.at)
 
-    return Stepper(scheme.name, work.q, work.u, take, scheme.stages)
+    def begin(t: float, values: InitialValues) -> None:
+        work.t = t
+        work.begin(values)
+
+    return Stepper(scheme.name, work.q, work.u, take, begin, scheme.stages)
 
 
 def solve_with_fixed_steps(
@@ -86,31 +94,44 @@ def solve_with_fixed_steps(
 ) -> Trajectory:
     """Integrate with fixed steps; the contract is in `stiffmbs.solve.trajectory`.
 
-    Between two output times the step is the largest that divides their distance and does not exceed the given one.
+    Between two output times, or breakpoints of inputs, the step is the largest that divides their distance and does not
+    exceed the given one.
     """
+    features, jumps = dynamics.input_features(grid.start, grid.end), Jumps(dynamics, settings)
     times = grid.times if grid.times is not None else _own_steps(grid, settings.step)
+    outputs = grid.before(times, features)
+    stops = grid.with_stops(features.breakpoints) - grid.aside
     rows = Rows(len(stepper.q), len(stepper.u), len(times))
     rows.append(times[0], stepper.q, stepper.u)
-    steps, longest, note = 0, 0.0, ""
+    t, steps, longest, note, row = grid.start, 0, 0.0, "", 1
     apart = max(1, len(times) // FIXED_STEP.checks)
     with Ending() as ending:
-        for row, (t, end) in enumerate(itertools.pairwise(times), 1):
+        for end in sorted({*outputs[1:].tolist(), *stops.tolist()}):
             count = max(1, math.ceil((end - t) / settings.step - SAME_TIME))
             longest = max(longest, (end - t) / count)
             status = stepper.take(t, (end - t) / count, count)
             if status < 0:
                 raise SolverError(f"stopped after t = {t:.9g} s: {REASONS[status]}")
-            steps += count
-            refuse_beyond_limits(dynamics, end, stepper.q, stepper.u)
-            rows.append(end, stepper.q, stepper.u)
-            if not note and row % apart == 0:
-                note = _jumps(dynamics, stepper, end, settings.step)
-            watch(end)
+            t, steps = end, steps + count
+            refuse_beyond_limits(dynamics, t, stepper.q, stepper.u)
+            while row < len(times) and outputs[row] <= t:
+                rows.append(times[row], stepper.q, stepper.u)
+                row += 1
+            if not note and (row - 1) % apart == 0:
+                note = _jumps(dynamics, stepper, t, settings.step)
+            if t in stops:
+                t += 2.0 * grid.aside
+                u = stepper.u.copy()  # the stepper's state may be that of the dynamics
+                before = dynamics.system.of_body.moved(stepper.q, 2.0 * grid.aside * u), u
+                start = restarted(dynamics, t, *before, settings.projection)
+                jumps.note(t, *before)
+                stepper.begin(t, start)
+            watch(t)
     statistics: dict[str, int | float | str] = {
         "scheme": stepper.scheme, "steps": steps, "accelerations": stepper.accelerations * steps, "seconds": ending.seconds,
     }  # fmt: skip
-    narrow = narrower_than_steps(dynamics.input_features(grid.start, grid.end), settings.step, stepper.scheme)
-    note = "; ".join(filter(None, (note, narrow, _cut(longest, settings))))
+    narrow = narrower_than_steps(features, settings.step, stepper.scheme)
+    note = "; ".join(filter(None, (note, jumps.sentence(), narrow, _cut(longest, settings))))
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
 

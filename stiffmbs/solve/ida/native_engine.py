@@ -69,7 +69,7 @@ class NativeEngine:
             renewal=control.renewal,
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
-        self._rtol = settings.rtol
+        self._rtol, self._settings = settings.rtol, settings
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
         self._started = False
@@ -107,6 +107,10 @@ class NativeEngine:
             return False
         self._take_up(self._starts, t)
         return True
+
+    def resume_after(self, gap: float) -> None:
+        """Set the time from a stop to the restart after it, s."""
+        self._gap = gap
 
     def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
         """Restart after a state and events within `ahead`, s, by one compiled call; return None where it does not apply."""
@@ -189,6 +193,7 @@ class NativeEngine:
         if event_restarts is None:
             return *self.ida.advance(times, stops[0], rows), 0
         before = self.ida.history.count
+        event_restarts.resume_after(self._gap)
         served, status = self.ida.advance_past(event_restarts, times, np.array(stops), self._order.order, rows)
         passed, steps = event_restarts.passed
         if passed:
@@ -238,7 +243,7 @@ class NativeEngine:
         from .starting.after_event import EventRestarts
 
         least = NEWTON.precision / self._rtol
-        return EventRestarts(self._starts, self._dynamics, least) if self._starts else None
+        return EventRestarts(self._starts, self._dynamics, self._settings, least) if self._starts else None
 
     def present(self) -> np.ndarray:
         """Return a row of the same form for the current state."""

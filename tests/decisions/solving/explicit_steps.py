@@ -9,6 +9,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.analyses.job import prepare
+from stiffmbs.compile.inputs.features import NO_FEATURES
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import kinematic
 from stiffmbs.solve.driven_states import IntegratedMotion
@@ -234,10 +235,13 @@ def smallest_rounding():
 
 def checks_of_fixed_steps():
     count = []
-    dynamics = Record(input_features=lambda *_: Record(narrowest=lambda: (np.inf, 0.0)))
-    stepper = fixed.Stepper("rk4", np.zeros(1), np.zeros(1), nothing, 4)
+    dynamics = Record(input_features=lambda *_: NO_FEATURES)
+    stepper = fixed.Stepper("rk4", np.zeros(1), np.zeros(1), nothing, nothing, 4)
     settings = RunSettings(duration=1.0)
-    with patch.multiple(fixed, refuse_beyond_limits=nothing, _jumps=lambda *_: count.append(1) and ""):
+    jumps = Record(sentence=lambda: "")
+    with patch.multiple(
+        fixed, refuse_beyond_limits=nothing, _jumps=lambda *_: count.append(1) and "", Jumps=lambda *_: jumps
+    ):
         fixed.solve_with_fixed_steps(dynamics, stepper, Grid(0.0, 1.0, np.linspace(0.0, 1.0, 1001)), settings, nothing)
     return len(count)
 

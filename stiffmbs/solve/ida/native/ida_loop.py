@@ -8,7 +8,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_pr
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
-from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, place, repeats
+from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, interval, place, repeats
 from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
 from stiffmbs.solve.events.native.step_bound import (
     STRETCHED,
@@ -188,12 +188,33 @@ def stepped(c, ida, toward, stop):
     if seen != NO_EVENT:
         flag = int32(ROOT_RETURN)
     if flag == ROOT_RETURN and _interpolates_stiffly(c):
-        corrected_at_event(c.output_correction, c.state, c.equations, c.returned, array_of(c, c.y))
+        corrected_at_event(c.output_correction, c.state, c.equations, _before_event(c, begun), array_of(c, c.y))
     if flag >= 0:
         _keep_if_long(c, begun)
     if flag >= 0 and c.trace:
         _keep_step(c, begun)
     return flag
+
+
+@compiled
+def _before_event(c, begun):
+    """Return a time just before the event at the returned state, at which all laws are those at the start of the step."""
+    w = event_search_view(c.watch)
+    s = state_view(c.state)
+    ahead = SEARCH.least_difference * c.size
+    changed = 1
+    while changed > 0 and SEARCH.longer * ahead < c.returned - begun:
+        ahead *= SEARCH.longer
+        call_int(c.interpolate, (c.memory, c.returned - ahead, int32(0), c.at_output))
+        load(s, equations_view(c.equations), c.output, array_of(c, c.yp))
+        values = evaluate(s, SWITCH, c.returned - ahead)
+        changed = 0
+        for k in range(w.n):
+            if c.within and w.found[k]:
+                changed += interval(w, k, values[k]) != interval(w, k, w.value_before[k])
+            elif k < c.n_event_functions and w.masked[k] == 0:
+                changed += w.value_before[k] * values[k] < 0.0
+    return c.returned - ahead
 
 
 @compiled

@@ -53,15 +53,16 @@ both bounds of the stiffness, and the part of the tolerance that Newton's iterat
 EVENT_RESTART = Layout({
     "start": INTS, "n_event_functions": INT, "first_limit": INT, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
     "reach": FLOAT_CELL, "along_q": FLOATS, "along_u": FLOATS, "q": FLOATS, "u": FLOATS, "values": FLOATS, "found": INTS,
-    "t": FLOAT_CELL, "jump": FLOAT_CELL, "meets": INT_CELL,
-    "amplified": FLOAT_CELL, "least": FLOAT_CELL, "largest_jump": FLOAT_CELL, "indistinct": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
+    "t": FLOAT_CELL, "jumps": INT_CELL, "meets": INT_CELL,
+    "amplified": FLOAT_CELL, "least": FLOAT_CELL, "largest_jump": FLOAT_CELL, "least_jump": FLOAT_CELL, "speed": FLOATS, "gap": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
 })  # fmt: skip
 """Data of restarts of IDA after an event or a breakpoint (`stiffmbs.solve.ida.starting.native.breakpoints`): event functions, the first
 of those that are limits of forces; revolution counters and their angles; a move to both sides of a state; memory for a
-state and event functions.  Cells: size of the move; time of the restart, largest velocity change, 1 if event functions
+state and event functions.  Cells: size of the move; time of the restart, 1 if velocities have jumped, 1 if event functions
 of velocities change sign between both sides.  For breakpoints passed in one call (`stiffmbs.solve.ida.starting.native.breakpoints`):
-factor of long steps and least residual within them; largest velocity change without a report; relative tolerance of
-equal times; number of breakpoints passed, and steps before the last."""
+factor of long steps and least residual within them; largest velocity change without
+a report, relative to the velocities, and the least one in m/s, with factors from velocities to m/s; time from a stop to the
+restart after it; number of breakpoints passed, and steps before the last."""
 
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL, "failed": INT_CELL, "first_failed": FLOAT_CELL,

@@ -225,13 +225,20 @@ def corrected(output_correction, state, equations, t):
 
 
 @compiled
-def corrected_at_event(output_correction, state, equations, t, y):
-    """Remove spurious forces from an interpolated state y at an event, if that improves the balance."""
+def corrected_at_event(output_correction, state, equations, before, y):
+    """Remove spurious forces from an interpolated state y at an event, if that improves the balance just before it.
+
+    Forces may jump at the event.  Their balance with those of its far side would move the state as if they had acted before.
+    """
     b = output_correction_view(output_correction)
     s = state_view(state)
     e = equations_view(equations)
-    if _without_spurious_forces(b, s, e, t):
-        copied(y, b.y, e.n)
+    if _without_spurious_forces(b, s, e, before):
+        for k in range(e.n):
+            y[k] += b.y[k]
+        call_int(b.interpolate, (b.memory, before, int32(0), b.at_y))
+        for k in range(e.n):
+            y[k] -= b.y[k]
     b.factored = 0.0  # another step follows
 
 

@@ -10,9 +10,9 @@ from ....compile.machine.compiler import SHORT
 from ....compile.machine.layout import packed
 from ....compile.machine.routines import Routine
 from ....dynamics.dynamics import Dynamics
+from ....model.settings import RunSettings
 from ...error_control.native.parameters import POLISHING
-from ...events.discontinuity import JUMP, VELOCITY_JUMP, direction_of
-from ...events.native.parameters import INDISTINCT
+from ...events.discontinuity import JUMP, VELOCITY_JUMP, Jumps, direction_of
 from ..native.layouts import EVENT_RESTART
 from .starts import Starts, integers
 
@@ -24,13 +24,13 @@ ADVANCE = Routine(_MODULE, "advance_from", "int32(float64, float64, int64, int64
 class Begun(NamedTuple):
     """Result of a restart; the current state is that of the restart.
 
-    `t`: time of the restart, s: that of the given state, or slightly later. `jump`: largest change of a velocity from
-    the given state, m/s or rad/s. `meets`: true if event functions that depend on velocities change sign nearby:
+    `t`: time of the restart, s: that of the given state, or slightly later. `jumps`: true if velocities may have jumped
+    from those of the given state. `meets`: true if event functions that depend on velocities change sign nearby:
     forces may drive the motion back.
     """
 
     t: float
-    jump: float
+    jumps: bool
     meets: bool
 
 
@@ -42,7 +42,8 @@ class EventRestarts:
     multipliers. `table`: address of the memory of compiled code (`stiffmbs.solve.ida.native.layouts.EVENT_RESTART`).
     """
 
-    def __init__(self, starts: Starts, dynamics: Dynamics, least: float) -> None:
+    def __init__(self, starts: Starts, dynamics: Dynamics, settings: RunSettings, least: float) -> None:
+        jumps = Jumps(dynamics, settings)
         system, self._state = dynamics.system, dynamics.state
         for term_set in ("position", "event_function"):
             self._state.load(term_set)
@@ -52,7 +53,7 @@ class EventRestarts:
             "start": starts.table, "n_event_functions": n, "first_limit": system.first_limit,
             "n_counted": len(counted.row), "counted_source": integers(counted.source), "counted_row": integers(counted.row),
             "reach": JUMP.larger_move, "along_q": along_q, "along_u": along_u,
-            "amplified": POLISHING.amplified, "least": least, "largest_jump": VELOCITY_JUMP.least, "indistinct": INDISTINCT,
+            "amplified": POLISHING.amplified, "least": least, "largest_jump": VELOCITY_JUMP.least, "least_jump": jumps.least, "speed": jumps.scale,
             "q": np.empty(system.n_q), "u": np.empty(system.n_u), "values": np.empty(n), "found": np.empty(n, dtype=np.int64),
         }  # fmt: skip
         self.starts, self._kept = starts, values
@@ -74,7 +75,7 @@ class EventRestarts:
         if RESTARTED.short_call(t, ahead, counted, highest_order, self.table) < 0:
             return None
         cells = self._cells
-        return Begun(float(cells["t"]), float(cells["jump"]), bool(cells["meets"]))
+        return Begun(float(cells["t"]), bool(cells["jumps"]), bool(cells["meets"]))
 
     def advance(self, state: tuple[np.ndarray, np.ndarray], t: float, end: float, highest_order: int) -> bool:
         """Integrate a state, which is overwritten, to a later time; False, with the state unchanged, if it needs a run."""
@@ -86,6 +87,10 @@ class EventRestarts:
             return False
         q[:], u[:] = own.q, own.u
         return True
+
+    def resume_after(self, gap: float) -> None:
+        """Set the time from a breakpoint to the restart after it, s."""
+        self._cells["gap"] = gap
 
     @property
     def t(self) -> float:

@@ -6,6 +6,7 @@ from stiffmbs.compile.machine.native.access import compiled, equations_view, int
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import POSITION, SWITCH, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past
@@ -73,7 +74,9 @@ def _restarted_at_breakpoint(w, b, c, t):
     s = state_view(m.state)
     e = equations_view(c.equations)
     _take_state(s, b, e, array_of(c, c.y), array_of(c, c.yp))
-    if back_with_jump(w, s, m, t) < 0 or w.jump > w.largest_jump:
+    copied(w.u, s.u, s.n_u)
+    add_rates(s, w.u, w.gap, s.q)
+    if back_with_jump(w, s, m, t) < 0 or w.jumps:
         return UNFINISHED
     restart_counters(w, s, t)
     if not _same_offsets(s, b, e):
@@ -105,8 +108,8 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
         flag = advanced(c, ida, count, times, stop, most, y_out)
         if flag != STOP_RETURN or w.passed + 1 == n_stops or c.recorded + most > 2 * LOOP.most_steps:
             return int32(flag)
-        t = c.returned + w.indistinct * abs(c.returned)
-        same = t + w.indistinct * abs(t)
+        t = c.returned + w.gap
+        same = t + w.gap
         open_ = s.n_c > 0 and c.size > output_correction_view(c.output_correction).long
         if open_ or same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
             return int32(flag)
@@ -151,12 +154,19 @@ def _meets(w, s, m, t):
 
 @compiled
 def back_with_jump(w, s, m, t):
-    """Project the current state onto the constraints and note the largest velocity change; 0 or a negative status."""
+    """Project the current state onto the constraints and note if velocities or positions jump; 0 or a negative status."""
+    copied(w.q, s.q, s.n_q)
     copied(w.u, s.u, s.n_u)
     status = brought_back(s, m, t)
-    w.jump = 0.0
+    jump = 0.0
+    fastest = 0.0
     for k in range(s.n_u):
-        w.jump = max(w.jump, abs(s.u[k] - w.u[k]))
+        jump = max(jump, w.speed[k] * abs(s.u[k] - w.u[k]))
+        fastest = max(fastest, w.speed[k] * max(abs(s.u[k]), abs(w.u[k])))
+    move = 0.0
+    for k in range(s.n_q):
+        move = max(move, abs(s.q[k] - w.q[k]))
+    w.jumps = 1 if move > w.least_jump or jump > max(w.least_jump, w.largest_jump * fastest) else 0
     return status
 
 
