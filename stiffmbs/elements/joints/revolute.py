@@ -27,4 +27,4 @@ class Revolute(PlanarPair):
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:
-        return Loads(across=magnitude(*e.lam))
+        return Loads(across=magnitude(e, *e.lam))

@@ -48,13 +48,14 @@ class EventSearch:
         weight = (-1.0) ** np.arange(NODES)
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
+        n_lam = system.n_c if system.switches_by_reactions else 0
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "interval_low", "interval_high", "apart")  # fmt: skip
         self._arrays = {
             "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "n_with_intervals": intervals.zoned,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_breakpoint": intervals.first, "breakpoints": intervals.breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "found": self.found,
-            "n_state": n_state, "n_nodes": NODES, "node": WHOLE, "weight": weight,
-            **_calls(system), "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
+            "n_state": n_state, "n_lam": n_lam, "n_nodes": NODES, "node": WHOLE, "weight": weight,
+            **_calls(system), "row": np.zeros((NODES + 1) * (n_state + n_lam)), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
         fill(self.table, EVENT_SEARCH, self._arrays)
 
