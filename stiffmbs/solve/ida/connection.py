@@ -268,7 +268,8 @@ class Connection:
 
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
         """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""
-        if long_step < np.inf and not (self._formula.repeat or self.output_correction.ready):
+        needed = long_step < np.inf or bool(self._equations.system.forces_by_reactions)
+        if needed and not (self._formula.repeat or self.output_correction.ready):
             self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
         self.output_correction.limit(long_step, part, balanced)
 
