@@ -1,4 +1,4 @@
-"""Events that repeat: masked event functions, and runs that chatter."""
+"""Events that repeat: event functions that hover about zero, and runs that chatter."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...compile.written_values import writer
 from ...dynamics.dynamics import Dynamics
 from ...errors import ChatteringError, SolverError
 from ...tuning import tuned
-from .discontinuity import JUMP, jumping, sliding
+from .discontinuity import JUMP, jumping, noise_of, sliding
 
 
 @dataclass(frozen=True)
@@ -144,64 +144,39 @@ def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
     )
 
 
-@dataclass(frozen=True)
-class MaskingParameters:
-    """Parameters that decide when an event function is masked, and for how many steps."""
+class HoveringEvents:
+    """Event functions of one run that stay about zero, up to the rounding of their evaluation.
 
-    few_steps: int = 4
-    """Steps after a start within which an event is attributed to rounding, also as a multiple of the preceding wait; half of
-    the wait after the second such event, and factor for each further one. A single repetition may be an event that is
-    detected twice, because the start is projected onto constraints."""
-    most_in_succession: int = 5
-    """Largest number of events that count."""
-    telling: int = 3
-    """Successive events from which a force is checked for a jump; the first may be those of a start at zero."""
-
-
-MASKING = tuned("masking", MaskingParameters())
-
-
-class MaskedEvents:
-    """Event functions of one run, and the steps for which each is masked.
-
-    `chattering`: monitor of the same run. `steps`: steps from the next start for which each event function is masked.
+    An event function that has returned to zero from within the rounding of its evaluation has had no event but
+    rounding. Its next event is where it leaves that band. `chattering`: monitor of the same run. `band` of shape
+    (n_event_functions,): half width of the band, 0 for a function with an event at zero.
     """
 
     def __init__(self, dynamics: Dynamics, chattering: Chattering) -> None:
         self._dynamics, self._chattering = dynamics, chattering
-        n = dynamics.system.n_event_functions
-        self.steps, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-        self._steps, self._last, self._quiet = 0, -math.inf, True
+        self.band = np.zeros(dynamics.system.n_event_functions)
 
     @property
     def any(self) -> bool:
         """Return True if the system has event functions."""
-        return bool(len(self.steps))
+        return bool(len(self.band))
 
-    def note(self, t: float, q: np.ndarray, u: np.ndarray, steps: int, fired: Sequence[int]) -> None:
-        """Record the events that ended a segment, after `steps` steps of the run.
+    def note(self, t: float, q: np.ndarray, u: np.ndarray, fired: Sequence[int], farthest: np.ndarray) -> None:
+        """Record the events that ended a segment, and the largest values of the event functions within it.
 
-        Raises SolverError if a force keeps chattering; names the element.
+        Raises ChatteringError if a force drives the motion back from both sides of its discontinuity; names the element.
         """
-        since, self._steps = steps - self._steps, steps
-        before, self._last = self._last, t
-        if self._quiet and since > MASKING.few_steps:  # none is masked, and the event is not soon after the last
-            return
-        left_behind = since > MASKING.few_steps * (self.steps + 1)
-        self._in_succession[left_behind] = 0
-        again = np.array(
-            [event_function for event_function in fired if not left_behind[event_function]], dtype=np.int64
-        )
-        self._in_succession[again] = np.minimum(self._in_succession[again] + 1, MASKING.most_in_succession)
-        telling = again[self._in_succession[again] >= MASKING.telling]
-        if len(telling) and self._chattering.would_be_many(before, t):
-            self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
-        self.steps = np.where(
-            self._in_succession > 1, 2 * MASKING.few_steps ** np.maximum(self._in_succession - 1, 1), 0
-        )
-        self._quiet = not self._in_succession.any()
+        passed = np.array(fired, dtype=np.int64)
+        at_zero = passed[self.band[passed] == 0.0]
+        self.band[passed] = 0.0
+        if len(at_zero):
+            noise = noise_of(self._dynamics, t, q, u)
+            hovering = at_zero[farthest[at_zero] <= noise[at_zero]]
+            if len(hovering):
+                self._chattering.refuse(t, sliding(self._dynamics, t, q, u))
+                self.band[hovering] = noise[hovering]
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Return a sentence on a discontinuous force that made the integrator fail; empty for other causes."""
-        found = jumping(self._dynamics, t, q, u) if self.any else self.steps
+        found = jumping(self._dynamics, t, q, u) if self.any else self.band
         return jump_sentence(self._dynamics, int(found[0])) if len(found) else ""

@@ -133,6 +133,14 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
     return crossed if near > max(JUMP.jumps * far, SEARCH.precision) else crossed[:0]
 
 
+def noise_of(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return the changes of the event functions that rounding of a state explains, shape (n_event_functions,)."""
+    with dynamics.state.unchanged():
+        around = _Around(dynamics, t, q, u)
+        one, other = (around.values(size) for size in (SEARCH.precision, -SEARCH.precision))
+    return np.abs(one - other)
+
+
 def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> np.ndarray:
     """Return the event functions whose zero the motion is driven to from both sides by a discontinuous force.
 

@@ -14,6 +14,7 @@ from stiffmbs.solve.events.native.bounds import (
     event_search_view,
     interval,
     longest_by_turns,
+    note_farthest,
     note_unresolved,
     noted_rates,
     overlap,
@@ -21,6 +22,7 @@ from stiffmbs.solve.events.native.bounds import (
     suspicious,
     time_of_difference,
     turned_arguments,
+    watch_for,
 )
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
@@ -69,6 +71,10 @@ def look_at_start(toward, stop, ida):
         c.seen = UNSEEN
         keep_row(w, s, 0)
         copied(w.value_before, evaluate(s, SWITCH, c.returned), w.n)
+        for k in range(w.n_event_functions):
+            w.farthest[k] = 0.0
+            if abs(w.value_before[k]) > w.band[k] > 0.0:
+                watch_for(w, k, 0.0)
         go_straight(c, s, ahead)
         noted_rates(w.rate_before, w.value_before, evaluate(s, SWITCH, c.returned + ahead), ahead, w.n)
         if at_zero(w.value_before, w.n_event_functions) > 0:
@@ -89,6 +95,7 @@ def _go_on(c, w, s):
             note_unresolved(w, w.begun, w.value_before, w.value_after)
     keep_row(w, s, 0)
     w.begun = c.returned
+    note_farthest(w, w.value_after)
     shift_ends(w)
     w.target = float("inf")
 
@@ -239,6 +246,7 @@ def look_within(ida):
         return int32(NO_EVENT)
     load(s, e, c.output, array_of(c, c.yp))
     copied(w.m, _evaluate_near(w, s, place), w.n)
+    note_farthest(w, w.m)
     load(s, e, array_of(c, c.y), array_of(c, c.yp))
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):

@@ -84,7 +84,7 @@ def event_functions(t, yy, yp, g, user_data):
     load(s, equations_view(c.equations), array_of(c, yy), array_of(c, yp))
     values = evaluate(s, SWITCH, t)
     c.seen = t
-    watched(values, c.signs, c.masked, g, c.n_event_functions)
+    watched(values, c.signs, c.band, g, c.n_event_functions)
     return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)
 
 
