@@ -25,7 +25,7 @@ from stiffmbs.solve.error_control.stability_limit import (
     StabilityLimitDetection,
     limits_steps,
 )
-from stiffmbs.solve.events.chattering import Chattering, MaskedEvents
+from stiffmbs.solve.events.chattering import Chattering
 from stiffmbs.solve.events.discontinuity import VelocityJumps
 from stiffmbs.solve.events.narrow_inputs import hidden_peak
 from stiffmbs.solve.events.refusals import exponential, refuse_beyond_sense
@@ -220,29 +220,6 @@ def reach(rtol):
     return watched(rtol=rtol)[1]._reach
 
 
-def masks():
-    """Return the sum of the masked steps of events in each step."""
-    job = job_of("sliding")
-    masked = MaskedEvents(
-        job.dynamics, SimpleNamespace(refuse=lambda t, found: None, would_be_many=lambda before, t: True)
-    )
-    total = 0
-    for steps in range(1, 12):
-        masked.note(0.0, job.start.q, job.start.u, steps, [0])
-        total += int(masked.steps[0])
-    return total
-
-
-def events_to_a_check_of_the_force():
-    job, checks = job_of("sliding"), []
-    masked = MaskedEvents(
-        job.dynamics, SimpleNamespace(refuse=lambda t, found: checks.append(t), would_be_many=lambda before, t: True)
-    )
-    for k in range(12):
-        masked.note(float(k), job.start.q, job.start.u, k + 1, [0])
-    return min(checks, default=12)
-
-
 def kinematic_steps():
     job = prepare(stiffmbs.load_scene(EXAMPLES / "crank_slider.yaml"), solver="kinematic", duration=3.0, points=2)
     return kinematic.solve(job.dynamics, job.start, job.grid, job.settings, unwatched).statistics["steps"]
@@ -327,11 +304,6 @@ TABLE = {
         "stays_within_at_most": lambda: reach(1.0),
     },
     "jumps": {"larger_move": lambda: reach(1e-12)},
-    "masking": {
-        "few_steps": masks,
-        "most_in_succession": masks,
-        "telling": events_to_a_check_of_the_force,
-    },
     "restarts": {
         "hidden": lambda: straight_on(1.0, 0.0, 1e-6),
         "passed": lambda: straight_on(0.0, 1.0, 1e-6),
@@ -355,7 +327,6 @@ EXPECTED = {
     "relaxation.short_chain": 100, "relaxation.largest_factor": 1000, "relaxation.refused": 80,
     "chattering.window": 749, "chattering.too_many": 40, "chattering.at_least": 54, "chattering.least_power": 7, "chattering.largest_power": 10,
     "chattering.steps_seen": 10, "chattering.steps_ahead": 31, "chattering.stays_within": 0.01, "chattering.stays_within_at_most": 0.1, "jumps.larger_move": 1e-6,
-    "masking.few_steps": 3752, "masking.most_in_succession": 3752, "masking.telling": 2.0,
     "restarts.hidden": 1e-11, "restarts.passed": 1e-8, "restarts.largest_rtol": 1e-6, "kinematic.surprise": 104,
 }  # fmt: skip
 """The decisions of the default parameters."""

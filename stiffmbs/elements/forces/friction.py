@@ -17,6 +17,11 @@ AT_REST = 1e-6
 """Offset of a sliding speed in the same way, relative to the smoothed speed."""
 
 
+def length(*parts: Expr, tiny: Expr = TINY) -> Expr:
+    """Return the length of a vector, with a finite derivative at zero."""
+    return sp.sqrt(sum(part**2 for part in parts) + tiny)
+
+
 def magnitude(e: Symbolic, *parts: Expr) -> Expr:
     """Return the magnitude of a load and record its breakpoint at zero.
 
@@ -26,7 +31,7 @@ def magnitude(e: Symbolic, *parts: Expr) -> Expr:
     if len(parts) == 1:
         return sp.Abs(parts[0])
     e.breakpoints.extend(part for part in map(e.read, parts) if part not in e.breakpoints)
-    return sp.sqrt(sum(part**2 for part in parts) + TINY)
+    return length(*parts)
 
 
 class Friction(Force):
@@ -56,7 +61,7 @@ class Friction(Force):
     @classmethod
     def per_speed(cls, e: Symbolic, *sliding: Expr) -> Expr:
         """Return mu / speed, finite at rest, for a sliding velocity of several components."""
-        speed = e.named(sp.sqrt(sum(part**2 for part in sliding) + (AT_REST * e.stiction_velocity) ** 2))
+        speed = e.named(length(*sliding, tiny=(AT_REST * e.stiction_velocity) ** 2))
         return cls.coefficient(e, speed) / speed
 
     @staticmethod

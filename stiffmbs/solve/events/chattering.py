@@ -13,7 +13,7 @@ from ...compile.written_values import writer
 from ...dynamics.dynamics import Dynamics
 from ...errors import ChatteringError, SolverError
 from ...tuning import tuned
-from .discontinuity import JUMP, jumping, noise_of, sliding
+from .discontinuity import JUMP, noise_of, sliding
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class ChatteringParameters:
     """Expected further events, steps governed by rounding, or evaluations at which a run is stopped, and steps that
     periodic laws may require."""
     at_least: float = 1e4
-    """Their least number at which growth is considered, and at which events in succession may be chattering."""
+    """Their least number at which growth is considered."""
     least_power: float = 0.8
     largest_power: float = 2.0
     """Bounds of the power of the number of events with which their rate grows in an exponentially driven motion.
@@ -99,7 +99,7 @@ class Chattering:
             return
         first, middle, last = (self._events[k] for k in (0, CHATTERING.window, 2 * CHATTERING.window))
         if self._to_come(middle - first, last - middle) > CHATTERING.too_many:
-            self.refuse(t, jumping(self._dynamics, t, q, u))
+            self.refuse(t, sliding(self._dynamics, t, q, u))
             name = (
                 f"'{writer(self._dynamics.system, 'event_function', event_function)}'"
                 if event_function >= 0
@@ -125,10 +125,6 @@ class Chattering:
         growing = CHATTERING.least_power < power < CHATTERING.largest_power
         return self._count * math.exp(min(steady / self._count, 100.0)) if growing else steady
 
-    def would_be_many(self, before: float, t: float) -> bool:
-        """Return True if events at the interval of two times up to the end of the run are many enough to be chattering."""
-        return self._end - t > CHATTERING.at_least * (t - before)
-
     def refuse(self, t: float, event_functions: np.ndarray) -> None:
         """Raise a ChatteringError that names the first of some event functions, if there are any."""
         if len(event_functions):
@@ -138,9 +134,9 @@ class Chattering:
 def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
     """Return a sentence on a chattering force."""
     return (
-        f"'{writer(dynamics.system, 'event_function', event_function)}' chatters: the force jumps back and forth, for example because its sign "
-        "changes where the motion comes to rest, and no solution exists beyond; expected a steep, continuous force "
-        "there: joint_friction with its stiction_velocity, or tanh(v/0.001) in place of sign(v)"
+        f"'{writer(dynamics.system, 'event_function', event_function)}' chatters: the force jumps, for example because its sign changes where "
+        "the motion comes to rest, and the accelerations on both sides drive the motion back to the jump, so that no solution "
+        "of this law exists beyond; expected a steep, continuous force there: joint_friction with its stiction_velocity, or tanh(v/0.001) in place of sign(v)"
     )
 
 
@@ -177,6 +173,6 @@ class HoveringEvents:
                 self.band[hovering] = noise[hovering]
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
-        """Return a sentence on a discontinuous force that made the integrator fail; empty for other causes."""
-        found = jumping(self._dynamics, t, q, u) if self.any else self.band
+        """Return a sentence on a force that drives the motion back from both sides of its jump; empty if there is none."""
+        found = sliding(self._dynamics, t, q, u) if self.any else self.band
         return jump_sentence(self._dynamics, int(found[0])) if len(found) else ""

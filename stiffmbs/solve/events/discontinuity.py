@@ -116,23 +116,6 @@ class _Around:
         return _Around(self._dynamics, self.t, q, u)
 
 
-def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Return the event functions near zero across which accelerations jump.
-
-    `t`: s. `q`, `u` of shapes (n_q,), (n_u,).
-    """
-    with dynamics.state.unchanged():
-        around = _Around(dynamics, t, q, u)
-        crossed = around.crossed()
-        if not len(crossed):
-            return crossed
-        far, near = (
-            float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-            for a, b in (around.sides(size) for size in (JUMP.larger_move, SEARCH.precision))
-        )
-    return crossed if near > max(JUMP.jumps * far, SEARCH.precision) else crossed[:0]
-
-
 def noise_of(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return the changes of the event functions that rounding of a state explains, shape (n_event_functions,)."""
     with dynamics.state.unchanged():

@@ -108,7 +108,9 @@ def _solved_otherwise(c, total, enough):
         return False
     call_int(c.time_of, (c.memory, address_of(c.t)))
     corrections = floats(call_address(c.array_of, total))
-    if c.by_reactions and solved_across_kinks(c.output_correction, c.state, c.equations, c.t, c.cj, corrections, enough):
+    if c.by_reactions and solved_across_kinks(
+        c.output_correction, c.state, c.equations, c.t, c.cj, corrections, enough
+    ):
         return True
     return b.long * c.cj < 1.0 and solved(c.output_correction, c.state, c.equations, c.t, c.cj, corrections)
 
