@@ -52,11 +52,12 @@ class EventSearch:
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
         n_lam = system.n_c if system.switches_by_reactions else 0
-        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "interval_low", "interval_high", "apart")  # fmt: skip
+        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "apart")  # fmt: skip
+        self._within = np.zeros((2, n))
         self._arrays = {
             "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "n_with_intervals": intervals.zoned,
             "n": n, "n_event_functions": n_event_functions, "band": self.band, "farthest": self.farthest,
-            "first_breakpoint": intervals.first, "breakpoints": self._breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "found": self.found,
+            "first_breakpoint": intervals.first, "breakpoints": self._breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "interval_low": self._within[0], "interval_high": self._within[1], "found": self.found,
             "n_state": n_state, "n_lam": n_lam, "n_nodes": NODES, "node": WHOLE, "weight": weight,
             **_calls(system), "row": np.zeros((NODES + 1) * (n_state + n_lam)), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
@@ -80,8 +81,7 @@ class EventSearch:
             self.band[:] = band
             self._breakpoints[self._first] = -band
             self._breakpoints[self._first + 1] = np.where(band > 0, band, np.inf)
-            for name in ("interval_low", "interval_high"):
-                self._arrays[name][: self.n_event_functions] = 0.0  # unknown
+            self._within[:, : self.n_event_functions] = 0.0  # unknown
 
     def resolve(self, duration: float) -> None:
         """Forget the last run; the periods of laws limit the steps of a run of this duration, s."""

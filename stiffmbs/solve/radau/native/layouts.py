@@ -43,7 +43,7 @@ Rows without rates have the value 1 in `algebraic`; `n_closing` of these belong 
 
 Cells: tolerances, the requested relative one, part that Newton's iteration may leave; largest and first step, stop
 time; time, next step, last step, methods of both; step size, method and time of the factors, 1 if the matrix belongs to
-the beginning of the step, and 1 to make it that of the predicted end; convergence rate of Newton's iteration, its last ratio, and what it left, in tolerances; error and size of the last
+the beginning of the step, 1 to make it that of the predicted end.  Convergence rate of Newton's iteration, its last ratio, and what it left, in tolerances; error and size of the last
 accepted step; steps since a change of the method.  Corrections between steps (`stiffmbs.solve.radau.native.between_steps`),
 their number, 1 if they suffice, and outputs of the step. Event functions, of which `n_events` end steps, and places among breakpoints of
 tables with a kink, at both ends of the step and within.  Counters, then the parameters of
