@@ -11,6 +11,7 @@ from ...compile.state import State
 from ...compile.system import System
 from ...compile.terms import TERM_SETS
 from ...compile.written_values import writer
+from ...dynamics.dynamics import Dynamics
 from .chattering import CHATTERING
 from .long_steps import WHOLE
 from .native.layouts import EVENT_SEARCH, STEP_BOUND
@@ -58,7 +59,7 @@ class EventSearch:
             "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "n_with_intervals": intervals.zoned,
             "n": n, "n_event_functions": n_event_functions, "band": self.band, "farthest": self.farthest,
             "first_breakpoint": intervals.first, "breakpoints": self._breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "interval_low": self._within[0], "interval_high": self._within[1], "found": self.found,
-            "n_state": n_state, "n_lam": n_lam, "n_nodes": NODES, "node": WHOLE, "weight": weight,
+            "n_state": n_state, "n_lam": n_lam, "lam": np.zeros(n_lam), "n_nodes": NODES, "node": WHOLE, "weight": weight,
             **_calls(system), "row": np.zeros((NODES + 1) * (n_state + n_lam)), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
         fill(self.table, EVENT_SEARCH, self._arrays)
@@ -74,6 +75,11 @@ class EventSearch:
         """Forget the last step before a restart of the integrator."""
         self._cells["ready"] = 0
         self.found[:] = 0
+
+    def follow_reactions(self, dynamics: Dynamics) -> None:
+        """Let reactions in event functions follow from accelerations: those of an integrator have no error test."""
+        if self.n_event_functions:
+            self._cells["dynamics"] = dynamics.table.ctypes.data
 
     def watch_for(self, band: np.ndarray) -> None:
         """Pass events where event functions leave a band about zero; at zero for those without, of value 0."""

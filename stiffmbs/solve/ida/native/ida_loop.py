@@ -30,6 +30,7 @@ from stiffmbs.solve.ida.native.output_correction import (
     output_correction_view,
 )
 from stiffmbs.solve.ida.native.parameters import LOOP
+from stiffmbs.solve.ida.native.passage import switches
 
 STALLED: Final = -101
 """Flag for steps that have shrunk to the rounding of the time; none of ida.h."""
@@ -82,7 +83,7 @@ def event_functions(t, yy, yp, g, user_data):
     c = native_ida_view(user_data)
     s = state_view(c.state)
     load(s, equations_view(c.equations), array_of(c, yy), array_of(c, yp))
-    values = evaluate(s, SWITCH, t)
+    values = switches(c, event_search_view(c.watch), s, t)
     c.seen = t
     watched(values, c.signs, c.band, g, c.n_event_functions)
     return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)

@@ -5,13 +5,38 @@ interval of another law, the step is accepted without the forces in between.  A 
 whose stages may all be after such an interval.
 """
 
-from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, shifted
+from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, ints, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate, load
+from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
+from stiffmbs.dynamics.native.consistent import consistent_accelerations
+from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import interval
 from stiffmbs.solve.events.native.parameters import NEXT_STEP, SEARCH
 from stiffmbs.solve.ida.native.ida_memory import array_of
+from stiffmbs.solve.ida.native.output_correction import output_correction_view
+
+
+@compiled
+def take_reactions(c, w, s, t):
+    """Compute the multipliers that event functions need from accelerations at the current state.
+
+    Those of short steps contain the remainder of Newton's iteration divided by the step, those of accelerations in a step
+    that is long for stiff forces the interpolation errors of these forces.
+    """
+    if w.n_lam > 0 and not c.size > output_correction_view(c.output_correction).long:
+        m = dynamics_view(ints(w.dynamics))
+        copied(w.lam, s.lam, w.n_lam)
+        if consistent_accelerations(state_view(m.state), m, t) < 0:
+            copied(s.lam, w.lam, w.n_lam)
+
+
+@compiled
+def switches(c, w, s, t):
+    """Return the event functions at the current state."""
+    take_reactions(c, w, s, t)
+    return evaluate(s, SWITCH, t)
 
 
 @compiled
@@ -68,7 +93,7 @@ def _passage(c, w, s, toward, stop, count):
 def _another_side(c, w, s, ahead, count):
     """Return True if one of the first `count` functions changes its sign in a time, or its law the interval."""
     go_ahead(c, s, ahead)
-    values = evaluate(s, SWITCH, c.returned + ahead)
+    values = switches(c, w, s, c.returned + ahead)
     others = 0
     for k in range(count):
         others += interval(w, k, values[k]) != interval(w, k, w.value_before[k])
