@@ -87,7 +87,7 @@ class Integrator:
         self.engine.ida.see_inputs(features, grid.end - grid.start)
         self._of_inputs = features.note
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
-        self._hovering = HoveringEvents(self.dynamics, chattering)
+        self._hovering = HoveringEvents(self.dynamics, chattering, self.settings.rtol)
         ready: InitialValues | None = start
         stops = [*grid.with_stops(features.breakpoints).tolist(), grid.end]
         while stops:

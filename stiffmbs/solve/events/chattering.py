@@ -141,15 +141,15 @@ def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
 
 
 class HoveringEvents:
-    """Event functions of one run that stay about zero, up to the rounding of their evaluation.
+    """Event functions of one run that stay about zero, up to the precision of their evaluation.
 
-    An event function that has returned to zero from within the rounding of its evaluation has had no event but
-    rounding. Its next event is where it leaves that band. `chattering`: monitor of the same run. `band` of shape
+    An event function that has returned to zero from within the precision of its evaluation has had no event but
+    errors. Its next event is where it leaves that band. `chattering`: monitor of the same run. `rtol`: relative tolerance. `band` of shape
     (n_event_functions,): half width of the band, 0 for a function with an event at zero.
     """
 
-    def __init__(self, dynamics: Dynamics, chattering: Chattering) -> None:
-        self._dynamics, self._chattering = dynamics, chattering
+    def __init__(self, dynamics: Dynamics, chattering: Chattering, rtol: float) -> None:
+        self._dynamics, self._chattering, self._rtol = dynamics, chattering, rtol
         self.band = np.zeros(dynamics.system.n_event_functions)
 
     @property
@@ -166,7 +166,7 @@ class HoveringEvents:
         at_zero = passed[self.band[passed] == 0.0]
         self.band[passed] = 0.0
         if len(at_zero):
-            noise = noise_of(self._dynamics, t, q, u)
+            noise = noise_of(self._dynamics, t, q, u, self._rtol)
             hovering = at_zero[farthest[at_zero] <= noise[at_zero]]
             if len(hovering):
                 self._chattering.refuse(t, sliding(self._dynamics, t, q, u))

@@ -116,12 +116,28 @@ class _Around:
         return _Around(self._dynamics, self.t, q, u)
 
 
-def noise_of(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Return the changes of the event functions that rounding of a state explains, shape (n_event_functions,)."""
-    with dynamics.state.unchanged():
+def noise_of(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, rtol: float) -> np.ndarray:
+    """Return the changes of the event functions that the precision of a state explains, shape (n_event_functions,).
+
+    That is rounding, or for functions of reactions the tolerance: stiff forces amplify the errors of a state.
+    """
+    state = dynamics.state
+    with state.unchanged():
         around = _Around(dynamics, t, q, u)
-        one, other = (around.values(size) for size in (SEARCH.precision, -SEARCH.precision))
-    return np.abs(one - other)
+
+        def change(size: float) -> np.ndarray:
+            found: np.ndarray = np.abs(around.values(size) - around.values(-size))
+            return found
+
+        noise = change(SEARCH.precision)
+        if not dynamics.system.switches_by_reactions:
+            return noise
+        rough, pressed = change(rtol), []
+        for lam in (state.lam.copy(), state.lam + 1.0):
+            state.lam[:] = lam
+            state.evaluate("event_function", t)
+            pressed.append(state.values["event_function"][: len(noise)].copy())
+    return np.where(pressed[0] != pressed[1], np.maximum(rough, noise), noise)
 
 
 def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> np.ndarray:

@@ -49,7 +49,7 @@ def _note_sides(c, w, s, toward):
     ahead = max(EPSILON * (toward - c.returned), INDISTINCT * abs(c.returned))
     while ahead <= most:
         go_ahead(c, s, ahead)
-        if note_sides(w.a, switches(c, w, s, c.returned + ahead), w.m, w.m2, count) == 0:
+        if note_sides(w.a, switches(w, s, c.returned + ahead), w.m, w.m2, count) == 0:
             break
         ahead *= SEARCH.longer
     for k in range(count):
@@ -70,13 +70,13 @@ def look_at_start(toward, stop, ida):
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
         c.seen = UNSEEN
         keep_row(w, s, 0)
-        copied(w.value_before, switches(c, w, s, c.returned), w.n)
+        copied(w.value_before, switches(w, s, c.returned), w.n)
         for k in range(w.n_event_functions):
             w.farthest[k] = 0.0
             if abs(w.value_before[k]) > w.band[k] > 0.0:
                 watch_for(w, k, 0.0)
         go_straight(c, s, ahead)
-        noted_rates(w.rate_before, w.value_before, switches(c, w, s, c.returned + ahead), ahead, w.n)
+        noted_rates(w.rate_before, w.value_before, switches(w, s, c.returned + ahead), ahead, w.n)
         if at_zero(w.value_before, w.n_event_functions) > 0:
             _note_sides(c, w, s, toward)
         if w.n_turns > 0:
@@ -107,7 +107,7 @@ def _look_ahead(c, w, s):
         return
     ahead = min(w.longest, LARGEST_GROWTH * c.size)
     go_ahead(c, s, ahead)
-    copied(w.value_after, switches(c, w, s, c.returned + ahead), w.n)
+    copied(w.value_after, switches(w, s, c.returned + ahead), w.n)
     if note_near(w, ahead, w.row, s.q):
         event = near_an_event(w, ahead, w.row, s.q)
         _look_at_middle(c, w, s, ahead)
@@ -122,7 +122,7 @@ def _look_ahead(c, w, s):
 def _look_at_middle(c, w, s, ahead):
     """Evaluate functions near breakpoints at a place within the extrapolation by accelerations."""
     go_ahead(c, s, LOOKED_AT * ahead)
-    take_reactions(c, w, s, c.returned + LOOKED_AT * ahead)
+    take_reactions(w, s, c.returned + LOOKED_AT * ahead)
     copied(w.m, evaluate_some(s, SWITCH, c.returned + LOOKED_AT * ahead, w.near), w.n)
 
 
@@ -180,13 +180,13 @@ def _aim(c, w, s, ahead):
     """Make the next step end just before an event of the motion extrapolated by accelerations."""
     t, back = c.returned, -time_of_difference(w, ahead, c.returned)
     go_ahead(c, s, ahead + back)
-    noted_rates(w.rate_after, w.value_after, _evaluate_near(c, w, s, t + ahead + back), back, w.n)
+    noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, t + ahead + back), back, w.n)
     note_mean_rates(w, ahead)
     if not suspicious(w, ahead, w.row, s.q):
         return
     for node in range(w.n_nodes):
         go_ahead(c, s, ahead * w.node[node])
-        take_reactions(c, w, s, t + ahead * w.node[node])
+        take_reactions(w, s, t + ahead * w.node[node])
         keep_row(w, s, node)
     place = first_event_or_change(w, s, t, ahead)
     for k in range(w.n):
@@ -197,11 +197,11 @@ def _aim(c, w, s, ahead):
 
 
 @compiled
-def _evaluate_near(c, w, s, t):
+def _evaluate_near(w, s, t):
     """Evaluate the functions that may change within the step; all if arguments of sines limit the next step."""
     if w.n_turns > 0:
-        return switches(c, w, s, t)
-    take_reactions(c, w, s, t)
+        return switches(w, s, t)
+    take_reactions(w, s, t)
     return evaluate_some(s, SWITCH, t, w.near)
 
 
@@ -232,7 +232,7 @@ def look_within(ida):
     e = equations_view(c.equations)
     if c.seen != c.returned:
         load(s, e, array_of(c, c.y), array_of(c, c.yp))
-        switches(c, w, s, c.returned)
+        switches(w, s, c.returned)
     c.seen = UNSEEN
     copied(w.value_after, floats(s.values[SWITCH]), w.n)
     nearby = note_near(w, h, w.row, s.q)
@@ -242,13 +242,13 @@ def look_within(ida):
         return int32(NO_EVENT)
     ahead = -time_of_difference(w, h, c.returned)
     go_straight(c, s, ahead)
-    noted_rates(w.rate_after, w.value_after, _evaluate_near(c, w, s, c.returned + ahead), ahead, w.n)
+    noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, c.returned + ahead), ahead, w.n)
     note_mean_rates(w, h)
     place = begun + LOOKED_AT * h
     if call_int(c.interpolate, (c.memory, place, int32(0), c.at_output)) < 0:
         return int32(NO_EVENT)
     load(s, e, c.output, array_of(c, c.yp))
-    copied(w.m, _evaluate_near(c, w, s, place), w.n)
+    copied(w.m, _evaluate_near(w, s, place), w.n)
     note_farthest(w, w.m)
     load(s, e, array_of(c, c.y), array_of(c, c.yp))
     if suspicious(w, h, w.row, s.q):
@@ -256,7 +256,7 @@ def look_within(ida):
             if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
                 return int32(NO_EVENT)
             load(s, e, c.output, array_of(c, c.yp))
-            take_reactions(c, w, s, begun + w.node[node] * h)
+            take_reactions(w, s, begun + w.node[node] * h)
             keep_row(w, s, node)
         event = begun + h * first_event(w, s, begun, h)
         if begun + INDISTINCT * abs(begun) < event < c.returned:

@@ -83,7 +83,7 @@ def event_functions(t, yy, yp, g, user_data):
     c = native_ida_view(user_data)
     s = state_view(c.state)
     load(s, equations_view(c.equations), array_of(c, yy), array_of(c, yp))
-    values = switches(c, event_search_view(c.watch), s, t)
+    values = switches(event_search_view(c.watch), s, t)
     c.seen = t
     watched(values, c.signs, c.band, g, c.n_event_functions)
     return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)

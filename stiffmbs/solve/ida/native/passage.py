@@ -15,17 +15,15 @@ from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import interval
 from stiffmbs.solve.events.native.parameters import NEXT_STEP, SEARCH
 from stiffmbs.solve.ida.native.ida_memory import array_of
-from stiffmbs.solve.ida.native.output_correction import output_correction_view
 
 
 @compiled
-def take_reactions(c, w, s, t):
+def take_reactions(w, s, t):
     """Compute the multipliers that event functions need from accelerations at the current state.
 
-    Those of short steps contain the remainder of Newton's iteration divided by the step, those of accelerations in a step
-    that is long for stiff forces the interpolation errors of these forces.
+    Those of the integrator have no error test, and contain the remainder of Newton's iteration divided by the step.
     """
-    if w.n_lam > 0 and not c.size > output_correction_view(c.output_correction).long:
+    if w.n_lam > 0:
         m = dynamics_view(ints(w.dynamics))
         copied(w.lam, s.lam, w.n_lam)
         if consistent_accelerations(state_view(m.state), m, t) < 0:
@@ -33,9 +31,9 @@ def take_reactions(c, w, s, t):
 
 
 @compiled
-def switches(c, w, s, t):
+def switches(w, s, t):
     """Return the event functions at the current state."""
-    take_reactions(c, w, s, t)
+    take_reactions(w, s, t)
     return evaluate(s, SWITCH, t)
 
 
@@ -93,7 +91,7 @@ def _passage(c, w, s, toward, stop, count):
 def _another_side(c, w, s, ahead, count):
     """Return True if one of the first `count` functions changes its sign in a time, or its law the interval."""
     go_ahead(c, s, ahead)
-    values = switches(c, w, s, c.returned + ahead)
+    values = switches(w, s, c.returned + ahead)
     others = 0
     for k in range(count):
         others += interval(w, k, values[k]) != interval(w, k, w.value_before[k])
