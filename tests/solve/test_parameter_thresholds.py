@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import cache
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -32,6 +33,8 @@ from stiffmbs.solve.events.refusals import exponential, refuse_beyond_sense
 from stiffmbs.solve.events.restart import straight_on
 from stiffmbs.solve.ida.choice import COSTS, block_cost, sparse_cost
 from stiffmbs.solve.ida.native.parameters import LOOP
+from stiffmbs.solve.radau.native import newton as stages
+from stiffmbs.solve.radau.parameters import RADAU
 from stiffmbs.solve.trajectory import Rows, unwatched
 from stiffmbs.sparse.elimination_order import EliminationOrder
 from tests.parameters import EXAMPLES, SCENES, changed
@@ -220,6 +223,14 @@ def reach(rtol):
     return watched(rtol=rtol)[1]._reach
 
 
+def part_after_a_failure():
+    """Return the part of a step of radau that follows one whose stages are not finite."""
+    x = SimpleNamespace(newton=1.0, rtol=1e-6, after_failure=RADAU.after_failure)
+    with patch.object(stages, "_residuals", lambda *_: False):
+        stages.iterated(x, SimpleNamespace(stages=3), 0.0, 1.0)
+    return x.suggested
+
+
 def kinematic_steps():
     job = prepare(stiffmbs.load_scene(EXAMPLES / "crank_slider.yaml"), solver="kinematic", duration=3.0, points=2)
     return kinematic.solve(job.dynamics, job.start, job.grid, job.settings, unwatched).statistics["steps"]
@@ -309,6 +320,7 @@ TABLE = {
         "passed": lambda: straight_on(0.0, 1.0, 1e-6),
         "largest_rtol": lambda: straight_on(0.0, 1.0, 0.1),
     },
+    "radau": {"after_failure": part_after_a_failure},
     "kinematic": {"surprise": kinematic_steps},
 }  # fmt: skip
 """What each parameter decides, as a number."""
@@ -327,7 +339,7 @@ EXPECTED = {
     "relaxation.short_chain": 100, "relaxation.largest_factor": 1000, "relaxation.refused": 80,
     "chattering.window": 749, "chattering.too_many": 40, "chattering.at_least": 54, "chattering.least_power": 7, "chattering.largest_power": 10,
     "chattering.steps_seen": 10, "chattering.steps_ahead": 31, "chattering.stays_within": 0.01, "chattering.stays_within_at_most": 0.1, "jumps.larger_move": 1e-6,
-    "restarts.hidden": 1e-11, "restarts.passed": 1e-8, "restarts.largest_rtol": 1e-6, "kinematic.surprise": 104,
+    "restarts.hidden": 1e-11, "restarts.passed": 1e-8, "restarts.largest_rtol": 1e-6, "radau.after_failure": 0.5, "kinematic.surprise": 104,
 }  # fmt: skip
 """The decisions of the default parameters."""
 PARAMETERS = [(name, field) for name, fields in TABLE.items() for field in fields]
