@@ -46,7 +46,6 @@ SUBSYSTEMS = {
     "linear_solver": "solve.ida.choice:COSTS",
     "long_steps": "solve.events.long_steps:LONG_STEP",
     "loop": "solve.ida.native.parameters:LOOP",
-    "masking": "solve.events.chattering:MASKING",
     "matrices": "sparse.parameters:MATRICES",
     "narrow_inputs": "solve.events.narrow_inputs:NARROW_INPUTS",
     "newton": "solve.error_control.native.parameters:NEWTON",

@@ -55,7 +55,8 @@ class Intervals(NamedTuple):
     """Intervals of all event functions, in the order of the values of the set ``event_function``.
 
     - `first` of shape (n + 1,): index of the first breakpoint of each function.
-    - `breakpoints`: breakpoints in increasing order for each function; zero for an event function.
+    - `breakpoints`: breakpoints in increasing order for each function; zero and infinity for an event function, whose
+      bounds are others while it stays at zero (`stiffmbs.solve.events.chattering.HoveringEvents`).
     - `overlap`: distance on both sides of each breakpoint over which the law continues unchanged; zero for an event
       function.
     - `period` of shape (n,): period of a law; 0 if it is not periodic.
@@ -97,7 +98,7 @@ def intervals_of(system: System) -> Intervals:
 
 
 def _intervals_of(system: System) -> Intervals:
-    of_event_function = "", np.zeros(1), np.zeros(1), 0.0
+    of_event_function = "", np.array([0.0, np.inf]), np.zeros(2), 0.0
     found = [of_event_function] * system.n_event_functions + list(_of_arguments(system))
     counts = np.array([len(breakpoints) for _, breakpoints, _, _ in found], dtype=np.int64)
     period = np.array([period for *_, period in found])

@@ -287,6 +287,12 @@ class System:
         return self.first_limit + sum(group.count * group.entries["limit"] for group in self.groups)
 
     @cached_property
+    def switches_by_reactions(self) -> bool:
+        """True if event functions or law arguments may depend on the multipliers of joints."""
+        terms = TERM_SETS["event_function"]
+        return any(group.kind.n_joints and any(group.entries[term] for term in terms) for group in self.groups)
+
+    @cached_property
     def turning(self) -> np.ndarray:
         """Indices of the coordinates that are angles; empty in space."""
         flat = self.of_body.n_q == self.of_body.n_u

@@ -147,7 +147,7 @@ class Dynamics:
                 **self._lists, "n_trailing": len(self._trailing[1]), "n_algebraic": len(algebraic),
                 "n_turned_for_output": len(self._lists["turned_for_output"]),
                 "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
-                "eliminates": eliminates, "n_output": self._widths[4], **counts,
+                "switches_by_reactions": system.switches_by_reactions, "eliminates": eliminates, "n_output": self._widths[4], **counts,
                 "eliminated": self.eliminated.within_reach() if eliminates else np.zeros(1, dtype=np.int64),
             },
         )  # fmt: skip

@@ -13,6 +13,9 @@ from ..tuning import SUBSYSTEMS, defaults_of, numbers_of
 MOST = 1000
 """Largest ratio of an integer to its default, as some are sizes of arrays."""
 
+REMOVED = {"masking": "no event is left out by a number of steps any more, expected no such entry"}
+"""Subsystems of earlier versions, and what replaces them."""
+
 Read = Callable[[Any], float]
 """Conversion of an entry to a number; raises a ValueError for other entries."""
 
@@ -24,6 +27,8 @@ def checked(found: object, read: Read) -> dict[str, dict[str, object]]:
     """
     changes: dict[str, dict[str, object]] = {}
     for name, values in _entries(found, "subsystems"):
+        if name in REMOVED:
+            raise ValueError(f"found the removed subsystem '{name}': {REMOVED[name]}")
         _refuse_unknown("", "subsystem", name, SUBSYSTEMS)
         usual = numbers_of(defaults_of(name))
         changes[name] = {}

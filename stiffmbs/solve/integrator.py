@@ -14,7 +14,7 @@ from ..model.settings import RunSettings
 from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
 from .error_control.relaxation import relax
-from .events.chattering import Chattering, MaskedEvents
+from .events.chattering import Chattering, HoveringEvents
 from .events.discontinuity import Jumps
 from .events.long_steps import LongSteps
 from .events.native.parameters import SEARCH
@@ -88,7 +88,7 @@ class Integrator:
         self.engine.ida.see_inputs(features, grid.end - grid.start)
         self._of_inputs = features.note
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
-        self._masked = MaskedEvents(self.dynamics, chattering)
+        self._hovering = HoveringEvents(self.dynamics, chattering, self.settings.rtol)
         ready: InitialValues | None = start
         self.engine.resume_after(2.0 * grid.aside)
         stops = [*(grid.with_stops(features.breakpoints) - grid.aside).tolist(), grid.end]
@@ -113,8 +113,8 @@ class Integrator:
             before = t = reached.t
             if t < grid.end:
                 q, u = self.on_constraints(reached)
-                if self._masked.any:
-                    self._masked.note(t, q, u, self.steps(), reached.fired)
+                if self._hovering.any:
+                    self._hovering.note(t, q, u, reached.fired, self.engine.ida.watch.farthest)
                 at_breakpoint = t >= stops[0]
                 if at_breakpoint:
                     before = t = t + 2.0 * grid.aside
@@ -134,7 +134,7 @@ class Integrator:
 
         Return consistent values to start from, or None if the engine has restarted, and their time.
         """
-        self.engine.ida.leave_out(self._masked.steps)
+        self.engine.ida.watch.watch_for(self._hovering.band)
         begun = self.engine.begin_restart(q, u, t, ahead)
         if begun is None:
             return self._consistent(q, u, before, t, ahead)
@@ -186,7 +186,7 @@ class Integrator:
 
     def _explained(self, reached: Reached) -> Reached:
         """Replace a failure by one that names the chattering force, if there is one."""
-        jumping = self._masked.failed(reached.t, *self.split(reached.y))
+        jumping = self._hovering.failed(reached.t, *self.split(reached.y))
         return reached._replace(failure=jumping or reached.failure)
 
     def _segment(self, t: float, stops: list[float], grid: Grid) -> Iterator[Reached]:
@@ -204,7 +204,7 @@ class Integrator:
             yield Reached(times, np.tile(y[self.equations.independent], (len(times), 1)), t, y)
 
     def _begin(self, start: InitialValues, t: float) -> None:
-        self.engine.ida.leave_out(self._masked.steps)
+        self.engine.ida.watch.watch_for(self._hovering.band)
         if not self.engine.begin_at(start, t):
             self._begin_step_by_step(start, t)
 

@@ -323,7 +323,7 @@ def checked_loads():
 
 
 DECISIONS = {
-    "elements.forces.friction:TINY": lambda: float(friction.magnitude()),
+    "elements.forces.friction:TINY": lambda: float(friction.length()),
     "elements.forces.friction:AT_REST": slowest_sliding,
     "elements.initial_pose:SAME_POINT": largest_distance_at_one_place,
     "elements.joints.point_on_curve:CLOSED": largest_gap_of_a_cam,

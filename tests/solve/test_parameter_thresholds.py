@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import cache
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -25,13 +26,15 @@ from stiffmbs.solve.error_control.stability_limit import (
     StabilityLimitDetection,
     limits_steps,
 )
-from stiffmbs.solve.events.chattering import Chattering, MaskedEvents
+from stiffmbs.solve.events.chattering import Chattering
 from stiffmbs.solve.events.discontinuity import Jumps
 from stiffmbs.solve.events.narrow_inputs import hidden_peak
 from stiffmbs.solve.events.refusals import exponential, refuse_beyond_sense
 from stiffmbs.solve.events.restart import straight_on
 from stiffmbs.solve.ida.choice import COSTS, block_cost, sparse_cost
 from stiffmbs.solve.ida.native.parameters import LOOP
+from stiffmbs.solve.radau.native import newton as stages
+from stiffmbs.solve.radau.parameters import RADAU
 from stiffmbs.solve.trajectory import Rows, unwatched
 from stiffmbs.sparse.elimination_order import EliminationOrder
 from tests.parameters import EXAMPLES, SCENES, changed
@@ -222,27 +225,12 @@ def reach(rtol):
     return watched(rtol=rtol)[1]._reach
 
 
-def masks():
-    """Return the sum of the masked steps of events in each step."""
-    job = job_of("sliding")
-    masked = MaskedEvents(
-        job.dynamics, SimpleNamespace(refuse=lambda t, found: None, would_be_many=lambda before, t: True)
-    )
-    total = 0
-    for steps in range(1, 12):
-        masked.note(0.0, job.start.q, job.start.u, steps, [0])
-        total += int(masked.steps[0])
-    return total
-
-
-def events_to_a_check_of_the_force():
-    job, checks = job_of("sliding"), []
-    masked = MaskedEvents(
-        job.dynamics, SimpleNamespace(refuse=lambda t, found: checks.append(t), would_be_many=lambda before, t: True)
-    )
-    for k in range(12):
-        masked.note(float(k), job.start.q, job.start.u, k + 1, [0])
-    return min(checks, default=12)
+def part_after_a_failure():
+    """Return the part of a step of radau that follows one whose stages are not finite."""
+    x = SimpleNamespace(newton=1.0, rtol=1e-6, after_failure=RADAU.after_failure)
+    with patch.object(stages, "_residuals", lambda *_: False):
+        stages.iterated(x, SimpleNamespace(stages=3), 0.0, 1.0)
+    return x.suggested
 
 
 def kinematic_steps():
@@ -329,16 +317,12 @@ TABLE = {
         "stays_within_at_most": lambda: reach(1.0),
     },
     "jumps": {"larger_move": lambda: reach(1e-12)},
-    "masking": {
-        "few_steps": masks,
-        "most_in_succession": masks,
-        "telling": events_to_a_check_of_the_force,
-    },
     "restarts": {
         "hidden": lambda: straight_on(1.0, 0.0, 1e-6),
         "passed": lambda: straight_on(0.0, 1.0, 1e-6),
         "largest_rtol": lambda: straight_on(0.0, 1.0, 0.1),
     },
+    "radau": {"after_failure": part_after_a_failure},
     "kinematic": {"surprise": kinematic_steps},
 }  # fmt: skip
 """What each parameter decides, as a number."""
@@ -357,8 +341,7 @@ EXPECTED = {
     "relaxation.short_chain": 100, "relaxation.largest_factor": 1000, "relaxation.refused": 80,
     "chattering.window": 749, "chattering.too_many": 40, "chattering.at_least": 54, "chattering.least_power": 7, "chattering.largest_power": 10,
     "chattering.steps_seen": 10, "chattering.steps_ahead": 31, "chattering.stays_within": 0.01, "chattering.stays_within_at_most": 0.1, "jumps.larger_move": 1e-6,
-    "masking.few_steps": 3752, "masking.most_in_succession": 3752, "masking.telling": 2.0,
-    "restarts.hidden": 1e-11, "restarts.passed": 1e-8, "restarts.largest_rtol": 1e-6, "kinematic.surprise": 104,
+    "restarts.hidden": 1e-11, "restarts.passed": 1e-8, "restarts.largest_rtol": 1e-6, "radau.after_failure": 0.5, "kinematic.surprise": 104,
 }  # fmt: skip
 """The decisions of the default parameters."""
 PARAMETERS = [(name, field) for name, fields in TABLE.items() for field in fields]

@@ -144,7 +144,7 @@ class _Asked:
     def event_functions(self) -> tuple[sp.Expr, ...]:
         """Return the breakpoints of formulas, and those stated by the class, or else those of its equations."""
         named = issubclass(self.element, Force) and self.element.event_functions is not Force.event_functions
-        own = self.column("event_functions") if named else [x for x in self.e.breakpoints if self.e.in_state(x)]
+        own = self.column("event_functions") if named else [x for x in self.e.breakpoints if self.symbols.in_state(x)]
         return (*self.symbols.event_functions, *(x for x in own if named or x not in self.symbols.event_functions))
 
     def known(self, stated: Stated) -> Stated:

@@ -81,6 +81,10 @@ class Symbols:
         """Arguments of laws; each depends on the state, so none is dropped as zero."""
         return sp.Matrix([law.argument for law in self.laws])
 
+    def in_state(self, expression: sp.Expr) -> bool:
+        """Return True if an expression depends on coordinates, velocities, states or reactions."""
+        return self.element.in_state(expression) or self.element.depends(expression, self.pressed)
+
     def known(self) -> frozenset[sp.Symbol]:
         """Return all defined symbols."""
         e = self.element
@@ -93,7 +97,7 @@ class Symbols:
     def note_law(self, argument: sp.Expr, name: str, table: sp.Symbol | None = None) -> None:
         """Record the argument of a table or function with narrow features if it depends on the state."""
         law = Law(argument, (name, 0 if table is None else self.numbers.index(table)))
-        if self.element.in_state(argument) and law not in self.laws:
+        if self.in_state(argument) and law not in self.laws:
             self.laws.append(law)
 
     def note_functions(self, expression: sp.Expr) -> None:
@@ -258,7 +262,7 @@ class _Builder:
 
             def called(*arguments: sp.Expr) -> sp.Expr:
                 for breakpoint in _breakpoints(function, arguments):
-                    if self.symbols.element.in_state(breakpoint) and breakpoint not in self.symbols.event_functions:
+                    if self.symbols.in_state(breakpoint) and breakpoint not in self.symbols.event_functions:
                         self.symbols.event_functions.append(breakpoint)
                 return getattr(nonsmooth, function.symbolic)(*arguments)
 

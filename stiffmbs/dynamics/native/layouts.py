@@ -5,7 +5,7 @@ from stiffmbs.compile.machine.layout import CACHE_LINE, FLOAT_CELL, FLOATS, INDI
 DYNAMICS = Layout({
     "state": INTS, "constraining": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
     "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
-    "n_trailing": INT, "trailing_source": INTS, "trailing_row": INTS, "by_reactions": INT,
+    "n_trailing": INT, "trailing_source": INTS, "trailing_row": INTS, "by_reactions": INT, "switches_by_reactions": INT,
     "n_algebraic": INT, "algebraic": INTS, "algebraic_scale": FLOATS, "algebraic_before": FLOATS,
     "n_turned_for_output": INT, "turned_for_output": INTS,
     "eliminates": INT, "eliminated": INTS, "by_elimination": INT_CELL,
@@ -15,7 +15,7 @@ DYNAMICS = Layout({
 """Tables of a state and its three block systems.  `constraining` is a table of the same state whose sets ``motion`` and
 ``acceleration`` have the terms of joints alone.  `status` receives the reason of a failure in output rows.  `trailing`
 lists the rates of revolution counters and states among the acceleration terms; `by_reactions` is 1 if any depends on
-multipliers.  `algebraic` lists the algebraic states among the coordinates, with their scales and last values, and
+multipliers, `switches_by_reactions` if event functions may.  `algebraic` lists the algebraic states among the coordinates, with their scales and last values, and
 `turned_for_output` the first coordinates of bodies whose orientation only output terms need.  `eliminates` is 1 if
 elimination is tried first (`stiffmbs.dynamics.native.consistent`), `by_elimination` if it gave the last accelerations.
 Output rows need the number of output terms, memory for `LINES` rows, and masses. Roots of inertias by coordinate and

@@ -12,14 +12,26 @@ from ...reading.units import si
 from ..element import Expr, Force, Symbolic, sp
 
 TINY = 1e-24
-"""Offset under the root of a reaction's magnitude, N^2 or N^2 m^2, for a finite derivative at zero."""
+"""Offset under the root of the magnitude of a vector, N^2 or N^2 m^2, for a finite derivative at zero."""
 AT_REST = 1e-6
 """Offset of a sliding speed in the same way, relative to the smoothed speed."""
 
 
-def magnitude(*parts: Expr, tiny: Expr = TINY) -> Expr:
-    """Return the magnitude of a vector, with a finite derivative at zero."""
+def length(*parts: Expr, tiny: Expr = TINY) -> Expr:
+    """Return the length of a vector, with a finite derivative at zero."""
     return sp.sqrt(sum(part**2 for part in parts) + tiny)
+
+
+def magnitude(e: Symbolic, *parts: Expr) -> Expr:
+    """Return the magnitude of a load and record its breakpoint at zero.
+
+    A vector has a kink where all components are zero. One that passes close by turns within a short time: a step that
+    ends where a component is zero resolves both.
+    """
+    if len(parts) == 1:
+        return sp.Abs(parts[0])
+    e.breakpoints.extend(part for part in map(e.read, parts) if part not in e.breakpoints)
+    return length(*parts)
 
 
 class Friction(Force):
@@ -49,7 +61,7 @@ class Friction(Force):
     @classmethod
     def per_speed(cls, e: Symbolic, *sliding: Expr) -> Expr:
         """Return mu / speed, finite at rest, for a sliding velocity of several components."""
-        speed = e.named(magnitude(*sliding, tiny=(AT_REST * e.stiction_velocity) ** 2))
+        speed = e.named(length(*sliding, tiny=(AT_REST * e.stiction_velocity) ** 2))
         return cls.coefficient(e, speed) / speed
 
     @staticmethod

@@ -59,9 +59,9 @@ class JointFriction(AnyJointFriction):
 
     For a pin of radius R the normal force is N = sqrt(lam_x^2 + lam_y^2). The sliding speed is v = R angle', and the
     torque -mu(v) N R acts on the joint's angle. For a slider N = ``|lam_normal| + |lam_angle| / (length/2)``, and the
-    force -mu(v) N acts on its displacement. The moment is that at the point of marker i, so N depends on which body is i
-    where the points of both markers differ: let i be the marker in the middle of the part that supports the moment. It
-    is supported at the ends of a guide of the given length; without a length it is neglected. The multipliers are those of the same time, which include the effect of friction.
+    force -mu(v) N acts on its displacement. The moment lam_angle is that about the point of marker i. It is supported at the
+    ends of a guide of the given length, which moves with marker i; without a length it is neglected. With i and j
+    exchanged the guide belongs to the other body, and its moment differs by lam_normal times the displacement. The multipliers are those of the same time, which include the effect of friction.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 6.5; Adams' FRICTION statement.
     """

@@ -37,4 +37,4 @@ class Prismatic(WithinHalfATurn, PlanarPair):
     @staticmethod
     def loads(e: Symbolic) -> Loads:
         normal, moment = e.lam
-        return Loads(across=magnitude(normal), bending=magnitude(moment))
+        return Loads(across=magnitude(e, normal), bending=magnitude(e, moment))

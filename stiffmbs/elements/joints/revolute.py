@@ -28,4 +28,4 @@ class Revolute(KeepsDescribedTurns, PlanarPair):
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:
-        return Loads(across=magnitude(*e.lam))
+        return Loads(across=magnitude(e, *e.lam))

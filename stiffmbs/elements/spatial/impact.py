@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from ...reading.fields import Measured
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic, sp
-from ..forces.friction import AT_REST, magnitude
+from ..forces.friction import AT_REST, length
 from .marker import Marker
 from .wrench import Pairs, velocity
 
@@ -116,7 +116,7 @@ def _push(e: Symbolic, depth: Expr, rate: Expr) -> Expr:
 
 
 def _per_speed(e: Symbolic, sliding: Expr) -> Expr:
-    speed = e.named(magnitude(*sliding, tiny=(AT_REST * e.stiction_velocity) ** 2))
+    speed = e.named(length(*sliding, tiny=(AT_REST * e.stiction_velocity) ** 2))
     up = e.static_friction * (2 * _rising((speed / e.stiction_velocity + 1) / 2) - 1)
     down = _rising((speed - e.stiction_velocity) / (e.friction_velocity - e.stiction_velocity))
     return (up + (e.friction - e.static_friction) * down) / speed

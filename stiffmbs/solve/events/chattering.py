@@ -1,4 +1,4 @@
-"""Events that repeat: masked event functions, and runs that chatter."""
+"""Events that repeat: event functions that hover about zero, and runs that chatter."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...compile.written_values import writer
 from ...dynamics.dynamics import Dynamics
 from ...errors import ChatteringError, SolverError
 from ...tuning import tuned
-from .discontinuity import JUMP, jumping, sliding
+from .discontinuity import JUMP, noise_of, sliding
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class ChatteringParameters:
     """Expected further events, steps governed by rounding, or evaluations at which a run is stopped, and steps that
     periodic laws may require."""
     at_least: float = 1e4
-    """Their least number at which growth is considered, and at which events in succession may be chattering."""
+    """Their least number at which growth is considered."""
     least_power: float = 0.8
     largest_power: float = 2.0
     """Bounds of the power of the number of events with which their rate grows in an exponentially driven motion.
@@ -99,7 +99,7 @@ class Chattering:
             return
         first, middle, last = (self._events[k] for k in (0, CHATTERING.window, 2 * CHATTERING.window))
         if self._to_come(middle - first, last - middle) > CHATTERING.too_many:
-            self.refuse(t, jumping(self._dynamics, t, q, u))
+            self.refuse(t, sliding(self._dynamics, t, q, u))
             name = (
                 f"'{writer(self._dynamics.system, 'event_function', event_function)}'"
                 if event_function >= 0
@@ -125,10 +125,6 @@ class Chattering:
         growing = CHATTERING.least_power < power < CHATTERING.largest_power
         return self._count * math.exp(min(steady / self._count, 100.0)) if growing else steady
 
-    def would_be_many(self, before: float, t: float) -> bool:
-        """Return True if events at the interval of two times up to the end of the run are many enough to be chattering."""
-        return self._end - t > CHATTERING.at_least * (t - before)
-
     def refuse(self, t: float, event_functions: np.ndarray) -> None:
         """Raise a ChatteringError that names the first of some event functions, if there are any."""
         if len(event_functions):
@@ -138,70 +134,45 @@ class Chattering:
 def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
     """Return a sentence on a chattering force."""
     return (
-        f"'{writer(dynamics.system, 'event_function', event_function)}' chatters: the force jumps back and forth, for example because its sign "
-        "changes where the motion comes to rest, and no solution exists beyond; expected a steep, continuous force "
-        "there: joint_friction with its stiction_velocity, or tanh(v/0.001) in place of sign(v)"
+        f"'{writer(dynamics.system, 'event_function', event_function)}' chatters: the force jumps, for example because its sign changes where "
+        "the motion comes to rest, and the accelerations on both sides drive the motion back to the jump, so that no solution "
+        "of this law exists beyond; expected a steep, continuous force there: joint_friction with its stiction_velocity, or tanh(v/0.001) in place of sign(v)"
     )
 
 
-@dataclass(frozen=True)
-class MaskingParameters:
-    """Parameters that decide when an event function is masked, and for how many steps."""
+class HoveringEvents:
+    """Event functions of one run that stay about zero, up to the precision of their evaluation.
 
-    few_steps: int = 4
-    """Steps after a start within which an event is attributed to rounding, also as a multiple of the preceding wait; half of
-    the wait after the second such event, and factor for each further one. A single repetition may be an event that is
-    detected twice, because the start is projected onto constraints."""
-    most_in_succession: int = 5
-    """Largest number of events that count."""
-    telling: int = 3
-    """Successive events from which a force is checked for a jump; the first may be those of a start at zero."""
-
-
-MASKING = tuned("masking", MaskingParameters())
-
-
-class MaskedEvents:
-    """Event functions of one run, and the steps for which each is masked.
-
-    `chattering`: monitor of the same run. `steps`: steps from the next start for which each event function is masked.
+    An event function that has returned to zero from within the precision of its evaluation has had no event but
+    errors. Its next event is where it leaves that band. `chattering`: monitor of the same run. `rtol`: relative tolerance. `band` of shape
+    (n_event_functions,): half width of the band, 0 for a function with an event at zero.
     """
 
-    def __init__(self, dynamics: Dynamics, chattering: Chattering) -> None:
-        self._dynamics, self._chattering = dynamics, chattering
-        n = dynamics.system.n_event_functions
-        self.steps, self._in_succession = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-        self._steps, self._last, self._quiet = 0, -math.inf, True
+    def __init__(self, dynamics: Dynamics, chattering: Chattering, rtol: float) -> None:
+        self._dynamics, self._chattering, self._rtol = dynamics, chattering, rtol
+        self.band = np.zeros(dynamics.system.n_event_functions)
 
     @property
     def any(self) -> bool:
         """Return True if the system has event functions."""
-        return bool(len(self.steps))
+        return bool(len(self.band))
 
-    def note(self, t: float, q: np.ndarray, u: np.ndarray, steps: int, fired: Sequence[int]) -> None:
-        """Record the events that ended a segment, after `steps` steps of the run.
+    def note(self, t: float, q: np.ndarray, u: np.ndarray, fired: Sequence[int], farthest: np.ndarray) -> None:
+        """Record the events that ended a segment, and the largest values of the event functions within it.
 
-        Raises SolverError if a force keeps chattering; names the element.
+        Raises ChatteringError if a force drives the motion back from both sides of its discontinuity; names the element.
         """
-        since, self._steps = steps - self._steps, steps
-        before, self._last = self._last, t
-        if self._quiet and since > MASKING.few_steps:  # none is masked, and the event is not soon after the last
-            return
-        left_behind = since > MASKING.few_steps * (self.steps + 1)
-        self._in_succession[left_behind] = 0
-        again = np.array(
-            [event_function for event_function in fired if not left_behind[event_function]], dtype=np.int64
-        )
-        self._in_succession[again] = np.minimum(self._in_succession[again] + 1, MASKING.most_in_succession)
-        telling = again[self._in_succession[again] >= MASKING.telling]
-        if len(telling) and self._chattering.would_be_many(before, t):
-            self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
-        self.steps = np.where(
-            self._in_succession > 1, 2 * MASKING.few_steps ** np.maximum(self._in_succession - 1, 1), 0
-        )
-        self._quiet = not self._in_succession.any()
+        passed = np.array(fired, dtype=np.int64)
+        at_zero = passed[self.band[passed] == 0.0]
+        self.band[passed] = 0.0
+        if len(at_zero):
+            noise = noise_of(self._dynamics, t, q, u, self._rtol)
+            hovering = at_zero[farthest[at_zero] <= noise[at_zero]]
+            if len(hovering):
+                self._chattering.refuse(t, sliding(self._dynamics, t, q, u))
+                self.band[hovering] = noise[hovering]
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
-        """Return a sentence on a discontinuous force that made the integrator fail; empty for other causes."""
-        found = jumping(self._dynamics, t, q, u) if self.any else self.steps
+        """Return a sentence on a force that drives the motion back from both sides of its jump; empty if there is none."""
+        found = sliding(self._dynamics, t, q, u) if self.any else self.band
         return jump_sentence(self._dynamics, int(found[0])) if len(found) else ""

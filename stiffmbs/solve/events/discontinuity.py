@@ -119,21 +119,28 @@ class _Around:
         return _Around(self._dynamics, self.t, q, u)
 
 
-def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Return the event functions near zero across which accelerations jump.
+def noise_of(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, rtol: float) -> np.ndarray:
+    """Return the changes of the event functions that the precision of a state explains, shape (n_event_functions,).
 
-    `t`: s. `q`, `u` of shapes (n_q,), (n_u,).
+    That is rounding, or for functions of reactions the tolerance: stiff forces amplify the errors of a state.
     """
-    with dynamics.state.unchanged():
+    state = dynamics.state
+    with state.unchanged():
         around = _Around(dynamics, t, q, u)
-        crossed = around.crossed()
-        if not len(crossed):
-            return crossed
-        far, near = (
-            float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-            for a, b in (around.sides(size) for size in (JUMP.larger_move, SEARCH.precision))
-        )
-    return crossed if near > max(JUMP.jumps * far, SEARCH.precision) else crossed[:0]
+
+        def change(size: float) -> np.ndarray:
+            found: np.ndarray = np.abs(around.values(size) - around.values(-size))
+            return found
+
+        noise = change(SEARCH.precision)
+        if not dynamics.system.switches_by_reactions:
+            return noise
+        rough, pressed = change(rtol), []
+        for lam in (state.lam.copy(), state.lam + 1.0):
+            state.lam[:] = lam
+            state.evaluate("event_function", t)
+            pressed.append(state.values["event_function"][: len(noise)].copy())
+    return np.where(pressed[0] != pressed[1], np.maximum(rough, noise), noise)
 
 
 def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> np.ndarray:

@@ -11,6 +11,7 @@ from ...compile.state import State
 from ...compile.system import System
 from ...compile.terms import TERM_SETS
 from ...compile.written_values import writer
+from ...dynamics.dynamics import Dynamics
 from .chattering import CHATTERING
 from .departures import Departure, departures
 from .long_steps import WHOLE
@@ -26,7 +27,8 @@ class EventSearch:
     - `table`: addresses for compiled code (`stiffmbs.solve.events.native.layouts.EVENT_SEARCH`).
     - `n`: number of event functions, including those of laws.
     - `n_event_functions`: number of event functions without those of laws.
-    - `masked` of shape (n_event_functions,): event functions with a value above zero are ignored.
+    - `band`, `farthest` of shape (n_event_functions,): distance from zero within which an event function stays, 0 for
+      one with an event at zero; and its largest value since the start.
     - `found` of shape (n,): 1 for the functions of the last event, 0 for others.
     """
 
@@ -39,25 +41,29 @@ class EventSearch:
             system.n_q + system.n_u,
         )
         self.n, self.found, self._lands = n, np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-        self.n_event_functions, self.masked = n_event_functions, np.zeros(n_event_functions, dtype=np.int64)
+        self.n_event_functions = n_event_functions
+        self.band, self.farthest = np.zeros(n_event_functions), np.zeros(n_event_functions)
         self.table = np.zeros(len(EVENT_SEARCH), dtype=np.int64)
         self._cells = self.table.view(EVENT_SEARCH.cells)[0]
         if not n:
             return  # no search: its arrays are not read
         intervals = intervals_of(system)
-        self._overlap = intervals.overlap.copy()
+        self._overlap, self._breakpoints = intervals.overlap.copy(), intervals.breakpoints.copy()
+        self._first = intervals.first[:n_event_functions]
         weight = (-1.0) ** np.arange(NODES)
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
-        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "interval_low", "interval_high", "apart")  # fmt: skip
+        n_lam = system.n_c if system.switches_by_reactions else 0
+        work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "apart")  # fmt: skip
+        self._within = np.zeros((2, n))
         self._extent = {name: np.empty(n) for name in ("lowest", "highest", "outside", "left")}
         self._arrays = {
             "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "tables": intervals.tables, "n_with_intervals": intervals.zoned,
-            "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
-            "first_breakpoint": intervals.first, "breakpoints": intervals.breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "found": self.found,
-            "n_state": n_state, "n_nodes": NODES, "node": WHOLE, "weight": weight,
+            "n": n, "n_event_functions": n_event_functions, "band": self.band, "farthest": self.farthest,
+            "first_breakpoint": intervals.first, "breakpoints": self._breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "interval_low": self._within[0], "interval_high": self._within[1], "found": self.found,
+            "n_state": n_state, "n_lam": n_lam, "lam": np.zeros(n_lam), "n_nodes": NODES, "node": WHOLE, "weight": weight,
             **self._extent,
-            **_calls(system), "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
+            **_calls(system), "row": np.zeros((NODES + 1) * (n_state + n_lam)), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
         fill(self.table, EVENT_SEARCH, self._arrays)
 
@@ -72,6 +78,19 @@ class EventSearch:
         """Forget the last step before a restart of the integrator."""
         self._cells["ready"] = 0
         self.found[:] = 0
+
+    def follow_reactions(self, dynamics: Dynamics) -> None:
+        """Let reactions in event functions follow from accelerations: those of an integrator have no error test."""
+        if self.n_event_functions:
+            self._cells["dynamics"] = dynamics.table.ctypes.data
+
+    def watch_for(self, band: np.ndarray) -> None:
+        """Pass events where event functions leave a band about zero; at zero for those without, of value 0."""
+        if self.n_event_functions:
+            self.band[:] = band
+            self._breakpoints[self._first] = -band
+            self._breakpoints[self._first + 1] = np.where(band > 0, band, np.inf)
+            self._within[:, : self.n_event_functions] = 0.0  # unknown
 
     def resolve(self, duration: float) -> None:
         """Forget the last run; the periods of laws limit the steps of a run of this duration, s."""

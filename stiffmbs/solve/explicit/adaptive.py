@@ -15,7 +15,7 @@ from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
-from ..events.chattering import MASKING, Chattering
+from ..events.chattering import Chattering
 from ..events.discontinuity import Jumps
 from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
 from ..events.restart import restarted
@@ -34,7 +34,8 @@ class CheckParameters:
     """Parameters of the checks between compiled calls."""
 
     now_and_then: int = 8
-    """Events of which one is always checked, and part of the steps that stability must limit for an early decision."""
+    """Events of which one is always checked, as are those that follow within as many steps; and part of the steps that
+    stability must limit for an early decision."""
 
 
 CHECKS = tuned("explicit_checks", CheckParameters())
@@ -117,7 +118,7 @@ class AdaptiveRun:
         """Integrate from consistent values to `stop`, to an event, or until the run is left; return the last status."""
         work, advance, status = self.work, ADVANCE.call, PAUSED
         most = min(leaving.first, work.capacity) if leaving else work.capacity
-        if work.count("steps") - self._begun <= MASKING.few_steps or self._events % CHECKS.now_and_then == 0:
+        if work.count("steps") - self._begun <= CHECKS.now_and_then or self._events % CHECKS.now_and_then == 0:
             self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
         stable_step = self._stable_step

@@ -141,7 +141,7 @@ class Connection:
     - `y`, `yp`, `output` of shape (n,): memory of the vectors of the solution, of its derivative, and of interpolated
       or queried values.
     - `cells`: results of the loop (`stiffmbs.solve.ida.native.layouts.NATIVE_IDA`).
-    - `signs`, `masked` of shape (n_event_functions,): see `stiffmbs.solve.ida.native.ida_memory`.
+    - `signs` of shape (n_event_functions,): see `stiffmbs.solve.ida.native.ida_memory`.
     - `long_steps`: None for scenes without laws.
     - `error_sums`: accumulated errors of the run.
     - `words`, `table`: table for compiled code, and its address.
@@ -173,7 +173,7 @@ class Connection:
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = formula.memory(session)
         self.watch = EventSearch(state)
-        self.n_event_functions, self.masked = self.watch.n_event_functions, self.watch.masked
+        self.n_event_functions = self.watch.n_event_functions
         self.signs = np.zeros(self.n_event_functions)
         self.words = self._packed()
         self.table, self.cells = self.words.ctypes.data, self.words.view(NATIVE_IDA.cells)[0]
@@ -196,7 +196,7 @@ class Connection:
                 "state": self.state_table, "equations": self.equations_table,
                 **functions,
                 "matrix": self._assembled.values,
-                "n_event_functions": self.n_event_functions, "signs": self.signs, "masked": self.masked,
+                "n_event_functions": self.n_event_functions, "signs": self.signs, "band": self.watch.band,
                 "memory": self.memory, "repeat": self._formula.repeat, "y": self.y_vector, "yp": self.yp_vector,
                 "at_output": self.output_vector, "output": self.output,
                 "n_reported": len(self.reported), "reported": self.reported,
@@ -268,7 +268,8 @@ class Connection:
 
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
         """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""
-        if long_step < np.inf and not (self._formula.repeat or self.output_correction.ready):
+        needed = long_step < np.inf or bool(self._equations.system.forces_by_reactions)
+        if needed and not (self._formula.repeat or self.output_correction.ready):
             self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
         self.output_correction.limit(long_step, part, balanced)
 

@@ -134,10 +134,6 @@ class NativeIda(Connection):
         """Make the next call of `advance` or `steps` return after this number of steps at the latest."""
         self._look = max(steps, 1)
 
-    def leave_out(self, masked: np.ndarray) -> None:
-        """Ignore each event function for a number of steps from the next start."""
-        self.masked[:] = masked
-
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
         """Resolve the features of inputs by sufficiently short steps."""
         self.step_bound.follow(features)

@@ -72,6 +72,7 @@ class NativeEngine:
         self._rtol, self._settings = settings.rtol, settings
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
+        self.ida.watch.follow_reactions(dynamics)
         self._started = False
         self._order = StabilityLimitDetection(
             equations, settings, is_active=formula is None and settings.max_order is None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from unittest.mock import patch
 
 import numpy as np
@@ -133,18 +132,16 @@ def distance_from_the_end_of_an_input():
 
 
 def smallest_jump():
-    """Return the change over the larger move, in tenths of that over the smaller one, up to which there is a jump."""
+    """Return the change of a rate over the larger move, in tenths of that over the smaller one, up to which there is a jump."""
 
     def is_jump(tenths):
         change = {1e-6: 0.1 * tenths}
 
         def pair(size):
-            return [Record(acceleration=np.array([a])) for a in (0.0, change.get(size, 1.0))]
+            value, rate = np.array([size]), 0.5 * np.array([change.get(size, 1.0)])
+            return [Record(values=value, rates=-rate), Record(values=-value, rates=rate)]
 
-        states = Record(crossed=lambda: np.array([0]), sides=pair)
-        dynamics = Record(state=Record(unchanged=nullcontext))
-        with patch.object(discontinuity, "_Around", lambda *_: states):
-            return len(discontinuity.jumping(dynamics, 0.0, None, None)) > 0
+        return discontinuity._slides(Record(at_zero=lambda *_: Record(sides=pair)), 1.0, 0)
 
     return count_while(is_jump, range(1, 1000))
 

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from ....reading.units import si
 from ...element import Expr, Symbolic, sp
-from ...forces.friction import magnitude
+from ...forces.friction import length as of_vector
 from ..impact import Impact, Touch
 from ..marker import Marker
 from ..wrench import along_axes, seen_from
@@ -24,7 +24,7 @@ def above(x: Expr) -> Expr:
 
 def length(*parts: Expr) -> Expr:
     """Return the length of a vector, with a finite derivative at zero."""
-    return magnitude(*parts, tiny=LEAST_DISTANCE**2)
+    return of_vector(*parts, tiny=LEAST_DISTANCE**2)
 
 
 class SphereImpact(Impact):

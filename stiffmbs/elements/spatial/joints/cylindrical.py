@@ -30,4 +30,4 @@ class Cylindrical(SpatialJoint):
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:
-        return Loads(across=magnitude(*e.lam[:2]), bending=magnitude(*e.lam[2:]))
+        return Loads(across=magnitude(e, *e.lam[:2]), bending=magnitude(e, *e.lam[2:]))

@@ -32,4 +32,4 @@ class Prismatic(SpatialJoint):
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:
-        return Loads(across=magnitude(*e.lam[:2]), torsion=magnitude(e.lam[2]), bending=magnitude(*e.lam[3:]))
+        return Loads(across=magnitude(e, *e.lam[:2]), torsion=magnitude(e, e.lam[2]), bending=magnitude(e, *e.lam[3:]))

@@ -32,4 +32,6 @@ class Revolute(SpatialJoint):
         """Return the force normal to and along the axis, and the moment normal to it."""
         force, z = sp.Matrix(e.lam[:3]), e.j.z
         along = force.dot(z)
-        return Loads(across=magnitude(*(force - along * z)), thrust=magnitude(along), bending=magnitude(*e.lam[3:]))
+        return Loads(
+            across=magnitude(e, *(force - along * z)), thrust=magnitude(e, along), bending=magnitude(e, *e.lam[3:])
+        )

@@ -23,4 +23,4 @@ class Spherical(SpatialJoint):
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:
-        return Loads(across=magnitude(*e.lam))
+        return Loads(across=magnitude(e, *e.lam))

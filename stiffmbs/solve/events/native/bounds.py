@@ -90,11 +90,29 @@ def time_of_difference(w, h, t):
 
 
 @compiled
+def watch_for(w, k, band):
+    """Make event function k pass an event where it leaves a band about zero; at zero if `band` is 0."""
+    first = w.first_breakpoint[k]
+    w.band[k] = band
+    w.breakpoints[first] = -band
+    w.breakpoints[first + 1] = band if band > 0.0 else float("inf")
+    w.interval_low[k] = 0.0
+    w.interval_high[k] = 0.0  # unknown
+
+
+@compiled
+def note_farthest(w, values):
+    """Update the largest value of each event function since the start."""
+    for k in range(w.n_event_functions):
+        w.farthest[k] = max(w.farthest[k], abs(values[k]))
+
+
+@compiled
 def left_out(w, k):
-    """Return True if a function is ignored: it is masked, or not finite."""
+    """Return True if a function is ignored: it is not finite, or zero at the start."""
     if not isfinite(w.value_before[k] - w.value_after[k]):
         return True
-    return k < w.n_event_functions and (w.masked[k] > 0 or w.value_before[k] == 0.0)
+    return k < w.n_event_functions and w.band[k] == 0.0 and w.value_before[k] == 0.0
 
 
 @compiled

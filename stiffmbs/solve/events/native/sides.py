@@ -21,8 +21,8 @@ def _take(s, size, q, u, along_q, along_u):
 
 @compiled
 def _event_functions(s, m, t):
-    """Return the event functions at the current state, with its algebraic states if these have a solution."""
-    if m.n_algebraic > 0:
+    """Return the event functions at the current state, with its algebraic states and multipliers if these are found."""
+    if m.n_algebraic > 0 or m.switches_by_reactions:
         consistent_accelerations(s, m, t)
     return evaluate(s, SWITCH, t)
 

@@ -38,32 +38,36 @@ INFINITE = float("inf")
 def _load_at(w, s, place):
     """Load the state at a place from 0 to 1 within the step, by the interpolant of the nodes (barycentric formula)."""
     total = 0.0
-    for i in range(w.n_state):
-        w.row[w.n_nodes * w.n_state + i] = 0.0
-    state = shifted(w.row, w.n_nodes * w.n_state)
+    width = w.n_state + w.n_lam
+    for i in range(width):
+        w.row[w.n_nodes * width + i] = 0.0
+    state = shifted(w.row, w.n_nodes * width)
     for node in range(w.n_nodes):
         apart = place - w.node[node]
-        row = shifted(w.row, node * w.n_state)
+        row = shifted(w.row, node * width)
         if apart == 0.0:
-            copied(state, row, w.n_state)
+            copied(state, row, width)
             total = 1.0
             break
         factor = w.weight[node] / apart
         total += factor
-        for i in range(w.n_state):
+        for i in range(width):
             state[i] += factor * row[i]
     for i in range(s.n_q):
         s.q[i] = state[i] / total
     for i in range(s.n_u):
         s.u[i] = state[s.n_q + i] / total
+    for i in range(w.n_lam):
+        s.lam[i] = state[w.n_state + i] / total
 
 
 @compiled
 def keep_row(w, s, node):
     """Store the current state as that of a node."""
-    row = shifted(w.row, node * w.n_state)
+    row = shifted(w.row, node * (w.n_state + w.n_lam))
     copied(row, s.q, s.n_q)
     copied(shifted(row, s.n_q), s.u, s.n_u)
+    copied(shifted(row, w.n_state), s.lam, w.n_lam)
 
 
 @compiled
@@ -233,7 +237,7 @@ def first_event_or_change(w, s, begun, h):
 @compiled
 def _longest_part(w):
     """Return the longest part, 0.5 or less if a body rotates far: rates at its ends must represent the rotation."""
-    last = shifted(w.row, (w.n_nodes - 1) * w.n_state)
+    last = shifted(w.row, (w.n_nodes - 1) * (w.n_state + w.n_lam))
     turned = 0.0
     for k in range(w.n_angles):
         turned = max(turned, abs(last[w.angle[k]] - w.row[w.angle[k]]))

@@ -38,10 +38,10 @@ RETRIED, NO_EVENT, TURNED_TOO_FAR = range(1, 4)
 
 @compiled
 def _load(x, s, y, t):
-    """Load a state for the kernels, with its algebraic states."""
+    """Load a state for the kernels, with its algebraic states and the multipliers that event functions need."""
     load_state(s, y)
     m = dynamics_view(x.dynamics)
-    if m.n_algebraic > 0:
+    if m.n_algebraic > 0 or m.switches_by_reactions:
         to_accelerations(s, m, t)
 
 

@@ -5,7 +5,7 @@ from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
-from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, evaluate_some, load
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate_some, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.solve.events.native.bounds import (
@@ -14,6 +14,7 @@ from stiffmbs.solve.events.native.bounds import (
     event_search_view,
     interval,
     longest_by_turns,
+    note_farthest,
     note_unresolved,
     noted_rates,
     overlap,
@@ -21,6 +22,7 @@ from stiffmbs.solve.events.native.bounds import (
     suspicious,
     time_of_difference,
     turned_arguments,
+    watch_for,
 )
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
@@ -29,7 +31,7 @@ from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_ST
 from stiffmbs.solve.events.native.within_step import first_event, first_event_or_change, keep_row
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.layouts import EVENT, NO_EVENT, PASSED_INTERVAL
-from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
+from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight, switches, take_reactions
 
 UNSEEN = float("inf")
 """Placeholder for no time at which event functions are known."""
@@ -48,7 +50,7 @@ def _note_sides(c, w, s, toward):
     ahead = max(EPSILON * (toward - c.returned), INDISTINCT * abs(c.returned))
     while ahead <= most:
         go_ahead(c, s, ahead)
-        if note_sides(w.a, evaluate(s, SWITCH, c.returned + ahead), w.m, w.m2, count) == 0:
+        if note_sides(w.a, switches(w, s, c.returned + ahead), w.m, w.m2, count) == 0:
             break
         ahead *= SEARCH.longer
     for k in range(count):
@@ -69,9 +71,13 @@ def look_at_start(toward, stop, ida):
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
         c.seen = UNSEEN
         keep_row(w, s, 0)
-        copied(w.value_before, evaluate(s, SWITCH, c.returned), w.n)
+        copied(w.value_before, switches(w, s, c.returned), w.n)
+        for k in range(w.n_event_functions):
+            w.farthest[k] = 0.0
+            if abs(w.value_before[k]) > w.band[k] > 0.0:
+                watch_for(w, k, 0.0)
         go_straight(c, s, ahead)
-        noted_rates(w.rate_before, w.value_before, evaluate(s, SWITCH, c.returned + ahead), ahead, w.n)
+        noted_rates(w.rate_before, w.value_before, switches(w, s, c.returned + ahead), ahead, w.n)
         if at_zero(w.value_before, w.n_event_functions) > 0:
             _note_sides(c, w, s, toward)
         if w.n_turns > 0:
@@ -91,6 +97,7 @@ def _go_on(c, w, s):
     note_outside(w, c.returned)
     keep_row(w, s, 0)
     w.begun = c.returned
+    note_farthest(w, w.value_after)
     shift_ends(w)
     w.target = float("inf")
 
@@ -102,7 +109,7 @@ def _look_ahead(c, w, s):
         return
     ahead = min(w.longest, LARGEST_GROWTH * c.size)
     go_ahead(c, s, ahead)
-    copied(w.value_after, evaluate(s, SWITCH, c.returned + ahead), w.n)
+    copied(w.value_after, switches(w, s, c.returned + ahead), w.n)
     if note_near(w, ahead, w.row, s.q):
         event = near_an_event(w, ahead, w.row, s.q)
         _look_at_middle(c, w, s, ahead)
@@ -117,6 +124,7 @@ def _look_ahead(c, w, s):
 def _look_at_middle(c, w, s, ahead):
     """Evaluate functions near breakpoints at a place within the extrapolation by accelerations."""
     go_ahead(c, s, LOOKED_AT * ahead)
+    take_reactions(w, s, c.returned + LOOKED_AT * ahead)
     copied(w.m, evaluate_some(s, SWITCH, c.returned + LOOKED_AT * ahead, w.near), w.n)
 
 
@@ -174,12 +182,13 @@ def _aim(c, w, s, ahead):
     """Make the next step end just before an event of the motion extrapolated by accelerations."""
     t, back = c.returned, -time_of_difference(w, ahead, c.returned)
     go_ahead(c, s, ahead + back)
-    noted_rates(w.rate_after, w.value_after, evaluate_some(s, SWITCH, t + ahead + back, w.near), back, w.n)
+    noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, t + ahead + back), back, w.n)
     note_mean_rates(w, ahead)
     if not suspicious(w, ahead, w.row, s.q):
         return
     for node in range(w.n_nodes):
         go_ahead(c, s, ahead * w.node[node])
+        take_reactions(w, s, t + ahead * w.node[node])
         keep_row(w, s, node)
     place = first_event_or_change(w, s, t, ahead)
     for k in range(w.n):
@@ -193,7 +202,8 @@ def _aim(c, w, s, ahead):
 def _evaluate_near(w, s, t):
     """Evaluate the functions that may change within the step; all if arguments of sines limit the next step."""
     if w.n_turns > 0:
-        return evaluate(s, SWITCH, t)
+        return switches(w, s, t)
+    take_reactions(w, s, t)
     return evaluate_some(s, SWITCH, t, w.near)
 
 
@@ -224,7 +234,7 @@ def look_within(ida):
     e = equations_view(c.equations)
     if c.seen != c.returned:
         load(s, e, array_of(c, c.y), array_of(c, c.yp))
-        evaluate(s, SWITCH, c.returned)
+        switches(w, s, c.returned)
     c.seen = UNSEEN
     copied(w.value_after, floats(s.values[SWITCH]), w.n)
     nearby = note_near(w, h, w.row, s.q)
@@ -241,12 +251,14 @@ def look_within(ida):
         return int32(NO_EVENT)
     load(s, e, c.output, array_of(c, c.yp))
     copied(w.m, _evaluate_near(w, s, place), w.n)
+    note_farthest(w, w.m)
     load(s, e, array_of(c, c.y), array_of(c, c.yp))
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):
             if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
                 return int32(NO_EVENT)
             load(s, e, c.output, array_of(c, c.yp))
+            take_reactions(w, s, begun + w.node[node] * h)
             keep_row(w, s, node)
         event = begun + h * first_event(w, s, begun, h)
         if begun + INDISTINCT * abs(begun) < event < c.returned:

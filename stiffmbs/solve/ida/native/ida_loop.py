@@ -30,6 +30,7 @@ from stiffmbs.solve.ida.native.output_correction import (
     output_correction_view,
 )
 from stiffmbs.solve.ida.native.parameters import LOOP
+from stiffmbs.solve.ida.native.passage import switches
 
 STALLED: Final = -101
 """Flag for steps that have shrunk to the rounding of the time; none of ida.h."""
@@ -82,9 +83,9 @@ def event_functions(t, yy, yp, g, user_data):
     c = native_ida_view(user_data)
     s = state_view(c.state)
     load(s, equations_view(c.equations), array_of(c, yy), array_of(c, yp))
-    values = evaluate(s, SWITCH, t)
+    values = switches(event_search_view(c.watch), s, t)
     c.seen = t
-    watched(values, c.signs, c.masked, g, c.n_event_functions)
+    watched(values, c.signs, c.band, g, c.n_event_functions)
     return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)
 
 
@@ -212,7 +213,7 @@ def _before_event(c, begun):
         for k in range(w.n):
             if c.within and w.found[k]:
                 changed += interval(w, k, values[k]) != interval(w, k, w.value_before[k])
-            elif k < c.n_event_functions and w.masked[k] == 0:
+            elif k < c.n_event_functions and abs(w.value_before[k]) > w.band[k]:
                 changed += w.value_before[k] * values[k] < 0.0
     return c.returned - ahead
 

@@ -14,14 +14,13 @@ def array_of(c, vector):
 
 
 @compiled
-def watched(values, signs, masked, g, count):
-    """Fill g; an event function is ignored in the calls (steps of IDA) while it is masked, and then while it is zero.
+def watched(values, signs, band, g, count):
+    """Fill g; an event function is ignored while it is zero, and one with a band until it leaves it.
 
     `signs` holds the first nonzero sign of each event function, 0 before.
     """
     for k in range(count):
-        if masked[k] > 0:
-            masked[k] -= 1
-        elif signs[k] == 0.0 and values[k] != 0.0:
-            signs[k] = 1.0 if values[k] > 0.0 else -1.0
-        g[k] = signs[k] * values[k] if signs[k] != 0.0 else 1.0
+        value = band[k] - abs(values[k]) if band[k] > 0.0 else values[k]
+        if signs[k] == 0.0 and value != 0.0:
+            signs[k] = 1.0 if value > 0.0 else -1.0
+        g[k] = signs[k] * value if signs[k] != 0.0 else 1.0

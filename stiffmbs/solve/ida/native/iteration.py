@@ -22,7 +22,7 @@ from stiffmbs.compile.machine.native.access import address_of, compiled, floats,
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.solve.error_control.native.parameters import NEWTON
 from stiffmbs.solve.ida.native.layouts import ITERATION
-from stiffmbs.solve.ida.native.output_correction import output_correction_view, solved
+from stiffmbs.solve.ida.native.output_correction import output_correction_view, solved, solved_across_kinks
 
 SETTLED: Final = 0
 GO_ON: Final = 901
@@ -101,14 +101,18 @@ def _later(c, size, enough):
 
 
 @compiled
-def _solved_otherwise(c, total):
-    """Return True if corrections by matrices of shorter steps solve the equations of a long step."""
+def _solved_otherwise(c, total, enough):
+    """Return True if other matrices solve the equations: of the iterates, beyond a kink, or of shorter steps in a long one."""
     b = output_correction_view(c.output_correction)
-    if c.age > 0 or b.interpolate == 0 or b.long * c.cj >= 1.0:
+    if c.age > 0 or b.interpolate == 0 or not (c.by_reactions or b.long * c.cj < 1.0):
         return False
     call_int(c.time_of, (c.memory, address_of(c.t)))
     corrections = floats(call_address(c.array_of, total))
-    return solved(c.output_correction, c.state, c.equations, c.t, c.cj, corrections)
+    if c.by_reactions and solved_across_kinks(
+        c.output_correction, c.state, c.equations, c.t, c.cj, corrections, enough
+    ):
+        return True
+    return b.long * c.cj < 1.0 and solved(c.output_correction, c.state, c.equations, c.t, c.cj, corrections)
 
 
 def converged(solver, total, correction, enough, weights, table):
@@ -120,7 +124,7 @@ def converged(solver, total, correction, enough, weights, table):
         call_int(c.cj_of, (c.memory, address_of(c.cj)))
     allowed_residual = max(enough, min(NEWTON.loosest, enough * c.cj / NEWTON.long_steps))
     verdict = _first(c, size, allowed_residual) if c.done == 0 else _later(c, size, allowed_residual)
-    if verdict == GIVE_UP and _solved_otherwise(c, total):
+    if verdict == GIVE_UP and _solved_otherwise(c, total, allowed_residual):
         verdict = SETTLED
         c.slow = 1
     if verdict == GIVE_UP:

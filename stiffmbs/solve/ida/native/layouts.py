@@ -7,7 +7,7 @@ NO_EVENT, EVENT, PASSED_INTERVAL = range(3)
 
 NATIVE_IDA = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT,
-    "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
+    "n_event_functions": INT, "signs": FLOATS, "band": FLOATS,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
     "stop_at": INT, "next_step_of": INT, "repeat": INT, "step_bound": INTS,

@@ -248,15 +248,50 @@ def solved(output_correction, state, equations, t, cj, total):
     b = output_correction_view(output_correction)
     s = state_view(state)
     e = equations_view(equations)
-    b.current = cj
-    b.predicts = 1
     converges = False
-    if _placed(b, t) and call_int(b.weights, (b.memory, b.at_weight)) >= OK:
+    if _predicted(b, t, cj):
         _look(b, s, e, t)
         converges = _converged(b, s, e, t)
-        copied(total, b.y, e.n)
-        _placed(b, t)
-        for k in range(e.n):
-            total[k] -= b.y[k]
-    b.predicts = 0
+    _take_total(b, e, t, total)
     return converges
+
+
+@compiled
+def solved_across_kinks(output_correction, state, equations, t, cj, total, enough):
+    """Compute the same by Newton's iteration with a matrix at each iterate, up to a correction of `enough` tolerances.
+
+    A matrix of the other side of a kink may diverge. The equations are linear on each side, up to the change in a step,
+    so that the last correction leaves far less than its size.
+    """
+    b = output_correction_view(output_correction)
+    s = state_view(state)
+    e = equations_view(equations)
+    converges = False
+    if _predicted(b, t, cj):
+        for _ in range(POLISHING.most_corrections):
+            _look(b, s, e, t)
+            if not _factored(b, s, e, t, cj):
+                break
+            if _corrected(b, e) <= enough:
+                converges = True
+                break
+    _take_total(b, e, t, total)
+    return converges
+
+
+@compiled
+def _predicted(b, t, cj):
+    """Load the prediction of the current step; return True if that and the tolerances are known."""
+    b.current = cj
+    b.predicts = 1
+    return _placed(b, t) and call_int(b.weights, (b.memory, b.at_weight)) >= OK
+
+
+@compiled
+def _take_total(b, e, t, total):
+    """Store the corrections from the prediction of the current step."""
+    copied(total, b.y, e.n)
+    _placed(b, t)
+    for k in range(e.n):
+        total[k] -= b.y[k]
+    b.predicts = 0

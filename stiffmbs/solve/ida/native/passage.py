@@ -5,13 +5,36 @@ interval of another law, the step is accepted without the forces in between.  A 
 whose stages may all be after such an interval.
 """
 
-from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, shifted
+from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, ints, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate, load
+from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
+from stiffmbs.dynamics.native.consistent import consistent_accelerations
+from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import interval
 from stiffmbs.solve.events.native.parameters import NEXT_STEP, SEARCH
 from stiffmbs.solve.ida.native.ida_memory import array_of
+
+
+@compiled
+def take_reactions(w, s, t):
+    """Compute the multipliers that event functions need from accelerations at the current state.
+
+    Those of the integrator have no error test, and contain the remainder of Newton's iteration divided by the step.
+    """
+    if w.n_lam > 0:
+        m = dynamics_view(ints(w.dynamics))
+        copied(w.lam, s.lam, w.n_lam)
+        if consistent_accelerations(state_view(m.state), m, t) < 0:
+            copied(s.lam, w.lam, w.n_lam)
+
+
+@compiled
+def switches(w, s, t):
+    """Return the event functions at the current state."""
+    take_reactions(w, s, t)
+    return evaluate(s, SWITCH, t)
 
 
 @compiled
@@ -68,7 +91,7 @@ def _passage(c, w, s, toward, stop, count):
 def _another_side(c, w, s, ahead, count):
     """Return True if one of the first `count` functions changes its sign in a time, or its law the interval."""
     go_ahead(c, s, ahead)
-    values = evaluate(s, SWITCH, c.returned + ahead)
+    values = switches(w, s, c.returned + ahead)
     others = 0
     for k in range(count):
         others += interval(w, k, values[k]) != interval(w, k, w.value_before[k])

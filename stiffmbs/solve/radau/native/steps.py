@@ -283,6 +283,7 @@ def _begun(x):
     _choose_unknowns(x)
     x.rejected = 0
     x.failures = 0
+    x.ahead = 0
     x.renewed = 1 if x.h_factored == 0.0 or x.rate_kept == 0 else 0
     return min(x.h, x.longest) if x.longest > 0.0 else x.h
 
@@ -292,7 +293,12 @@ def _has_matrices(x, c, h):
     """Provide factored matrices for a step of length h; return False if one is singular."""
     if x.renewed == 0 and h == x.h_factored and c.stages == x.stages_factored:
         return True
-    if not factored(x, c, h, x.t, x.y, x.yp, x.renewed):
+    copied(x.y_stage, x.y, x.n)
+    if x.ahead:
+        last = shifted(x.z, (c.stages - 1) * x.n_all)
+        for k in range(x.n):
+            x.y_stage[k] += last[k]
+    if not factored(x, c, h, x.t, x.y_stage, x.yp, x.renewed):
         x.renewed = 1
         return False
     if x.renewed:
@@ -303,11 +309,19 @@ def _has_matrices(x, c, h):
 
 @compiled
 def _after_failed_iteration(x, outcome, h):
-    """Return the length of the next attempt: the same with a new matrix, if the last one was old, or a shorter one."""
+    """Return the length of the next attempt: the same with a new matrix, if the last one was old, or a shorter one.
+
+    The matrix at the beginning of a step that ends beyond a kink may diverge; that of the predicted end then converges.
+    """
     x.newton_failures += 1
     if not x.current:
         x.renewed = 1
         return h * x.suggested if outcome == SLOW else h
+    if x.n_functions > 0 and (outcome == DIVERGED or x.ahead):
+        x.renewed = 1
+        x.ahead = 1 - x.ahead
+        if x.ahead:
+            return h
     x.step_failures += 1
     x.rejected = 1
     return h * x.suggested
@@ -389,10 +403,10 @@ def step(x):
         if not h > SMALLEST * abs(x.t):
             return ERROR_TEST_FAILED if x.rejected else NO_CONVERGENCE
         x.failures += 1
+        extrapolated(x, c, h)
         if not _has_matrices(x, c, h):
             h *= x.after_failure
             continue
-        extrapolated(x, c, h)
         outcome = iterated(x, c, x.t, h)
         if outcome != CONVERGED:
             h = _after_failed_iteration(x, outcome, h)
