@@ -27,6 +27,7 @@ SUBSYSTEMS = {
     "divergence": "solve.events.refusals:DIVERGENCE",
     "elimination": "dynamics.native.parameters:ELIMINATION",
     "equilibria": "equilibria.parameters:EQUILIBRIA",
+    "error_estimate": "error_estimate.parameters:ESTIMATE",
     "error_filter": "solve.error_control.native.parameters:FILTER",
     "error_test": "solve.error_control.error_test:PLANAR",
     "error_test_in_space": "solve.error_control.error_test:SPATIAL",

@@ -33,6 +33,7 @@ from ..solve.settings import settings_notes, traits_of
 from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
+from .errors import assessed, recording
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
 from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
@@ -87,7 +88,7 @@ def run(
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
         data = with_inputs(data, inputs, settings_of(data, settings, changes))
-    return solved(prepare(data, settings, start_from, **changes), watch)
+    return solved(recording(prepare(data, settings, start_from, **changes)), watch)
 
 
 @dataclass(frozen=True)
@@ -189,7 +190,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     if job.on_constraints:
         statistics["drift"] = float(np.fmax.reduce(rows.drift))
     requested = units(job.data.outputs()) if job.data.requests else {}
-    return Solution(
+    solution = Solution(
         name=job.data.name,
         time=rows.t,
         channels=found.channels,
@@ -205,6 +206,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
         presolve=structure.of_presolve,
         turns=turns_of(job.dynamics.system, rows.q),
     )
+    return assessed(job, trajectory, solution)
 
 
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:

@@ -50,6 +50,7 @@ class Settings(TypedDict, total=False):
     stages: Literal[3, 5, 7, "auto"]
     presolve: bool
     drop_first: Sequence[str]
+    errors: bool | None
     tuning: Mapping[str, Mapping[str, Any]]
 
 
@@ -104,6 +105,10 @@ class RunSettings(Described):
     )
     drop_first: tuple[str, ...] = Field(
         (), description="joints whose redundant equations are dropped first, the last name first"
+    )
+    errors: bool | None = Field(
+        None,
+        description="whether the errors of all channels are estimated after the run; by default for runs of little work",
     )
     tuning: dict[str, dict[str, Any]] = Field(
         {}, description="changed parameters of solvers by subsystem and name (`stiffmbs.tuning`), for experts"

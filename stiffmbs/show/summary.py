@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict
 from functools import partial
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
@@ -106,15 +107,16 @@ def as_json(scene: str, solution: Solution) -> str:
             "balance": solution.balance.as_dict(),
             "not_unique": list(solution.not_unique),
             **({"verification": list(solution.verification)} if solution.verification else {}),
+            **({"errors": asdict(solution.estimate)} if solution.estimate else {}),
             "channels": _with_errors(solution),
         }
     )
 
 
 def _with_errors(solution: Solution) -> dict[str, dict[str, float]]:
-    """Return the ranges of all channels, with errors for a verified run; nan if unknown."""
+    """Return the ranges of all channels, with errors for a run whose errors are known; nan if unknown."""
     ranges = channel_ranges(solution)
-    if solution.verification:
+    if solution.verification or solution.errors:
         for name, cell in ranges.items():
             bar = solution.errors.get(name, UNKNOWN)
             cell |= {"error": bar.over_time, "min_error": bar.least, "max_error": bar.greatest}
@@ -189,6 +191,8 @@ def _print(scene: str, solution: Solution, console: Console | PlainConsole, all:
     line("constraints", f"position {position:.2g} m, velocity {velocity:.2g} m/s")
     for label, text in solver_lines(solution.solver):
         line(label, text)
+    if solution.estimate:
+        line("errors", solution.estimate.sentence)
     for label, sentences in (("presolve", solution.presolve), ("verified", solution.verification)):
         for sentence in sentences:
             line(label, sentence)

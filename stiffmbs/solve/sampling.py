@@ -170,7 +170,7 @@ def _up_to_row(part: Trajectory, row: int) -> Trajectory:
     rows = slice(row + 1)
     return replace(
         part, t=part.t[rows], q=part.q[rows], u=part.u[rows], outcome=Outcome.DONE, message=Outcome.DONE.value,
-        history=History(part.history.t[taken], order), long_steps=(),
+        history=History(part.history.t[taken], order), long_steps=(), recorded=(),
     )  # fmt: skip
 
 

@@ -31,8 +31,9 @@ def joined(segments: Sequence[Segment]) -> Trajectory:
     displaced = np.sum(known, axis=0) if known else None
     statistics, history = _summed(parts, counted), _history(counted)
     return replace(
-        parts[-1], t=t, q=q, u=u, statistics=statistics, history=history, long_steps=long_steps, displaced=displaced
-    )
+        parts[-1], t=t, q=q, u=u, statistics=statistics, history=history, long_steps=long_steps, displaced=displaced,
+        recorded=(),
+    )  # fmt: skip
 
 
 def _last_of_each_kind(segments: Sequence[Segment]) -> list[Trajectory]:

@@ -166,6 +166,7 @@ def _together(subsystems: Sequence[Subsystem], found: Sequence[Trajectory], star
         solver=", ".join(dict.fromkeys(each.solver for each in found if each.solver)),
         long_steps=tuple(steps for each in found for steps in each.long_steps),
         displaced=displaced,
+        recorded=tuple(pieces for each in found for pieces in each.recorded) if all(each.recorded for each in found) else (),
     )  # fmt: skip
 
 

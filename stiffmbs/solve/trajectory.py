@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ..dynamics.dynamics import Dynamics
     from ..dynamics.initial import InitialValues
     from .events.long_steps import LongSteps
+    from .recorded_steps import Piece
 
 ProgressCallback = Callable[[float], None]
 SAME_TIME = 1e-9
@@ -66,13 +67,15 @@ class History:
 class Grid:
     """Ends of the run, and output times (ends included) or None for the solver's own steps.
 
-    Solvers with variable steps restart at `stops`, as at input breakpoints.
+    Solvers with variable steps restart at `stops`, as at input breakpoints. `recorded`: steps times unknowns up to which
+    implicit solvers record their steps for an estimate of the errors.
     """
 
     start: float
     end: float
     times: np.ndarray | None
     stops: np.ndarray = field(default_factory=lambda: np.empty(0))
+    recorded: float = 0.0
 
     def with_stops(self, breakpoints: np.ndarray) -> np.ndarray:
         """Return the restart times: input breakpoints, and the stops within the run."""
@@ -111,6 +114,8 @@ class Trajectory:
     displaced : ndarray, shape (n_u,), or None
         Estimated position errors at the end, as displacements along the velocities, m and rad
         (`stiffmbs.solve.error_control.accumulated_errors`); None if unknown.
+    recorded : tuple of tuples of Piece
+        Recorded steps of each mechanism that was solved separately; empty if they were not recorded.
     """
 
     t: np.ndarray
@@ -124,6 +129,7 @@ class Trajectory:
     solver: str = ""
     long_steps: tuple[LongSteps, ...] = ()
     displaced: np.ndarray | None = None
+    recorded: tuple[tuple[Piece, ...], ...] = ()
 
     @property
     def step_times(self) -> np.ndarray:

@@ -18,9 +18,11 @@ from ..error_control.newton import Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
 from ..events.restart import just_after
 from ..linear_solvers.fixed_order import FixedOrder
+from ..radau.collocation import radau
+from ..recorded_steps import Piece, StepRecorder
 from ..trajectory import History
 from .connection import BDF, Formula
-from .ida import NativeIda
+from .ida import AT_THE_END, NativeIda
 from .native.parameters import LOOP
 from .statistics import Status
 
@@ -28,6 +30,9 @@ if TYPE_CHECKING:
     from ...dynamics.initial import InitialValues
     from .starting.after_event import Begun, EventRestarts
     from .starting.starts import Starts
+
+MOST_STAGES = 7
+"""Stages of the Radau method by whose nodes the points within recorded steps are spaced."""
 
 
 class Reached(NamedTuple):
@@ -69,6 +74,7 @@ class NativeEngine:
             renewal=control.renewal,
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
+        self._by_radau = formula is not None
         self._rtol = settings.rtol
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
@@ -81,6 +87,8 @@ class NativeEngine:
     def forget(self) -> None:
         """Discard what earlier runs have left, so that results do not depend on them."""
         self.ida.forget()
+        self.ida.keep_steps(False)
+        self.recorder: StepRecorder | None = None
         self._order.forget()
         self._newton, self._stiffness = 0.0, Stiffness(0.0, 0.0)
         self._counted = {"steps": 0, "convergence_failures": 0}
@@ -96,6 +104,33 @@ class NativeEngine:
         self.ida.error_norm.filter_always(self._order.held)
         self._follow_stiffness(t)
         self.ida.begin(t, y, yp, highest_order=self._order.order)
+        self._record_start(t)
+
+    def record_steps(self, most: float) -> None:
+        """Record the steps of the next run, at most `most` steps times unknowns, for an estimate of its errors."""
+        places = radau(MOST_STAGES).nodes[:-1] if self._by_radau else AT_THE_END
+        self.ida.keep_steps(True, places)
+        self.recorder = StepRecorder(most, 1 + len(places))
+
+    def recorded(self) -> tuple[Piece, ...]:
+        """Return the recorded steps, none if there were too many, and stop recording."""
+        self.ida.keep_steps(False)
+        recorder, self.recorder = self.recorder, None
+        return recorder.pieces(self._equations) if recorder else ()
+
+    def _record_start(self, t: float) -> None:
+        if self.recorder:
+            row = self.present()
+            row[0] = t
+            self.recorder.begin(row)
+
+    def _record(self, fired: tuple[int, ...]) -> None:
+        """Move the steps since the last return of IDA to the record."""
+        if self.recorder:
+            self.recorder.extend(self.ida.kept_steps(), fired)
+            if self.recorder.full:
+                self.ida.keep_steps(False)
+                self.recorder = None
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
         """Start by one compiled call, from the second start on; return False where it does not apply."""
@@ -122,6 +157,7 @@ class NativeEngine:
         self.ida.begun_at(t)
         self._stiffness, self._newton = starts.found()
         self._follow_stiffness(t)
+        self._record_start(t)
 
     def _follow_stiffness(self, t: float) -> None:
         """Set the correction of states within long steps, and the monitor of vibrations, by the stiffness."""
@@ -209,6 +245,7 @@ class NativeEngine:
     def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status, passed: int = 0) -> Reached:
         failure = f"{self.ida.failure()}{self._worst()}" if status is Status.FAILED else ""
         fired = tuple(self.ida.roots().nonzero()[0].tolist()) if status is Status.ROOT else ()
+        self._record(fired)
         return Reached(times, rows, self.ida.t, self.ida.y, fired, failure, passed)
 
     def _worst(self) -> str:

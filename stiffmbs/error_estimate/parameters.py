@@ -1,0 +1,37 @@
+"""Parameters of the estimate of the error of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..tuning import tuned
+
+
+@dataclass(frozen=True)
+class EstimateParameters:
+    """Parameters of the estimate of the error of a run.
+
+    Source: ``python -m tests.stress self_assessment``.
+    """
+
+    work: float = 1.5e5
+    """Steps times unknowns up to which every run estimates its error, about 0.2 s."""
+    difference: float = 1e-7
+    """Displacements by which the equations are linearised, relative to the size of the mechanism."""
+    points: int = 6
+    """Accepted states on the polynomial from which the defect of a step of bdf follows."""
+    uneven: float = 10.0
+    """Ratio of the steps on that polynomial above which the formula of the step gives its defect."""
+    block: int = 8
+    """Steps of bdf in a block of collocation, at most."""
+    off_node: float = 0.13
+    """Largest distance of the end of a step from a Radau node, in lengths of the block."""
+    lost: float = 0.05
+    """Error of a pose, rad or relative to the size of the mechanism, above which the linear estimate is lost."""
+    tolerances: float = 100.0
+    """Error of a position relative to its size, in relative tolerances, above which a note appears."""
+    large: float = 0.01
+    """Error of any channel relative to its size above which a note appears."""
+
+
+ESTIMATE = tuned("error_estimate", EstimateParameters())
