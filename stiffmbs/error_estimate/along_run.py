@@ -11,10 +11,11 @@ from ..dynamics.dynamics import Dynamics
 from ..solve.recorded_steps import Piece
 from .defects import Rates, of_bdf, of_radau, slope_weights
 from .evaluated import Evaluated, evaluated
-from .linearised import linearised
+from .linearised import Linearised, linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, displaced
-from .transport import blocks_of_bdf, blocks_of_radau, transported
+from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
+from .vibrations import are_resolved, between_nodes, step_by_step
 
 
 @dataclass(frozen=True)
@@ -36,42 +37,74 @@ class StateErrors:
     at_event: np.ndarray
 
 
+@dataclass(frozen=True)
+class _Prepared:
+    """Piece with its evaluated states, the defects of its steps, their blocks and the rows of the nodes of these."""
+
+    piece: Piece
+    states: Evaluated
+    defects: np.ndarray
+    blocks: list[Block]
+    rows: np.ndarray
+
+
 def state_errors(dynamics: Dynamics, pieces: Sequence[Piece]) -> StateErrors:
     """Return the errors of the states of a run; raise a SolverError if a state has no solution."""
     starts = np.append(0, np.cumsum([len(piece.t) for piece in pieces]))
     t, q, u = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("t", "q", "u"))
     states = evaluated(dynamics, t, q, u)
-    prepared = []
-    for k, (piece, first) in enumerate(zip(pieces, starts, strict=False)):
-        own = states.at(slice(first, first + len(piece.t)))
-        rates = Rates(dynamics.system, own)
-        if piece.points > 1:
-            blocks = blocks_of_radau(piece.t, of_radau(piece, rates))
-        else:
-            opened = k > 0 and bool(pieces[k - 1].fired)
-            blocks = blocks_of_bdf(piece.t, of_bdf(piece, rates, opened))
-        prepared.append((own, blocks, np.unique(np.concatenate([block.nodes for block in blocks]))))
-    nodes = np.concatenate([first + own for (_, _, own), first in zip(prepared, starts, strict=False)])
+    prepared = [
+        _prepared(dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired))
+        for k, (piece, first) in enumerate(zip(pieces, starts, strict=False))
+    ]
+    nodes = np.concatenate([first + each.rows for each, first in zip(prepared, starts, strict=False)])
     space = linearised(dynamics, states.at(_within_the_law(nodes, pieces, starts)))
-    errors = np.zeros((len(nodes), space.basis.shape[1]))
-    error, done = np.zeros(space.basis.shape[1]), 0
-    for k, (piece, (own, blocks, rows)) in enumerate(zip(pieces, prepared, strict=True)):
-        place = np.full(len(piece.t), -1)
-        place[rows] = done + np.arange(len(rows))
+    found, rows, done = [np.zeros((0, space.basis.shape[1]))], [], 0
+    error = np.zeros(space.basis.shape[1])
+    for k, each in enumerate(prepared):
+        own, done = slice(done, done + len(each.rows)), done + len(each.rows)
         if k:
-            before = prepared[k - 1][0]
-            last = len(before.t) - 1
-            error = after_restart(
-                dynamics, before.at(slice(last, None)), own.at(slice(0, 1)), pieces[k - 1].fired, error, _last_rates(before)
-            )  # fmt: skip
-        found = transported(blocks, space, place, error)
-        chosen = slice(done, done + len(rows))
-        errors[chosen] = found[chosen]
-        error, done = errors[done + len(rows) - 1], done + len(rows)
-    at = states.at(nodes)
+            error = _restarted(dynamics, prepared[k - 1], each, error)
+        errors, of_errors = _transported(each, space.at(own), error)
+        found.append(errors)
+        rows.append(starts[k] + of_errors)
+        error = errors[-1]
+    errors, nodes = np.concatenate(found), np.concatenate(rows)
     fired = np.array([bool(piece.fired) for piece in pieces])
-    events = np.concatenate([starts[1:][fired] - 1, starts[1:][fired]])
-    return StateErrors(t[nodes], q[nodes], u[nodes], *displaced(dynamics, at, -errors), errors, np.isin(nodes, events))
+    at_event = np.zeros(len(t) + 1, dtype=bool)
+    at_event[np.concatenate([starts[1:][fired] - 1, starts[1:][fired]])] = True
+    better = displaced(dynamics, states.at(nodes), -errors)
+    return StateErrors(t[nodes], q[nodes], u[nodes], *better, errors, at_event[nodes])
+
+
+def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool) -> _Prepared:
+    rates = Rates(dynamics.system, states)
+    if piece.points > 1:
+        defects = of_radau(piece, rates)
+        blocks = blocks_of_radau(piece.t, defects)
+    else:
+        defects = of_bdf(piece, rates, opened)
+        blocks = blocks_of_bdf(piece.t, defects)
+    is_node = np.zeros(len(piece.t), dtype=bool)
+    for block in blocks:
+        is_node[block.nodes] = True
+    return _Prepared(piece, states, defects, blocks, np.flatnonzero(is_node))
+
+
+def _transported(each: _Prepared, space: Linearised, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the errors at rows of a piece, from that at its start, and these rows."""
+    t, rows = each.piece.t, each.rows
+    few = len(t) * len(error) ** 3 < ESTIMATE.operations
+    if each.piece.points == 1 and few and not are_resolved(space, t[rows], np.diff(t, prepend=2 * t[0] - t[1])[rows]):
+        return step_by_step(t, each.defects, space, rows, error), np.arange(len(t))
+    place = np.full(len(t), -1)
+    place[rows] = np.arange(len(rows))
+    return transported(each.blocks, space, place, error), rows
+
+
+def _restarted(dynamics: Dynamics, before: _Prepared, after: _Prepared, error: np.ndarray) -> np.ndarray:
+    last, first = before.states.at(slice(len(before.states.t) - 1, None)), after.states.at(slice(0, 1))
+    return after_restart(dynamics, last, first, before.piece.fired, error, _last_rates(before.states))
 
 
 def _within_the_law(nodes: np.ndarray, pieces: Sequence[Piece], starts: np.ndarray) -> np.ndarray:

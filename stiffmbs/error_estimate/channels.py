@@ -81,8 +81,7 @@ def bars(
         if name.startswith("constraint."):
             continue
         error = np.sum([part.at(times, name) for part in parts], axis=0)
-        inner = max((float(np.nanmax(np.abs(part.errors[name]), initial=0.0)) for part in parts), default=0.0)
-        over_time = max(float(np.nanmax(np.abs(error), initial=0.0)), inner)
+        over_time = float(np.nanmax(np.abs(error), initial=0.0))
         ends = [_peak(sign * values, error, times, parts, name, sign) for sign in (-1.0, 1.0)]
         (least, sampled_least), (greatest, sampled_greatest) = ends
         found[name] = ErrorBar(over_time, least, greatest, sampled_least, sampled_greatest)
@@ -96,7 +95,8 @@ def _peak(
     if np.isnan(values).all():
         return np.nan, np.nan
     own = max(parts, key=lambda part: np.ptp(part.values[name]))  # the mechanism of the channel
-    t = np.union1d(times, own.t)
+    t = np.sort(np.concatenate([times, own.t]))
+    t = t[np.diff(t, prepend=-np.inf) > 0.0]
     fine, at = np.interp(t, own.t, sign * own.values[name]), np.searchsorted(t, times)
     fine[at] = values
     sampled = between(t, fine, at)

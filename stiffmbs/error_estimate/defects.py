@@ -52,7 +52,7 @@ def slope_weights(nodes: np.ndarray, at: int | np.ndarray) -> np.ndarray:
 
 
 def of_bdf(piece: Piece, rates: Rates, opened: bool) -> np.ndarray:
-    """Return the local errors of the steps of bdf, shape (rows, full); that of row 0, the start, is zero.
+    """Return the mean defects of the steps of bdf, shape (rows, full); that of row 0, the start, is zero.
 
     The curve is the polynomial through the neighbouring accepted states, integrated by the trapezoid rule. Where steps
     change a lot the formula of the step gives the defect. `opened`: True if the piece starts after an event, where the
@@ -77,14 +77,14 @@ def of_bdf(piece: Piece, rates: Rates, opened: bool) -> np.ndarray:
             sides[0][0] = sides[1][0]
         if piece.fired:
             sides[1][-1] = sides[0][-1]
-        found[1:] = 0.5 * h[:, None] * (sides[0] + sides[1])
+        found[1:] = 0.5 * (sides[0] + sides[1])
     for n in 1 + np.flatnonzero(by_formula):
         row = np.array([n])
         change = _of_formula(piece, rates.states, n)
         given = np.concatenate([piece.q_rates[n], piece.u_rates[n]])
         at_end = n == steps and bool(piece.fired)
         remainder = np.zeros(found.shape[1]) if at_end else rates.defects(given[None], row)[0]
-        found[n] = h[n - 1] * (rates.variation(change[None], row)[0] + remainder)
+        found[n] = rates.variation(change[None], row)[0] + remainder
     return found
 
 

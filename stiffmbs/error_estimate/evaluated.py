@@ -14,8 +14,8 @@ from .variations import position_rates
 
 def with_rates(system: System) -> np.ndarray:
     """Return the indices of the coordinates after those of the bodies that have a rate: counters, differential states."""
-    places = np.arange(system.n_pose, system.n_q)
-    return places[~np.isin(places, system.first_state + np.flatnonzero(system.without_rate))]
+    with_rate = np.append(np.ones(system.n_counters, dtype=bool), ~system.without_rate)
+    return system.n_pose + np.flatnonzero(with_rate)
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,10 @@ class Linearised:
         """Dimension of the tangent space."""
         return self.basis.shape[2]
 
+    def at(self, chosen: slice) -> Linearised:
+        """Return the tangent spaces at some of the states."""
+        return Linearised(self.basis[chosen], self.rates[chosen], self.left[chosen])
+
 
 def linearised(dynamics: Dynamics, at: Evaluated) -> Linearised:
     """Return the tangent spaces at evaluated states, and the rates of their variations."""

@@ -24,6 +24,14 @@ class EstimateParameters:
     """Ratio of the steps on that polynomial above which the formula of the step gives its defect."""
     block: int = 8
     """Steps of bdf in a block of collocation, at most."""
+    spectra: int = 16
+    """States of a piece at which the frequencies of the linearised motion are computed."""
+    resolved: float = 1.0
+    """Largest angle, rad, of a vibration in a step of bdf that resolves it."""
+    turn: float = 1.5
+    """Largest angle, rad, of a vibration in a block that resolves it."""
+    operations: float = 1e10
+    """Largest number of multiplications of a transport step by step."""
     off_node: float = 0.13
     """Largest distance of the end of a step from a Radau node, in lengths of the block."""
     lost: float = 0.05

@@ -27,10 +27,10 @@ class Block:
     weights: np.ndarray
 
 
-def blocks_of_bdf(t: np.ndarray, local: np.ndarray) -> list[Block]:
-    """Return the blocks of the steps that end at t[1:], with local errors in the rows of `local`."""
+def blocks_of_bdf(t: np.ndarray, defects: np.ndarray) -> list[Block]:
+    """Return the blocks of the steps that end at t[1:], with their mean defects in the rows of `defects`."""
     found, first = [], 0
-    summed = np.cumsum(local, axis=0)
+    summed = np.cumsum(np.diff(t, prepend=t[0])[:, None] * defects, axis=0)
     while first < len(t) - 1:
         rows = _rows(t, first)
         tau = t[rows] - t[rows[0]]
