@@ -15,7 +15,7 @@ from .linearised import Linearised, linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, displaced
 from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
-from .vibrations import are_resolved, between_nodes, step_by_step
+from .vibrations import are_resolved, step_by_step
 
 
 @dataclass(frozen=True)

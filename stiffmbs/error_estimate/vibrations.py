@@ -28,7 +28,7 @@ def are_resolved(space: Linearised, t: np.ndarray, steps: np.ndarray) -> bool:
     rates = np.linalg.eigvals(np.where(np.isfinite(matrices), matrices, 0.0))
     waves = np.where(np.abs(rates.real) < np.abs(rates.imag), np.abs(rates.imag), 0.0) * steps[some][:, None]
     waves[waves > ESTIMATE.resolved] = 0.0
-    return bool(np.median(waves.max(axis=1)) * ESTIMATE.block <= ESTIMATE.turn)
+    return bool(np.sort(waves.max(axis=1))[len(some) // 2] * ESTIMATE.block <= ESTIMATE.turn)
 
 
 def _between(matrices: np.ndarray, t: np.ndarray, times: np.ndarray) -> np.ndarray:
