@@ -15,7 +15,7 @@ from .linearised import Linearised, linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, displaced
 from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
-from .vibrations import are_resolved, step_by_step
+from .vibrations import are_resolved, changes_little, step_by_step
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece]) -> StateErrors:
         own, done = slice(done, done + len(each.rows)), done + len(each.rows)
         if k:
             error = _restarted(dynamics, prepared[k - 1], each, error)
-        errors, of_errors = _transported(each, space.at(own), error)
+        errors, of_errors = _transported(dynamics, each, space.at(own), error)
         found.append(errors)
         rows.append(starts[k] + of_errors)
         error = errors[-1]
@@ -91,12 +91,17 @@ def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool)
     return _Prepared(piece, states, defects, blocks, np.flatnonzero(is_node))
 
 
-def _transported(each: _Prepared, space: Linearised, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _transported(
+    dynamics: Dynamics, each: _Prepared, space: Linearised, error: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the errors at rows of a piece, from that at its start, and these rows."""
     t, rows = each.piece.t, each.rows
     few = len(t) * len(error) ** 3 < ESTIMATE.operations
     if each.piece.points == 1 and few and not are_resolved(space, t[rows], np.diff(t, prepend=2 * t[0] - t[1])[rows]):
-        return step_by_step(t, each.defects, space, rows, error), np.arange(len(t))
+        everywhere = np.arange(len(t))
+        if not changes_little(space, t[rows]):
+            rows, space = everywhere, linearised(dynamics, each.states)
+        return step_by_step(t, each.defects, space, rows, error), everywhere
     place = np.full(len(t), -1)
     place[rows] = np.arange(len(rows))
     return transported(each.blocks, space, place, error), rows

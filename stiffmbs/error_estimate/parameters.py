@@ -32,6 +32,10 @@ class EstimateParameters:
     """Largest angle, rad, of a vibration in a block that resolves it."""
     operations: float = 1e10
     """Largest number of multiplications of a transport step by step."""
+    interpolated: float = 0.1
+    """Error of interpolated matrices, relative to them, below which they are interpolated between every second one."""
+    usual: float = 0.9
+    """Part of the matrices that must be as precise."""
     off_node: float = 0.13
     """Largest distance of the end of a step from a Radau node, in lengths of the block."""
     lost: float = 0.05

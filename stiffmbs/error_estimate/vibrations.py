@@ -38,6 +38,17 @@ def _between(matrices: np.ndarray, t: np.ndarray, times: np.ndarray) -> np.ndarr
     return np.asarray(matrices[right - 1] + part * (matrices[right] - matrices[right - 1]))
 
 
+def changes_little(space: Linearised, t: np.ndarray) -> bool:
+    """Return True if the matrices at the times `t` may be interpolated between these."""
+    if len(t) < 3:
+        return False
+    matrices = space.rates @ np.linalg.solve(space.left @ space.basis, space.left)
+    part = ((t[1:-1] - t[:-2]) / (t[2:] - t[:-2]))[:, None, None]
+    expected = matrices[:-2] + part * (matrices[2:] - matrices[:-2])
+    off = np.linalg.norm(matrices[1:-1] - expected, axis=(1, 2)) / np.linalg.norm(matrices[1:-1], axis=(1, 2))
+    return bool(np.sort(off)[int(ESTIMATE.usual * (len(off) - 1))] <= ESTIMATE.interpolated)
+
+
 def step_by_step(t: np.ndarray, defects: np.ndarray, space: Linearised, nodes: np.ndarray, start: np.ndarray) -> np.ndarray:
     """Return the errors at the ends of the steps of a piece, shape (rows, full), from that at its start.
 
