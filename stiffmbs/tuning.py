@@ -18,8 +18,6 @@ from types import FunctionType, MappingProxyType
 from typing import Any, TypeVar, cast
 
 SUBSYSTEMS = {
-    "accumulation": "solve.error_control.native.parameters:ACCUMULATION",
-    "accumulated_errors": "solve.error_control.accumulated_errors:ACCUMULATED",
     "auto": "solve.auto_decisions:AUTO",
     "chattering": "solve.events.chattering:CHATTERING",
     "consistency": "dynamics.native.parameters:CONSISTENCY",

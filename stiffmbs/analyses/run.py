@@ -27,13 +27,12 @@ from ..results.solution import Solution
 from ..run_checks.growth import motion_within_tolerance, senseless
 from ..run_checks.motion import motion_notes
 from ..run_checks.uncertain_forces import uncertain_forces
-from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.missing_rows import reported
 from ..solve.settings import settings_notes, traits_of
 from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
-from .errors import assessed, recording
+from .errors import assessed, recording, to_accuracy
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
 from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
@@ -88,7 +87,8 @@ def run(
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
         data = with_inputs(data, inputs, settings_of(data, settings, changes))
-    return solved(recording(prepare(data, settings, start_from, **changes)), watch)
+    job = recording(prepare(data, settings, start_from, **changes))
+    return to_accuracy(job, watch) if job.settings.accuracy else solved(job, watch)
 
 
 @dataclass(frozen=True)
@@ -276,12 +276,6 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
-    # relative to the mechanism's size, with any tolerances
-    least = ACCUMULATED.tolerances * ACCUMULATED.usual_rtol * min(1.0, system.size)
-    if trajectory.displaced is not None and (trajectory.displaced > least).any():
-        from ..run_checks.growth import accumulated_errors_sentence
-
-        yield from accumulated_errors_sentence(system, job.settings, trajectory)
     if system.size == 1.0 and job.settings.atol is None and "rtol" in traits_of(job.settings).reads:
         yield from motion_within_tolerance(system, job.settings, trajectory)
     yield from settings_notes(job.settings, system)

@@ -71,7 +71,7 @@ class OutputRows:
     power: np.ndarray
     status: int
 
-    def at(self, instants: np.ndarray) -> OutputRows:
+    def at(self, instants: np.ndarray | slice) -> OutputRows:
         """Return the rows of some output times, by number."""
         found = {each.name: getattr(self, each.name) for each in fields(self)}
         return OutputRows(

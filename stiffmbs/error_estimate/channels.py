@@ -12,11 +12,11 @@ from ..dynamics.initial import InitialValues
 from ..model.model_data import ModelData
 from ..results.channels import channels_of
 from ..results.error_bars import ErrorBar, between
-from ..results.scales import kind_of
 from ..solve.missing_rows import reported
 from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors
+from .second_run import difference
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def channel_errors(
         channels_of(model, dynamics.system, _rows(dynamics, replace(trajectory, t=found.t, q=q, u=u), projected, rtol))
         for (q, u), projected in zip(states, (project, True), strict=True)
     )
-    errors = {name: _difference(name, values[name], better[name]) for name in values}
+    errors = {name: difference(name, values[name], better[name]) for name in values}
     kept = ~found.at_event
     return ChannelErrors(
         found.t[kept], {name: each[kept] for name, each in values.items()},
@@ -64,17 +64,7 @@ def _rows(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: float
     return reported(dynamics, trajectory, project, rtol)[0]
 
 
-def _difference(name: str, values: np.ndarray, better: np.ndarray) -> np.ndarray:
-    """Return the error of a channel; that of an angle is the one of the least turn."""
-    error = values - better
-    if kind_of(name) == "angle":
-        error = error - 2.0 * np.pi * np.round(error / (2.0 * np.pi))
-    return error
-
-
-def bars(
-    times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors]
-) -> dict[str, ErrorBar]:
+def bars(times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors]) -> dict[str, ErrorBar]:
     """Return the error bars of the channels of a run from the errors along its mechanisms, one after the other in `parts`."""
     found = {}
     for name, values in channels.items():

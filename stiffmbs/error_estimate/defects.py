@@ -80,7 +80,7 @@ def of_bdf(piece: Piece, rates: Rates, opened: bool) -> np.ndarray:
         found[1:] = 0.5 * (sides[0] + sides[1])
     for n in 1 + np.flatnonzero(by_formula):
         row = np.array([n])
-        change = _of_formula(piece, rates.states, n)
+        change = _of_formula(piece, rates.states, int(n))
         given = np.concatenate([piece.q_rates[n], piece.u_rates[n]])
         at_end = n == steps and bool(piece.fired)
         remainder = np.zeros(found.shape[1]) if at_end else rates.defects(given[None], row)[0]

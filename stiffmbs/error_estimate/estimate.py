@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from operator import attrgetter
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ..errors import SolverError
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_RTOL, RunSettings
 from ..results.digits import digits, digits_words, group_of, largest_bar, relative_bars
-from ..results.error_bars import UNKNOWN
+from ..results.error_bars import UNKNOWN, ErrorBar
 from ..results.estimate import ErrorEstimate
 from ..results.solution import Solution
 from ..solve.settings import near_constraints
@@ -23,6 +24,8 @@ from .along_run import StateErrors, state_errors
 from .channels import bars, channel_errors
 from .parameters import ESTIMATE
 
+PEAKS = 2.0
+"""Ratio of the error of a peak to the largest at output times from which it is mentioned."""
 REMEDY = "use a smaller rtol, or accuracy: to choose it by the estimate"
 
 
@@ -38,7 +41,9 @@ def estimated(
             for part, pieces in zip(parts, trajectory.recorded, strict=False)
         ]
         lost = [
-            t for part, each in zip(parts, found, strict=False) if (t := _lost(part.dynamics if part else dynamics, each)) is not None
+            t
+            for part, each in zip(parts, found, strict=False)
+            if (t := _lost(part.dynamics if part else dynamics, each)) is not None
         ]
         if lost:
             return _lost_from(solution, min(lost))
@@ -55,13 +60,27 @@ def estimated(
 
 def with_bars(solution: Solution, settings: RunSettings) -> Solution:
     """Return a solution with error bars, with the sentence on its errors and a note if they are large."""
-    known = relative_bars(solution, {name: largest_bar(bar) for name, bar in solution.errors.items()})
-    largest = max(known, key=lambda name: known[name], default="")
-    worst = f"; largest error: {largest} {100 * known[largest]:.2g} %" if largest else ""
-    estimate = ErrorEstimate(
-        "estimated", f"{digits_words(digits(solution))}{worst}", largest, known.get(largest, float("nan"))
+    at_outputs, of_peaks = _largest(solution, attrgetter("over_time")), _largest(solution, largest_bar)
+    largest, relative = at_outputs
+    sentence = digits_words(digits(solution, peaks=False))
+    if largest:
+        sentence += f"; largest error: {largest} {100 * relative:.2g} %"
+    if of_peaks[1] > PEAKS * relative:
+        sentence += f"; peaks between output times: up to {100 * of_peaks[1]:.2g} % ({of_peaks[0]})"
+    estimate = ErrorEstimate("estimated", sentence, largest, relative)
+    return replace(
+        solution,
+        estimate=estimate,
+        notes=(*solution.notes, *(() if settings.accuracy else _large_errors(solution, settings))),
     )
-    return replace(solution, estimate=estimate, notes=(*solution.notes, *_large_errors(solution, settings)))
+
+
+def _largest(solution: Solution, error_of: Callable[[ErrorBar], float]) -> tuple[str, float]:
+    """Return the channel with the largest error relative to its size, and that error."""
+    grouped = {name: error_of(bar) for name, bar in solution.errors.items() if group_of(solution, name)}
+    known = relative_bars(solution, grouped)
+    largest = max(known, key=lambda name: known[name], default="")
+    return largest, known.get(largest, float("nan"))
 
 
 def _large_errors(solution: Solution, settings: RunSettings) -> Iterator[str]:

@@ -32,10 +32,12 @@ class Evaluated:
     q_rates: np.ndarray
     rows: OutputRows
 
-    def at(self, chosen: np.ndarray) -> Evaluated:
+    def at(self, chosen: np.ndarray | slice) -> Evaluated:
         """Return some of the states."""
-        arrays = (each[chosen] for each in (self.t, self.q, self.u, self.acceleration, self.q_rates))
-        return Evaluated(*arrays, self.rows.at(chosen))
+        return Evaluated(
+            self.t[chosen], self.q[chosen], self.u[chosen], self.acceleration[chosen], self.q_rates[chosen],
+            self.rows.at(chosen),
+        )  # fmt: skip
 
 
 def evaluated(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> Evaluated:

@@ -95,7 +95,8 @@ def _velocity_constraints(dynamics: Dynamics, at: Evaluated) -> np.ndarray:
         state.evaluate("motion", float(at.t[k]))
         values[k] = state.values["motion"][term.source]
     found = np.zeros((len(at.t), system.n_c, system.n_u))
-    np.add.at(found, (slice(None), term.row, term.column), values)
+    for entry, (row, column) in enumerate(zip(term.row.tolist(), term.column.tolist(), strict=True)):
+        found[:, row, column] += values[:, entry]
     return found
 
 

@@ -13,7 +13,12 @@ from .variations import Variations
 
 
 def after_restart(
-    dynamics: Dynamics, before: Evaluated, after: Evaluated, fired: tuple[int, ...], error: np.ndarray, rates: np.ndarray
+    dynamics: Dynamics,
+    before: Evaluated,
+    after: Evaluated,
+    fired: tuple[int, ...],
+    error: np.ndarray,
+    rates: np.ndarray,
 ) -> np.ndarray:
     """Return the error (x, v, s) after a restart from that before it.
 
@@ -47,9 +52,7 @@ def displaced(dynamics: Dynamics, at: Evaluated, variations: np.ndarray) -> tupl
     return q, at.u + geometry.own(variations[:, n_u : 2 * n_u])
 
 
-def _late(
-    dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.ndarray, rates: np.ndarray
-) -> float:
+def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.ndarray, rates: np.ndarray) -> float:
     """Return the delay of an event by the error of the state."""
     state, t = dynamics.state, float(at.t[0])
     step = ESTIMATE.difference * max(1.0, abs(t))

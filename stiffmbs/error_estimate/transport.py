@@ -77,7 +77,7 @@ def transported(blocks: list[Block], space: Linearised, place: np.ndarray, start
 
     `place`: index in `space` of each row of the piece. `start` of shape (full,): the error at the start.
     """
-    basis, rates, left = space.basis, space.rates, space.left
+    basis, left = space.basis, space.left
     errors = np.zeros((len(basis), basis.shape[1]))
     n = space.n
     if not n:

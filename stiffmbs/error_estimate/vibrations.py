@@ -49,7 +49,9 @@ def changes_little(space: Linearised, t: np.ndarray) -> bool:
     return bool(np.sort(off)[int(ESTIMATE.usual * (len(off) - 1))] <= ESTIMATE.interpolated)
 
 
-def step_by_step(t: np.ndarray, defects: np.ndarray, space: Linearised, nodes: np.ndarray, start: np.ndarray) -> np.ndarray:
+def step_by_step(
+    t: np.ndarray, defects: np.ndarray, space: Linearised, nodes: np.ndarray, start: np.ndarray
+) -> np.ndarray:
     """Return the errors at the ends of the steps of a piece, shape (rows, full), from that at its start.
 
     Each step takes the stability function of the Radau method of three stages with the matrix A of its middle: e+ = D(Z)^-1

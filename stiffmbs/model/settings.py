@@ -51,6 +51,7 @@ class Settings(TypedDict, total=False):
     presolve: bool
     drop_first: Sequence[str]
     errors: bool | None
+    accuracy: Mapping[str, str]
     tuning: Mapping[str, Mapping[str, Any]]
 
 
@@ -110,6 +111,10 @@ class RunSettings(Described):
         None,
         description="whether the errors of all channels are estimated after the run; by default for runs of little work",
     )
+    accuracy: dict[str, Any] = Field(
+        {},
+        description="largest errors of `positions`, `velocities` and `forces`, as part of the largest value (1 %) or with a unit (0.1 mm); rtol is then chosen by the estimate of the errors",
+    )
     tuning: dict[str, dict[str, Any]] = Field(
         {}, description="changed parameters of solvers by subsystem and name (`stiffmbs.tuning`), for experts"
     )
@@ -137,6 +142,15 @@ class RunSettings(Described):
                 f"found {found}, expected a time in s; 'start: {entry}' belongs to the scene, outside 'run'"
             )
         return start
+
+    @field_validator("accuracy", mode="before")
+    @classmethod
+    def _known_groups(cls, found: object) -> object:
+        if found:
+            from .accuracy import wanted  # few runs have it
+
+            wanted(found)
+        return found
 
     @field_validator("tuning", mode="before")
     @classmethod

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from operator import attrgetter
 
 import numpy as np
 
@@ -42,13 +42,16 @@ def group_of(solution: Solution, channel: str) -> str:
     return next((group for group, kinds in GROUPS.items() if kind in kinds), "")
 
 
-def digits(solution: Solution) -> dict[str, int]:
-    """Return the least number of reliable digits in each group of channels with known errors."""
-    return dict(_digits(solution))
+def digits(solution: Solution, peaks: bool = True) -> dict[str, int]:
+    """Return the least number of reliable digits in each group of channels with known errors.
+
+    `peaks`: True to count the errors of peaks between output times, False for the values at the output times alone.
+    """
+    return dict(_digits(solution, largest_bar if peaks else attrgetter("over_time")))
 
 
-def _digits(solution: Solution) -> Iterator[tuple[str, int]]:
-    known = relative_bars(solution, {name: largest_bar(bar) for name, bar in solution.errors.items()})
+def _digits(solution: Solution, error_of: Callable[[ErrorBar], float]) -> Iterator[tuple[str, int]]:
+    known = relative_bars(solution, {name: error_of(bar) for name, bar in solution.errors.items()})
     for group in GROUPS:
         errors = [error for name, error in known.items() if group_of(solution, name) == group]
         if errors:

@@ -43,4 +43,3 @@ def verdict(solution: Solution) -> Verdict:
     unresolved = unresolved_work(solution.balance)
     notes = (*solution.notes, *([unresolved] if unresolved else []))
     return Verdict(status, headline, digits(solution), notes)
-

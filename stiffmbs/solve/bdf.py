@@ -104,7 +104,6 @@ def integrated(
         history,
         integrator.note(),
         long_steps=integrator.long_steps(),
-        displaced=integrator.engine.displaced(),
         recorded=tuple(filter(None, [integrator.engine.recorded()])),
     )
 

@@ -82,4 +82,13 @@ class StepRecorder:
         rows = rows[keep]
         q, u = equations.states(rows[:, 2 : 2 + n][:, equations.independent])
         q_rates, u_rates = equations.rates(rows[:, 2 + n :][:, equations.independent])
-        return Piece(rows[:, 0].copy(), q.copy(), u.copy(), q_rates.copy(), u_rates.copy(), rows[:, 1].astype(int), self.points, piece.fired)
+        return Piece(
+            rows[:, 0].copy(),
+            q.copy(),
+            u.copy(),
+            q_rates.copy(),
+            u_rates.copy(),
+            rows[:, 1].astype(int),
+            self.points,
+            piece.fired,
+        )

@@ -182,7 +182,6 @@ def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: E
     if parts and parts[-1].outcome is not Outcome.DONE:
         ending.outcome, ending.message = parts[-1].outcome, parts[-1].message
     times, orders = zip(*((part.history.t, part.history.order) for part in parts), strict=True) if parts else ((), ())
-    known = [np.abs(part.displaced) for part in parts if part.displaced is not None]
     return Trajectory(
         t, q, u, ending.outcome, ending.message,
         summed([{"steps": 0, "seconds": 0.0}, *(part.statistics for part in parts)]),
@@ -190,7 +189,6 @@ def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: E
         "; ".join([*dict.fromkeys(part.note for part in parts if part.note)][: MOST_LISTED]),
         ", ".join(dict.fromkeys(part.solver for part in parts if part.solver)),
         tuple(steps for part in parts for steps in part.long_steps),
-        np.sum(known, axis=0) if known else None,
     )  # fmt: skip
 
 

@@ -111,9 +111,6 @@ class Trajectory:
         Solvers used, if the user did not choose them.
     long_steps : tuple of LongSteps
         Steps much longer than their predecessors, with the motion within them; only if force laws have breakpoints.
-    displaced : ndarray, shape (n_u,), or None
-        Estimated position errors at the end, as displacements along the velocities, m and rad
-        (`stiffmbs.solve.error_control.accumulated_errors`); None if unknown.
     recorded : tuple of tuples of Piece
         Recorded steps of each mechanism that was solved separately; empty if they were not recorded.
     """
@@ -128,7 +125,6 @@ class Trajectory:
     note: str = ""
     solver: str = ""
     long_steps: tuple[LongSteps, ...] = ()
-    displaced: np.ndarray | None = None
     recorded: tuple[tuple[Piece, ...], ...] = ()
 
     @property

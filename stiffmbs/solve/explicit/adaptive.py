@@ -103,7 +103,6 @@ class AdaptiveRun:
             history,
             note,
             long_steps=self.work.long_steps(),
-            displaced=self.work.displaced(),
         )
 
     def _reason(self, status: int) -> str:

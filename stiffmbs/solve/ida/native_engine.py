@@ -307,10 +307,6 @@ class NativeEngine:
         log = self.ida.long_steps
         return log.kept() if log else None
 
-    def displaced(self) -> np.ndarray:
-        """Return estimated errors of positions as displacements along velocities, shape (n_u,)."""
-        return self.ida.error_sums.displaced()
-
     def history(self) -> History:
         """Return the ends of the steps, and their orders."""
         t, order, _ = self.ida.history.stored()

@@ -1,0 +1,84 @@
+"""Choice of the tolerance at which a run has an accuracy that is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.accuracy import Wanted, wanted
+from ..results.digits import group_of, relative_bars
+from ..results.scales import UNITS, kind_of
+from ..results.solution import Solution
+
+PART = 1e-2
+"""First relative tolerance in the relative error asked for."""
+FIRST = 1e-9, 1e-4
+"""Bounds of the first relative tolerance."""
+SMALLEST, LARGEST_CHANGE = 1e-13, 1e-5
+"""Smallest relative tolerance, and the largest decrease by one repetition."""
+AIM, SLOPE = 0.5, 0.75
+"""Part of the error that a repetition aims at, and the exponent of the tolerance in the error of bdf."""
+ABSOLUTE = {"positions": "position", "velocities": "velocity", "forces": "force"}
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Accuracy of a run: whether all is reached, a phrase on each group, and the tolerance to try next."""
+
+    reached: bool
+    sentence: str
+    next_rtol: float
+
+
+class Accuracy:
+    """Accuracy asked for, and the tolerances that were tried."""
+
+    def __init__(self, asked: Mapping[str, object]) -> None:
+        self._wanted = wanted(asked)
+        self._tried: list[tuple[float, float]] = []
+
+    def first_rtol(self, size: float) -> float:
+        """Return the tolerance to begin with. `size`: size of the mechanism, m."""
+        least = min(each.error if each.relative else self._as_part(each, size) for each in self._wanted)
+        return float(np.clip(PART * least, *FIRST))
+
+    @staticmethod
+    def _as_part(each: Wanted, size: float) -> float:
+        return each.error / size if each.group == "positions" else PART
+
+    def judged(self, solution: Solution, rtol: float) -> Judged:
+        """Return the accuracy of a run with a tolerance."""
+        phrases, excess = [], 0.0
+        for each in self._wanted:
+            error = _error(solution, each)
+            unit = "%" if each.relative else UNITS[ABSOLUTE[each.group]]
+            shown = 100.0 * error if each.relative else error
+            phrases.append(f"{each.group} {shown:.2g} {unit} (asked: {each.text})")
+            excess = np.fmax(excess, error / each.error) if np.isfinite(error) else np.inf
+        following = self._following(rtol, float(excess))
+        return Judged(bool(excess <= 1.0), "reached " + ", ".join(phrases), following)
+
+    def _following(self, rtol: float, excess: float) -> float:
+        """Return the tolerance at which the error is expected to be a part of that asked for."""
+        if not np.isfinite(excess):
+            return max(SMALLEST, 1e-2 * rtol)
+        self._tried.append((rtol, excess))
+        slope = SLOPE
+        if len(self._tried) > 1:
+            (before, more), (now, less) = self._tried[-2:]
+            found = np.log(more / less) / np.log(before / now)
+            slope = float(np.clip(found, 0.5 * SLOPE, 1.0)) if np.isfinite(found) else SLOPE
+        return float(max(SMALLEST, LARGEST_CHANGE * rtol, rtol * (AIM / excess) ** (1.0 / slope)))
+
+
+def _error(solution: Solution, each: Wanted) -> float:
+    """Return the largest error of a group of channels; nan if it is unknown."""
+    errors = {name: bar.over_time for name, bar in solution.errors.items() if group_of(solution, name) == each.group}
+    if each.relative:
+        errors = relative_bars(solution, errors)
+    else:
+        errors = {name: error for name, error in errors.items() if kind_of(name) == ABSOLUTE[each.group]}
+    known = [error for name, error in errors.items() if name not in solution.not_unique]
+    return float(np.max(known)) if known else float("nan")
