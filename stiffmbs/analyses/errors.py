@@ -50,7 +50,7 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
 def _by_second_run(job: Job, solution: Solution) -> Solution:
     """Return the results with errors from a run at a larger tolerance."""
     from ..error_estimate.estimate import with_bars
-    from ..error_estimate.second_run import LARGER, bars_by_difference
+    from ..results.channel_errors import LARGER, bars_by_difference
     from .run import finished
 
     settings = changed(job.settings, {"rtol": min(LARGER * job.settings.rtol, 0.1)})

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.accuracy import Wanted, wanted
-from ..results.digits import group_of, relative_bars
+from ..results.digits import KnownErrors, over_time
 from ..results.scales import UNITS, kind_of
 from ..results.solution import Solution
 
@@ -75,10 +75,8 @@ class Accuracy:
 
 def _error(solution: Solution, each: Wanted) -> float:
     """Return the largest error of a group of channels; nan if it is unknown."""
-    errors = {name: bar.over_time for name, bar in solution.errors.items() if group_of(solution, name) == each.group}
-    if each.relative:
-        errors = relative_bars(solution, errors)
-    else:
-        errors = {name: error for name, error in errors.items() if kind_of(name) == ABSOLUTE[each.group]}
-    known = [error for name, error in errors.items() if name not in solution.not_unique]
-    return float(np.max(known)) if known else float("nan")
+    known = KnownErrors(solution).relative(over_time, each.group)
+    if not each.relative:
+        kind = ABSOLUTE[each.group]
+        known = {name: solution.errors[name].over_time for name in known if kind_of(name) == kind}
+    return max(known.values(), default=float("nan"))

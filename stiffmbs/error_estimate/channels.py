@@ -2,34 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.initial import InitialValues
 from ..model.model_data import ModelData
+from ..results.channel_errors import ChannelErrors, difference
 from ..results.channels import channels_of
-from ..results.error_bars import ErrorBar, between
 from ..solve.missing_rows import reported
 from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors
-from .second_run import difference
-
-
-@dataclass(frozen=True)
-class ChannelErrors:
-    """Values and errors of all channels at the nodes of one mechanism, by name, shape (n,); `t`: s."""
-
-    t: np.ndarray
-    values: dict[str, np.ndarray]
-    errors: dict[str, np.ndarray]
-
-    def at(self, times: np.ndarray, channel: str) -> np.ndarray:
-        """Return the errors of a channel at other times, by linear interpolation."""
-        return np.interp(times, self.t, self.errors[channel])
 
 
 def channel_errors(
@@ -62,33 +47,3 @@ def channel_errors(
 def _rows(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: float) -> OutputRows:
     """Return the output rows of states as a run reports them."""
     return reported(dynamics, trajectory, project, rtol)[0]
-
-
-def bars(times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors]) -> dict[str, ErrorBar]:
-    """Return the error bars of the channels of a run from the errors along its mechanisms, one after the other in `parts`."""
-    found = {}
-    for name, values in channels.items():
-        if name.startswith("constraint."):
-            continue
-        error = np.sum([part.at(times, name) for part in parts], axis=0)
-        over_time = float(np.nanmax(np.abs(error), initial=0.0))
-        ends = [_peak(sign * values, error, times, parts, name, sign) for sign in (-1.0, 1.0)]
-        (least, sampled_least), (greatest, sampled_greatest) = ends
-        found[name] = ErrorBar(over_time, least, greatest, sampled_least, sampled_greatest)
-    return found
-
-
-def _peak(
-    values: np.ndarray, error: np.ndarray, times: np.ndarray, parts: Sequence[ChannelErrors], name: str, sign: float
-) -> tuple[float, float]:
-    """Return the error bar of the greatest value, and the part of it between output times."""
-    if np.isnan(values).all():
-        return np.nan, np.nan
-    own = max(parts, key=lambda part: np.ptp(part.values[name]))  # the mechanism of the channel
-    t = np.sort(np.concatenate([times, own.t]))
-    t = t[np.diff(t, prepend=-np.inf) > 0.0]
-    fine, at = np.interp(t, own.t, sign * own.values[name]), np.searchsorted(t, times)
-    fine[at] = values
-    sampled = between(t, fine, at)
-    peak = abs(float(error[int(np.nanargmax(values))]))
-    return peak + sampled, sampled

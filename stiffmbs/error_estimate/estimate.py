@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from operator import attrgetter
 
 import numpy as np
 
@@ -13,15 +12,16 @@ from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_RTOL, RunSettings
-from ..results.digits import digits, digits_words, group_of, largest_bar, relative_bars
-from ..results.error_bars import UNKNOWN, ErrorBar
+from ..results.channel_errors import bars
+from ..results.digits import KnownErrors, digits_words, largest_bar, over_time
+from ..results.error_bars import UNKNOWN
 from ..results.estimate import ErrorEstimate
 from ..results.solution import Solution
 from ..solve.settings import near_constraints
 from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors, state_errors
-from .channels import bars, channel_errors
+from .channels import channel_errors
 from .parameters import ESTIMATE
 
 PEAKS = 2.0
@@ -60,44 +60,30 @@ def estimated(
 
 def with_bars(solution: Solution, settings: RunSettings) -> Solution:
     """Return a solution with error bars, with the sentence on its errors and a note if they are large."""
-    at_outputs, of_peaks = _largest(solution, attrgetter("over_time")), _largest(solution, largest_bar)
-    largest, relative = at_outputs
-    sentence = digits_words(digits(solution, peaks=False))
+    known = KnownErrors(solution)
+    largest, relative = known.largest(over_time)
+    peak, of_peak = known.largest(largest_bar)
+    sentence = digits_words(known.digits(over_time))
     if largest:
         sentence += f"; largest error: {largest} {100 * relative:.2g} %"
-    if of_peaks[1] > PEAKS * relative:
-        sentence += f"; peaks between output times: up to {100 * of_peaks[1]:.2g} % ({of_peaks[0]})"
+    if of_peak > PEAKS * relative:
+        sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
+    notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings))
     estimate = ErrorEstimate("estimated", sentence, largest, relative)
-    return replace(
-        solution,
-        estimate=estimate,
-        notes=(*solution.notes, *(() if settings.accuracy else _large_errors(solution, settings))),
-    )
+    return replace(solution, estimate=estimate, notes=(*solution.notes, *notes))
 
 
-def _largest(solution: Solution, error_of: Callable[[ErrorBar], float]) -> tuple[str, float]:
-    """Return the channel with the largest error relative to its size, and that error."""
-    grouped = {name: error_of(bar) for name, bar in solution.errors.items() if group_of(solution, name)}
-    known = relative_bars(solution, grouped)
-    largest = max(known, key=lambda name: known[name], default="")
-    return largest, known.get(largest, float("nan"))
-
-
-def _large_errors(solution: Solution, settings: RunSettings) -> Iterator[str]:
+def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings) -> Iterator[str]:
     """Yield a sentence on the largest error, if a position is wrong by many tolerances or any channel by much."""
-    known = relative_bars(solution, {name: bar.over_time for name, bar in solution.errors.items()})
     many = ESTIMATE.tolerances * max(settings.rtol, DEFAULT_RTOL)
+    errors = known.relative(over_time)
     limits = {
-        name: min(many, ESTIMATE.large) if group_of(solution, name) == "positions" else ESTIMATE.large
-        for name in known if group_of(solution, name)
-    }  # fmt: skip
-    worst = max(limits, key=lambda name: known[name] / limits[name], default="")
-    if worst and known[worst] > limits[worst]:
-        unit = solution.unit(worst)
-        error = solution.errors[worst].over_time
-        yield (
-            f"the estimated error of {worst} is {error:.2g} {unit}, {100 * known[worst]:.2g} % of its largest value; {REMEDY}"
-        )
+        name: min(many, ESTIMATE.large) if known.group[name] == "positions" else ESTIMATE.large for name in errors
+    }
+    worst = max(limits, key=lambda name: errors[name] / limits[name], default="")
+    if worst and errors[worst] > limits[worst]:
+        error = f"{solution.errors[worst].over_time:.2g} {solution.unit(worst)}".strip()
+        yield f"the estimated error of {worst} is {error}, {100 * errors[worst]:.2g} % of its largest value; {REMEDY}"
 
 
 def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from operator import attrgetter
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -21,42 +20,55 @@ GROUPS = {
 MOST_DIGITS = 12
 
 
+def over_time(bar: ErrorBar) -> float:
+    """Return the error of a channel at the output times."""
+    return bar.over_time
+
+
 def largest_bar(bar: ErrorBar) -> float:
     """Return the largest known error of a channel: over time and of its peaks, between output times too; nan if unknown."""
     return float(np.fmax.reduce([bar.over_time, bar.least, bar.greatest]))
 
 
-def relative_bars(solution: Solution, errors: Mapping[str, float]) -> dict[str, float]:
-    """Return known errors relative to the largest value of each body or element, by channel."""
-    sizes = scales(solution.channels, 1.0, solution.requested)
-    return {
-        name: error / sizes[name]
-        for name, error in errors.items()
-        if name in sizes and sizes[name] > 0 and math.isfinite(error) and name not in solution.not_unique
-    }
+class KnownErrors:
+    """Errors of the channels of a run relative to their sizes: the largest value of each body or element.
 
-
-def group_of(solution: Solution, channel: str) -> str:
-    """Return the group of a channel; empty for requests and channels of no group."""
-    kind = "" if channel in solution.requested else kind_of(channel)
-    return next((group for group, kinds in GROUPS.items() if kind in kinds), "")
-
-
-def digits(solution: Solution, peaks: bool = True) -> dict[str, int]:
-    """Return the least number of reliable digits in each group of channels with known errors.
-
-    `peaks`: True to count the errors of peaks between output times, False for the values at the output times alone.
+    `group`: group of each channel; empty for requests and channels of no group.
     """
-    return dict(_digits(solution, largest_bar if peaks else attrgetter("over_time")))
+
+    def __init__(self, solution: Solution) -> None:
+        self._sizes = scales(solution.channels, 1.0, solution.requested)
+        self._solution = solution
+        self.group = {name: "" if name in solution.requested else _group(kind_of(name)) for name in self._sizes}
+
+    def relative(self, error_of: Callable[[ErrorBar], float], group: str = "") -> dict[str, float]:
+        """Return known errors by channel, of one group or of all groups."""
+        found = {}
+        for name, own in self.group.items():
+            if own and group in ("", own) and self._sizes[name] > 0 and name in self._solution.errors:
+                error = error_of(self._solution.errors[name]) / self._sizes[name]
+                if math.isfinite(error) and name not in self._solution.not_unique:
+                    found[name] = error
+        return found
+
+    def digits(self, error_of: Callable[[ErrorBar], float]) -> dict[str, int]:
+        """Return the least number of reliable digits in each group of channels with known errors."""
+        found = {}
+        for group in GROUPS:
+            if errors := self.relative(error_of, group):
+                largest = max(max(errors.values()), 10.0**-MOST_DIGITS)
+                found[group] = max(0, math.floor(-math.log10(largest)))
+        return found
+
+    def largest(self, error_of: Callable[[ErrorBar], float]) -> tuple[str, float]:
+        """Return the channel with the largest error, and that error; nan if none is known."""
+        known = self.relative(error_of)
+        name = max(known, key=lambda each: known[each], default="")
+        return name, known.get(name, math.nan)
 
 
-def _digits(solution: Solution, error_of: Callable[[ErrorBar], float]) -> Iterator[tuple[str, int]]:
-    known = relative_bars(solution, {name: error_of(bar) for name, bar in solution.errors.items()})
-    for group in GROUPS:
-        errors = [error for name, error in known.items() if group_of(solution, name) == group]
-        if errors:
-            largest = max(max(errors), 10.0**-MOST_DIGITS)
-            yield group, max(0, math.floor(-math.log10(largest)))
+def _group(kind: str) -> str:
+    return next((group for group, kinds in GROUPS.items() if kind in kinds), "")
 
 
 def digits_words(counts: Mapping[str, int]) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..results.digits import digits, digits_words
+from ..results.digits import KnownErrors, digits_words, largest_bar
 from ..results.energy_balance_notes import unresolved_work
 from ..results.solution import Solution
 from ..solve.trajectory import IN_DOUBT, Outcome
@@ -42,4 +42,4 @@ def verdict(solution: Solution) -> Verdict:
         headline = f"Completed: {start:g} s to {end:g} s"
     unresolved = unresolved_work(solution.balance)
     notes = (*solution.notes, *([unresolved] if unresolved else []))
-    return Verdict(status, headline, digits(solution), notes)
+    return Verdict(status, headline, KnownErrors(solution).digits(largest_bar), notes)
