@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..model.settings import LARGEST_RTOL
 from ..results.estimate import ErrorEstimate
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback, Trajectory
@@ -53,7 +54,7 @@ def _by_second_run(job: Job, solution: Solution) -> Solution:
     from ..results.channel_errors import LARGER, bars_by_difference
     from .run import finished
 
-    settings = changed(job.settings, {"rtol": min(LARGER * job.settings.rtol, 0.1)})
+    settings = changed(job.settings, {"rtol": min(LARGER * job.settings.rtol, LARGEST_RTOL)})
     other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=0.0, times=solution.time)))
     if len(other.time) != len(solution.time):
         return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")

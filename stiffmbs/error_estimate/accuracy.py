@@ -8,18 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.accuracy import Wanted, wanted
+from ..model.settings import LARGEST_RTOL
 from ..results.digits import KnownErrors, over_time
 from ..results.scales import UNITS, kind_of
 from ..results.solution import Solution
+from .parameters import ESTIMATE
 
-PART = 1e-2
-"""First relative tolerance in the relative error asked for."""
-FIRST = 1e-9, 1e-4
-"""Bounds of the first relative tolerance."""
-SMALLEST, LARGEST_CHANGE = 1e-13, 1e-5
-"""Smallest relative tolerance, and the largest decrease by one repetition."""
-AIM, SLOPE = 0.5, 0.75
-"""Part of the error that a repetition aims at, and the exponent of the tolerance in the error of bdf."""
 ABSOLUTE = {"positions": "position", "velocities": "velocity", "forces": "force"}
 
 
@@ -42,11 +36,11 @@ class Accuracy:
     def first_rtol(self, size: float) -> float:
         """Return the tolerance to begin with. `size`: size of the mechanism, m."""
         least = min(each.error if each.relative else self._as_part(each, size) for each in self._wanted)
-        return float(np.clip(PART * least, *FIRST))
+        return max(ESTIMATE.smallest_rtol, min(ESTIMATE.part * least, LARGEST_RTOL))
 
     @staticmethod
     def _as_part(each: Wanted, size: float) -> float:
-        return each.error / size if each.group == "positions" else PART
+        return each.error / size if each.group == "positions" else ESTIMATE.part
 
     def judged(self, solution: Solution, rtol: float) -> Judged:
         """Return the accuracy of a run with a tolerance."""
@@ -63,14 +57,14 @@ class Accuracy:
     def _following(self, rtol: float, excess: float) -> float:
         """Return the tolerance at which the error is expected to be a part of that asked for."""
         if not np.isfinite(excess):
-            return max(SMALLEST, 1e-2 * rtol)
+            return max(ESTIMATE.smallest_rtol, ESTIMATE.part * rtol)
         self._tried.append((rtol, excess))
-        slope = SLOPE
+        slope = ESTIMATE.slope
         if len(self._tried) > 1:
             (before, more), (now, less) = self._tried[-2:]
             found = np.log(more / less) / np.log(before / now)
-            slope = float(np.clip(found, 0.5 * SLOPE, 1.0)) if np.isfinite(found) else SLOPE
-        return float(max(SMALLEST, LARGEST_CHANGE * rtol, rtol * (AIM / excess) ** (1.0 / slope)))
+            slope = float(np.clip(found, 0.5 * slope, 1.0)) if np.isfinite(found) else slope
+        return float(max(ESTIMATE.smallest_rtol, rtol * (ESTIMATE.aim / excess) ** (1.0 / slope)))
 
 
 def _error(solution: Solution, each: Wanted) -> float:

@@ -15,7 +15,7 @@ from .linearised import Linearised, linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, displaced
 from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
-from .vibrations import are_resolved, changes_little, step_by_step
+from .vibrations import are_affordable, are_resolved, changes_little, step_by_step
 
 
 @dataclass(frozen=True)
@@ -96,8 +96,9 @@ def _transported(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the errors at rows of a piece, from that at its start, and these rows."""
     t, rows = each.piece.t, each.rows
-    few = len(t) * len(error) ** 3 < ESTIMATE.operations
-    if each.piece.points == 1 and few and not are_resolved(space, t[rows], np.diff(t, prepend=2 * t[0] - t[1])[rows]):
+    steps = np.diff(t, prepend=2 * t[0] - t[1])[rows]
+    by_steps = each.piece.points == 1 and are_affordable(len(t), len(error))
+    if by_steps and not are_resolved(space, t[rows], steps):
         everywhere = np.arange(len(t))
         if not changes_little(space, t[rows]):
             rows, space = everywhere, linearised(dynamics, each.states)

@@ -24,8 +24,6 @@ from .along_run import StateErrors, state_errors
 from .channels import channel_errors
 from .parameters import ESTIMATE
 
-PEAKS = 2.0
-"""Ratio of the error of a peak to the largest at output times from which it is mentioned."""
 REMEDY = "use a smaller rtol, or accuracy: to choose it by the estimate"
 
 
@@ -66,7 +64,7 @@ def with_bars(solution: Solution, settings: RunSettings) -> Solution:
     sentence = digits_words(known.digits(over_time))
     if largest:
         sentence += f"; largest error: {largest} {100 * relative:.2g} %"
-    if of_peak > PEAKS * relative:
+    if of_peak - relative > relative:
         sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
     notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings))
     estimate = ErrorEstimate("estimated", sentence, largest, relative)

@@ -33,9 +33,7 @@ class EstimateParameters:
     operations: float = 1e10
     """Largest number of multiplications of a transport step by step."""
     interpolated: float = 0.1
-    """Error of interpolated matrices, relative to them, below which they are interpolated between every second one."""
-    usual: float = 0.9
-    """Part of the matrices that must be as precise."""
+    """Error of matrices interpolated between every second one, relative to them, below which they are interpolated."""
     off_node: float = 0.13
     """Largest distance of the end of a step from a Radau node, in lengths of the block."""
     lost: float = 0.05
@@ -44,6 +42,17 @@ class EstimateParameters:
     """Error of a position relative to its size, in relative tolerances, above which a note appears."""
     large: float = 0.01
     """Error of any channel relative to its size above which a note appears."""
+    part: float = 1e-2
+    """First relative tolerance of a run that is to reach an accuracy, in the relative error asked for; also the factor of
+    the next one if the error is unknown."""
+    smallest_rtol: float = 1e-13
+    """Smallest relative tolerance that is tried."""
+    aim: float = 0.5
+    """Part of the error asked for at which the next tolerance aims."""
+    slope: float = 0.75
+    """Exponent of the tolerance in the error of bdf."""
+    numbers_at_once: int = 4_000_000
+    """Numbers in the matrices that are in memory at once, 32 MB."""
 
 
 ESTIMATE = tuned("error_estimate", EstimateParameters())

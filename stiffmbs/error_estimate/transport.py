@@ -94,13 +94,18 @@ def transported(blocks: list[Block], space: Linearised, place: np.ndarray, start
     return errors
 
 
+def at_once(size: int) -> int:
+    """Return the number of matrices of a size that are in memory at once."""
+    return max(1, ESTIMATE.numbers_at_once // size**2)
+
+
 def _solved(blocks: list[Block], space: Linearised, place: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return a at the nodes of each block as a linear function of a at its start: matrix and constant part."""
     n, maps, sources = space.n, {}, {}
     counts = np.array([len(block.nodes) - 1 for block in blocks])
     for k in np.flatnonzero(np.bincount(counts)):
         chosen = np.flatnonzero(counts == k)
-        for some in np.array_split(chosen, 1 + len(chosen) * (k * n) ** 2 // MOST_NUMBERS):
+        for some in np.array_split(chosen, 1 + len(chosen) // at_once(int(k) * n)):
             own = [blocks[b] for b in some]
             first = place[np.array([block.nodes[0] for block in own])]
             at = place[np.array([block.nodes[1:] for block in own])]
@@ -117,7 +122,3 @@ def _solved(blocks: list[Block], space: Linearised, place: np.ndarray) -> tuple[
             for b, each in zip(some.tolist(), found, strict=True):
                 maps[b], sources[b] = each[:, :n], each[:, n]
     return [maps[b] for b in range(len(blocks))], [sources[b] for b in range(len(blocks))]
-
-
-MOST_NUMBERS = 4_000_000
-"""Numbers in the matrices that are solved at once, 32 MB."""

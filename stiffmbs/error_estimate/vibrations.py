@@ -10,9 +10,12 @@ import numpy as np
 
 from .linearised import Linearised
 from .parameters import ESTIMATE
+from .transport import at_once
 
-STEPS_AT_ONCE = 512
-"""Steps whose matrices are in memory at once."""
+
+def are_affordable(steps: int, size: int) -> bool:
+    """Return True if a transport step by step is affordable for rows (x, v, s) of a size."""
+    return steps * size**3 < ESTIMATE.operations
 
 
 def are_resolved(space: Linearised, t: np.ndarray, steps: np.ndarray) -> bool:
@@ -46,7 +49,7 @@ def changes_little(space: Linearised, t: np.ndarray) -> bool:
     part = ((t[1:-1] - t[:-2]) / (t[2:] - t[:-2]))[:, None, None]
     expected = matrices[:-2] + part * (matrices[2:] - matrices[:-2])
     off = np.linalg.norm(matrices[1:-1] - expected, axis=(1, 2)) / np.linalg.norm(matrices[1:-1], axis=(1, 2))
-    return bool(np.sort(off)[int(ESTIMATE.usual * (len(off) - 1))] <= ESTIMATE.interpolated)
+    return bool(off.max() <= ESTIMATE.interpolated)
 
 
 def step_by_step(
@@ -63,8 +66,9 @@ def step_by_step(
     at_node = dict(zip(nodes.tolist(), onto, strict=True))
     errors = np.zeros((len(t), len(start)))
     errors[0] = start
-    for first in range(0, len(t) - 1, STEPS_AT_ONCE):
-        ends = slice(first + 1, first + 1 + STEPS_AT_ONCE)
+    count = at_once(len(start))
+    for first in range(0, len(t) - 1, count):
+        ends = slice(first + 1, first + 1 + count)
         h = np.diff(t[first : ends.stop])
         matrices = _between(rates, t[nodes], t[ends] - 0.5 * h)
         for n, step in enumerate(_steps(h[:, None, None] * matrices, h[:, None] * defects[ends]), ends.start):

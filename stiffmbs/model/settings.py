@@ -18,6 +18,8 @@ from ..solver_names import CHOICES, FormulationName, SchemeName, SolverName
 
 DEFAULT_RTOL = 1e-6
 """Relative tolerance of a run without settings."""
+LARGEST_RTOL = 0.1
+"""Largest relative tolerance."""
 DEFAULT_POINTS = 1001
 """Output times of a run without settings for them, and largest number of its states from which growth is estimated."""
 MOST_OUTPUTS = MOST_VALUES
@@ -79,7 +81,7 @@ class RunSettings(Described):
         None,
         description="scheme of projected: euler_cromer and rk4 have fixed steps, dopri5 and dop853 adaptive ones; dop853 by default, euler_cromer with a step",
     )
-    rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
+    rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=LARGEST_RTOL)] = Field(
         DEFAULT_RTOL, description="relative error tolerance of bdf, radau and the adaptive schemes"
     )
     atol: si.PositiveNumber | None = Field(

@@ -31,9 +31,6 @@ if TYPE_CHECKING:
     from .starting.after_event import Begun, EventRestarts
     from .starting.starts import Starts
 
-MOST_STAGES = 7
-"""Stages of the Radau method by whose nodes the points within recorded steps are spaced."""
-
 
 class Reached(NamedTuple):
     """Progress of an integrator since its last report.
@@ -108,7 +105,11 @@ class NativeEngine:
 
     def record_steps(self, most: float) -> None:
         """Record the steps of the next run, at most `most` steps times unknowns, for an estimate of its errors."""
-        places = radau(MOST_STAGES).nodes[:-1] if self._by_radau else AT_THE_END
+        places = AT_THE_END
+        if self._by_radau:
+            from ..radau.memory import CHOSEN_FROM
+
+            places = radau(max(CHOSEN_FROM)).nodes[:-1]
         self.ida.keep_steps(True, places)
         self.recorder = StepRecorder(most, 1 + len(places))
 

@@ -6,6 +6,7 @@ import json
 from typing import Any
 
 import numpy as np
+from stiffmbs.solve.error_control.accumulated_errors import ACCUMULATED
 
 from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.run import run
@@ -13,7 +14,6 @@ from stiffmbs.compile.system import System
 from stiffmbs.errors import StiffmbsError
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.run_checks.growth import accumulated_errors_sentence
-from stiffmbs.solve.error_control.accumulated_errors import ACCUMULATED
 from stiffmbs.solve.trajectory import Outcome as Ending
 
 from ..case import Outcome, Verdict, told
