@@ -9,11 +9,10 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics
 from ..solve.recorded_steps import Piece
-from .defects import Rates, of_bdf, of_radau, slope_weights
+from .defects import Rates, of_bdf, of_radau
 from .evaluated import Evaluated, evaluated
 from .linearised import Linearised, linearised
-from .parameters import ESTIMATE
-from .restarts import after_restart, displaced
+from .restarts import after_restart, displaced, just_before
 from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
 from .vibrations import are_affordable, are_resolved, changes_little, step_by_step
 
@@ -109,8 +108,13 @@ def _transported(
 
 
 def _restarted(dynamics: Dynamics, before: _Prepared, after: _Prepared, error: np.ndarray) -> np.ndarray:
+    """Return the error at the start of a piece, from that at the end of the one before it."""
     last, first = before.states.at(slice(len(before.states.t) - 1, None)), after.states.at(slice(0, 1))
-    return after_restart(dynamics, last, first, before.piece.fired, error, _last_rates(before.states))
+    if not before.piece.fired:
+        return after_restart(dynamics, last, first, (), error, last)
+    return after_restart(
+        dynamics, last, first, before.piece.fired, error, just_before(dynamics, before.states, before.piece.fired)
+    )
 
 
 def _within_the_law(nodes: np.ndarray, pieces: Sequence[Piece], starts: np.ndarray) -> np.ndarray:
@@ -120,10 +124,3 @@ def _within_the_law(nodes: np.ndarray, pieces: Sequence[Piece], starts: np.ndarr
         if piece.fired:
             found[found == first + len(piece.t) - 1] -= 1
     return found
-
-
-def _last_rates(piece: Evaluated) -> np.ndarray:
-    """Return (q', u') at the end of a piece, from its last states."""
-    last = slice(max(len(piece.t) - ESTIMATE.points, 0), None)
-    states = np.hstack([piece.q[last], piece.u[last]])
-    return np.asarray(slope_weights(piece.t[None, last], len(states) - 1)[0] @ states)

@@ -7,7 +7,7 @@ import numpy as np
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from ..solve.events.restart import restarted
-from .evaluated import Evaluated, with_rates
+from .evaluated import Evaluated, evaluated, with_rates
 from .parameters import ESTIMATE
 from .variations import Variations
 
@@ -18,14 +18,15 @@ def after_restart(
     after: Evaluated,
     fired: tuple[int, ...],
     error: np.ndarray,
-    rates: np.ndarray,
+    on_left: Evaluated,
 ) -> np.ndarray:
     """Return the error (x, v, s) after a restart from that before it.
 
-    `before`, `after`: the state on both sides, one each. `fired`: event functions. `rates`: (q', u') before it. At an
-    event g = 0, the time is late by dt = -(g_q e_q + g_u e_u) / g', and e+ = jump(e- + f- dt) - f+ dt.
+    `before`, `after`: the state on both sides, one each. `fired`: event functions. `on_left`: a state just before, with the
+    rates there. At an event g = 0, the time is late by dt = -(g_q e_q + g_u e_u) / g', and e+ = jump(e- + f- dt) - f+ dt.
     """
     system = dynamics.system
+    rates = np.concatenate([on_left.q_rates[0], on_left.acceleration[0]])
     late = _late(dynamics, before, fired, error, rates) if fired else 0.0
     trailing, geometry = with_rates(system), Variations(system, before.q)
     n_q = system.n_q
@@ -52,15 +53,36 @@ def displaced(dynamics: Dynamics, at: Evaluated, variations: np.ndarray) -> tupl
     return q, at.u + geometry.own(variations[:, n_u : 2 * n_u])
 
 
+def just_before(dynamics: Dynamics, piece: Evaluated, fired: tuple[int, ...]) -> Evaluated:
+    """Return a state just before the event that ends a piece, where its forces are those of the piece."""
+    end, previous = len(piece.t) - 1, len(piece.t) - 2
+    sides = _event_values(dynamics, fired, float(piece.t[previous]), piece.q[previous], piece.u[previous]) > 0.0
+    step = piece.t[end] - piece.t[previous]
+    back = ESTIMATE.difference * step
+    while back < step:
+        t, q = piece.t[end] - back, piece.q[end] - back * piece.q_rates[previous]
+        u = piece.u[end] - back * piece.acceleration[previous]
+        if np.array_equal(_event_values(dynamics, fired, float(t), q, u) > 0.0, sides):
+            return evaluated(dynamics, np.array([t]), q[None], u[None])
+        back *= 10.0
+    return piece.at(slice(previous, end))
+
+
+def _event_values(dynamics: Dynamics, fired: tuple[int, ...], t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return the values of some event functions at a state."""
+    state = dynamics.state
+    state.q[:], state.u[:] = q, u
+    state.evaluate("event_function", t)
+    return np.array(state.values["event_function"][list(fired)])
+
+
 def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.ndarray, rates: np.ndarray) -> float:
     """Return the delay of an event by the error of the state."""
-    state, t = dynamics.state, float(at.t[0])
+    t = float(at.t[0])
     step = ESTIMATE.difference * max(1.0, abs(t))
 
     def values(t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        state.q[:], state.u[:] = q, u
-        state.evaluate("event_function", t)
-        return np.array(state.values["event_function"][list(fired)])
+        return _event_values(dynamics, fired, t, q, u)
 
     n_q = dynamics.system.n_q
     dq, du = step * rates[:n_q], step * rates[n_q:]
