@@ -12,6 +12,7 @@ from ..solve.recorded_steps import Piece
 from .defects import Rates, of_bdf, of_radau
 from .evaluated import Evaluated, evaluated
 from .linearised import Linearised, linearised
+from .parameters import ESTIMATE
 from .restarts import after_restart, displaced, just_before
 from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
 from .vibrations import are_affordable, are_resolved, changes_little, step_by_step
@@ -38,13 +39,25 @@ class StateErrors:
 
 @dataclass(frozen=True)
 class _Prepared:
-    """Piece with its evaluated states, the defects of its steps, their blocks and the rows of the nodes of these."""
+    """Piece with its evaluated states, the defects of its steps, their blocks and the rows of the nodes of these.
+
+    `opened`: True if it starts after an event.
+    """
 
     piece: Piece
     states: Evaluated
     defects: np.ndarray
     blocks: list[Block]
     rows: np.ndarray
+    opened: bool
+
+    def within(self, rows: np.ndarray) -> np.ndarray:
+        """Return the rows at which to linearise: near an event, where displacements cross it, the nearest ones further away."""
+        t = self.piece.t
+        near = ESTIMATE.beside * (t[-1] - t[0])
+        first = int(np.searchsorted(t, t[0] + near)) if self.opened else 0
+        last = int(np.searchsorted(t, t[-1] - near, side="right")) - 1 if self.piece.fired else len(t) - 1
+        return np.clip(rows, first, max(first, last))
 
 
 def state_errors(dynamics: Dynamics, pieces: Sequence[Piece]) -> StateErrors:
@@ -56,8 +69,8 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece]) -> StateErrors:
         _prepared(dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired))
         for k, (piece, first) in enumerate(zip(pieces, starts, strict=False))
     ]
-    nodes = np.concatenate([first + each.rows for each, first in zip(prepared, starts, strict=False)])
-    space = linearised(dynamics, states.at(_within_the_law(nodes, pieces, starts)))
+    nodes = np.concatenate([first + each.within(each.rows) for each, first in zip(prepared, starts, strict=False)])
+    space = linearised(dynamics, states.at(nodes))
     found, rows, done = [np.zeros((0, space.basis.shape[1]))], [], 0
     error = np.zeros(space.basis.shape[1])
     for k, each in enumerate(prepared):
@@ -87,7 +100,7 @@ def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool)
     is_node = np.zeros(len(piece.t), dtype=bool)
     for block in blocks:
         is_node[block.nodes] = True
-    return _Prepared(piece, states, defects, blocks, np.flatnonzero(is_node))
+    return _Prepared(piece, states, defects, blocks, np.flatnonzero(is_node), opened)
 
 
 def _transported(
@@ -100,7 +113,7 @@ def _transported(
     if by_steps and not are_resolved(space, t[rows], steps):
         everywhere = np.arange(len(t))
         if not changes_little(space, t[rows]):
-            rows, space = everywhere, linearised(dynamics, each.states)
+            rows, space = everywhere, linearised(dynamics, each.states.at(each.within(everywhere)))
         return step_by_step(t, each.defects, space, rows, error), everywhere
     place = np.full(len(t), -1)
     place[rows] = np.arange(len(rows))
@@ -115,12 +128,3 @@ def _restarted(dynamics: Dynamics, before: _Prepared, after: _Prepared, error: n
     return after_restart(
         dynamics, last, first, before.piece.fired, error, just_before(dynamics, before.states, before.piece.fired)
     )
-
-
-def _within_the_law(nodes: np.ndarray, pieces: Sequence[Piece], starts: np.ndarray) -> np.ndarray:
-    """Return the states at which to linearise: before an event, that at the start of the last step."""
-    found = nodes.copy()
-    for piece, first in zip(pieces, starts, strict=False):
-        if piece.fired:
-            found[found == first + len(piece.t) - 1] -= 1
-    return found

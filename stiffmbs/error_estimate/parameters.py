@@ -18,6 +18,8 @@ class EstimateParameters:
     """Steps times unknowns up to which every run estimates its error, about 0.2 s."""
     difference: float = 1e-7
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""
+    beside: float = 1e-3
+    """Distance from an event within which the equations are not linearised, in lengths of the piece that it ends or starts."""
     points: int = 6
     """Accepted states on the polynomial from which the defect of a step of bdf follows."""
     uneven: float = 10.0

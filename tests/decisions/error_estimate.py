@@ -11,6 +11,7 @@ from stiffmbs.analyses import errors as of_runs
 from stiffmbs.analyses.job import prepare
 from stiffmbs.error_estimate import defects, estimate, linearised, transport, vibrations
 from stiffmbs.error_estimate.accuracy import Accuracy
+from stiffmbs.error_estimate.along_run import _Prepared
 from stiffmbs.error_estimate.evaluated import evaluated
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.settings import RunSettings
@@ -43,6 +44,12 @@ def piece(h):
     t = np.append(0.0, np.cumsum(h))
     zeros = np.zeros((len(t), 1))
     return Piece(t, zeros, zeros, zeros, zeros, np.ones(len(t), dtype=int), 1, ())
+
+
+def row_beside_an_event():
+    """Return the row of 10,000 equal steps after an event at which the first state is linearised."""
+    prepared = _Prepared(piece(np.ones(10_000)), None, None, [], np.zeros(0), True)
+    return prepared.within(np.zeros(1, dtype=int))[0]
 
 
 def windows(h):
@@ -136,6 +143,7 @@ def next_rtol(excess, rtol=1e-4):
 DECISIONS = {
     "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE))).grid.recorded,
     "error_estimate.difference": largest_displacement,
+    "error_estimate.beside": row_beside_an_event,
     "error_estimate.points": lambda: windows(np.ones(20))[0][0],
     "error_estimate.uneven": lambda: count_while(lambda ratio: not windows(np.append(np.ones(20), ratio))[1], DOUBLES),
     "error_estimate.block": lambda: transport._rows(np.arange(100.0), 0)[-1],
@@ -161,7 +169,7 @@ DECISIONS = {
 EXPECTED = {
     "error_estimate.work": 150000.0,
     "error_estimate.difference": 1e-07,
-    "error_estimate.points": 6,
+    "error_estimate.beside": 10, "error_estimate.points": 6,
     "error_estimate.uneven": 14,
     "error_estimate.block": 8.0,
     "error_estimate.spectra": 16,

@@ -155,7 +155,9 @@ def main() -> None:
             print(name, "refused:", str(refusal)[:100])
             continue
         found.append(one)
-        ratios = " ".join(f"{group} {true:.1e} {one.ratios().get(group, float('nan')):.2f}" for group, true in one.true.items())
+        ratios = " ".join(
+            f"{group} {true:.1e} {one.ratios().get(group, float('nan')):.2f}" for group, true in one.true.items()
+        )
         marks = " FALSE NOTE" * one.is_false + " SILENT" * one.is_silent
         print(f"{name} {how['solver']} {one.rtol:.0e} {one.status}: {ratios}{marks}", flush=True)
     print(table(found))
