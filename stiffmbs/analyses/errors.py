@@ -27,7 +27,8 @@ def recording(job: Job) -> Job:
     from ..error_estimate.parameters import ESTIMATE
 
     asked = True if job.settings.accuracy else job.settings.errors
-    most = {True: np.inf, None: ESTIMATE.work, False: 0.0}[asked]
+    with in_use(job.settings.tuning):
+        most = {True: np.inf, None: ESTIMATE.work, False: 0.0}[asked]
     return replace(job, grid=replace(job.grid, recorded=most))
 
 

@@ -65,10 +65,8 @@ def of_bdf(piece: Piece, rates: Rates, opened: bool) -> np.ndarray:
     h = np.diff(t)
     if steps + 1 >= points:
         ends = np.arange(1, steps + 1)
-        first = np.clip(ends - 1 - (points - 2) // 2, 0, steps + 1 - points)
+        first, by_formula = _windows(h, points)
         window = first[:, None] + np.arange(points)
-        sizes = h[window[:, :-1]]
-        by_formula = sizes.max(axis=1) > ESTIMATE.uneven * sizes.min(axis=1)
         sides = []
         for rows in (ends - 1, ends):
             slopes = np.einsum("nk,nkj->nj", slope_weights(t[window], rows - first), rates.states[window])
@@ -86,6 +84,23 @@ def of_bdf(piece: Piece, rates: Rates, opened: bool) -> np.ndarray:
         remainder = np.zeros(found.shape[1]) if at_end else rates.defects(given[None], row)[0]
         found[n] = rates.variation(change[None], row)[0] + remainder
     return found
+
+
+def _windows(h: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first row of the polynomial of each step, and a mask of the steps that have none with even steps.
+
+    The step is in the middle of its polynomial if the steps there are even, otherwise as near to it as possible.
+    """
+    steps = len(h)
+    ends = np.arange(1, steps + 1)
+    middle = (points - 2) // 2
+    first, uneven = np.clip(ends - 1 - middle, 0, steps + 1 - points), np.ones(steps, dtype=bool)
+    for before in sorted(range(points - 1), key=lambda before: abs(before - middle)):
+        start = np.clip(ends - 1 - before, 0, steps + 1 - points)
+        sizes = h[start[:, None] + np.arange(points - 1)]
+        even = uneven & (sizes.max(axis=1) <= ESTIMATE.uneven * sizes.min(axis=1))
+        first[even], uneven[even] = start[even], False
+    return first, uneven
 
 
 def _of_formula(piece: Piece, states: np.ndarray, n: int) -> np.ndarray:
