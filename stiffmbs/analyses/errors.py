@@ -60,8 +60,9 @@ def _by_second_run(job: Job, solution: Solution) -> Solution:
     if len(other.time) != len(solution.time):
         return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")
     return with_bars(
-        replace(solution, errors=bars_by_difference(solution.time, solution.channels, other.channels)), job.settings
-    )
+        replace(solution, errors=bars_by_difference(solution.time, solution.channels, other.channels)),
+        job.settings, job.dynamics.system.size,
+    )  # fmt: skip
 
 
 def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:

@@ -53,11 +53,16 @@ def estimated(
     except (SolverError, np.linalg.LinAlgError) as error:
         sentence = f"not estimated: {error}; --verify compares with other runs"
         return replace(solution, estimate=ErrorEstimate("none", sentence))
-    return with_bars(replace(solution, errors=bars(solution.time, solution.channels, of_channels)), settings)
+    return with_bars(
+        replace(solution, errors=bars(solution.time, solution.channels, of_channels)), settings, dynamics.system.size
+    )
 
 
-def with_bars(solution: Solution, settings: RunSettings) -> Solution:
-    """Return a solution with error bars, with the sentence on its errors and a note if they are large."""
+def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solution:
+    """Return a solution with error bars, with the sentence on its errors and a note if they are large.
+
+    `size`: size of the mechanism, m.
+    """
     known = KnownErrors(solution)
     largest, relative = known.largest(over_time)
     peak, of_peak = known.largest(largest_bar)
@@ -66,18 +71,20 @@ def with_bars(solution: Solution, settings: RunSettings) -> Solution:
         sentence += f"; largest error: {largest} {100 * relative:.2g} %"
     if of_peak - relative > relative:
         sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
-    notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings))
+    notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings, size))
     estimate = ErrorEstimate("estimated", sentence, largest, relative)
     return replace(solution, estimate=estimate, notes=(*solution.notes, *notes))
 
 
-def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings) -> Iterator[str]:
+def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings, size: float) -> Iterator[str]:
     """Yield a sentence on the largest error, if a position is wrong by many tolerances or any channel by much."""
-    many = ESTIMATE.tolerances * max(settings.rtol, DEFAULT_RTOL)
-    errors = known.relative(over_time)
-    limits = {
-        name: min(many, ESTIMATE.large) if known.group[name] == "positions" else ESTIMATE.large for name in errors
-    }
+    rtol = max(settings.rtol, DEFAULT_RTOL)
+    absolute = max(settings.atol or 0.0, rtol * min(1.0, size))
+    errors, limits = known.relative(over_time), {}
+    for name in errors:
+        tolerance = rtol + absolute / known.sizes[name]
+        is_position = known.group[name] == "positions"
+        limits[name] = min(ESTIMATE.tolerances * tolerance, ESTIMATE.large) if is_position else ESTIMATE.large
     worst = max(limits, key=lambda name: errors[name] / limits[name], default="")
     if worst and errors[worst] > limits[worst]:
         error = f"{solution.errors[worst].over_time:.2g} {solution.unit(worst)}".strip()

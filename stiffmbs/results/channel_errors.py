@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .error_bars import ErrorBar, between
-from .scales import kind_of
+from .scales import ROUNDING, kind_of
 
 LARGER = 10.0
 """Tolerance of a second run in that of the first, by which the errors of explicit steps are estimated.
@@ -57,7 +57,8 @@ def _peak(
     fine, at = np.interp(t, own.t, sign * own.values[name]), np.searchsorted(t, times)
     fine[at] = values
     sampled = between(t, fine, at)
-    peak = abs(float(error[int(np.nanargmax(values))]))
+    at = int(np.nanargmax(values))
+    peak = max(abs(float(error[at])), ROUNDING * abs(float(values[at])))
     return peak + sampled, sampled
 
 

@@ -33,20 +33,20 @@ def largest_bar(bar: ErrorBar) -> float:
 class KnownErrors:
     """Errors of the channels of a run relative to their sizes: the largest value of each body or element.
 
-    `group`: group of each channel; empty for requests and channels of no group.
+    `group`: group of each channel; empty for requests and channels of no group. `sizes`: in the units of the channels.
     """
 
     def __init__(self, solution: Solution) -> None:
-        self._sizes = scales(solution.channels, 1.0, solution.requested)
+        self.sizes = scales(solution.channels, 1.0, solution.requested)
         self._solution = solution
-        self.group = {name: "" if name in solution.requested else _group(kind_of(name)) for name in self._sizes}
+        self.group = {name: "" if name in solution.requested else _group(kind_of(name)) for name in self.sizes}
 
     def relative(self, error_of: Callable[[ErrorBar], float], group: str = "") -> dict[str, float]:
         """Return known errors by channel, of one group or of all groups."""
         found = {}
         for name, own in self.group.items():
-            if own and group in ("", own) and self._sizes[name] > 0 and name in self._solution.errors:
-                error = error_of(self._solution.errors[name]) / self._sizes[name]
+            if own and group in ("", own) and self.sizes[name] > 0 and name in self._solution.errors:
+                error = error_of(self._solution.errors[name]) / self.sizes[name]
                 if math.isfinite(error) and name not in self._solution.not_unique:
                     found[name] = error
         return found

@@ -43,13 +43,16 @@ def coarse_forces_sentence(dynamics: Dynamics, trajectory: Trajectory, rows: Out
     if not len(at):
         return
     mass, rate = dynamics.system.mass, (rows.u[at] - rows.u[at - 1]) / (rows.t[at] - rows.t[at - 1])[:, None]
-    last = at[-1:]
-    largest = max(
-        largest_force(dynamics, (rows.q[last], rows.u[last]), float(rows.t[last[0]])), _largest_inertia(rows, mass)
-    )
-    off = np.sqrt((rows.acceleration[at] - rate) ** 2 @ mass) / largest if largest else np.zeros(len(at))
-    found = off > RUN_CHECKS.contradicted_part
+    inertia = _largest_inertia(rows, mass)
+    off = np.sqrt((rows.acceleration[at] - rate) ** 2 @ mass)
+    found = off > RUN_CHECKS.contradicted_part * inertia
     at, off, lengths = at[found], off[found], lengths[found]
+    if not len(at):
+        return
+    last = at[-1:]
+    largest = max(inertia, largest_force(dynamics, (rows.q[last], rows.u[last]), float(rows.t[last[0]])))
+    found = off > RUN_CHECKS.contradicted_part * largest
+    at, off, lengths = at[found], off[found] / largest, lengths[found]
     if not len(at):
         return
     dynamics.state.q[:], dynamics.state.u[:] = rows.q[at[-1]], rows.u[at[-1]]

@@ -107,16 +107,22 @@ def as_json(scene: str, solution: Solution) -> str:
             "balance": solution.balance.as_dict(),
             "not_unique": list(solution.not_unique),
             **({"verification": list(solution.verification)} if solution.verification else {}),
-            **({"errors": asdict(solution.estimate)} if solution.estimate else {}),
+            **({"errors": _estimated(solution)} if solution.estimate else {}),
             "channels": _with_errors(solution),
         }
     )
 
 
+def _estimated(solution: Solution) -> dict[str, object]:
+    """Return the outcome of the estimate of the errors, and the largest estimated error of each channel over time."""
+    assert solution.estimate is not None
+    return asdict(solution.estimate) | {"channels": {name: bar.over_time for name, bar in solution.errors.items()}}
+
+
 def _with_errors(solution: Solution) -> dict[str, dict[str, float]]:
-    """Return the ranges of all channels, with errors for a run whose errors are known; nan if unknown."""
+    """Return the ranges of all channels, with errors for a verified run; nan if unknown."""
     ranges = channel_ranges(solution)
-    if solution.verification or solution.errors:
+    if solution.verification:
         for name, cell in ranges.items():
             bar = solution.errors.get(name, UNKNOWN)
             cell |= {"error": bar.over_time, "min_error": bar.least, "max_error": bar.greatest}

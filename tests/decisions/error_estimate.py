@@ -18,6 +18,7 @@ from stiffmbs.model.settings import RunSettings
 from stiffmbs.results import channel_errors
 from stiffmbs.results.error_bars import ErrorBar
 from stiffmbs.solve.recorded_steps import Piece
+from stiffmbs.tuning import changed_values
 from tests.decisions.common import Record
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
@@ -108,9 +109,9 @@ def is_lost(error):
 
 
 def noted(group, error):
-    known = Record(relative=lambda _: {"a.x": error}, group={"a.x": group})
+    known = Record(relative=lambda _: {"a.x": error}, group={"a.x": group}, sizes={"a.x": np.inf})
     solution = Record(errors={"a.x": ErrorBar(error, 0.0, 0.0, 0.0, 0.0)}, unit=lambda _: "m")
-    return bool(list(estimate._large_errors(solution, known, RunSettings())))
+    return bool(list(estimate._large_errors(solution, known, RunSettings(), 1.0)))
 
 
 def runs_for_an_accuracy():
@@ -141,7 +142,7 @@ def next_rtol(excess, rtol=1e-4):
 
 
 DECISIONS = {
-    "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE))).grid.recorded,
+    "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded,
     "error_estimate.difference": largest_displacement,
     "error_estimate.beside": row_beside_an_event,
     "error_estimate.points": lambda: windows(np.ones(20))[0][0],

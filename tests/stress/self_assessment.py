@@ -65,7 +65,7 @@ class Assessment:
     @property
     def exceeds(self) -> float:
         """Return the largest true error in the threshold of its note."""
-        limits = {"positions": min(100.0 * max(self.rtol, 1e-6), 0.01)}
+        limits = {"positions": min(200.0 * max(self.rtol, 1e-6), 0.01)}
         return max((true / limits.get(group, 0.01) for group, true in self.true.items()), default=0.0)
 
     @property
