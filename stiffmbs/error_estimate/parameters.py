@@ -14,7 +14,7 @@ class EstimateParameters:
     Source: ``python -m tests.stress self_assessment``.
     """
 
-    work: float = 1.5e5
+    work: float = 1e5
     """Steps times unknowns up to which every run estimates its error, about 0.2 s."""
     difference: float = 1e-7
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""

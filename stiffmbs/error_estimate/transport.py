@@ -19,12 +19,15 @@ RADAU_NODES = radau(3).nodes
 
 @dataclass(frozen=True)
 class Block:
-    """Nodes of one block, as rows of the piece: its start, then the others; `local` of shape (nodes, full): integrals of
-    the defect from the start to each node but the first, and `weights` of shape (nodes, nodes): those of the rates."""
+    """Nodes of one block, as rows of the piece: its start, then the others.
+
+    `local` of shape (nodes, full): integrals of the defect from the start to each node but the first. `times` of shape
+    (nodes,): those of these nodes since the start, s.
+    """
 
     nodes: np.ndarray
     local: np.ndarray
-    weights: np.ndarray
+    times: np.ndarray
 
 
 def blocks_of_bdf(t: np.ndarray, defects: np.ndarray) -> list[Block]:
@@ -33,8 +36,7 @@ def blocks_of_bdf(t: np.ndarray, defects: np.ndarray) -> list[Block]:
     summed = np.cumsum(np.diff(t, prepend=t[0])[:, None] * defects, axis=0)
     while first < len(t) - 1:
         rows = _rows(t, first)
-        tau = t[rows] - t[rows[0]]
-        found.append(Block(rows, summed[rows[1:]] - summed[rows[0]], integrals(tau[1:])))
+        found.append(Block(rows, summed[rows[1:]] - summed[rows[0]], t[rows[1:]] - t[rows[0]]))
         first = int(rows[-1])
     return found
 
@@ -52,14 +54,16 @@ def _rows(t: np.ndarray, first: int) -> np.ndarray:
 
 
 def integrals(nodes: np.ndarray) -> np.ndarray:
-    """Return the integrals from 0 to each node of the Lagrange polynomials through the nodes, shape (nodes, nodes)."""
-    size = nodes[-1]
-    powers = np.arange(len(nodes))
-    x = nodes / size
-    vandermonde = x[:, None] ** powers
-    integrated = x[:, None] ** (powers + 1) / (powers + 1)
-    found: np.ndarray = size * np.linalg.solve(vandermonde.T, integrated.T).T
-    return found
+    """Return the integrals from 0 to each node of the Lagrange polynomials through the nodes.
+
+    `nodes` of shape (..., k). Returns an array of shape (..., k, k).
+    """
+    size = nodes[..., -1:, None]
+    powers = np.arange(nodes.shape[-1])
+    x = nodes[..., None] / size
+    transposed = np.swapaxes(x**powers, -1, -2)
+    integrated = np.swapaxes(x ** (powers + 1) / (powers + 1), -1, -2)
+    return np.asarray(size * np.swapaxes(np.linalg.solve(transposed, integrated), -1, -2))
 
 
 def blocks_of_radau(t: np.ndarray, defects: np.ndarray) -> list[Block]:
@@ -69,7 +73,7 @@ def blocks_of_radau(t: np.ndarray, defects: np.ndarray) -> list[Block]:
     rows = np.arange(steps)[:, None] * points + np.arange(points + 1)
     sizes = t[rows[:, -1]] - t[rows[:, 0]]
     local = sizes[:, None, None] * np.einsum("ij,njf->nif", weights, defects)
-    return [Block(*each) for each in zip(rows, local, sizes[:, None, None] * weights, strict=True)]
+    return [Block(*each) for each in zip(rows, local, sizes[:, None] * radau(points).nodes, strict=True)]
 
 
 def transported(blocks: list[Block], space: Linearised, place: np.ndarray, start: np.ndarray) -> np.ndarray:
@@ -109,7 +113,8 @@ def _solved(blocks: list[Block], space: Linearised, place: np.ndarray) -> tuple[
             own = [blocks[b] for b in some]
             first = place[np.array([block.nodes[0] for block in own])]
             at = place[np.array([block.nodes[1:] for block in own])]
-            weights, local = np.array([block.weights for block in own]), np.array([block.local for block in own])
+            weights = integrals(np.array([block.times for block in own]))
+            local = np.array([block.local for block in own])
             left = space.left[at]  # (blocks, k, n, full)
             matrix = -weights[:, :, None, :, None] * np.einsum("bknf,bjfm->bknjm", left, space.rates[at], optimize=True)
             own_part = left @ space.basis[at]
