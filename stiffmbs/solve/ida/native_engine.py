@@ -72,6 +72,7 @@ class NativeEngine:
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
         self._by_radau = formula is not None
+        self.recorder: StepRecorder | None = None
         self._rtol = settings.rtol
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
@@ -84,8 +85,9 @@ class NativeEngine:
     def forget(self) -> None:
         """Discard what earlier runs have left, so that results do not depend on them."""
         self.ida.forget()
-        self.ida.keep_steps(False)
-        self.recorder: StepRecorder | None = None
+        if self.recorder:
+            self.ida.keep_steps(False)
+            self.recorder = None
         self._order.forget()
         self._newton, self._stiffness = 0.0, Stiffness(0.0, 0.0)
         self._counted = {"steps": 0, "convergence_failures": 0}
@@ -115,9 +117,11 @@ class NativeEngine:
 
     def recorded(self) -> tuple[Piece, ...]:
         """Return the recorded steps, none if there were too many, and stop recording."""
-        self.ida.keep_steps(False)
         recorder, self.recorder = self.recorder, None
-        return recorder.pieces(self._equations) if recorder else ()
+        if recorder is None:
+            return ()
+        self.ida.keep_steps(False)
+        return recorder.pieces(self._equations)
 
     def _record_start(self, t: float) -> None:
         if self.recorder:
