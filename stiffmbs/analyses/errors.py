@@ -43,7 +43,8 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
 
             return estimated(solution, job.data, job.dynamics, job.start, job.subsystems, trajectory, job.settings)
         if traits.fixed_steps or job.dynamics.system.sampled.any():
-            return _without(solution, "not estimated; --verify compares with other runs")
+            why = "fixed steps" if traits.fixed_steps else "sampled states"
+            return _without(solution, f"not estimated for {why}; --verify compares with other runs")
         if job.settings.errors or job.settings.accuracy:
             return _by_second_run(job, solution)
     return _without(solution, f"not estimated: {_reason(trajectory)}; {ASK}")
