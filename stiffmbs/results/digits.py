@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from .error_bars import ErrorBar
-from .scales import kind_of, scales
+from .scales import REQUEST_ROUNDING, kind_of, scales
 from .solution import Solution
 
 GROUPS = {
@@ -38,14 +38,14 @@ class KnownErrors:
 
     def __init__(self, solution: Solution) -> None:
         self.sizes = scales(solution.channels, 1.0, solution.requested)
-        self._solution = solution
+        self._solution, self._rounding = solution, REQUEST_ROUNDING * max(self.sizes.values(), default=0.0)
         self.group = {name: "" if name in solution.requested else _group(kind_of(name)) for name in self.sizes}
 
     def relative(self, error_of: Callable[[ErrorBar], float], group: str = "") -> dict[str, float]:
         """Return known errors by channel, of one group or of all groups."""
         found = {}
         for name, own in self.group.items():
-            if own and group in ("", own) and self.sizes[name] > 0 and name in self._solution.errors:
+            if own and group in ("", own) and self.sizes[name] > self._rounding and name in self._solution.errors:
                 error = error_of(self._solution.errors[name]) / self.sizes[name]
                 if math.isfinite(error) and name not in self._solution.not_unique:
                     found[name] = error

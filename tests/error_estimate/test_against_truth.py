@@ -103,6 +103,19 @@ def test_a_prescribed_motion_has_no_error(solver):
     assert "positions to 12 digits" in found.estimate.sentence or found.estimate.relative < 1e-9
 
 
+def test_forces_of_rounding_have_no_note():
+    """A free body on an axis: the forces of the joint are 1e-60 N."""
+    found = solved(
+        """
+        dimensions: 3
+        bodies: {b: {mass: 1, inertia: [1, 1, 1], velocity: [0, 0, 1], omega: [0, 0, 2]}}
+        joints: {c: {type: cylindrical, i: b, j: ground}}
+        run: {duration: 1, points: 11, solver: radau, rtol: 1e-5}
+        """
+    )
+    assert found.estimate.status == "estimated" and not any("estimated error" in note for note in found.notes)
+
+
 def test_a_lost_solution_is_reported():
     """An inverted pendulum on a cart; its error grows by a factor of 1e20 in 10 s."""
     found = solved(
