@@ -57,8 +57,8 @@ def _peak(
     fine, at = np.interp(t, own.t, sign * own.values[name]), np.searchsorted(t, times)
     fine[at] = values
     sampled = between(t, fine, at)
-    at = int(np.nanargmax(values))
-    peak = max(abs(float(error[at])), ROUNDING * abs(float(values[at])))
+    top = int(np.nanargmax(values))
+    peak = max(abs(float(error[top])), ROUNDING * abs(float(values[top])))
     return peak + sampled, sampled
 
 
