@@ -39,6 +39,17 @@ class Linearised:
 
 def linearised(dynamics: Dynamics, at: Evaluated) -> Linearised:
     """Return the tangent spaces at evaluated states, and the rates of their variations."""
+    system = dynamics.system
+    width = (system.n_q + 2 * system.n_u) * (2 * system.n_u + system.n_q - system.n_pose)
+    count = max(1, ESTIMATE.numbers_at_once // max(width, 1))
+    parts = [_linearised(dynamics, at.at(slice(k, k + count))) for k in range(0, len(at.t), count)]
+    if len(parts) == 1:
+        return parts[0]
+    return Linearised(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("basis", "rates", "left")))
+
+
+def _linearised(dynamics: Dynamics, at: Evaluated) -> Linearised:
+    """Return the tangent spaces at a few states."""
     system, count = dynamics.system, len(at.t)
     n_u, trailing = system.n_u, with_rates(system)
     geometry = Variations(system, at.q)
