@@ -55,14 +55,14 @@ class Calls:
         self._package = package
 
 
-def warm_run(scene: str) -> Calls:
+def warm_run(scene: str, **changes: Any) -> Calls:
     """The calls of the second run of a scene."""
     model, calls = stiffmbs.load_scene(scene), Calls()
-    stiffmbs.run(model)
+    stiffmbs.run(model, **changes)
     gc.collect()  # what earlier runs of this process have left is let go now, not in the middle of the run
     sys.setprofile(calls.note)
     try:
-        stiffmbs.run(model)
+        stiffmbs.run(model, **changes)
     finally:
         sys.setprofile(None)
     return calls

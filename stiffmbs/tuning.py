@@ -18,8 +18,6 @@ from types import FunctionType, MappingProxyType
 from typing import Any, TypeVar, cast
 
 SUBSYSTEMS = {
-    "accumulation": "solve.error_control.native.parameters:ACCUMULATION",
-    "accumulated_errors": "solve.error_control.accumulated_errors:ACCUMULATED",
     "auto": "solve.auto_decisions:AUTO",
     "chattering": "solve.events.chattering:CHATTERING",
     "consistency": "dynamics.native.parameters:CONSISTENCY",
@@ -27,6 +25,7 @@ SUBSYSTEMS = {
     "divergence": "solve.events.refusals:DIVERGENCE",
     "elimination": "dynamics.native.parameters:ELIMINATION",
     "equilibria": "equilibria.parameters:EQUILIBRIA",
+    "error_estimate": "error_estimate.parameters:ESTIMATE",
     "error_filter": "solve.error_control.native.parameters:FILTER",
     "error_test": "solve.error_control.error_test:PLANAR",
     "error_test_in_space": "solve.error_control.error_test:SPATIAL",

@@ -30,12 +30,12 @@ from ..run_checks.growth import motion_within_tolerance, senseless
 from ..run_checks.left_tables import departure_notes, left_tables, refused_departure, stopped_at
 from ..run_checks.motion import motion_notes
 from ..run_checks.uncertain_forces import uncertain_forces
-from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.missing_rows import reported
 from ..solve.settings import settings_notes, traits_of
 from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
+from .errors import assessed, recording, to_accuracy
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
 from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
@@ -92,7 +92,8 @@ def run(
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
         data = with_inputs(data, inputs, settings_of(data, settings, changes))
-    return solved(prepare(data, settings, start_from, **changes), watch)
+    job = recording(prepare(data, settings, start_from, **changes))
+    return to_accuracy(job, watch) if job.settings.accuracy else solved(job, watch)
 
 
 @dataclass(frozen=True)
@@ -209,7 +210,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     if job.on_constraints:
         statistics["drift"] = float(np.fmax.reduce(rows.drift))
     requested = units(job.data.outputs()) if job.data.requests else {}
-    return Solution(
+    solution = Solution(
         name=job.data.name,
         time=found.time,
         channels=found.channels,
@@ -226,6 +227,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
         turns=turns_of(job.dynamics.system, rows.q),
         provenance=job.provenance(),
     )
+    return assessed(job, trajectory, solution)
 
 
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
@@ -313,12 +315,6 @@ def _notes(job: Job, trajectory: Trajectory, rows: OutputRows, structure: Struct
         yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, rows)
     if trajectory.note:
         yield trajectory.note
-    # relative to the mechanism's size, with any tolerances
-    least = ACCUMULATED.tolerances * ACCUMULATED.usual_rtol * min(1.0, system.size)
-    if trajectory.displaced is not None and (trajectory.displaced > least).any():
-        from ..run_checks.growth import accumulated_errors_sentence
-
-        yield from accumulated_errors_sentence(system, job.settings, trajectory)
     if system.size == 1.0 and job.settings.atol is None and "rtol" in traits_of(job.settings).reads:
         yield from motion_within_tolerance(system, job.settings, trajectory)
     yield from settings_notes(job.settings, system)

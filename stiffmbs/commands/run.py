@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from pathlib import Path
@@ -45,10 +46,12 @@ READ_BY_RICH = "COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "J
 @option("--all", "List the loads of all elements, not only the ten largest.", "all_loads")
 @state_options
 @solving_options
+@option("--errors", "Estimate the errors of all channels, however long the run is.")
+@option("--accuracy TEXT", "Accuracy to reach, by the choice of rtol: forces=1%,positions=0.1mm.")
 @option("--verify", "Rerun at a smaller tolerance and with another integrator: error bars, and warnings.")
 def run(
-    scene: str, output: Path | None, figure: Path | None, as_json: bool, all_loads: bool, verify: bool, state: str | None,
-    at: float | None, **options: object,
+    scene: str, output: Path | None, figure: Path | None, as_json: bool, all_loads: bool, errors: bool, accuracy: str | None,
+    verify: bool, state: str | None, at: float | None, **options: object,
 ) -> None:  # fmt: skip
     """Solve SCENE and show the range of every joint force.
 
@@ -60,7 +63,7 @@ def run(
     with refusing(scene, as_json):
         refuse_file("-o", output, scene, "results")
         refuse_file("--figure", figure, scene, "figure")
-        changes = changes_of(options)
+        changes = [*changes_of(options), *_about_errors(errors, accuracy)]
         with ProgressBar(0.0, 0.0):
             loaded = load_scene(scene, changes)
         solution = solve_scene(scene, loaded, verify, **start_of(loaded, state, at, changes))
@@ -83,6 +86,16 @@ def run(
     else:
         summary.print_summary(scene, solution, results, _console_for(solution), all_loads)
     sys.exit(0 if solution.outcome.name == "DONE" and written else Status.FAILED)
+
+
+def _about_errors(errors: bool, accuracy: str | None) -> list[tuple[str, str]]:
+    """Return the changes of a scene for the options on errors."""
+    found = [("run.errors", "true")] if errors else []
+    if accuracy is not None:
+        from ..model.accuracy import from_option
+
+        found += [("run.accuracy", json.dumps(from_option(accuracy)))]
+    return found
 
 
 def _write(scene: str, output: Path | None, as_json: bool, solution: Solution) -> tuple[str, bool]:

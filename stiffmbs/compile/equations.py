@@ -63,6 +63,13 @@ class Equations:
             return q, u
         return self._offset + self._led("q", q), self._led("u", u)
 
+    def rates(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the rates of all coordinates and velocities from those of `independent`, one row for each state."""
+        count = self.coordinates.count
+        if count == self.system.n_q:
+            return rows[:, :count], rows[:, count:]
+        return self._led("q", rows[:, :count]), self._led("u", rows[:, count:])
+
     def _led(self, name: str, rows: np.ndarray) -> np.ndarray:
         """Return all coordinates or velocities, without offsets, from the independent ones."""
         place, ratio = self._leads[name]

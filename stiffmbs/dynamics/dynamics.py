@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar, cast
 
@@ -71,12 +71,10 @@ class OutputRows:
     power: np.ndarray
     status: int
 
-    def at(self, instants: np.ndarray) -> OutputRows:
+    def at(self, instants: np.ndarray | slice) -> OutputRows:
         """Return the rows of some output times, by number."""
         found = {each.name: getattr(self, each.name) for each in fields(self)}
-        return OutputRows(
-            **{name: each[instants] if isinstance(each, np.ndarray) else each for name, each in found.items()}
-        )
+        return replace(self, **{name: each[instants] for name, each in found.items() if isinstance(each, np.ndarray)})
 
     @property
     def finite(self) -> bool:

@@ -18,6 +18,8 @@ from ..solver_names import CHOICES, FormulationName, SchemeName, SolverName
 
 DEFAULT_RTOL = 1e-6
 """Relative tolerance of a run without settings."""
+LARGEST_RTOL = 0.1
+"""Largest relative tolerance."""
 DEFAULT_POINTS = 1001
 """Output times of a run without settings for them, and largest number of its states from which growth is estimated."""
 MOST_OUTPUTS = MOST_VALUES
@@ -50,6 +52,8 @@ class Settings(TypedDict, total=False):
     stages: Literal[3, 5, 7, "auto"]
     presolve: bool
     drop_first: Sequence[str]
+    errors: bool | None
+    accuracy: Mapping[str, str]
     tuning: Mapping[str, Mapping[str, Any]]
 
 
@@ -77,7 +81,7 @@ class RunSettings(Described):
         None,
         description="scheme of projected: euler_cromer and rk4 have fixed steps, dopri5 and dop853 adaptive ones; dop853 by default, euler_cromer with a step",
     )
-    rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
+    rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=LARGEST_RTOL)] = Field(
         DEFAULT_RTOL, description="relative error tolerance of bdf, radau and the adaptive schemes"
     )
     atol: si.PositiveNumber | None = Field(
@@ -104,6 +108,14 @@ class RunSettings(Described):
     )
     drop_first: tuple[str, ...] = Field(
         (), description="joints whose redundant equations are dropped first, the last name first"
+    )
+    errors: bool | None = Field(
+        None,
+        description="whether the errors of all channels are estimated after the run; by default for runs of little work",
+    )
+    accuracy: dict[str, Any] = Field(
+        {},
+        description="largest errors of `positions`, `velocities` and `forces`, as part of the largest value (1 %) or with a unit (0.1 mm); rtol is then chosen by the estimate of the errors",
     )
     tuning: dict[str, dict[str, Any]] = Field(
         {}, description="changed parameters of solvers by subsystem and name (`stiffmbs.tuning`), for experts"
@@ -132,6 +144,15 @@ class RunSettings(Described):
                 f"found {found}, expected a time in s; 'start: {entry}' belongs to the scene, outside 'run'"
             )
         return start
+
+    @field_validator("accuracy", mode="before")
+    @classmethod
+    def _known_groups(cls, found: object) -> object:
+        if found:
+            from .accuracy import wanted  # few runs have it
+
+            wanted(found)
+        return found
 
     @field_validator("tuning", mode="before")
     @classmethod

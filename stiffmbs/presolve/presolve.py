@@ -179,11 +179,6 @@ class Part:
         into_q[:, n_q * self.bodies[:, None] + np.arange(n_q)] = of
         into_u[:, n_u * self.bodies[:, None] + np.arange(n_u)] = rates
 
-    def put_displaced(self, displaced: np.ndarray, into: np.ndarray) -> None:
-        """Write displacements of the bodies of the whole model from those of their parents, shapes (n_u,)."""
-        n_u = self.system.of_body.n_u
-        into.reshape(-1, n_u)[self.bodies] = displaced.reshape(-1, n_u)[self.parent]
-
     @cached_property
     def _is_whole(self) -> bool:
         """True if the part's bodies are those of the whole model, in the same order."""

@@ -19,6 +19,7 @@ from ..model.scene import Figure
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
 from .error_bars import ErrorBar
+from .estimate import ErrorEstimate
 from .provenance import PROVENANCE, from_json
 from .saved_state import TURNS, reading
 
@@ -39,6 +40,7 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
         "requested": dict(solution.requested),
         "solver": solution.solver,
         "errors": {channel: astuple(bar) for channel, bar in solution.errors.items()},
+        "estimate": solution.estimate and astuple(solution.estimate),
         "figure": solution.figure and dict(solution.figure),
     }
     return {
@@ -76,6 +78,7 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
         name=about["name"], time=arrays["time"], channels=channels, outcome=Outcome[about["outcome"]], message=about["message"],
         **texts, requested=about["requested"], solver=about["solver"],
         errors={channel: ErrorBar(*bar) for channel, bar in about["errors"].items()},
+        estimate=ErrorEstimate(*about["estimate"]) if about.get("estimate") else None,
         history=History(*(arrays[HISTORY + part.name] for part in fields(History))),
         balance=Balance(**{name: array if array.ndim else array.item() for name, array in balance.items()}),
         figure=Figure(**about["figure"]) if about["figure"] else None,

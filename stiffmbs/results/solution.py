@@ -17,6 +17,7 @@ from ..solve.trajectory import History, Outcome
 from .channels import named
 from .energy_balance import Balance
 from .error_bars import ErrorBar
+from .estimate import ErrorEstimate
 from .scales import UNITS, kind_of
 
 if TYPE_CHECKING:
@@ -54,7 +55,9 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     presolve : tuple of str
         Sentences on the parts that presolve removed from the solution.
     errors : mapping of str to ErrorBar
-        Error bars of channels, if the run was verified.
+        Error bars of channels, if its errors were estimated or the run was verified.
+    estimate : ErrorEstimate, optional
+        Outcome of the estimate of the errors, if there was one.
     verification : tuple of str
         Sentences on the runs used for verification.
     discretisation : mapping of str to float
@@ -82,6 +85,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     requested: Mapping[str, str] = field(default_factory=dict)
     presolve: tuple[str, ...] = ()
     errors: Mapping[str, ErrorBar] = field(default_factory=dict)
+    estimate: ErrorEstimate | None = None
     verification: tuple[str, ...] = ()
     discretisation: Mapping[str, float] = field(default_factory=dict)
     figure: Figure | None = None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,6 @@ from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import blocks, release
 from ..model.settings import RunSettings
-from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.events.refusals import DIVERGENCE, SPEED_OF_LIGHT, exponential, reaches
 from ..solve.trajectory import Trajectory
 from .parameters import RUN_CHECKS
@@ -124,31 +122,6 @@ def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> s
     )
 
 
-AXES = ("x", "y", "z")
-
-
-def accumulated_errors_sentence(system: System, settings: RunSettings, trajectory: Trajectory) -> Iterator[str]:
-    """Yield a sentence on the position with the largest estimated error, if it exceeds a number of tolerances."""
-    displaced = trajectory.displaced
-    if displaced is None:
-        return
-    errors = ACCUMULATED.in_tolerances(system, settings, displaced, trajectory.q)
-    worst = int(np.nanargmax(errors))
-    beyond = f"{errors[worst]:.2g} times the tolerance"
-    if not errors[worst] > ACCUMULATED.tolerances:
-        parts = displaced / _widths_of_free_mechanisms(system, trajectory.q[[0, -1]])
-        parts[~(parts > RUN_CHECKS.part_of_size * np.fmax(errors, 1.0))] = 0.0  # the tolerance exceeds that part, too
-        worst = int(np.argmax(parts))
-        beyond = f"{100 * parts[worst]:.2g} % of the size of its mechanism"
-        if not parts[worst]:
-            return
-    what, unit = _position(system, worst)
-    yield (
-        f"integration errors may accumulate: the estimated error of {what} at t = {trajectory.t[-1]:.6g} s is "
-        f"{displaced[worst]:.2g} {unit}, {beyond}; use a smaller rtol, or --verify for error bars"
-    )
-
-
 def motion_within_tolerance(system: System, settings: RunSettings, trajectory: Trajectory) -> Iterator[str]:
     """Yield a sentence if bodies that are all described at one point move by less than the absolute tolerance.
 
@@ -164,44 +137,3 @@ def motion_within_tolerance(system: System, settings: RunSettings, trajectory: T
             f"the motion of {travel:.2g} m is smaller than the absolute tolerance of {settings.rtol:.2g} m: bodies and markers at a "
             "single point have no size that it could follow; set atol"
         )
-
-
-def _widths_of_free_mechanisms(system: System, q: np.ndarray) -> np.ndarray:
-    """Return the largest distance between connected bodies of each body's mechanism, for its translations, shape (n_u,), m.
-
-    It is infinite for rotations, and for mechanisms that are connected to the ground. `q` of shape (n, n_q): poses.  The
-    tolerances of coordinates far from the origin may exceed the size of a mechanism that flies freely.
-    """
-    ground, linear = len(system.bodies), system.of_body.linear
-    pairs = [
-        group.bodies[:, [a, b]]
-        for group in system.groups
-        if group.kind.element.kind
-        for a, b in combinations(range(group.bodies.shape[1]), 2)
-    ]
-    first, second = np.concatenate([*pairs, np.empty((0, 2), dtype=np.int64)]).astype(np.int64).T
-    least, before = np.arange(ground + 1), np.zeros(ground + 1, dtype=np.int64)
-    while not np.array_equal(least, before):
-        before = least.copy()
-        np.minimum.at(least, first, least[second])
-        np.minimum.at(least, second, least[first])
-        least = least[least]
-    places = np.zeros((len(q), ground + 1, linear))
-    places[:, :ground] = q[:, : system.n_pose].reshape(len(q), ground, -1)[:, :, :linear]
-    widths = np.zeros(ground + 1)
-    np.maximum.at(widths, least[first], np.linalg.norm(places[:, first] - places[:, second], axis=2).max(axis=0))
-    widths[least[ground]] = np.inf
-    widths[widths == 0.0] = np.inf
-    return np.where(system.per_velocity(1.0, 0.0) > 0, np.repeat(widths[least[:ground]], system.of_body.n_u), np.inf)
-
-
-def _position(system: System, velocity: int) -> tuple[str, str]:
-    """Return the name of the position that a velocity changes, and its unit."""
-    of_body = system.of_body
-    body, k = divmod(velocity, of_body.n_u)
-    name = system.bodies[body]
-    if k < of_body.linear:
-        return f"{name}.{AXES[k]}", "m"
-    if of_body.dimensions == 2:
-        return f"{name}.angle", "rad"
-    return f"the rotation of '{name}' about its {AXES[k - of_body.linear]} axis", "rad"

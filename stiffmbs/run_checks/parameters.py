@@ -20,8 +20,6 @@ class RunCheckParameters:
     """Change of a force by the rounding of coordinates, relative to the largest force, above which a note appears."""
     roundings: int = 4
     """Number of roundings in each coordinate, for that change."""
-    part_of_size: float = 0.01
-    """Accumulated error of a mechanism that flies freely, relative to its size, above which a note appears."""
     stiffened: float = 0.03
     """Geometric stiffness of a flexible body, relative to its elastic stiffness, from which a note appears."""
     of_second_order: float = 110.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict
 from functools import partial
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
@@ -106,9 +107,16 @@ def as_json(scene: str, solution: Solution) -> str:
             "balance": solution.balance.as_dict(),
             "not_unique": list(solution.not_unique),
             **({"verification": list(solution.verification)} if solution.verification else {}),
+            **({"errors": _estimated(solution)} if solution.estimate else {}),
             "channels": _with_errors(solution),
         }
     )
+
+
+def _estimated(solution: Solution) -> dict[str, object]:
+    """Return the outcome of the estimate of the errors, and the largest estimated error of each channel over time."""
+    assert solution.estimate is not None
+    return asdict(solution.estimate) | {"channels": {name: bar.over_time for name, bar in solution.errors.items()}}
 
 
 def _with_errors(solution: Solution) -> dict[str, dict[str, float]]:
@@ -189,6 +197,8 @@ def _print(scene: str, solution: Solution, console: Console | PlainConsole, all:
     line("constraints", f"position {position:.2g} m, velocity {velocity:.2g} m/s")
     for label, text in solver_lines(solution.solver):
         line(label, text)
+    if solution.estimate:
+        line("errors", solution.estimate.sentence)
     for label, sentences in (("presolve", solution.presolve), ("verified", solution.verification)):
         for sentence in sentences:
             line(label, sentence)

@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..results.scales import kind_of, scales
+from ..results.digits import KnownErrors, digits_words, largest_bar
 from ..results.solution import Solution
 from ..solve.trajectory import IN_DOUBT, Outcome
-
-GROUPS = {
-    "positions": ("position", "angle", "orientation"),
-    "velocities": ("velocity", "angular velocity"),
-    "forces": ("force", "torque"),
-}
-"""Groups of channels whose digits are counted together, by the kinds of `stiffmbs.results.scales`."""
-MOST_DIGITS = 12
 
 
 @dataclass(frozen=True)
@@ -28,7 +18,7 @@ class Verdict:
     status: str  # ``done``, ``doubt`` (completed, but the results may be wrong), ``stopped`` or ``interrupted``
     headline: str  # one sentence on the end of the run
     # reliable digits of positions, velocities and forces, relative to the largest value of each body or element; empty
-    # if the run was not verified
+    # if its errors are unknown
     digits: dict[str, int]
     to_check: tuple[str, ...]  # notes of the run
 
@@ -36,9 +26,8 @@ class Verdict:
     def digits_words(self) -> str:
         """Reliable digits as a phrase."""
         if not self.digits:
-            return "not verified: the number of reliable digits is unknown"
-        counted = (f"{name} to {count} digit{'s' if count != 1 else ''}" for name, count in self.digits.items())
-        return f"reliable: {', '.join(counted)}"
+            return "the number of reliable digits is unknown: give --errors or --verify"
+        return f"reliable: {digits_words(self.digits)}"
 
 
 @np.errstate(all="ignore")  # numbers of a diverged run overflow
@@ -50,19 +39,4 @@ def verdict(solution: Solution) -> Verdict:
     headline = f"{start:g} s to {end:g} s: {solution.message}"
     if status == "done":
         headline = f"Completed: {start:g} s to {end:g} s"
-    return Verdict(status, headline, dict(_digits(solution)), solution.notes)
-
-
-def _digits(solution: Solution) -> Iterator[tuple[str, int]]:
-    """Yield the least number of reliable digits in each group of channels with known errors."""
-    sizes = scales(solution.channels, 1.0, solution.requested)
-    known = {
-        name: bar.over_time / sizes[name]
-        for name, bar in solution.errors.items()
-        if name in sizes and sizes[name] > 0 and math.isfinite(bar.over_time) and name not in solution.not_unique
-    }
-    for group, kinds in GROUPS.items():
-        errors = [error for name, error in known.items() if name not in solution.requested and kind_of(name) in kinds]
-        if errors:
-            largest = max(max(errors), 10.0**-MOST_DIGITS)
-            yield group, max(0, math.floor(-math.log10(largest)))
+    return Verdict(status, headline, KnownErrors(solution).digits(largest_bar), solution.notes)

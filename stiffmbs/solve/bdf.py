@@ -75,6 +75,8 @@ def integrated(
     """
     rows = Rows.of(integrator.dynamics.system, grid)
     rows.append(grid.start, start.q, start.u)
+    if grid.recorded:
+        integrator.engine.record_steps(grid.recorded)
     with Ending() as ending:
         for reached in integrator.run(start, grid, passing=not is_logged()):
             # multipliers are in no error test: those of the output times follow from the accelerations at q and u
@@ -102,7 +104,7 @@ def integrated(
         history,
         integrator.note(),
         long_steps=integrator.long_steps(),
-        displaced=integrator.engine.displaced(),
+        recorded=tuple(filter(None, [integrator.engine.recorded()])),
         departures=integrator.engine.ida.watch.departures(),
     )
 

@@ -170,7 +170,7 @@ def _up_to_row(part: Trajectory, row: int) -> Trajectory:
     history = History(np.minimum(part.history.t[taken], part.t[row]), part.history.order[taken])
     return replace(
         part, t=part.t[rows], q=part.q[rows], u=part.u[rows], outcome=Outcome.DONE, message=Outcome.DONE.value,
-        history=history, long_steps=(),
+        history=history, long_steps=(), recorded=(),
     )  # fmt: skip
 
 
@@ -182,7 +182,6 @@ def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: E
     if parts and parts[-1].outcome is not Outcome.DONE:
         ending.outcome, ending.message = parts[-1].outcome, parts[-1].message
     times, orders = zip(*((part.history.t, part.history.order) for part in parts), strict=True) if parts else ((), ())
-    known = [np.abs(part.displaced) for part in parts if part.displaced is not None]
     return Trajectory(
         t, q, u, ending.outcome, ending.message,
         summed([{"steps": 0, "seconds": 0.0}, *(part.statistics for part in parts)]),
@@ -190,8 +189,7 @@ def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: E
         "; ".join([*dict.fromkeys(part.note for part in parts if part.note)][: MOST_LISTED]),
         ", ".join(dict.fromkeys(part.solver for part in parts if part.solver)),
         tuple(steps for part in parts for steps in part.long_steps),
-        np.sum(known, axis=0) if known else None,
-        tuple(each for part in parts for each in part.departures),
+        departures=tuple(each for part in parts for each in part.departures),
     )  # fmt: skip
 
 

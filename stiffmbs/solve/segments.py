@@ -27,11 +27,9 @@ def joined(segments: Sequence[Segment]) -> Trajectory:
     )
     counted = _last_of_each_kind(segments)
     long_steps = tuple(steps for part in counted for steps in part.long_steps)
-    known = [part.displaced for part in counted if part.displaced is not None]
-    displaced = np.sum(known, axis=0) if known else None
     statistics, history = _summed(parts, counted), _history(counted)
     return replace(
-        parts[-1], t=t, q=q, u=u, statistics=statistics, history=history, long_steps=long_steps, displaced=displaced,
+        parts[-1], t=t, q=q, u=u, statistics=statistics, history=history, long_steps=long_steps, recorded=(),
         departures=tuple(each for part in parts for each in part.departures),
     )  # fmt: skip
 

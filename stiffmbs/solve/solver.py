@@ -12,7 +12,9 @@ from ..model.settings import RunSettings
 from .sampling import solved_between_samples
 from .trajectory import Solver, Trajectory
 
-FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "drop_first", "tuning"})
+FOR_ALL_SOLVERS = frozenset(
+    {"duration", "start", "output", "points", "solver", "presolve", "drop_first", "errors", "accuracy", "tuning"}
+)
 """Settings that are read before a solver begins; all others are read by the solvers that declare them."""
 
 

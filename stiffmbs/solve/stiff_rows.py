@@ -39,7 +39,7 @@ def _suspects(dynamics: Dynamics, states: States, rows: OutputRows, steps: np.nd
     at = np.flatnonzero(moved & (steps[: len(rows.t)] > 0.0))
     if not len(at):
         return at
-    allowed = rtol * _largest_force(dynamics, _of(states, at[-1:]), float(rows.t[at[-1]]))
+    allowed = rtol * largest_force(dynamics, _of(states, at[-1:]), float(rows.t[at[-1]]))
     at = at[_bounds(dynamics, rows, at) > allowed]
     return at[_changes(dynamics, _of(states, at), rows, at) > allowed] if len(at) else at
 
@@ -76,7 +76,7 @@ def _of(states: States, at: np.ndarray) -> States:
     return states[0][at], states[1][at]
 
 
-def _largest_force(dynamics: Dynamics, states: States, t: float) -> float:
+def largest_force(dynamics: Dynamics, states: States, t: float) -> float:
     """Return the largest force of an element, or force of inertia, at a state, divided by the root of its inertia."""
     system, state = dynamics.system, dynamics.state
     state.q[:], state.u[:] = states[0][0], states[1][0]

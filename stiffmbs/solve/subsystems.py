@@ -155,17 +155,13 @@ def _together(subsystems: Sequence[Subsystem], found: Sequence[Trajectory], star
     q[:], u[:] = start.q, start.u
     for subsystem, trajectory in zip(subsystems, found, strict=False):
         subsystem.part.put(trajectory.q[:rows], trajectory.u[:rows], q, u)
-    displaced = np.zeros(len(start.u))
-    for subsystem, trajectory in zip(subsystems, found, strict=False):
-        if trajectory.displaced is not None:
-            subsystem.part.put_displaced(trajectory.displaced, displaced)
     ending = next((each for each in found if each.outcome is not Outcome.DONE), found[-1])
     return replace(
         ending, t=found[0].t[:rows], q=q, u=u, statistics=summed([each.statistics for each in found]), history=_merged([each.history for each in found]),
         note="; ".join(each.note for each in found if each.note),
         solver=", ".join(dict.fromkeys(each.solver for each in found if each.solver)),
         long_steps=tuple(steps for each in found for steps in each.long_steps),
-        displaced=displaced,
+        recorded=tuple(pieces for each in found for pieces in each.recorded) if all(each.recorded for each in found) else (),
         departures=tuple(each for trajectory in found for each in trajectory.departures),
     )  # fmt: skip
 

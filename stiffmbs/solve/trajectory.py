@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ..dynamics.initial import InitialValues
     from .events.departures import Departure
     from .events.long_steps import LongSteps
+    from .recorded_steps import Piece
 
 ProgressCallback = Callable[[float], None]
 SAME_TIME = 1e-9
@@ -71,13 +72,15 @@ class Grid:
 
     Solvers restart at `stops`, as at input breakpoints: a step ends just before a breakpoint, where every formula has
     its earlier side, and the next one begins just after it. Output at a breakpoint is the state just before it, output at
-    the start of a run that just after it.
+    the start of a run that just after it. `recorded`: steps times unknowns up to which implicit solvers record their
+    steps for an estimate of the errors.
     """
 
     start: float
     end: float
     times: np.ndarray | None
     stops: np.ndarray = field(default_factory=lambda: np.empty(0))
+    recorded: float = 0.0
 
     @property
     def aside(self) -> float:
@@ -145,9 +148,8 @@ class Trajectory:
         Solvers used, if the user did not choose them.
     long_steps : tuple of LongSteps
         Steps much longer than their predecessors, with the motion within them; only if force laws have breakpoints.
-    displaced : ndarray, shape (n_u,), or None
-        Estimated position errors at the end, as displacements along the velocities, m and rad
-        (`stiffmbs.solve.error_control.accumulated_errors`); None if unknown.
+    recorded : tuple of tuples of Piece
+        Recorded steps of each mechanism that was solved separately; empty if they were not recorded.
     departures : tuple of Departure
         Tables whose points the steps have left.
     """
@@ -162,7 +164,7 @@ class Trajectory:
     note: str = ""
     solver: str = ""
     long_steps: tuple[LongSteps, ...] = ()
-    displaced: np.ndarray | None = None
+    recorded: tuple[tuple[Piece, ...], ...] = ()
     departures: tuple[Departure, ...] = ()
 
     @property

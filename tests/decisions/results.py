@@ -9,6 +9,7 @@ import numpy as np
 from stiffmbs.errors import InputError
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.results import (
+    digits,
     energy_balance,
     energy_balance_notes,
     error_bars,
@@ -122,7 +123,14 @@ def parts_of_stresses():
     return len(lengths)
 
 
+def most_reliable_digits():
+    run = Record(channels={}, requested={}, not_unique=(), errors={"a.x": Record(over_time=1e-300)})
+    with patch.object(digits, "scales", lambda *_: {"a.x": 1.0}):
+        return digits.KnownErrors(run).digits(digits.over_time).popitem()[1]
+
+
 DECISIONS = {
+    "results.digits:MOST_DIGITS": most_reliable_digits,
     "results.energy_balance:MOST_INSTANTS": instants_of_a_balance,
     "results.energy_balance_notes:BROKEN": largest_energy_without_a_check,
     "results.energy_balance_notes:PER_TOLERANCE": lambda: accepted(1e-3),
@@ -144,6 +152,7 @@ DECISIONS = {
     ),
 }  # fmt: skip
 EXPECTED = {
+    "results.digits:MOST_DIGITS": 12,
     "results.energy_balance:MOST_INSTANTS": 90, "results.energy_balance_notes:BROKEN": 27, "results.energy_balance_notes:PER_TOLERANCE": 0.1,
     "results.energy_balance_notes:OF_TOLERANCE": 1e-5,
     "results.energy_balance_notes:OF_POTENTIAL": 1e-10, "results.error_bars:SAFETY": 2.0, "results.error_bars:FINER": 1.1,

@@ -6,7 +6,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.show import figure, flexible_body, force_table, html, modes, report, sections, suspension, tyre, verdict
+from stiffmbs.show import figure, flexible_body, force_table, html, modes, report, sections, suspension, tyre
 from stiffmbs.show.drawing import as_json, bodies, deformed, derive, film, painted, picture, poses, solids, surroundings
 from stiffmbs.show.drawing.symbols import profiles, shared, spatial
 from stiffmbs.show.page import data
@@ -341,12 +341,6 @@ def size_of_a_tyre_figure():
         return reached(lambda: tyre.tyre_figure("", ()))
 
 
-def most_reliable_digits():
-    run = Record(channels={}, requested={}, not_unique=(), errors={"a.x": Record(over_time=1e-300)})
-    with patch.object(verdict, "scales", lambda *_: {"a.x": 1.0}):
-        return dict(verdict._digits(run)).popitem()[1]
-
-
 DECISIONS = {
     "show.drawing.as_json:DIGITS": lambda: decimals(as_json._numbers(np.array([1 / 3]), 1.0)[0]),
     "show.drawing.bodies:SAME_WHEEL": largest_difference_of_wheels,
@@ -415,7 +409,6 @@ DECISIONS = {
     "show.suspension:COLUMNS": width_of_a_page,
     "show.suspension:ROUNDING": smallest_shown_measure,
     "show.tyre:SIZE": size_of_a_tyre_figure,
-    "show.verdict:MOST_DIGITS": most_reliable_digits,
 }  # fmt: skip
 EXPECTED = {
     "show.drawing.as_json:DIGITS": 6, "show.drawing.bodies:SAME_WHEEL": 18, "show.drawing.bodies:SAME_POINT": 0.001,
@@ -438,5 +431,5 @@ EXPECTED = {
     "show.page.data:POSES_A_SECOND": 60, "show.page.data:CHANNEL_VALUES": 450, "show.page.data:MOST_INSTANTS": 2000,
     "show.page.modes:POINTS": 31, "show.page.modes:AMPLITUDE": 0.05, "show.report:MOST_LINES": 23, "show.sections:MOST_ROWS": 15,
     "show.sections:MOST_FIGURES": 3, "show.summary:UNBROKEN": 10000, "show.suspension:COLUMNS": 12.0, "show.suspension:ROUNDING": 119,
-    "show.tyre:SIZE": 16.5, "show.verdict:MOST_DIGITS": 12,
+    "show.tyre:SIZE": 16.5,
 }  # fmt: skip

@@ -118,7 +118,7 @@ def test_the_file_of_the_command_is_loaded(solution, tmp_path, examples):
     )
     found = Solution.load(out)
     np.testing.assert_array_equal(found["hinge.fy"], solution["hinge.fy"])
-    assert not found.errors
+    assert found.errors.keys() <= found.keys()  # those of the estimate
 
 
 def test_what_is_no_saved_run_is_refused(tmp_path):

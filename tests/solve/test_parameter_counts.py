@@ -15,7 +15,6 @@ from stiffmbs import tuning
 from tests.parameters import CASES, changed
 
 TABLE = [
-    ("accumulation.halved_apart", "stick_slip projected", "accelerations", 35302, 35002, 34877),
     ("error_filter.fades", "cam_follower", "newton_failures", 70, 87, None),
     ("error_filter.fades_low", "cam_follower", "newton_failures", 70, 87, None),
     ("error_filter.troubled", "stick_slip", "newton_failures", 18, 10, None),

@@ -99,7 +99,7 @@ def test_a_study_varies_a_parameter():
     [
         (3, "found 3, expected a mapping of subsystems"),
         ({"newton": 3}, "found 3, expected a mapping of parameters of 'newton'"),
-        ({"newtn": {}}, r"found the unknown subsystem 'newtn' \(did you mean 'newton'\?\), expected one of accumulation"),
+        ({"newtn": {}}, r"found the unknown subsystem 'newtn' \(did you mean 'newton'\?\), expected one of auto"),
         ({"newton": {"losest": 1}}, r"newton: found the unknown parameter 'losest' \(did you mean 'loosest'\?\)"),
         ({"newton": {"loosest": "x"}}, "newton.loosest: found the unknown name 'x'"),
         ({"newton": {"loosest": True}}, "newton.loosest: found yes or no"),

@@ -105,7 +105,6 @@ class AdaptiveRun:
             history,
             note,
             long_steps=self.work.long_steps(),
-            displaced=self.work.displaced(),
             departures=self.work.departures(),
         )
 

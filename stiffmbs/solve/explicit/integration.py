@@ -51,7 +51,6 @@ class Integration:
       always.
     - `at`: address of the table for compiled code.
     - `atol` of shape (n_q + n_u,): absolute tolerances.
-    - `displaced`: function that returns the estimated position errors, shape (n_u,), as displacements along velocities.
     """
 
     t, h, stable, eliminates = _Cell(float), _Cell(float), _Cell(float), _Cell(bool)
@@ -77,7 +76,6 @@ class Integration:
         self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)
         self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
         memory.atol[:] = self.atol
-        self.displaced = memory.error_sums.displaced
         if grid.times is not None:
             memory.times[:] = grid.times
         self._cells = cells = memory.cells

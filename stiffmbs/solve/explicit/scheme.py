@@ -9,13 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.coordinates import all_independent
 from ...compile.machine.layout import packed
 from ...compile.machine.routines import together
-from ...compile.system import Term
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.native.parameters import CONSISTENCY
-from ..error_control.accumulated_errors import ErrorSums
 from ..ida.native.parameters import LOOP
 from .native.layouts import EXPLICIT, SCHEME
 
@@ -114,7 +111,6 @@ class StepMemory:
     - `y`, `end_rates`, `lam` of shapes (n_q + n_u,), (n_q + n_u,), (n_c,): current state, its rates, and multipliers
       at a start.
     - `atol`, `times` of shapes (n_q + n_u,), (n_times,).
-    - `error_sums`: accumulated errors of the run.
     - `row_t`, `row_y`, `ends` of shapes (capacity,), (capacity, n_q + n_u), (capacity,).
     - `table`: addresses and cells (`stiffmbs.solve.explicit.native.layouts.EXPLICIT`).
     - `cells`: cells of the table by name.
@@ -130,8 +126,6 @@ class StepMemory:
         self.end_rates = stages[scheme.stages]
         searched = system.n_values("event_function") > 0
         nothing = np.zeros(1, dtype=np.int64)
-        velocities, no_entries = system.n_q + np.arange(system.n_u), Term(*np.zeros((3, 0), dtype=np.int64))
-        self.error_sums = ErrorSums(system, all_independent(system), velocities, no_entries)
         self._arrays = {
             "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
             "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
@@ -141,7 +135,6 @@ class StepMemory:
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "n_times": n_times, "times": self.times,
             "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
-            "accumulated": self.error_sums.table, "halved": np.zeros(3 * n),
             "watch": nothing, "step_bound": nothing, "long_steps": nothing,
         }  # fmt: skip
         self.table = packed(EXPLICIT, self._arrays)
@@ -150,5 +143,4 @@ class StepMemory:
     def renew(self, watch: int, step_bound: int, long_steps: int) -> None:
         """Reset all cells for a new run, and set the addresses of its tables."""
         self.table[:] = self._new
-        self.error_sums.forget()
         self.table[[WATCH, STEP_BOUND, LONG_STEPS]] = watch, step_bound, long_steps

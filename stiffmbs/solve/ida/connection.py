@@ -12,7 +12,6 @@ from ...compile.machine.layout import packed
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
-from ..error_control.accumulated_errors import ErrorSums
 from ..events.event_functions import EventSearch, StepBound
 from ..events.long_steps import LongStepLog
 from ..events.native.layouts import LONG_STEPS
@@ -42,7 +41,6 @@ PLACES = Routine(MODULE, "event_functions_and_places", "int32(float64, int64, in
 FUNCTIONS = {
     "array_of": "N_VGetArrayPointer", "solve": "IDASolve", "interpolate": "IDAGetDky", "time_of": "IDAGetCurrentTime",
     "order_of": "IDAGetLastOrder", "step_of": "IDAGetLastStep", "stop_at": "IDASetStopTime", "next_step_of": "IDAGetCurrentStep",
-    "errors_of": "IDAGetEstLocalErrors",
 }  # fmt: skip
 """SUNDIALS functions called by compiled code, by their names in the table."""
 
@@ -143,7 +141,6 @@ class Connection:
     - `cells`: results of the loop (`stiffmbs.solve.ida.native.layouts.NATIVE_IDA`).
     - `signs` of shape (n_event_functions,): see `stiffmbs.solve.ida.native.ida_memory`.
     - `long_steps`: None for scenes without laws.
-    - `error_sums`: accumulated errors of the run.
     - `words`, `table`: table for compiled code, and its address.
     - `state_table`, `equations_table`: tables of the state and of the equations.
     """
@@ -185,10 +182,6 @@ class Connection:
         for term_set in (formulation.residual_set, formulation.matrix_set):
             self._state.load(term_set)
         self.equations_table, self._slots = self._equations.table()
-        system = self._equations.system
-        self.error_sums = ErrorSums(
-            system, self._equations.coordinates, self._equations.at["u"], system.term(formulation.matrix_set, "f_u")
-        )
         self.state_table, self._calls = self._state.restricted(self._equations.used())
         return packed(
             NATIVE_IDA,
@@ -204,7 +197,7 @@ class Connection:
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
                 "probe": self._probe, "residual": self._residual, "atol": self._atol, "long_steps": self._long_steps,
-                "accumulated": self.error_sums.table, "error_norm": self.error_norm.table,
+                "error_norm": self.error_norm.table,
             },
         )  # fmt: skip
 
@@ -242,7 +235,6 @@ class Connection:
         self.history.forget()
         if self.long_steps:
             self.long_steps.forget()
-        self.error_sums.forget()
         self.output_correction.forget()
         self.error_norm.forget()
         self._formula.forget()

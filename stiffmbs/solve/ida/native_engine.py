@@ -18,9 +18,11 @@ from ..error_control.newton import Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
 from ..events.restart import just_after
 from ..linear_solvers.fixed_order import FixedOrder
+from ..radau.collocation import radau
+from ..recorded_steps import Piece, StepRecorder
 from ..trajectory import History
 from .connection import BDF, Formula
-from .ida import NativeIda
+from .ida import AT_THE_END, NativeIda
 from .native.parameters import LOOP
 from .statistics import Status
 
@@ -69,6 +71,8 @@ class NativeEngine:
             renewal=control.renewal,
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
+        self._by_radau = formula is not None
+        self.recorder: StepRecorder | None = None
         self._rtol, self._settings = settings.rtol, settings
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
@@ -82,6 +86,9 @@ class NativeEngine:
     def forget(self) -> None:
         """Discard what earlier runs have left, so that results do not depend on them."""
         self.ida.forget()
+        if self.recorder:
+            self.ida.keep_steps(False)
+            self.recorder = None
         self._order.forget()
         self._newton, self._stiffness = 0.0, Stiffness(0.0, 0.0)
         self._counted = {"steps": 0, "convergence_failures": 0}
@@ -97,6 +104,39 @@ class NativeEngine:
         self.ida.error_norm.filter_always(self._order.held)
         self._follow_stiffness(t)
         self.ida.begin(t, y, yp, highest_order=self._order.order)
+        self._record_start(t)
+
+    def record_steps(self, most: float) -> None:
+        """Record the steps of the next run, at most `most` steps times unknowns, for an estimate of its errors."""
+        places = AT_THE_END
+        if self._by_radau:
+            from ..radau.memory import CHOSEN_FROM
+
+            places = radau(max(CHOSEN_FROM)).nodes[:-1]
+        self.ida.keep_steps(True, places)
+        self.recorder = StepRecorder(most, 1 + len(places))
+
+    def recorded(self) -> tuple[Piece, ...]:
+        """Return the recorded steps, none if there were too many, and stop recording."""
+        recorder, self.recorder = self.recorder, None
+        if recorder is None:
+            return ()
+        self.ida.keep_steps(False)
+        return recorder.pieces(self._equations)
+
+    def _record_start(self, t: float) -> None:
+        if self.recorder:
+            row = self.present()
+            row[0] = t
+            self.recorder.begin(row)
+
+    def _record(self, fired: tuple[int, ...]) -> None:
+        """Move the steps since the last return of IDA to the record."""
+        if self.recorder:
+            self.recorder.extend(self.ida.kept_steps(), fired)
+            if self.recorder.full:
+                self.ida.keep_steps(False)
+                self.recorder = None
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
         """Start by one compiled call, from the second start on; return False where it does not apply."""
@@ -127,6 +167,7 @@ class NativeEngine:
         self.ida.begun_at(t)
         self._stiffness, self._newton = starts.found()
         self._follow_stiffness(t)
+        self._record_start(t)
 
     def _follow_stiffness(self, t: float) -> None:
         """Set the correction of states within long steps, and the monitor of vibrations, by the stiffness."""
@@ -215,6 +256,7 @@ class NativeEngine:
     def _reached(self, times: np.ndarray, rows: np.ndarray, status: Status, passed: int = 0) -> Reached:
         failure = f"{self.ida.failure()}{self._worst()}" if status is Status.FAILED else ""
         fired = tuple(self.ida.roots().nonzero()[0].tolist()) if status is Status.ROOT else ()
+        self._record(fired)
         return Reached(times, rows, self.ida.t, self.ida.y, fired, failure, passed)
 
     def _worst(self) -> str:
@@ -275,10 +317,6 @@ class NativeEngine:
         """Return begins, ends and interior values of steps much longer than their predecessors; None if not stored."""
         log = self.ida.long_steps
         return log.kept() if log else None
-
-    def displaced(self) -> np.ndarray:
-        """Return estimated errors of positions as displacements along velocities, shape (n_u,)."""
-        return self.ida.error_sums.displaced()
 
     def history(self) -> History:
         """Return the ends of the steps, and their orders."""

@@ -8,19 +8,16 @@ import numpy as np
 
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OPERATIONS
 from stiffmbs.model.settings import RunSettings
-from stiffmbs.run_checks import growth
 from stiffmbs.solve import bdf
-from stiffmbs.solve.error_control.native import accumulated_errors
 from stiffmbs.solve.error_control.newton import Stiffness, newton_tolerance
 from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
-from stiffmbs.solve.explicit.native import runge_kutta
 from stiffmbs.solve.ida.native import error_norm, iteration, output_correction
 from stiffmbs.solve.ida.native_engine import NativeEngine
 from stiffmbs.solve.trajectory import Grid
 from tests.decisions.common import Record, always, nothing
 from tests.interpreted import interpreted
-from tests.solve.test_parameter_thresholds import DOUBLES, count_while, job_of
+from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
 
 def iterating(**fields):
@@ -156,30 +153,6 @@ def largest_filtered_norm():
         return count_while(is_estimate, 1e9 * DOUBLES[:100])
 
 
-def steps_to_a_displacement():
-    a = Record(since=0, span=0.0)
-    return count_while(lambda _: not accumulated_errors.is_due(a, 1.0), range(100))
-
-
-def faster_velocity():
-    x = Record(n=2, n_q=1, y_before=np.ones(2), halved=np.zeros(2))
-    with interpreted(runge_kutta, load_state=nothing, rates=lambda *_: -1):
-        runge_kutta._look_at_damping(x, None, None, 0.0)
-    return x.halved[1] - x.halved[0]
-
-
-def largest_accumulated_error():
-    """Return the estimated error, in quarter octaves of 1e-9 m, up to which no note is written."""
-    job = job_of("narrow")
-    q, u = job.start.q, job.start.u
-
-    def is_small(size):
-        trajectory = Record(displaced=np.full(len(u), size), q=q[None], t=np.ones(1))
-        return not list(growth.accumulated_errors_sentence(job.dynamics.system, job.settings, trajectory))
-
-    return count_while(is_small, 1e-9 * DOUBLES[:200])
-
-
 def first_check_of_drift(name, counts):
     """Return how many numbers of steps pass before a run of bdf makes a check for the first time."""
     state = np.zeros((1, 1))
@@ -190,7 +163,7 @@ def first_check_of_drift(name, counts):
         made = []
         integrator = Record(
             dynamics=job, run=lambda *_, **__: [reached], equations=Record(states=lambda rows: (rows, rows)),
-            engine=Record(last_step=nothing, history=nothing, displaced=nothing, ida=Record(watch=Record(departures=nothing))), steps=lambda: steps,
+            engine=Record(last_step=nothing, history=nothing, recorded=tuple, ida=Record(watch=Record(departures=nothing))), steps=lambda: steps,
             split=lambda y: (y, y), settings=None, statistics=dict, note=str, long_steps=nothing,
         )  # fmt: skip
         checks = {"refuse_drift": nothing, "refuse_beyond_sense": nothing, name: lambda *_: made.append(1)}
@@ -249,10 +222,6 @@ DECISIONS = {
     "error_filter.troubled": lambda: count_while(lambda k: filtering(failures=k).until == 0, range(100)),
     "error_filter.lasts": lambda: filtering(failures=100).until,
     "error_filter.no_estimate": largest_filtered_norm,
-    "accumulation.steps_apart": steps_to_a_displacement,
-    "accumulation.halved_apart": lambda: count_while(lambda k: not runge_kutta.is_halved(Record(steps=k)), range(1000)),
-    "accumulation.faster": faster_velocity,
-    "accumulated_errors.tolerances": largest_accumulated_error,
     "relaxation.of_positions": lambda: drift_of_positions(RunSettings(duration=1.0, rtol=1e-8)),
     "relaxation.of_velocities": lambda: drift_of_velocities(RunSettings(duration=1.0, rtol=1e-8), Record(bodies=[0])),
     "relaxation.check_interval": lambda: first_check_of_drift("refuse_drift", range(0, 5000, 50)),
@@ -266,8 +235,7 @@ EXPECTED = {
     "newton.diverging": 900, "newton.slowest": 100, "newton.trusted": 20, "newton.least": 0.05, "newton.last": 32, "newton.long_steps": 50,
     "newton.many_failures": 201, "newton.eased": 0.0001, "newton.easiest": 0.33, "polishing.amplified": 2, "polishing.unbalanced": 3e-07,
     "polishing.most_corrections": 8, "polishing.slowest": 29, "polishing.rounded_off": 54, "polishing.at_events": 1e9, "error_filter.fades_low": 0.3660323413, "error_filter.fades": 0.64,
-    "error_filter.troubled": 8, "error_filter.lasts": 1001, "error_filter.no_estimate": 40, "accumulation.steps_apart": 2,
-    "accumulation.halved_apart": 125, "accumulation.faster": 0.001, "accumulated_errors.tolerances": 67, "relaxation.of_positions": 1e-09,
+    "error_filter.troubled": 8, "error_filter.lasts": 1001, "error_filter.no_estimate": 40, "relaxation.of_positions": 1e-09,
     "relaxation.of_velocities": 1e-12, "relaxation.check_interval": 20, "divergence.followed_steps": 20, "explicit_steps.enough_steps": 21,
     "solve.error_control.tolerances:WHICH_TURN": 0.001,
 }  # fmt: skip

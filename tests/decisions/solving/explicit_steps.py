@@ -165,7 +165,7 @@ def largest_harmless_change():
 def step_before_a_bifurcation():
     answers = [True, False]
     replaced = {
-        "_depart": nothing, "is_halved": never, "attempt": nothing, "trusted_error": lambda *_: 0.5, "arrive": nothing,
+        "_depart": nothing, "attempt": nothing, "trusted_error": lambda *_: 0.5, "arrive": nothing,
         "uncertain_end": lambda *_: answers.pop(0), "_watch_stiffness": nothing,
     }  # fmt: skip
     x = stepping()

@@ -24,8 +24,8 @@ LEAST, OF_TOLERANCE, MOST = 2e-4, 200.0, 0.01
 """Error of an impulse or work that is right: the least one, in relative tolerances (or one for each step), and the most besides twice that."""
 FASTER = 1.5
 """Times its speed at the start that a mass moves at most: its work is at most half of m v^2."""
-REPORTED = "do not resolve it", "may accumulate"
-"""Words of the notes on laws that change faster than steps are taken, and on accumulated errors."""
+REPORTED = "do not resolve it", "the estimated error of", "solution is lost"
+"""Words of the notes on laws that change faster than steps are taken, and on estimated errors."""
 
 
 class Moving(NamedTuple):

@@ -103,22 +103,3 @@ class ErrorFilterParameters:
 
 
 FILTER = tuned("error_filter", ErrorFilterParameters())
-
-
-@dataclass(frozen=True)
-class AccumulationParameters:
-    """Parameters of the estimated errors that accumulate over a run.
-
-    Source: ``tests/solve/test_accumulated_errors.py``.  Both numbers of steps are primes, which avoid resonance with periods.
-    """
-
-    steps_apart: int = 3
-    """Steps of bdf between displacements of positions. Errors of successive steps of stiff vibrations alternate, and samples
-    further apart do not cancel."""
-    halved_apart: int = 251
-    """Explicit steps between two estimates by half steps, which cost two steps."""
-    faster: float = 1e-3
-    """Fraction by which velocities are increased to determine the damping."""
-
-
-ACCUMULATION = tuned("accumulation", AccumulationParameters())

@@ -16,12 +16,11 @@ EXPLICIT = Layout({
     "n_event_functions": INT, "end_at_event": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "distance": FLOAT_CELL, "distance_of_end": FLOAT_CELL, "watch": INTS,
     "started": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
-    "long_steps": INTS, "accumulated": INTS, "halved": FLOATS, "measured": INT_CELL, "repeats": FLOAT_CELL,
+    "long_steps": INTS, "repeats": FLOAT_CELL,
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
     "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 })  # fmt: skip
 """Explicit integration between two calls: the state y = (q, u) now and before the last step of length `span`; its event
 functions; the stages k; inverse tolerances of the last attempt; the number of polynomials of the last step (0 if not
 computed); counters; output times (none for every step); memory for the rows and ends of steps in one call.  `started`
-is 0 before a restart: the state, its accelerations in the last stage, and `lam` are then consistent.  `measured` is 1
-if `halved` has the result of two half steps; `repeats` is the number of periods of laws that end a step in each."""
+is 0 before a restart: the state, its accelerations in the last stage, and `lam` are then consistent.  `repeats` is the number of periods of laws that end a step in each."""

@@ -16,13 +16,6 @@ from stiffmbs.compile.machine.native.statuses import (
     UNSTABLE,
 )
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.error_control.native.accumulated_errors import (
-    accumulated_errors_view,
-    displace,
-    note_damping,
-    note_error,
-)
-from stiffmbs.solve.error_control.native.parameters import ACCUMULATION
 from stiffmbs.solve.events.native.step_bound import (
     STRETCHED,
     is_to_be_kept,
@@ -36,7 +29,7 @@ from stiffmbs.solve.explicit.native.error_estimate import trusted_error
 from stiffmbs.solve.explicit.native.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
 from stiffmbs.solve.explicit.native.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.explicit.native.parameters import CONTROL, ENDS
-from stiffmbs.solve.explicit.native.stages import explicit_view, load_state, rates, scheme_view
+from stiffmbs.solve.explicit.native.stages import explicit_view, scheme_view
 from stiffmbs.solve.explicit.native.start import first_step, start_steps
 
 __all__ = ["advance", "end_at_event", "fixed_steps"]
@@ -105,9 +98,6 @@ def _step(x, c, s, m, end):
         h = min(h, longest_step(bound, t))
     most = CONTROL.largest_factor
     moved = 0
-    halved = 0.0
-    if is_halved(x) and t + STRETCHED * h < end:
-        halved = h if two_halves(x, c, s, m, h) == 0 else 0.0
     while True:
         if t + STRETCHED * h >= end:
             h = end - t
@@ -138,7 +128,6 @@ def _step(x, c, s, m, end):
                 x.span = t_new - t
                 x.h = h * min(most, max(CONTROL.least_factor, _factor(x, c, error)))
                 x.last_error = error
-                x.measured = 1 if h == halved else 0
                 _watch_stiffness(x, c, h)
                 return 0
         x.rejected += 1
@@ -213,7 +202,6 @@ def advance(end, steps, held, own_steps, explicit):
         x.at_event = 0
         far_beyond = x.far_beyond
         status = _step(x, c, s, m, end)
-        reached = x.t
         if x.end_at_event:
             if status == STEP_TOO_SMALL:
                 status = _shortest_to_event(x, c, s, m, explicit)
@@ -225,9 +213,6 @@ def advance(end, steps, held, own_steps, explicit):
             continue
         x.ends[x.steps % x.capacity] = x.t
         x.steps += 1
-        if x.measured and x.t == reached:
-            note_difference(x)
-        displace(accumulated_errors_view(x.accumulated), x.y, x.t - x.t_before)
         _keep_if_long(x, c, s, m)
         if own_steps:
             store_step(x)
@@ -256,59 +241,3 @@ def fixed_steps(start, h, steps, explicit):
         if status < 0:
             return status
     return 0
-
-
-@compiled
-def is_halved(x):
-    """Return True if the error of the next step is estimated."""
-    return x.steps % ACCUMULATION.halved_apart == ACCUMULATION.halved_apart // 2
-
-
-@compiled
-def _look_at_damping(x, s, m, t):
-    """Note the damping at the start of a step, by accelerations in the second stage; 0 or a negative status."""
-    for i in range(x.n):
-        x.halved[i] = x.y_before[i] * (1.0 + ACCUMULATION.faster) if i >= x.n_q else x.y_before[i]
-    load_state(s, x.halved)
-    status = rates(x, s, m, 1, t)
-    if status == 0:
-        note_damping(accumulated_errors_view(x.accumulated), x.y_before, x.k, shifted(x.k, x.n), ACCUMULATION.faster)
-    return status
-
-
-@compiled
-def two_halves(x, c, s, m, h):
-    """Store the result of two half steps from y_before, and restore everything else; 0 or a negative status."""
-    start = shifted(x.halved, x.n)
-    rate = shifted(x.halved, 2 * x.n)
-    end = shifted(x.k, c.stages * x.n)
-    t = x.t_before
-    copied(start, x.y_before, x.n)
-    copied(rate, x.k, x.n)
-    status = _look_at_damping(x, s, m, t)
-    if status == 0:
-        status = attempt(x, c, s, m, 0.5 * h)
-    if status == 0:
-        status = arrive(x, c, s, m, t + 0.5 * h)
-    if status == 0:
-        x.t_before = t + 0.5 * h
-        copied(x.y_before, x.y, x.n)
-        copied(x.k, end, x.n)
-        status = attempt(x, c, s, m, 0.5 * h)
-    if status == 0:
-        status = arrive(x, c, s, m, t + h)
-    copied(x.halved, x.y, x.n)
-    x.t_before = t
-    copied(x.y_before, start, x.n)
-    copied(x.y, start, x.n)
-    copied(x.k, rate, x.n)
-    copied(end, rate, x.n)
-    return status
-
-
-@compiled
-def note_difference(x):
-    """Note the difference between the new state and that of two halves as the error of the step."""
-    for i in range(x.n):
-        x.halved[i] = x.y[i] - x.halved[i]
-    note_error(accumulated_errors_view(x.accumulated), x.y, x.halved)

@@ -5,9 +5,7 @@ from typing import Final
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
-from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
-from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
 from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, interval, place, repeats
 from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
 from stiffmbs.solve.events.native.step_bound import (
@@ -183,7 +181,6 @@ def stepped(c, ida, toward, stop):
         row[0], row[1], row[2] = c.internal, float(c.order), c.size
         c.recorded += 1
         _sample(c)
-        _accumulate(c, begun)
     if flag >= 0 and _stalled(c):
         return STALLED
     if seen != NO_EVENT:
@@ -279,24 +276,6 @@ def _sample(c):
         _report(c, array_of(c, c.y), shifted(row, 1))
         c.since_sample = 0
         c.next_sample = k + 1 if k + 1 < LOOP.samples else 0
-
-
-@compiled
-def _accumulate(c, begun):
-    """Accumulate local errors, read only every few steps to save time.
-
-    They are the errors at the end of IDA's step, which is not the returned state if an event has been found before it.
-    """
-    a = accumulated_errors_view(c.accumulated)
-    if is_due(a, c.returned - begun) and call_int(c.errors_of, (c.memory, c.at_output)) == OK:
-        e = equations_view(c.equations)
-        values = floats(state_view(c.state).values[e.matrix_set])
-        y = array_of(c, c.y)
-        copied(c.probe, y, e.n)
-        if c.returned < c.internal:
-            call_int(c.interpolate, (c.memory, c.internal, int32(0), c.y))
-        displace_by(a, y, c.output, values)
-        copied(y, c.probe, e.n)
 
 
 @compiled

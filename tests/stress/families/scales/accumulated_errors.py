@@ -81,8 +81,8 @@ def _converged(text: str) -> Callable[[Solution], dict[str, float]]:
 
 def _judged(text: str, errors: Callable[[Solution], dict[str, float]], how: dict[str, Any], silent: bool) -> Verdict:
     """Right within a hundred tolerances; beyond them reported, and a note must be true within a factor of ten."""
-    solution = run(read_scene(text), **how)
-    notes = [note for note in solution.notes if "may accumulate" in note]
+    solution = run(read_scene(text), errors=True, **how)
+    notes = [note for note in solution.notes if "the estimated error of" in note or "solution is lost" in note]
     found = errors(solution)
     in_tolerances = {
         name: error / (RTOL * (1.0 if name.endswith("angle") or name == "turn" else 1.0 + float(np.max(np.abs(solution[name])))))

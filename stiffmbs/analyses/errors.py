@@ -1,0 +1,104 @@
+"""Errors of a run: recording of its steps, and the estimate from them or from a second run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..model.settings import LARGEST_RTOL
+from ..results.estimate import ErrorEstimate
+from ..solve.settings import changed, traits_of
+from ..solve.trajectory import Outcome, ProgressCallback, Trajectory
+from ..tuning import in_use
+
+if TYPE_CHECKING:
+    from ..results.solution import Solution
+    from .job import Job
+
+MOST_REPEATS = 2
+"""Runs with another tolerance after the first one, in search of an accuracy."""
+ASK = "--errors, or errors: true in run, estimates it"
+
+
+def recording(job: Job) -> Job:
+    """Return a job whose implicit steps are recorded: always if its errors are to be estimated, else up to some work."""
+    from ..error_estimate.parameters import ESTIMATE
+
+    asked = True if job.settings.accuracy else job.settings.errors
+    with in_use(job.settings.tuning):
+        most = {True: np.inf, None: ESTIMATE.work, False: 0.0}[asked]
+    return replace(job, grid=replace(job.grid, recorded=most))
+
+
+def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
+    """Return the results of a job with an estimate of their errors, or a sentence on why there is none."""
+    traits = traits_of(job.settings)
+    if not job.grid.recorded or len(solution.time) < 2 or solution.outcome is Outcome.INTERRUPTED or traits.exact:
+        return solution
+    with in_use(job.settings.tuning), np.errstate(all="ignore"):
+        if trajectory.recorded:
+            from ..error_estimate.estimate import estimated
+
+            return estimated(solution, job.data, job.dynamics, job.start, job.subsystems, trajectory, job.settings)
+        if traits.fixed_steps or job.dynamics.system.sampled.any():
+            why = "fixed steps" if traits.fixed_steps else "sampled states"
+            return _without(solution, f"not estimated for {why}; --verify compares with other runs")
+        if job.settings.errors or job.settings.accuracy:
+            return _by_second_run(job, solution)
+    return _without(solution, f"not estimated: {_reason(trajectory)}; {ASK}")
+
+
+def _by_second_run(job: Job, solution: Solution) -> Solution:
+    """Return the results with errors from a run at a larger tolerance."""
+    from ..error_estimate.estimate import with_bars
+    from ..results.channel_errors import LARGER, bars_by_difference
+    from .run import finished
+
+    settings = changed(job.settings, {"rtol": min(LARGER * job.settings.rtol, LARGEST_RTOL)})
+    other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=0.0, times=solution.time)))
+    if len(other.time) != len(solution.time):
+        return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")
+    return with_bars(
+        replace(solution, errors=bars_by_difference(solution.time, solution.channels, other.channels)),
+        job.settings, job.dynamics.system.size,
+    )  # fmt: skip
+
+
+def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
+    """Solve a job with a tolerance, chosen by the estimate of the errors, at which it has the accuracy asked for.
+
+    The run is repeated twice at most; the rtol of its settings has no effect.
+    """
+    from ..error_estimate.accuracy import Accuracy
+    from .run import solved
+
+    accuracy = Accuracy(job.settings.accuracy)
+    rtol = accuracy.first_rtol(job.dynamics.system.size)
+    for repeats in range(MOST_REPEATS + 1):
+        settings = changed(job.settings, {"rtol": rtol})
+        solution = solved(replace(job, settings=settings), watch)
+        judged = accuracy.judged(solution, rtol)
+        if judged.reached or judged.next_rtol >= rtol or repeats == MOST_REPEATS or not solution.success:
+            break
+        rtol = judged.next_rtol
+    assert solution.estimate is not None
+    if judged.reached:
+        sentence = f"{solution.estimate.sentence}; {judged.sentence} at rtol {rtol:.2g}"
+        return replace(solution, estimate=replace(solution.estimate, sentence=sentence))
+    note = (
+        f"the accuracy asked for was not reached: {judged.sentence} at rtol {rtol:.2g}; use a smaller rtol, or --verify"
+    )
+    return replace(solution, notes=(*solution.notes, note))
+
+
+def _reason(trajectory: Trajectory) -> str:
+    steps = trajectory.statistics.get("steps", 0)
+    if trajectory.statistics.get("jacobians") and "projected" not in trajectory.solver:
+        return f"the run has many steps ({steps})"
+    return "that takes a second run for explicit steps"
+
+
+def _without(solution: Solution, sentence: str) -> Solution:
+    return replace(solution, estimate=ErrorEstimate("none", sentence))

@@ -1,0 +1,112 @@
+"""Estimate of the errors of all channels of a run from its recorded steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
+from ..errors import SolverError
+from ..model.model_data import ModelData
+from ..model.settings import DEFAULT_RTOL, RunSettings
+from ..results.channel_errors import bars
+from ..results.digits import KnownErrors, digits_words, largest_bar, over_time
+from ..results.error_bars import UNKNOWN
+from ..results.estimate import ErrorEstimate
+from ..results.solution import Solution
+from ..solve.settings import near_constraints
+from ..solve.subsystems import Subsystem
+from ..solve.trajectory import Trajectory
+from .along_run import StateErrors, state_errors
+from .channels import channel_errors
+from .parameters import ESTIMATE
+
+REMEDY = "use a smaller rtol, or accuracy: to choose it by the estimate"
+
+
+def estimated(
+    solution: Solution, model: ModelData, dynamics: Dynamics, start: InitialValues, subsystems: Sequence[Subsystem],
+    trajectory: Trajectory, settings: RunSettings,
+) -> Solution:  # fmt: skip
+    """Return the results of a run with its error bars, from the steps that the trajectory recorded."""
+    parts = subsystems or (None,)
+    try:
+        found = [
+            state_errors(part.dynamics if part else dynamics, pieces)
+            for part, pieces in zip(parts, trajectory.recorded, strict=False)
+        ]
+        lost = [
+            t
+            for part, each in zip(parts, found, strict=False)
+            if (t := _lost(part.dynamics if part else dynamics, each)) is not None
+        ]
+        if lost:
+            return _lost_from(solution, min(lost))
+        project, rtol = near_constraints(settings), settings.rtol
+        of_channels = [
+            channel_errors(model, dynamics, start, part, each, trajectory, project, rtol)
+            for part, each in zip(parts, found, strict=False)
+        ]
+    except (SolverError, np.linalg.LinAlgError) as error:
+        sentence = f"not estimated: {error}; --verify compares with other runs"
+        return replace(solution, estimate=ErrorEstimate("none", sentence))
+    return with_bars(
+        replace(solution, errors=bars(solution.time, solution.channels, of_channels)), settings, dynamics.system.size
+    )
+
+
+def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solution:
+    """Return a solution with error bars, with the sentence on its errors and a note if they are large.
+
+    `size`: size of the mechanism, m.
+    """
+    known = KnownErrors(solution)
+    largest, relative = known.largest(over_time)
+    peak, of_peak = known.largest(largest_bar)
+    sentence = digits_words(known.digits(over_time))
+    if largest:
+        sentence += f"; largest error: {largest} {100 * relative:.2g} %"
+    if of_peak - relative > relative:
+        sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
+    notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings, size))
+    estimate = ErrorEstimate("estimated", sentence, largest, relative)
+    return replace(solution, estimate=estimate, notes=(*solution.notes, *notes))
+
+
+def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings, size: float) -> Iterator[str]:
+    """Yield a sentence on the largest error, if a position is wrong by many tolerances or any channel by much."""
+    rtol = max(settings.rtol, DEFAULT_RTOL)
+    absolute = max(settings.atol or 0.0, rtol * min(1.0, size))
+    errors, limits = known.relative(over_time), {}
+    for name in errors:
+        tolerance = rtol + absolute / known.sizes[name]
+        is_position = known.group[name] == "positions"
+        limits[name] = min(ESTIMATE.tolerances * tolerance, ESTIMATE.large) if is_position else ESTIMATE.large
+    worst = max(limits, key=lambda name: errors[name] / limits[name], default="")
+    if worst and errors[worst] > limits[worst]:
+        error = f"{solution.errors[worst].over_time:.2g} {solution.unit(worst)}".strip()
+        yield f"the estimated error of {worst} is {error}, {100 * errors[worst]:.2g} % of its largest value; {REMEDY}"
+
+
+def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:
+    """Return the time from which errors are too large for a linear estimate, s, or None."""
+    system = dynamics.system
+    of_poses = np.abs(found.errors[:, : system.n_u])
+    scale = system.per_velocity(system.size, 1.0)
+    beyond = ~(of_poses <= ESTIMATE.lost * scale).all(axis=1)
+    return float(found.t[np.argmax(beyond)]) if beyond.any() else None
+
+
+def _lost_from(solution: Solution, t: float) -> Solution:
+    """Return a solution whose errors are lost from a time on."""
+    sentence = (
+        f"the solution is lost from t = {t:.3g} s on: its estimated error exceeds {ESTIMATE.lost:g} rad or as large a part "
+        "of the mechanism, and grows; use a smaller rtol"
+    )
+    return replace(
+        solution, estimate=ErrorEstimate("lost", sentence), notes=(*solution.notes, sentence),
+        errors=dict.fromkeys((name for name in solution.channels if not name.startswith("constraint.")), UNKNOWN),
+    )  # fmt: skip

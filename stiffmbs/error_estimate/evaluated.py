@@ -1,0 +1,66 @@
+"""Many states of a system at once: projected onto the constraints, with their accelerations and output terms."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.system import System
+from ..dynamics.dynamics import Dynamics, OutputRows
+from ..errors import SolverError
+from .variations import position_rates
+
+
+def with_rates(system: System) -> np.ndarray:
+    """Return the indices of the coordinates after those of the bodies that have a rate: counters, differential states."""
+    with_rate = np.append(np.ones(system.n_counters, dtype=bool), ~system.without_rate)
+    return system.n_pose + np.flatnonzero(with_rate)
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """States on the constraints, and their rates.
+
+    `rows`: output rows, whose q and u are projected. `q_rates`: q' of shape (n, n_q).
+    """
+
+    t: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
+    q_rates: np.ndarray
+    rows: OutputRows
+
+    def at(self, chosen: np.ndarray | slice) -> Evaluated:
+        """Return some of the states."""
+        return Evaluated(
+            self.t[chosen], self.q[chosen], self.u[chosen], self.acceleration[chosen], self.q_rates[chosen],
+            self.rows.at(chosen),
+        )  # fmt: skip
+
+
+def evaluated(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> Evaluated:
+    """Project states onto the constraints and evaluate them; raise a SolverError if one has no solution."""
+    system = dynamics.system
+    rows = dynamics.report(t, q, u, project=bool(system.n_c))
+    if len(rows.t) < len(t):
+        raise SolverError(f"no accelerations were found at t = {t[len(rows.t)]:.6g} s")
+    q, u, acceleration = (np.ascontiguousarray(each) for each in (rows.q, rows.u, rows.acceleration))
+    trailing = _trailing_rates(dynamics, t, q, u)
+    return Evaluated(t, q, u, acceleration, position_rates(system, q, u, trailing), rows)
+
+
+def _trailing_rates(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return the rates of the coordinates after those of the bodies, shape (n, n_q - n_pose)."""
+    system, state = dynamics.system, dynamics.state
+    rates = np.zeros((len(t), system.n_q - system.n_pose))
+    if not len(with_rates(system)):
+        return rates
+    sampled = np.flatnonzero(system.sampled) + system.first_state - system.n_pose
+    for k in range(len(t)):
+        state.q[:], state.u[:] = q[k], u[k]
+        dynamics.accelerate(float(t[k]))
+        rates[k] = dynamics.position_rates(state.q, state.u)[system.n_pose :]
+    rates[:, sampled] = 0.0
+    return rates

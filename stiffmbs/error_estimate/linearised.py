@@ -1,0 +1,123 @@
+"""Equations of motion linearised at many states, in the tangent space of joints and drives.
+
+Variations e = B a of a state, B of shape (3 blocks, n), are tangent to the constraints; their rates are e' = R a. Both are
+differences of projected states and their accelerations, evaluated by the kernels that the output rows of a run use.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..dynamics.dynamics import Dynamics
+from .evaluated import Evaluated, evaluated, with_rates
+from .parameters import ESTIMATE
+from .variations import Variations
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """Tangent spaces of `count` states; `basis` B and `rates` R of shape (count, full, n), `left` L of shape (count, n, full).
+
+    L B is not singular: a = (L B)^-1 L e are the coordinates of a tangent variation e.
+    """
+
+    basis: np.ndarray
+    rates: np.ndarray
+    left: np.ndarray
+
+    @property
+    def n(self) -> int:
+        """Dimension of the tangent space."""
+        return self.basis.shape[2]
+
+    def at(self, chosen: slice) -> Linearised:
+        """Return the tangent spaces at some of the states."""
+        return Linearised(self.basis[chosen], self.rates[chosen], self.left[chosen])
+
+
+def linearised(dynamics: Dynamics, at: Evaluated) -> Linearised:
+    """Return the tangent spaces at evaluated states, and the rates of their variations."""
+    system = dynamics.system
+    width = (system.n_q + 2 * system.n_u) * (2 * system.n_u + system.n_q - system.n_pose)
+    count = max(1, ESTIMATE.numbers_at_once // max(width, 1))
+    parts = [_linearised(dynamics, at.at(slice(k, k + count))) for k in range(0, len(at.t), count)]
+    if len(parts) == 1:
+        return parts[0]
+    return Linearised(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("basis", "rates", "left")))
+
+
+def _linearised(dynamics: Dynamics, at: Evaluated) -> Linearised:
+    """Return the tangent spaces at a few states."""
+    system, count = dynamics.system, len(at.t)
+    n_u, trailing = system.n_u, with_rates(system)
+    geometry = Variations(system, at.q)
+    scale = system.per_velocity(system.size, 1.0)
+    jacobian = geometry.ground(_velocity_constraints(dynamics, at)) * scale
+    free = _null_spaces(jacobian[:, system.active])
+    holonomic = system.active & system.holonomic
+    poses = free if holonomic.sum() == system.active.sum() else _null_spaces(jacobian[:, holonomic])
+    n_a, n_b, n_s = poses.shape[2], free.shape[2], len(trailing)
+    n = n_a + n_b + n_s
+    full = 2 * n_u + n_s
+    left = np.zeros((count, n, full))
+    left[:, :n_a, :n_u] = (poses / scale[:, None]).transpose(0, 2, 1)
+    left[:, n_a : n_a + n_b, n_u : 2 * n_u] = (free / scale[:, None]).transpose(0, 2, 1)
+    left[:, n_a + n_b :, 2 * n_u :] = np.eye(n_s)
+    basis, rates = np.zeros((count, full, n)), np.zeros((count, full, n))
+    if not n:
+        return Linearised(basis, rates, left)
+    part = ESTIMATE.difference
+    moves = np.zeros((count, n, full))  # (x, v, s) of each displaced state
+    moves[:, :n_a, :n_u] = part * (poses * scale[:, None]).transpose(0, 2, 1)
+    speed = part * max(1.0, float(np.abs(at.u / scale).max(initial=0.0)))
+    moves[:, n_a : n_a + n_b, n_u : 2 * n_u] = speed * (free * scale[:, None]).transpose(0, 2, 1)
+    of_states = part * np.maximum(1.0, np.abs(at.q[:, trailing]).max(axis=0, initial=0.0))
+    moves[:, n_a + n_b :, 2 * n_u :] = np.diag(of_states)
+    sizes = np.concatenate([np.full(n_a, part), np.full(n_b, speed), of_states])
+    q = geometry.moved(at.q, moves[..., :n_u])
+    q[..., trailing] += moves[..., 2 * n_u :]
+    u = at.u[:, None] + geometry.own(moves[..., n_u : 2 * n_u])
+    there = evaluated(dynamics, np.repeat(at.t, n), q.reshape(count * n, -1), u.reshape(count * n, -1))
+
+    def change(moved: np.ndarray, still: np.ndarray) -> np.ndarray:
+        return (moved.reshape(count, n, -1) - still[:, None]) / sizes[:, None]
+
+    dq, du = change(there.q, at.q), change(there.u, at.u)
+    v = geometry.ground(du)
+    basis[:, :n_u] = geometry.displacement(dq).transpose(0, 2, 1)
+    basis[:, n_u : 2 * n_u] = v.transpose(0, 2, 1)
+    basis[:, 2 * n_u :] = dq[..., trailing].transpose(0, 2, 1)
+    rates[:, :n_u] = geometry.ground(system.followed * du).transpose(0, 2, 1)
+    spin = geometry.spun(geometry.ground(system.followed * at.u), v)
+    rates[:, n_u : 2 * n_u] = (geometry.ground(change(there.acceleration, at.acceleration)) + spin).transpose(0, 2, 1)
+    rates[:, 2 * n_u :] = change(there.q_rates, at.q_rates)[..., trailing].transpose(0, 2, 1)
+    return Linearised(basis, rates, left)
+
+
+def _velocity_constraints(dynamics: Dynamics, at: Evaluated) -> np.ndarray:
+    """Return J of many states, shape (count, n_c, n_u)."""
+    system, state = dynamics.system, dynamics.state
+    term = system.term("motion", "J")
+    values = np.empty((len(at.t), len(term.source)))
+    for k in range(len(at.t) if len(term.source) else 0):
+        state.q[:], state.u[:] = at.q[k], at.u[k]
+        state.evaluate("motion", float(at.t[k]))
+        values[k] = state.values["motion"][term.source]
+    found = np.zeros((len(at.t), system.n_c, system.n_u))
+    for entry, (row, column) in enumerate(zip(term.row.tolist(), term.column.tolist(), strict=True)):
+        found[:, row, column] += values[:, entry]
+    return found
+
+
+def _null_spaces(matrices: np.ndarray) -> np.ndarray:
+    """Return orthonormal bases of the null spaces of matrices of full rank, shape (count, n, n - m)."""
+    count, m, n = matrices.shape
+    if not m:
+        return np.broadcast_to(np.eye(n), (count, n, n))
+    if m >= n:
+        return np.zeros((count, n, 0))
+    sizes = np.linalg.norm(matrices, axis=2, keepdims=True)
+    q = np.linalg.qr((matrices / np.where(sizes > 0, sizes, 1.0)).transpose(0, 2, 1), mode="complete")[0]
+    return q[:, :, m:]

@@ -1,0 +1,60 @@
+"""Parameters of the estimate of the error of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..tuning import tuned
+
+
+@dataclass(frozen=True)
+class EstimateParameters:
+    """Parameters of the estimate of the error of a run.
+
+    Source: ``python -m tests.stress self_assessment``.
+    """
+
+    work: float = 1e5
+    """Steps times unknowns up to which every run estimates its error, about 0.2 s."""
+    difference: float = 1e-7
+    """Displacements by which the equations are linearised, relative to the size of the mechanism."""
+    beside: float = 1e-3
+    """Distance from an event within which the equations are not linearised, in lengths of the piece that it ends or starts."""
+    points: int = 6
+    """Accepted states on the polynomial from which the defect of a step of bdf follows."""
+    uneven: float = 10.0
+    """Ratio of the steps on that polynomial above which the formula of the step gives its defect."""
+    block: int = 8
+    """Steps of bdf in a block of collocation, at most."""
+    spectra: int = 16
+    """States of a piece at which the frequencies of the linearised motion are computed."""
+    resolved: float = 1.0
+    """Largest angle, rad, of a vibration in a step of bdf that resolves it."""
+    turn: float = 1.5
+    """Largest angle, rad, of a vibration in a block that resolves it."""
+    operations: float = 1e10
+    """Largest number of multiplications of a transport step by step."""
+    interpolated: float = 0.1
+    """Error of matrices interpolated between every second one, relative to them, below which they are interpolated."""
+    off_node: float = 0.13
+    """Largest distance of the end of a step from a Radau node, in lengths of the block."""
+    lost: float = 0.05
+    """Error of a pose, rad or relative to the size of the mechanism, above which the linear estimate is lost."""
+    tolerances: float = 100.0
+    """Error of a position relative to its size, in relative tolerances, above which a note appears."""
+    large: float = 0.01
+    """Error of any channel relative to its size above which a note appears."""
+    part: float = 1e-2
+    """First relative tolerance of a run that is to reach an accuracy, in the relative error asked for; also the factor of
+    the next one if the error is unknown."""
+    smallest_rtol: float = 1e-13
+    """Smallest relative tolerance that is tried."""
+    aim: float = 0.5
+    """Part of the error asked for at which the next tolerance aims."""
+    slope: float = 0.75
+    """Exponent of the tolerance in the error of bdf."""
+    numbers_at_once: int = 4_000_000
+    """Numbers in the matrices that are in memory at once, 32 MB."""
+
+
+ESTIMATE = tuned("error_estimate", EstimateParameters())

@@ -1,0 +1,108 @@
+"""The error of a state across a restart: at a breakpoint in time, and at an event whose time has an error of its own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..dynamics.dynamics import Dynamics
+from ..errors import SolverError
+from ..solve.events.restart import restarted
+from .evaluated import Evaluated, evaluated, with_rates
+from .parameters import ESTIMATE
+from .variations import Variations
+
+
+def after_restart(
+    dynamics: Dynamics,
+    before: Evaluated,
+    after: Evaluated,
+    fired: tuple[int, ...],
+    error: np.ndarray,
+    on_left: Evaluated,
+) -> np.ndarray:
+    """Return the error (x, v, s) after a restart from that before it.
+
+    `before`, `after`: the state on both sides, one each. `fired`: event functions. `on_left`: a state just before, with the
+    rates there. At an event g = 0, the time is late by dt = -(g_q e_q + g_u e_u) / g', and e+ = jump(e- + f- dt) - f+ dt.
+    """
+    system = dynamics.system
+    rates = np.concatenate([on_left.q_rates[0], on_left.acceleration[0]])
+    late = _late(dynamics, before, fired, error, rates) if fired else 0.0
+    trailing, geometry = with_rates(system), Variations(system, before.q)
+    n_q = system.n_q
+    f_before = _variation(geometry, rates[:n_q], rates[n_q:], trailing)
+    f_after = _variation(Variations(system, after.q), after.q_rates[0], after.acceleration[0], trailing)
+    moved = error + late * f_before
+    jumped = np.abs(after.u - before.u).max(initial=0.0) > ESTIMATE.difference * np.abs(before.u).max(initial=0.0)
+    if jumped:
+        moved = _jumped(dynamics, before, float(after.t[0]), moved)
+    return moved - late * f_after
+
+
+def _variation(geometry: Variations, dq: np.ndarray, du: np.ndarray, trailing: np.ndarray) -> np.ndarray:
+    """Return changes of q and u as a row (x, v, s)."""
+    return np.concatenate([geometry.displacement(dq[None])[0], geometry.ground(du[None])[0], dq[trailing]])
+
+
+def displaced(dynamics: Dynamics, at: Evaluated, variations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return q and u of states moved by variations (x, v, s), one row each."""
+    system = dynamics.system
+    geometry, n_u = Variations(system, at.q), system.n_u
+    q = geometry.moved(at.q, variations[:, :n_u])
+    q[:, with_rates(system)] += variations[:, 2 * n_u :]
+    return q, at.u + geometry.own(variations[:, n_u : 2 * n_u])
+
+
+def just_before(dynamics: Dynamics, piece: Evaluated, fired: tuple[int, ...]) -> Evaluated:
+    """Return a state just before the event that ends a piece, where its forces are those of the piece."""
+    end, previous = len(piece.t) - 1, len(piece.t) - 2
+    sides = _event_values(dynamics, fired, float(piece.t[previous]), piece.q[previous], piece.u[previous]) > 0.0
+    step = piece.t[end] - piece.t[previous]
+    back = ESTIMATE.difference * step
+    while back < step:
+        t, q = piece.t[end] - back, piece.q[end] - back * piece.q_rates[previous]
+        u = piece.u[end] - back * piece.acceleration[previous]
+        if np.array_equal(_event_values(dynamics, fired, float(t), q, u) > 0.0, sides):
+            return evaluated(dynamics, np.array([t]), q[None], u[None])
+        back *= 10.0
+    return piece.at(slice(previous, end))
+
+
+def _event_values(dynamics: Dynamics, fired: tuple[int, ...], t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return the values of some event functions at a state."""
+    state = dynamics.state
+    state.q[:], state.u[:] = q, u
+    state.evaluate("event_function", t)
+    return np.array(state.values["event_function"][list(fired)])
+
+
+def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.ndarray, rates: np.ndarray) -> float:
+    """Return the delay of an event by the error of the state."""
+    t = float(at.t[0])
+    step = ESTIMATE.difference * max(1.0, abs(t))
+
+    def values(t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        return _event_values(dynamics, fired, t, q, u)
+
+    n_q = dynamics.system.n_q
+    dq, du = step * rates[:n_q], step * rates[n_q:]
+    slope = (values(t + step, at.q[0] + dq, at.u[0] + du) - values(t - step, at.q[0] - dq, at.u[0] - du)) / (2 * step)
+    size = ESTIMATE.difference / max(float(np.abs(error).max()), np.finfo(float).tiny)
+    sides = [displaced(dynamics, at, sign * size * error[None]) for sign in (1.0, -1.0)]
+    by_error = (values(t, *(each[0] for each in sides[0])) - values(t, *(each[0] for each in sides[1]))) / (2 * size)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        late = float(-(by_error / slope)[0])
+    return late if np.isfinite(late) else 0.0
+
+
+def _jumped(dynamics: Dynamics, at: Evaluated, t: float, error: np.ndarray) -> np.ndarray:
+    """Return the error after the velocities have jumped at time t, by a difference of restarts."""
+    size = ESTIMATE.difference / max(float(np.abs(error).max()), np.finfo(float).tiny)
+    moved = displaced(dynamics, at, size * error[None])
+    try:
+        base, there = restarted(dynamics, t, at.q[0], at.u[0]), restarted(dynamics, t, moved[0][0], moved[1][0])
+    except SolverError:
+        return error
+    return _variation(
+        Variations(dynamics.system, base.q[None]), there.q - base.q, there.u - base.u, with_rates(dynamics.system)
+    ) / size  # fmt: skip

@@ -1,0 +1,20 @@
+"""Outcome of the estimate of the errors of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ErrorEstimate:
+    """Outcome of the estimate of the errors of a run.
+
+    - `status`: ``estimated``, ``lost`` (the errors are too large for a linear estimate) or ``none``.
+    - `sentence`: for the summary.
+    - `largest`: channel with the largest error relative to its size, and `relative`: that error; empty and nan if unknown.
+    """
+
+    status: str
+    sentence: str
+    largest: str = ""
+    relative: float = float("nan")

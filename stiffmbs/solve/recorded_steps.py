@@ -1,0 +1,94 @@
+"""Accepted steps of `bdf` and `radau`, recorded in memory for the error estimate after a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..compile.equations import Equations
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Steps between two starts of the integrator; row 0 is the start, the others are points of the steps in order of time.
+
+    - `t` of shape (rows,), `q`, `u` of shapes (rows, n_q), (rows, n_u).
+    - `q_rates`, `u_rates`: y' of the integrator in the same rows.
+    - `order` of shape (rows,): order of the formula.
+    - `points`: rows per step; all but the last are within the step.
+    - `fired`: event functions that ended the piece; empty at a breakpoint in time, a change of order or the end of the run.
+    """
+
+    t: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+    q_rates: np.ndarray
+    u_rates: np.ndarray
+    order: np.ndarray
+    points: int
+    fired: tuple[int, ...]
+
+
+@dataclass
+class _Open:
+    """Rows of a piece so far: time, order, y and y'."""
+
+    rows: list[np.ndarray]
+    fired: tuple[int, ...] = ()
+
+
+@dataclass
+class StepRecorder:
+    """Steps of one run. `most`: largest number of steps times unknowns; beyond it nothing is kept and `full` is True.
+
+    `points`: rows per step.
+    """
+
+    most: float
+    points: int = 1
+    full: bool = False
+    _pieces: list[_Open] = field(default_factory=list)
+    _numbers: int = 0
+
+    def begin(self, row: np.ndarray) -> None:
+        """Start a piece with the row of a start."""
+        if not self.full:
+            self._pieces.append(_Open([row[None]]))
+
+    def extend(self, rows: np.ndarray, fired: tuple[int, ...]) -> None:
+        """Append the rows of steps, after which event functions fired."""
+        self._numbers += rows.size // (2 * self.points)
+        if self._numbers > self.most:
+            self.full = True
+            self._pieces.clear()
+        elif self._pieces:
+            if len(rows):
+                self._pieces[-1].rows.append(rows)
+            self._pieces[-1].fired = fired
+
+    def pieces(self, equations: Equations) -> tuple[Piece, ...]:
+        """Return the pieces of nonzero length, in all coordinates of the system."""
+        made = (self._piece(each, equations) for each in self._pieces)
+        return tuple(piece for piece in made if len(piece.t) > self.points)
+
+    def _piece(self, piece: _Open, equations: Equations) -> Piece:
+        rows, n = np.concatenate(piece.rows), equations.n
+        t, keep = rows[:, 0], np.ones(len(rows), dtype=bool)
+        ends = np.arange(self.points, len(rows), self.points)
+        short = ends[np.diff(t[np.append(0, ends)]) <= 0.0]  # a second call at the same time
+        for k in range(self.points):
+            keep[short - k] = False
+        rows = rows[keep]
+        q, u = equations.states(rows[:, 2 : 2 + n][:, equations.independent])
+        q_rates, u_rates = equations.rates(rows[:, 2 + n :][:, equations.independent])
+        return Piece(
+            rows[:, 0].copy(),
+            q.copy(),
+            u.copy(),
+            q_rates.copy(),
+            u_rates.copy(),
+            rows[:, 1].astype(int),
+            self.points,
+            piece.fired,
+        )

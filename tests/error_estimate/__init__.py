@@ -1,0 +1,1 @@
+"""Tests of the estimate of the errors of a run."""

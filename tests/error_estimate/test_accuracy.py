@@ -1,0 +1,46 @@
+"""Runs whose tolerance follows from the accuracy asked for."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs.errors import InputError
+from stiffmbs.model.accuracy import from_option, wanted
+from tests.error_estimate.test_against_truth import PENDULUM, pendulum
+
+SCENE = PENDULUM.format(duration=8)
+
+
+@pytest.mark.parametrize("asked", [1e-2, 1e-3, 1e-5])
+@pytest.mark.parametrize("solver", ["bdf", "radau", "auto"])
+def test_positions_are_as_accurate_as_asked(asked, solver):
+    scene = stiffmbs.read_scene(SCENE)
+    found = stiffmbs.run(scene, solver=solver, accuracy={"positions": f"{asked} m", "forces": "1 %"})
+    angle, _ = pendulum(found.time)
+    assert "reached positions" in found.estimate.sentence and not any("accuracy" in note for note in found.notes)
+    assert np.abs(found["bob.x"] - np.cos(angle)).max() < asked
+
+
+def test_an_accuracy_that_is_not_reached_is_reported():
+    found = stiffmbs.run(stiffmbs.read_scene(SCENE), solver="bdf", accuracy={"positions": "1e-16 m"})
+    assert any("was not reached: reached positions" in note for note in found.notes)
+
+
+def test_accuracies_have_units_or_are_relative():
+    forces, positions = wanted({"forces": "1 %", "positions": "0.1 mm"})
+    assert (forces.error, forces.relative) == (0.01, True)
+    assert positions.error == pytest.approx(1e-4) and not positions.relative
+    assert from_option("forces=1%, positions=0.1mm") == {"forces": "1%", "positions": "0.1mm"}
+
+
+@pytest.mark.parametrize(
+    "asked, message",
+    [
+        ({"force": "1 %"}, "did you mean 'forces'"),
+        ({"forces": "1 mm"}, "expected a force"),
+        ({"forces": "0 %"}, "greater than zero"),
+    ],
+)
+def test_others_are_refused(asked, message):
+    with pytest.raises(InputError, match=message):
+        stiffmbs.run(stiffmbs.read_scene(SCENE), accuracy=asked)

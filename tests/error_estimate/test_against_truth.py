@@ -1,0 +1,199 @@
+"""Estimated errors against the truth: closed forms, minimal equations, and steady or prescribed motions without errors."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import stiffmbs
+from tests.stress.self_assessment import assess, drawn, table
+
+G = 9.81
+PENDULUM = """
+gravity: [0, -9.81]
+bodies: {{bob: {{mass: 1, inertia: 0.1, position: [1, 0], angle: 0}}}}
+joints: {{pin: {{type: revolute, i: {{body: bob, point: [-1, 0]}}, j: ground}}}}
+run: {{duration: {duration}, points: 101}}
+"""
+BUSHING = """
+bodies:
+  base: {mass: 100, inertia: 10}
+  tool: {mass: 2, inertia: 0.1, position: [0.1, 0], velocity: [0.1, 0]}
+joints: {rail: {type: prismatic, i: base, j: ground}, guide: {type: prismatic, i: tool, j: ground}}
+forces:
+  soft: {type: spring_damper, i: base, j: {body: ground, point: [-1, 0]}, stiffness: 1e4, damping: 10, free_length: 1}
+  mount: {type: force, i: tool, j: base, force: ["-1e7*(tool.x - base.x - 0.1) - 200*(tool.vx - base.vx)", 0]}
+run: {duration: 0.5, points: 1001}
+"""
+CONICAL = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies: {b: {mass: 1, inertia: [1e-3, 1e-3, 1e-3], position: [0.2823212366975177, 0, -0.41266780745483916], velocity: [0, 1.376504882501672, 0]}}
+joints: {d: {type: distance, i: b, j: ground, length: 0.5}}
+run: {duration: 20, points: 101}
+"""
+CRANK = """
+bodies: {crank: {mass: 1, inertia: 0.1}, rod: {mass: 1, inertia: 0.1, position: [0.35, 0]}, slider: {mass: 1, inertia: 1, position: [0.6, 0]}}
+joints:
+  pin: {type: revolute, i: crank, j: ground}
+  big: {type: revolute, i: {body: crank, point: [0.1, 0]}, j: {body: rod, point: [-0.25, 0]}}
+  small: {type: revolute, i: {body: rod, point: [0.25, 0]}, j: slider}
+  guide: {type: prismatic, i: slider, j: ground}
+  motor: {type: drive, joint: pin, position: 20*t}
+run: {duration: 20, points: 201}
+"""
+
+
+def solved(scene, **how):
+    return stiffmbs.run(stiffmbs.read_scene(scene), errors=True, **how)
+
+
+def ratio(found, channel, truth):
+    """Return the estimated error of a channel in its true one, both the largest over time."""
+    return found.errors[channel].over_time / np.abs(found[channel] - truth).max()
+
+
+def pendulum(t):
+    """Return the angle of a pendulum of 1 m from the horizontal, and its rate, by its minimal equation."""
+    inertia = 1.1
+    made = solve_ivp(
+        lambda _, y: [y[1], -G * np.cos(y[0]) / inertia], (0, t[-1]), [0, 0], "DOP853", t, rtol=1e-13, atol=1e-13
+    )
+    return made.y
+
+
+@pytest.mark.parametrize("solver, rtol", [("bdf", 1e-4), ("bdf", 1e-6), ("bdf", 1e-8), ("radau", 1e-5)])
+def test_a_pendulum(solver, rtol):
+    found = solved(PENDULUM.format(duration=8), solver=solver, rtol=rtol)
+    angle, rate = pendulum(found.time)
+    acceleration_y = np.cos(angle) * (-G * np.cos(angle) / 1.1) - np.sin(angle) * rate**2
+    assert 0.7 < ratio(found, "bob.angle", angle) < 1.5
+    assert 0.7 < ratio(found, "bob.omega", rate) < 1.5
+    assert 0.7 < ratio(found, "pin.fy", acceleration_y + G) < 1.5
+
+
+@pytest.mark.parametrize("solver, rtol", [("bdf", 1e-4), ("bdf", 1e-6), ("radau", 1e-4)])
+def test_the_force_of_a_stiff_mount(solver, rtol):
+    """Its vibration takes some ten steps of bdf in a period, which blocks of eight steps would damp."""
+    found = solved(BUSHING, solver=solver, rtol=rtol)
+    c, d, k, r = 1e4, 10.0, 1e7, 200.0
+    a = np.array(
+        [[0, 0, 1, 0], [0, 0, 0, 1], [-(c + k) / 100, k / 100, -(d + r) / 100, r / 100], [k / 2, -k / 2, r / 2, -r / 2]]
+    )
+    rates, modes = np.linalg.eig(a)
+    start = np.linalg.solve(modes, np.array([0, 0, 0, 0.1]))
+    y = (modes @ (start[:, None] * np.exp(rates[:, None] * found.time))).real
+    force = -k * (y[1] - y[0]) - r * (y[3] - y[2])
+    assert 0.6 < ratio(found, "mount.fx", force) < 1.6
+    assert 0.5 < ratio(found, "base.x", y[0]) < 2
+
+
+def test_a_drift_that_local_errors_do_not_show():
+    """A conical pendulum: the sum of local errors was a hundredth of the error of 0.13 mm."""
+    found = solved(CONICAL, solver="bdf")
+    angle = found.time * 1.376504882501672 / 0.2823212366975177
+    assert 0.9 < ratio(found, "b.x", 0.2823212366975177 * np.cos(angle)) < 1.1
+    assert any("the estimated error of b." in note for note in found.notes)
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_a_prescribed_motion_has_no_error(solver):
+    found = solved(CRANK, solver=solver, rtol=1e-4)
+    assert found.estimate.status == "estimated" and not any("error" in note for note in found.notes)
+    assert found.errors["slider.x"].over_time < 1e-9
+    assert "positions to 12 digits" in found.estimate.sentence or found.estimate.relative < 1e-9
+
+
+def test_forces_of_rounding_have_no_note():
+    """A free body on an axis: the forces of the joint are 1e-60 N."""
+    found = solved(
+        """
+        dimensions: 3
+        bodies: {b: {mass: 1, inertia: [1, 1, 1], velocity: [0, 0, 1], omega: [0, 0, 2]}}
+        joints: {c: {type: cylindrical, i: b, j: ground}}
+        run: {duration: 1, points: 11, solver: radau, rtol: 1e-5}
+        """
+    )
+    assert found.estimate.status == "estimated" and not any("estimated error" in note for note in found.notes)
+
+
+def test_a_lost_solution_is_reported():
+    """An inverted pendulum on a cart; its error grows by a factor of 1e20 in 10 s."""
+    found = solved(
+        """
+        gravity: [0, -9.81]
+        bodies:
+          cart: {mass: 2, inertia: 1}
+          bar: {mass: 1, inertia: 1/12, position: [0.5*sin(0.02), 0.5*cos(0.02)], angle: -0.02}
+        joints:
+          rail: {type: prismatic, i: cart, j: ground}
+          hinge: {type: revolute, i: {body: bar, point: [0, -0.5]}, j: cart}
+        run: {duration: 10, points: 101, rtol: 1e-4}
+        """
+    )
+    assert found.estimate.status == "lost" and any("lost from t = " in note for note in found.notes)
+    assert all(np.isnan(bar.over_time) for bar in found.errors.values())
+
+
+def test_an_impact_shifts_the_time_of_the_next_ones():
+    """A ball on a stiff floor, against a run with a much smaller tolerance."""
+    found, fine = (
+        stiffmbs.run(
+            stiffmbs.read_scene(
+                """
+                gravity: [0, -9.81]
+                bodies: {ball: {mass: 1, inertia: 1, position: [0, 1]}}
+                forces: {floor: {type: force, i: ball, force: [0, "1e5*max(0, -ball.y)"]}}
+                run: {duration: 2, points: 201}
+                """
+            ),
+            errors=True,
+            **how,
+        )
+        for how in ({"solver": "bdf"}, {"solver": "radau", "rtol": 1e-11})
+    )
+    assert found.solver["events"] > 3
+    assert 0.5 < ratio(found, "ball.y", fine["ball.y"]) < 2
+
+
+def test_the_errors_of_separate_mechanisms_are_their_own():
+    """Two pendulums of which one is much longer: they are solved apart, with steps of their own."""
+    scene = """
+        gravity: [0, -9.81]
+        bodies:
+          a: {mass: 1, inertia: 0.1, position: [1, 0]}
+          b: {mass: 1, inertia: 0.1, position: [5, 0]}
+          far: {mass: 1, inertia: 0.1, position: [0, 3], velocity: [1, 0]}
+        joints:
+          p: {type: revolute, i: {body: a, point: [-1, 0]}, j: ground}
+          r: {type: revolute, i: {body: b, point: [-5, 0]}, j: ground}
+        forces: {push: {type: force, i: b, force: ["step(t, 1, 0, 2, 1)", 0]}}
+        run: {duration: 8, points: 101, solver: bdf}
+        """
+    found = solved(scene)
+    angle, _ = pendulum(found.time)
+    assert 0.7 < ratio(found, "a.angle", angle) < 1.5
+    assert found.errors["far.x"].over_time < 1e-9
+
+
+def test_a_run_of_much_work_says_how_to_ask():
+    found = stiffmbs.run(stiffmbs.read_scene(PENDULUM.format(duration=8)), tuning={"error_estimate": {"work": 100}})
+    assert not found.errors and "--errors" in found.estimate.sentence
+
+
+@pytest.mark.parametrize("solver", ["projected", "auto"])
+def test_explicit_steps_take_a_second_run_on_request(solver):
+    scene = stiffmbs.read_scene(PENDULUM.format(duration=8))
+    assert "second run" in stiffmbs.run(scene, solver=solver).estimate.sentence
+    found = stiffmbs.run(scene, solver=solver, errors=True)
+    assert 0.1 < ratio(found, "bob.angle", pendulum(found.time)[0]) < 10
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_random_scenes(solver):
+    found = [assess(*drawn(seed, solver)) for seed in range(60)]
+    print(table(found))
+    for group, least in (("positions", 0.85), ("forces", 0.75)):
+        ratios = np.array([one.ratios()[group] for one in found if group in one.ratios()])
+        assert np.mean((ratios > 1 / 3) & (ratios < 3)) > least
+    assert not any(one.is_false or one.is_silent for one in found)

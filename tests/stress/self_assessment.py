@@ -1,0 +1,184 @@
+"""Estimated errors of runs against their true errors: ``python -m tests.stress.self_assessment``.
+
+    python -m tests.stress.self_assessment [--count N] [--seed N] [--solver bdf|radau|auto|projected] [--rtol X] [SCENE...]
+
+Prints a line for each run, with the ratio of the estimated to the true error of positions, velocities and forces, and at the end
+their quantiles, the runs that are lost or not estimated, and false and missing notes. SCENEs are files; random scenes by default.
+The truth is a run of another integrator at a much smaller tolerance.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from stiffmbs.analyses.load_scene import load_scene
+from stiffmbs.analyses.run import run
+from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
+from stiffmbs.results.channel_errors import difference
+from stiffmbs.results.digits import GROUPS, KnownErrors, over_time
+from stiffmbs.results.error_bars import ErrorBar
+from stiffmbs.results.scales import kind_of
+from stiffmbs.results.solution import Solution
+
+from .random_scenes.scene import random_scene
+
+REFERENCES = ({"solver": "projected", "rtol": 1e-12}, {"solver": "radau", "rtol": 1e-10})
+"""Runs for the truth, in the order of their use."""
+ROUNDING = 1e-9
+"""Relative error below which a ratio is not meaningful."""
+AGREED = 0.1
+"""Difference of the two references in the error of the run, up to which the truth is known."""
+FALSE = 3.0
+"""A note on an error is false if the true error is below this part of its threshold, or missing if above as many times it."""
+NOTE = "the estimated error of"
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """Estimate and truth of one run.
+
+    - `status`: of the estimate, or ``no truth``.
+    - `true`, `estimated`: largest errors relative to the size of their channels, by group.
+    - `noted`: True if a note says that the errors are large or lost.
+    """
+
+    status: str
+    true: Mapping[str, float]
+    estimated: Mapping[str, float]
+    noted: bool
+    rtol: float
+
+    def ratios(self) -> dict[str, float]:
+        """Return the estimated error in the true one by group, where this is more than rounding."""
+        if self.status != "estimated":
+            return {}
+        return {group: self.estimated[group] / true for group, true in self.true.items() if true > ROUNDING}
+
+    @property
+    def exceeds(self) -> float:
+        """Return the largest true error in the threshold of its note."""
+        limits = {"positions": min(200.0 * max(self.rtol, 1e-6), 0.01)}
+        return max((true / limits.get(group, 0.01) for group, true in self.true.items()), default=0.0)
+
+    @property
+    def is_false(self) -> bool:
+        """Return True if a note has no reason."""
+        return self.noted and self.status == "estimated" and self.exceeds < 1.0 / FALSE
+
+    @property
+    def is_silent(self) -> bool:
+        """Return True if a note is missing."""
+        return not self.noted and self.status == "estimated" and self.exceeds > FALSE
+
+
+def assess(scene: Scene, how: Mapping[str, Any]) -> Assessment:
+    """Return the assessment of a run; raise a StiffmbsError if it is refused."""
+    found = run(scene, **how, errors=True)
+    rtol = float(how.get("rtol", scene.run.rtol))
+    noted = any(note.startswith(NOTE) or "solution is lost" in note for note in found.notes)
+    nothing = Assessment("no truth", {}, {}, noted, rtol)
+    if not found.success or found.estimate is None:
+        return nothing
+    fine = []
+    for reference in REFERENCES:
+        try:
+            other = run(scene, **{**how, **reference}, errors=False)
+        except StiffmbsError:
+            continue
+        if other.success and len(other.time) == len(found.time):
+            fine.append(errors_of(found, other))
+    if not fine or any(
+        abs(fine[-1][group] - true) > AGREED * true for group, true in fine[0].items() if true > ROUNDING
+    ):
+        return nothing
+    return Assessment(found.estimate.status, fine[0], largest(found, found.errors), noted, rtol)
+
+
+def errors_of(solution: Solution, other: Solution) -> dict[str, float]:
+    """Return the largest true errors by group, from a more accurate run."""
+    bars = {}
+    for name, values in solution.channels.items():
+        error = np.abs(difference(name, values, other[name]))
+        if kind_of(name) == "orientation":  # q and -q are one orientation
+            error = np.minimum(error, np.abs(values + other[name]))
+        bars[name] = ErrorBar(float(np.nanmax(error, initial=0.0)), 0.0, 0.0, 0.0, 0.0)
+    return largest(solution, bars)
+
+
+def largest(solution: Solution, bars: Mapping[str, ErrorBar]) -> dict[str, float]:
+    """Return the largest errors relative to the sizes of their channels, by group."""
+    from dataclasses import replace
+
+    known = KnownErrors(replace(solution, errors=bars))
+    found = {group: known.relative(over_time, group) for group in GROUPS}
+    return {group: max(errors.values()) for group, errors in found.items() if errors}
+
+
+def drawn(seed: int, solver: str = "") -> tuple[Scene, dict[str, Any]]:
+    """Return a random scene, and settings of its run."""
+    rng = np.random.default_rng(seed)
+    chosen = solver or str(rng.choice(["bdf", "bdf", "radau", "auto"]))
+    how = {"solver": chosen, "rtol": float(10.0 ** -rng.integers(3, 9))}
+    scene = random_scene(rng)
+    how["duration"] = float(10.0 ** rng.uniform(0, 1)) * scene["run"]["duration"]
+    return read_scene(json.dumps(scene)), how
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenes", nargs="*")
+    parser.add_argument("--count", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--solver", default="")
+    parser.add_argument("--rtol", type=float)
+    asked = parser.parse_args()
+    found = []
+    names = asked.scenes or [str(seed) for seed in range(asked.seed, asked.seed + asked.count)]
+    for name in names:
+        try:
+            if asked.scenes:
+                scene, how = load_scene(name), {"solver": asked.solver or "bdf"}
+            else:
+                scene, how = drawn(int(name), asked.solver)
+            how |= {"rtol": asked.rtol} if asked.rtol else {}
+            one = assess(scene, how)
+        except StiffmbsError as refusal:
+            print(name, "refused:", str(refusal)[:100])
+            continue
+        found.append(one)
+        ratios = " ".join(
+            f"{group} {true:.1e} {one.ratios().get(group, float('nan')):.2f}" for group, true in one.true.items()
+        )
+        marks = " FALSE NOTE" * one.is_false + " SILENT" * one.is_silent
+        print(f"{name} {how['solver']} {one.rtol:.0e} {one.status}: {ratios}{marks}", flush=True)
+    print(table(found))
+
+
+def table(found: list[Assessment]) -> str:
+    """Return quantiles of the ratios, and counts of runs by status, as text."""
+    lines = []
+    for group in GROUPS:
+        ratios = np.array([one.ratios()[group] for one in found if group in one.ratios()])
+        if len(ratios):
+            shown = ", ".join(f"{ratio:.2f}" for ratio in np.quantile(ratios, [0.0, 0.1, 0.5, 0.9, 1.0]))
+            within = ", ".join(
+                f"{np.mean((ratios > 1 / factor) & (ratios < factor)):.0%} within {factor}" for factor in (2, 3, 5)
+            )
+            lines.append(f"{group}: {len(ratios)} ratios, least, 10 %, median, 90 %, largest: {shown}; {within}")
+    for status in dict.fromkeys(one.status for one in found):
+        lines.append(f"{status}: {sum(one.status == status for one in found)}")
+    lines.append(f"false notes: {sum(one.is_false for one in found)}, missing: {sum(one.is_silent for one in found)}")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()
