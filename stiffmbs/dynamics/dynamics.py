@@ -73,7 +73,7 @@ class OutputRows:
 
     def at(self, instants: np.ndarray | slice) -> OutputRows:
         """Return the rows of some output times, by number."""
-        found = {each.name: getattr(self, each.name) for each in fields(self)}
+        found: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
         return replace(self, **{name: each[instants] for name, each in found.items() if isinstance(each, np.ndarray)})
 
     @property
