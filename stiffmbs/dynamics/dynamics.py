@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 
@@ -74,7 +74,7 @@ class OutputRows:
     def at(self, instants: np.ndarray | slice) -> OutputRows:
         """Return the rows of some output times, by number."""
         found: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
-        return replace(self, **{name: each[instants] for name, each in found.items() if isinstance(each, np.ndarray)})
+        return replace(self, **{name: each[instants] for name, each in found.items() if name != "status"})
 
     @property
     def finite(self) -> bool:
