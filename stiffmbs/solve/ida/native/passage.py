@@ -19,11 +19,12 @@ from stiffmbs.solve.ida.native.ida_memory import array_of
 
 @compiled
 def take_reactions(w, s, t):
-    """Compute the multipliers that event functions need from accelerations at the current state.
+    """Compute the multipliers and algebraic states that event functions need from accelerations at the current state.
 
-    Those of the integrator have no error test, and contain the remainder of Newton's iteration divided by the step.
+    Those of the integrator have no error test, and contain the remainder of Newton's iteration, multipliers divided by
+    the step: restarts, which compute both, would meet an event again that the integrator has passed.
     """
-    if w.n_lam > 0:
+    if w.by_accelerations:
         m = dynamics_view(ints(w.dynamics))
         copied(w.lam, s.lam, w.n_lam)
         if consistent_accelerations(state_view(m.state), m, t) < 0:

@@ -311,13 +311,14 @@ def _has_matrices(x, c, h):
 def _after_failed_iteration(x, outcome, h):
     """Return the length of the next attempt: the same with a new matrix, if the last one was old, or a shorter one.
 
-    The matrix at the beginning of a step that ends beyond a kink may diverge; that of the predicted end then converges.
+    The matrix at the beginning of a step that ends beyond a kink may diverge; that of the predicted end then converges. A
+    first step may begin on a kink, where the matrix is that of either side, and its iteration may alternate.
     """
     x.newton_failures += 1
     if not x.current:
         x.renewed = 1
         return h * x.suggested if outcome == SLOW else h
-    if x.n_functions > 0 and (outcome == DIVERGED or x.ahead):
+    if x.n_functions > 0 and (outcome == DIVERGED or x.ahead or x.h_past == 0.0):
         x.renewed = 1
         x.ahead = 1 - x.ahead
         if x.ahead:
