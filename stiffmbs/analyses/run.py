@@ -321,7 +321,9 @@ def _notes(job: Job, trajectory: Trajectory, rows: OutputRows, structure: Struct
 
 
 def _tabled_drives(job: Job) -> Iterator[str]:
-    """Yield notes on drives by tables of positions."""
+    """Yield notes on drives by tables of positions, if the run passes points of tables."""
+    if not len(job.dynamics.input_features(job.grid.start, job.grid.end).breakpoints):
+        return
     from ..run_checks.tabled_drives import tabled_drive_notes  # models without drives do not load it
 
     yield from tabled_drive_notes(job.dynamics.system, job.data.joints)

@@ -102,6 +102,43 @@ def window(depth=0.998):
     return model
 
 
+ON_AN_OUTPUT = """
+gravity: [0, 0]
+bodies: {b: {mass: 2, inertia: 0.07, velocity: [1, 0]}}
+joints: {j: {type: prismatic, i: b, j: ground}}
+states: {p: {zero: "p - 0.8*abs(p) - (20*abs(t - 0.3) - 3 - 2*max(t - 0.7, 0))", start: 15}}
+forces: {f: {type: force, i: b, force: ["3 - abs(p)", 0]}}
+"""
+
+
+@pytest.mark.parametrize("formulation", ["SI2", "SI1", "I3", "index1"])
+def test_an_algebraic_state_passes_zero_at_an_output(formulation):
+    """Newton's remainder of the state made 398 events of one (750 and a stop by I3), as a first step to an output is short."""
+    found = stiffmbs.run(
+        read_scene(ON_AN_OUTPUT), solver="bdf", formulation=formulation, rtol=1e-7, duration=1, points=101
+    )
+    assert found.outcome is Outcome.DONE and found.solver["events"] == 2
+    within = 1e-3 if formulation == "I3" else 1e-4  # the error test of I3 leaves out velocities
+    assert found["b.vx"][-1] == pytest.approx(-5.525, abs=within)  # by quadrature
+
+
+AT_A_SPEED = """
+gravity: [0, 0]
+bodies: {b: {mass: 2, inertia: 0.07, velocity: [1, 0]}}
+joints: {j: {type: prismatic, i: b, j: ground}}
+states: {p: {zero: "p - 0.5*max(p, 0) - 4*(b.vx - 1.2)", start: -0.8}}
+forces: {f: {type: force, i: b, force: ["10*sin(8*t) - p", 0]}}
+"""
+
+
+@pytest.mark.parametrize("stages, rtol", [(5, 1e-5), ("auto", 1e-7), (3, 1e-6)])
+def test_radau_starts_where_an_algebraic_state_is_zero(stages, rtol):
+    """The matrix at the start is that of the side that the motion leaves, with which the iteration alternates."""
+    found = stiffmbs.run(read_scene(AT_A_SPEED), solver="radau", stages=stages, rtol=rtol, duration=1, points=11)
+    assert found.outcome is Outcome.DONE and found.solver["events"] == 3
+    assert found["b.vx"][-1] == pytest.approx(1.38481745, abs=10 * rtol)  # by SciPy, piecewise
+
+
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6])
 @pytest.mark.parametrize("points", [2, 3, 6, 11, 101])
 def test_no_touch_of_a_window_is_left_out_however_long_the_steps_are(points, rtol):

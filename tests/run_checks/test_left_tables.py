@@ -210,6 +210,12 @@ def motion_notes(solution: object) -> list[str]:
     return [note for note in solution.notes if "the position by the table" in note]  # type: ignore[attr-defined]
 
 
+def test_points_of_a_table_that_the_run_does_not_pass_have_no_note() -> None:
+    table = Table(table=[(-1.0, -0.5), (1.0, 0.5), (2.0, 0.0)], lines=True)
+    assert not motion_notes(run(shaken(table), duration=0.9))
+    assert motion_notes(run(shaken(table), duration=1.1))
+
+
 @pytest.mark.parametrize("options", [{"lines": True}, {}, {"akima": True}])
 def test_the_effort_of_a_drive_by_a_curve_that_is_not_smooth_has_a_note(options: dict[str, object]) -> None:
     t = np.linspace(0, 2, 101)

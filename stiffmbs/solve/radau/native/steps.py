@@ -297,7 +297,7 @@ def _has_matrices(x, c, h):
     if x.ahead:
         last = shifted(x.z, (c.stages - 1) * x.n_all)
         for k in range(x.n):
-            x.y_stage[k] += last[k]
+            x.y_stage[k] += last[k] if x.h_past > 0.0 else h * x.yp[k]
     if not factored(x, c, h, x.t, x.y_stage, x.yp, x.renewed):
         x.renewed = 1
         return False
@@ -318,7 +318,7 @@ def _after_failed_iteration(x, outcome, h):
     if not x.current:
         x.renewed = 1
         return h * x.suggested if outcome == SLOW else h
-    if x.n_functions > 0 and (outcome == DIVERGED or x.ahead or x.h_past == 0.0):
+    if x.n_functions > 0 and (outcome == DIVERGED or x.ahead):
         x.renewed = 1
         x.ahead = 1 - x.ahead
         if x.ahead:
