@@ -1,11 +1,11 @@
 """Notes of all examples: ``python -m tests.stress.notes``.
 
-    python -m tests.stress.notes [--solver NAME]... [--longer X]... [--finer X]... [--truth] [--limit S] [--out FILE] [EXAMPLE...]
+    python -m tests.stress.notes [--solver NAME]... [--longer X]... [--finer X]... [--limit S] [--out FILE] [EXAMPLE...]
 
 Runs examples with every solver, durations of 1 and 10 times their own, and 1/2, 1, 2 and 10 times their output points, and lists
 their notes and what they say on their errors; at the end a table of notes by kind. EXAMPLEs are names of files without
-``.yaml``; all by default, those that other runs proved to take little time first. ``--out`` appends the runs to a file as JSON lines and skips
-those in it. ``--truth`` compares the errors with those against a run at a much smaller tolerance.
+``.yaml``; all by default, light ones first. ``--out`` appends the runs to a file as JSON lines and skips those in it.
+``python -m tests.stress.self_assessment`` compares estimated errors with true ones.
 """
 
 from __future__ import annotations
@@ -30,10 +30,12 @@ SOLVERS = ("bdf", "radau", "auto", "projected")
 LONGER = (1.0, 10.0)
 FINER = (0.5, 1.0, 2.0, 10.0)
 LIGHT = (
-    "simple_pendulum cart_pendulum bar_pendulum crank_slider four_bar dead_centres bouncing_ball stick_slip cam_follower door "
-    "heavy_top dzhanibekov rolling_disc spatial_slider_crank bricard andrews four_bars elastic_bearing quarter_car front_axle "
-    "governor leaf_spring rotor cable chain spatial_chain half_car half_car_at_rest"
-).split()
+    "simple_pendulum", "cart_pendulum", "bar_pendulum", "crank_slider", "four_bar", "dead_centres",
+    "bouncing_ball", "stick_slip", "cam_follower", "door", "heavy_top", "dzhanibekov", "rolling_disc",
+    "spatial_slider_crank", "bricard", "andrews", "four_bars", "elastic_bearing", "quarter_car",
+    "front_axle", "governor", "leaf_spring", "rotor", "cable", "chain", "spatial_chain", "half_car",
+    "half_car_at_rest",
+)  # fmt: skip
 """Examples that take little time, first."""
 
 
@@ -48,7 +50,11 @@ def runs(asked: argparse.Namespace) -> Iterator[tuple[str, Path, dict[str, Any]]
     """Yield the names, files and settings of all runs."""
     for path in paths(asked.examples):
         for longer, finer, solver in product(asked.longer or LONGER, asked.finer or FINER, asked.solver or SOLVERS):
-            yield f"{path.stem} {solver} x{longer:g} points x{finer:g}", path, {"solver": solver, "longer": longer, "finer": finer}
+            yield (
+                f"{path.stem} {solver} x{longer:g} points x{finer:g}",
+                path,
+                {"solver": solver, "longer": longer, "finer": finer},
+            )
 
 
 def outcome(path: Path, solver: str, longer: float, finer: float, limit: float) -> dict[str, Any]:
@@ -61,7 +67,12 @@ def outcome(path: Path, solver: str, longer: float, finer: float, limit: float) 
     if points == "steps":
         points = None
     duration = longer * settings.duration
-    how = {"solver": solver, "duration": duration, "points": max(2, int(finer * ((points or DEFAULT_POINTS) - 1)) + 1), "output": None}
+    how: dict[str, Any] = {
+        "solver": solver,
+        "duration": duration,
+        "points": max(2, int(finer * ((points or DEFAULT_POINTS) - 1)) + 1),
+        "output": None,
+    }
     try:
         found = run(scene, watch=patience(limit), **how)
     except StiffmbsError as refusal:
@@ -86,7 +97,9 @@ def main() -> None:
     parser.add_argument("examples", nargs="*", metavar="EXAMPLE")
     parser.add_argument("--solver", action="append", choices=SOLVERS)
     parser.add_argument("--longer", action="append", type=float, help="durations, in those of the examples")
-    parser.add_argument("--finer", action="append", type=float, help="numbers of output points, in those of the examples")
+    parser.add_argument(
+        "--finer", action="append", type=float, help="numbers of output points, in those of the examples"
+    )
     parser.add_argument("--limit", type=float, default=20.0, help="processor time, s, after which a run is given up")
     parser.add_argument("--out", type=Path, help="file of JSON lines")
     asked = parser.parse_args()
