@@ -63,7 +63,9 @@ def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solutio
 
     `size`: size of the mechanism, m.
     """
-    known = KnownErrors(solution)
+    absolute = settings.atol or settings.rtol * min(1.0, size)  # an error of it is not large, as where nothing moves
+    estimate = ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large)
+    known = KnownErrors(replace(solution, estimate=estimate))
     largest, relative = known.largest(over_time)
     peak, of_peak = known.largest(largest_bar)
     sentence = digits_words(known.digits(over_time))
@@ -72,7 +74,7 @@ def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solutio
     if of_peak - relative > relative:
         sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
     notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings, size))
-    estimate = ErrorEstimate("estimated", sentence, largest, relative)
+    estimate = replace(estimate, sentence=sentence, largest=largest, relative=relative)
     return replace(solution, estimate=estimate, notes=(*solution.notes, *notes))
 
 
