@@ -205,7 +205,7 @@ def test_motions_below_the_tolerance_have_no_note():
     found = solved(
         """
         gravity: [0, -9.81]
-        bodies: {b: {mass: 1, position: [0, 1]}}
+        bodies: {b: {mass: 1, inertia: 1, position: [0, 1]}}
         joints: {rail: {type: prismatic, i: {body: b, angle: 90 deg}, j: {body: ground, angle: 90 deg}}}
         forces: {s: {type: spring_damper, i: b, j: ground, stiffness: 9810, damping: 100, free_length: 1.001000001}}
         run: {duration: 1, points: 11}
