@@ -6,6 +6,7 @@ from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs.analyses.load_scene import load_scene
+from tests.conftest import EXAMPLES
 from tests.stress.self_assessment import assess, drawn, table
 
 G = 9.81
@@ -218,7 +219,7 @@ def test_motions_below_the_tolerance_have_no_note():
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_a_ball_after_a_hundred_impacts(solver):
     """The errors of the times of its impacts were turned into energy, which grew by 15 % with each one."""
-    scene = load_scene("examples/bouncing_ball.yaml")
+    scene = load_scene(EXAMPLES / "bouncing_ball.yaml")
     found = stiffmbs.run(scene, solver=solver, duration=20, points=2001, output=None, errors=True)
     truth = stiffmbs.run(scene, solver="projected", rtol=1e-12, duration=20, points=2001, output=None)
     assert 1 / 3 < ratio(found, "ball.y", truth["ball.y"]) < 3
