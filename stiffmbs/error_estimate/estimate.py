@@ -22,6 +22,8 @@ from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors, state_errors
 from .channels import channel_errors
+from .evaluated import evaluated
+from .linearised import nearly_singular
 from .parameters import ESTIMATE
 
 REMEDY = "use a smaller rtol, or accuracy: to choose it by the estimate"
@@ -94,12 +96,23 @@ def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings,
 
 
 def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:
-    """Return the time from which errors are too large for a linear estimate, s, or None."""
+    """Return the time from which errors are too large for a linear estimate, s, or None.
+
+    Raise a SolverError if the motion has passed a singular pose before, where the linear equations do not hold.
+    """
     system = dynamics.system
     of_poses = np.abs(found.errors[:, : system.n_u])
     scale = system.per_velocity(system.size, 1.0)
     beyond = ~(of_poses <= ESTIMATE.lost * scale).all(axis=1)
-    return float(found.t[np.argmax(beyond)]) if beyond.any() else None
+    if not beyond.any():
+        return None
+    before = slice(0, int(np.argmax(beyond)) + 1)
+    at = evaluated(dynamics, found.t[before], found.recorded_q[before], found.recorded_u[before])
+    singular = nearly_singular(dynamics, at)
+    if singular.any():
+        t = at.t[np.argmax(singular)]
+        raise SolverError(f"no linear equations transport errors through the nearly singular pose at t = {t:.4g} s")
+    return float(found.t[np.argmax(beyond)])
 
 
 def _lost_from(solution: Solution, t: float) -> Solution:

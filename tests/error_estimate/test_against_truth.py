@@ -224,3 +224,12 @@ def test_a_ball_after_a_hundred_impacts(solver):
     truth = stiffmbs.run(scene, solver="projected", rtol=1e-12, duration=20, points=2001, output=None)
     assert 1 / 3 < ratio(found, "ball.y", truth["ball.y"]) < 3
     assert 1 / 3 < ratio(found, "ball.vy", truth["ball.vy"]) < 3
+
+
+def test_a_passage_of_a_singular_pose_is_not_lost():
+    """Parallel cranks pass collinear poses, where rows of the constraints are dependent; the error is 2e-7 rad."""
+    found = stiffmbs.run(load_scene(EXAMPLES / "four_bars.yaml"), solver="radau", duration=3, errors=True)
+    assert found.estimate.status == "none" and "nearly singular pose at t = " in found.estimate.sentence
+    assert any("passes a singular pose" in note for note in found.notes) and not any(
+        "lost" in note for note in found.notes
+    )
