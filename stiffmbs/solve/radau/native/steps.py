@@ -364,7 +364,7 @@ def _error(x, c, h, untested):
         error = _estimate(x, c, x.t, h, x.y_stage)
     if untested and error < 1.0:
         error = max(error, _filtered(x, c, h))
-    wandering = _wandering(x, c)
+    wandering = _wandering(x, c) if x.acting == 0 else 0.0  # efforts of decaying motions are removed or closed
     return max(error, wandering) if wandering > 1.0 else error
 
 
