@@ -96,7 +96,7 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
 def _reason(trajectory: Trajectory) -> str:
     steps = trajectory.statistics.get("steps", 0)
     if trajectory.statistics.get("jacobians") and "projected" not in trajectory.solver:
-        return f"the run has many steps ({steps})"
+        return f"that takes some time for {steps} steps of this model"
     return "that takes a second run for explicit steps"
 
 

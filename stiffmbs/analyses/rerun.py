@@ -47,11 +47,12 @@ LESS = 0.5
 
 @dataclass(frozen=True)
 class Computed:
-    """Trajectory and rows of a run, notes on omitted rows, and notes on doubts."""
+    """Trajectory and rows of a run, notes on omitted rows, the job that was computed, and notes on doubts."""
 
     trajectory: Trajectory
     rows: OutputRows
     left_out: list[str]
+    job: Job
     doubts: tuple[str, ...] = ()
 
 

@@ -142,7 +142,7 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
         )
     outcome, message = _ending(job, rows, trajectory)
     system = job.dynamics.system
-    balance, broken = _balance(job, trajectory, rows)
+    balance, broken = _balance(computed.job, trajectory, rows)
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
     impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or broken
     uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job)))
@@ -236,7 +236,7 @@ def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     if job.dynamics.system.has_tables:
         trajectory = _within_tables(job, trajectory)
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)
-    return Computed(trajectory, rows, left_out)
+    return Computed(trajectory, rows, left_out, job)
 
 
 def _within_tables(job: Job, trajectory: Trajectory) -> Trajectory:

@@ -277,10 +277,14 @@ class Dynamics:
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Return q' at a state whose accelerations were just computed; that of an algebraic state is zero."""
         rates = self.system.of_body.position_rates(q, self.system.followed * u)
+        self.store_trailing_rates(rates)
+        return rates
+
+    def store_trailing_rates(self, rates: np.ndarray) -> None:
+        """Store in q' the rates of the coordinates after those of the bodies, where accelerations were just computed."""
         source, row = self._trailing
         if len(row):
             rates[row] = self.state.values["acceleration"][source]
-        return rates
 
     def report(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
         """Return the output rows at given times and states, up to the first that has no solution.

@@ -22,6 +22,8 @@ from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors, state_errors
 from .channels import channel_errors
+from .evaluated import evaluated
+from .linearised import nearly_singular
 from .parameters import ESTIMATE
 
 REMEDY = "use a smaller rtol, or accuracy: to choose it by the estimate"
@@ -63,7 +65,9 @@ def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solutio
 
     `size`: size of the mechanism, m.
     """
-    known = KnownErrors(solution)
+    absolute = settings.atol or settings.rtol * min(1.0, size)  # an error of it is not large, as where nothing moves
+    estimate = ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large)
+    known = KnownErrors(replace(solution, estimate=estimate))
     largest, relative = known.largest(over_time)
     peak, of_peak = known.largest(largest_bar)
     sentence = digits_words(known.digits(over_time))
@@ -72,7 +76,7 @@ def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solutio
     if of_peak - relative > relative:
         sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
     notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings, size))
-    estimate = ErrorEstimate("estimated", sentence, largest, relative)
+    estimate = replace(estimate, sentence=sentence, largest=largest, relative=relative)
     return replace(solution, estimate=estimate, notes=(*solution.notes, *notes))
 
 
@@ -92,12 +96,23 @@ def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings,
 
 
 def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:
-    """Return the time from which errors are too large for a linear estimate, s, or None."""
+    """Return the time from which errors are too large for a linear estimate, s, or None.
+
+    Raise a SolverError if the motion has passed a singular pose before, where the linear equations do not hold.
+    """
     system = dynamics.system
     of_poses = np.abs(found.errors[:, : system.n_u])
     scale = system.per_velocity(system.size, 1.0)
     beyond = ~(of_poses <= ESTIMATE.lost * scale).all(axis=1)
-    return float(found.t[np.argmax(beyond)]) if beyond.any() else None
+    if not beyond.any():
+        return None
+    before = slice(0, int(np.argmax(beyond)) + 1)
+    at = evaluated(dynamics, found.t[before], found.recorded_q[before], found.recorded_u[before])
+    singular = nearly_singular(dynamics, at)
+    if singular.any():
+        t = at.t[np.argmax(singular)]
+        raise SolverError(f"no linear equations transport errors through the nearly singular pose at t = {t:.4g} s")
+    return float(found.t[np.argmax(beyond)])
 
 
 def _lost_from(solution: Solution, t: float) -> Solution:

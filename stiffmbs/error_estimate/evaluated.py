@@ -54,13 +54,13 @@ def evaluated(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -
 def _trailing_rates(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return the rates of the coordinates after those of the bodies, shape (n, n_q - n_pose)."""
     system, state = dynamics.system, dynamics.state
-    rates = np.zeros((len(t), system.n_q - system.n_pose))
+    rates = np.zeros((len(t), system.n_q))
     if not len(with_rates(system)):
-        return rates
-    sampled = np.flatnonzero(system.sampled) + system.first_state - system.n_pose
+        return rates[:, system.n_pose :]
+    sampled = np.flatnonzero(system.sampled) + system.first_state
     for k in range(len(t)):
         state.q[:], state.u[:] = q[k], u[k]
         dynamics.accelerate(float(t[k]))
-        rates[k] = dynamics.position_rates(state.q, state.u)[system.n_pose :]
+        dynamics.store_trailing_rates(rates[k])
     rates[:, sampled] = 0.0
-    return rates
+    return rates[:, system.n_pose :]

@@ -96,6 +96,22 @@ def _linearised(dynamics: Dynamics, at: Evaluated) -> Linearised:
     return Linearised(basis, rates, left)
 
 
+def nearly_singular(dynamics: Dynamics, at: Evaluated) -> np.ndarray:
+    """Return a mask of the states so near to a singular pose that displacements on the constraints are not linear there.
+
+    At a distance d, as a part of the usual one, their nonlinearity is `ESTIMATE.difference` / d^2.
+    """
+    system = dynamics.system
+    scale = system.per_velocity(system.size, 1.0)
+    matrices = (Variations(system, at.q).ground(_velocity_constraints(dynamics, at)) * scale)[:, system.active]
+    if not 0 < matrices.shape[1] < matrices.shape[2]:
+        return np.zeros(len(at.t), dtype=bool)
+    sizes = np.linalg.norm(matrices, axis=2, keepdims=True)
+    r = np.linalg.qr((matrices / np.where(sizes > 0, sizes, 1.0)).transpose(0, 2, 1), mode="r")
+    least = np.abs(np.diagonal(r, axis1=1, axis2=2)).min(axis=1)
+    return np.asarray(ESTIMATE.difference > ESTIMATE.large * (least / least.max()) ** 2)
+
+
 def _velocity_constraints(dynamics: Dynamics, at: Evaluated) -> np.ndarray:
     """Return J of many states, shape (count, n_c, n_u)."""
     system, state = dynamics.system, dynamics.state

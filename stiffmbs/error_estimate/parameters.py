@@ -14,8 +14,8 @@ class EstimateParameters:
     Source: ``python -m tests.stress self_assessment``.
     """
 
-    work: float = 1e5
-    """Steps times unknowns up to which every run estimates its error, about 0.2 s."""
+    work: float = 2e5
+    """Steps (of radau: points of steps) times unknowns up to which every run estimates its error, 0.2 s or a little more."""
     difference: float = 1e-7
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""
     beside: float = 1e-3

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from ..solve.events.restart import restarted
@@ -19,8 +22,8 @@ def after_restart(
     fired: tuple[int, ...],
     error: np.ndarray,
     on_left: Evaluated,
-) -> np.ndarray:
-    """Return the error (x, v, s) after a restart from that before it.
+) -> tuple[np.ndarray, float]:
+    """Return the error (x, v, s) after a restart from that before it, as a part at the event and a delay of the motion, s.
 
     `before`, `after`: the state on both sides, one each. `fired`: event functions. `on_left`: a state just before, with the
     rates there. At an event g = 0, the time is late by dt = -(g_q e_q + g_u e_u) / g', and e+ = jump(e- + f- dt) - f+ dt.
@@ -28,20 +31,30 @@ def after_restart(
     system = dynamics.system
     rates = np.concatenate([on_left.q_rates[0], on_left.acceleration[0]])
     late = _late(dynamics, before, fired, error, rates) if fired else 0.0
-    trailing, geometry = with_rates(system), Variations(system, before.q)
-    n_q = system.n_q
-    f_before = _variation(geometry, rates[:n_q], rates[n_q:], trailing)
-    f_after = _variation(Variations(system, after.q), after.q_rates[0], after.acceleration[0], trailing)
-    moved = error + late * f_before
+    moved = error + late * motion(system, replace(on_left, q=before.q, u=before.u))[0]
     jumped = np.abs(after.u - before.u).max(initial=0.0) > ESTIMATE.difference * np.abs(before.u).max(initial=0.0)
     if jumped:
         moved = _jumped(dynamics, before, float(after.t[0]), moved)
-    return moved - late * f_after
+    return moved, late
+
+
+def motion(system: System, at: Evaluated) -> np.ndarray:
+    """Return the rates of states as rows (x, v, s): the variation by a change of time."""
+    return _variation(Variations(system, at.q), at.q_rates, at.acceleration, with_rates(system))
 
 
 def _variation(geometry: Variations, dq: np.ndarray, du: np.ndarray, trailing: np.ndarray) -> np.ndarray:
-    """Return changes of q and u as a row (x, v, s)."""
-    return np.concatenate([geometry.displacement(dq[None])[0], geometry.ground(du[None])[0], dq[trailing]])
+    """Return changes of q and u as rows (x, v, s)."""
+    return np.hstack([geometry.displacement(dq), geometry.ground(du), dq[:, trailing]])
+
+
+def is_autonomous(dynamics: Dynamics, at: Evaluated) -> bool:
+    """Return True if the rates of some states do not depend on time itself."""
+    shift = ESTIMATE.difference * np.maximum(1.0, np.abs(at.t))
+    later = evaluated(dynamics, at.t + shift, at.q, at.u)
+    now = evaluated(dynamics, at.t, at.q, at.u)
+    pairs = ((now.q, later.q), (now.u, later.u), (now.q_rates, later.q_rates), (now.acceleration, later.acceleration))
+    return all(np.array_equal(*pair) for pair in pairs)
 
 
 def displaced(dynamics: Dynamics, at: Evaluated, variations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -104,5 +117,6 @@ def _jumped(dynamics: Dynamics, at: Evaluated, t: float, error: np.ndarray) -> n
     except SolverError:
         return error
     return _variation(
-        Variations(dynamics.system, base.q[None]), there.q - base.q, there.u - base.u, with_rates(dynamics.system)
-    ) / size  # fmt: skip
+        Variations(dynamics.system, base.q[None]), (there.q - base.q)[None], (there.u - base.u)[None],
+        with_rates(dynamics.system),
+    )[0] / size  # fmt: skip

@@ -17,6 +17,8 @@ GROUPS = {
     "forces": ("force", "torque"),
 }
 """Groups of channels whose digits are counted together, by the kinds of `stiffmbs.results.scales`."""
+MOTIONS = ("positions", "velocities")
+"""Groups of channels that have an absolute tolerance."""
 MOST_DIGITS = 12
 
 
@@ -33,13 +35,17 @@ def largest_bar(bar: ErrorBar) -> float:
 class KnownErrors:
     """Errors of the channels of a run relative to their sizes: the largest value of each body or element.
 
-    `group`: group of each channel; empty for requests and channels of no group. `sizes`: in the units of the channels.
+    `group`: group of each channel; empty for requests and channels of no group. `sizes`: in the units of the channels; of
+    motions at least what the absolute tolerance resolves.
     """
 
     def __init__(self, solution: Solution) -> None:
         self.sizes = scales(solution.channels, 1.0, solution.requested)
         self._solution, self._rounding = solution, REQUEST_ROUNDING * max(self.sizes.values(), default=0.0)
         self.group = {name: "" if name in solution.requested else _group(kind_of(name)) for name in self.sizes}
+        if solution.estimate:
+            resolved = {name: solution.estimate.resolved for name, own in self.group.items() if own in MOTIONS}
+            self.sizes |= {name: max(self.sizes[name], least) for name, least in resolved.items()}
 
     def relative(self, error_of: Callable[[ErrorBar], float], group: str = "") -> dict[str, float]:
         """Return known errors by channel, of one group or of all groups."""

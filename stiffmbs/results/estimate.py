@@ -12,9 +12,12 @@ class ErrorEstimate:
     - `status`: ``estimated``, ``lost`` (the errors are too large for a linear estimate) or ``none``.
     - `sentence`: for the summary.
     - `largest`: channel with the largest error relative to its size, and `relative`: that error; empty and nan if unknown.
+    - `resolved`: least size of motions and velocities to which their errors are relative, m, rad, m/s, rad/s; smaller ones
+      are not distinguished from rest.
     """
 
     status: str
     sentence: str
     largest: str = ""
     relative: float = float("nan")
+    resolved: float = 0.0

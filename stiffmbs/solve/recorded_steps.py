@@ -40,7 +40,7 @@ class _Open:
 
 @dataclass
 class StepRecorder:
-    """Steps of one run. `most`: largest number of steps times unknowns; beyond it nothing is kept and `full` is True.
+    """Steps of one run. `most`: largest number of rows times unknowns; beyond it nothing is kept and `full` is True.
 
     `points`: rows per step.
     """
@@ -58,7 +58,7 @@ class StepRecorder:
 
     def extend(self, rows: np.ndarray, fired: tuple[int, ...]) -> None:
         """Append the rows of steps, after which event functions fired."""
-        self._numbers += rows.size // (2 * self.points)
+        self._numbers += rows.size // 2
         if self._numbers > self.most:
             self.full = True
             self._pieces.clear()

@@ -168,7 +168,7 @@ DECISIONS = {
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
 }  # fmt: skip
 EXPECTED = {
-    "error_estimate.work": 100000.0,
+    "error_estimate.work": 200000.0,
     "error_estimate.difference": 1e-07,
     "error_estimate.beside": 10, "error_estimate.points": 6,
     "error_estimate.uneven": 14,

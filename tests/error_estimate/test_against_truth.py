@@ -5,6 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stiffmbs
+from stiffmbs.analyses.load_scene import load_scene
+from tests.conftest import EXAMPLES
 from tests.stress.self_assessment import assess, drawn, table
 
 G = 9.81
@@ -197,3 +199,37 @@ def test_random_scenes(solver):
         ratios = np.array([one.ratios()[group] for one in found if group in one.ratios()])
         assert np.mean((ratios > 1 / 3) & (ratios < 3)) > least
     assert not any(one.is_false or one.is_silent for one in found)
+
+
+def test_motions_below_the_tolerance_have_no_note():
+    """A mass at rest on a spring but for 1 nm: its velocity is wrong by all its size, which is far below the tolerance."""
+    found = solved(
+        """
+        gravity: [0, -9.81]
+        bodies: {b: {mass: 1, inertia: 1, position: [0, 1]}}
+        joints: {rail: {type: prismatic, i: {body: b, angle: 90 deg}, j: {body: ground, angle: 90 deg}}}
+        forces: {s: {type: spring_damper, i: b, j: ground, stiffness: 9810, damping: 100, free_length: 1.001000001}}
+        run: {duration: 1, points: 11}
+        """
+    )
+    assert np.abs(found["b.vy"]).max() < 1e-6 and not any("estimated error" in note for note in found.notes)
+    assert found.estimate.relative < 0.01
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_a_ball_after_a_hundred_impacts(solver):
+    """The errors of the times of its impacts were turned into energy, which grew by 15 % with each one."""
+    scene = load_scene(EXAMPLES / "bouncing_ball.yaml")
+    found = stiffmbs.run(scene, solver=solver, duration=20, points=2001, output=None, errors=True)
+    truth = stiffmbs.run(scene, solver="projected", rtol=1e-12, duration=20, points=2001, output=None)
+    assert 1 / 3 < ratio(found, "ball.y", truth["ball.y"]) < 3
+    assert 1 / 3 < ratio(found, "ball.vy", truth["ball.vy"]) < 3
+
+
+def test_a_passage_of_a_singular_pose_is_not_lost():
+    """Parallel cranks pass collinear poses, where rows of the constraints are dependent; the error is 2e-7 rad."""
+    found = stiffmbs.run(load_scene(EXAMPLES / "four_bars.yaml"), solver="radau", duration=3, errors=True)
+    assert found.estimate.status == "none" and "nearly singular pose at t = " in found.estimate.sentence
+    assert any("passes a singular pose" in note for note in found.notes) and not any(
+        "lost" in note for note in found.notes
+    )

@@ -11,12 +11,14 @@ from scipy.special import ellipk
 
 import stiffmbs
 from stiffmbs import Body, Marker, Model, Prismatic, SpringDamper
+from stiffmbs.analyses.load_scene import load_scene
 from stiffmbs.commands.main import main
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.elements.planar_kinds import FORCES, JOINTS
 from stiffmbs.results.energy_balance import Balance, balance_of_steps
 from stiffmbs.show.report import report_page
 from stiffmbs.solve.events.refusals import exponential
+from tests.solve.radau.test_prescribed import CRANK
 
 from ..conftest import EXAMPLES
 
@@ -294,3 +296,17 @@ run: {{duration: 30, points: 41, rtol: 1e-4}}
     solution = stiffmbs.run(scene, solver="projected", scheme="dop853")
     (note,) = (note for note in solution.notes if "diverges" in note)
     assert "at t = 12.75 s 'block' exceeds 1e+04 times" in note
+
+
+def test_the_balance_is_that_of_the_run_with_the_solver_that_auto_chose():
+    """For the first part of a run of 5 s, `auto` chooses explicit steps: after many impacts the states are others."""
+    scene = load_scene(EXAMPLES / "cam_follower.yaml")
+    found = stiffmbs.run(scene, solver="auto", duration=5, points=5001, output=None, errors=False)
+    assert "auto chose radau" in found.notes[0] and not any("energy balance" in note for note in found.notes)
+
+
+def test_the_balance_of_a_run_repeated_with_exact_constraints_is_that_of_its_steps():
+    scene = stiffmbs.read_scene(CRANK.replace("20*t", "1000*t").replace("duration: 20", "duration: 0.4"))
+    found = stiffmbs.run(scene, rtol=1e-6, presolve=False)
+    assert any("repeated with formulation SI2_exact" in note for note in found.notes)
+    assert not any("energy balance" in note for note in found.notes)
