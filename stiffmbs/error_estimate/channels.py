@@ -8,6 +8,7 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.initial import InitialValues
+from ..errors import SolverError
 from ..model.model_data import ModelData
 from ..results.channel_errors import ChannelErrors, difference
 from ..results.channels import channels_of
@@ -45,5 +46,8 @@ def channel_errors(
 
 
 def _rows(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: float) -> OutputRows:
-    """Return the output rows of states as a run reports them."""
-    return reported(dynamics, trajectory, project, rtol)[0]
+    """Return the output rows of states as a run reports them. Raises SolverError if a state has none."""
+    rows, _ = reported(dynamics, trajectory, project, rtol)
+    if len(rows.t) != len(trajectory.t):
+        raise SolverError("the equations have no finite values at some states moved by their errors")
+    return rows
