@@ -35,7 +35,7 @@ def recording(job: Job) -> Job:
 def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
     """Return the results of a job with an estimate of their errors, or a sentence on why there is none."""
     traits = traits_of(job.settings)
-    if not job.grid.recorded or len(solution.time) < 2 or solution.outcome is Outcome.INTERRUPTED or traits.exact:
+    if len(solution.time) < 2 or solution.outcome is Outcome.INTERRUPTED or traits.exact:
         return solution
     with in_use(job.settings.tuning), np.errstate(all="ignore"):
         if trajectory.recorded:

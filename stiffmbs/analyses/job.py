@@ -20,6 +20,7 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
 from ..dynamics.native.parameters import CONSISTENCY
 from ..dynamics.turns import counted_angles, take_nearest_turns
+from ..elements.joints.drive import Drive
 from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.beams.entries import GROUND_AXES
 from ..model.model_builder import ModelBuilder
@@ -138,7 +139,8 @@ class Job:
 
     def placed(self, data: Data) -> Data:
         """Return a model of the same bodies in the pose in which the elements of the job were set up."""
-        return with_turns(in_pose_of(self.start_from, data), self.turns)
+        placed = in_pose_of(self.start_from, data) if self.start_from else data
+        return with_turns(placed, self.turns) if self.turns else placed
 
     def shown(self, t: np.ndarray) -> np.ndarray:
         """Return the times of rows as the user knows them: those just before or after a breakpoint at that breakpoint."""
@@ -342,7 +344,8 @@ def examined(
     order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
     placed, turns = in_pose_of(state, data), {}
     system = compile_model(placed)
-    if state is None and (turns := turns_of_drives(data, system, grid.start)):
+    driven = any(isinstance(joint, Drive) for joint in data.joints.values()) or getattr(data, "at_start", None)
+    if state is None and driven and (turns := turns_of_drives(data, system, grid.start)):
         placed = with_turns(data, turns)
         system = compile_model(placed)
     with in_use(chosen.tuning):

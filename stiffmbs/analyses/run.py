@@ -92,7 +92,9 @@ def run(
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
         data = with_inputs(data, inputs, settings_of(data, settings, changes))
-    job = recording(prepare(data, settings, start_from, **changes))
+    job = prepare(data, settings, start_from, **changes)
+    if job.settings.errors is not False or job.settings.accuracy:
+        job = recording(job)
     return to_accuracy(job, watch) if job.settings.accuracy else solved(job, watch)
 
 
@@ -227,7 +229,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
         turns=turns_of(job.dynamics.system, rows.q),
         provenance=job.provenance(),
     )
-    return assessed(job, trajectory, solution)
+    return assessed(job, trajectory, solution) if job.grid.recorded else solution
 
 
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:

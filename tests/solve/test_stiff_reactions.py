@@ -118,7 +118,7 @@ def test_reactions_after_breakpoints_and_events(push):
 
 def coarse(run, push="0, 0"):
     """Return the notes on steps of order 1 that are long for a bushing of 1e12 N/m."""
-    found = stiffmbs.run(pendulum(run, 1e12, push))
+    found = stiffmbs.run(pendulum(f"{run}, errors: false", 1e12, push))  # the estimate of errors replaces the note
     return [note for note in found.notes if "order 1" in note]
 
 
