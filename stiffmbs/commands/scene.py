@@ -8,7 +8,7 @@ import unicodedata
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Final, TypeVar, get_args
 
 import click
 
@@ -200,7 +200,7 @@ def tell_unwritten(path: Path | None, error: OSError) -> None:
     click.echo(f"stiffmbs: not written: {path}: {error.strerror or error}", err=True)
 
 
-LONGEST_NAME = 255
+LONGEST_NAME: Final = 255
 """Largest length of a file name in common file systems, bytes."""
 
 

@@ -395,7 +395,7 @@ def within_steps(record):
         return len(balance_within_steps._steps(job, trajectory, rows, 5))
     found = []
     changes = {
-        "_steps": lambda *_: np.array([[0.0, 1.0]]), "_at_nodes": lambda *asked: found.append(asked[2]) or rows,
+        "_of_one_solver": lambda job, _: job, "_steps": lambda *_: np.array([[0.0, 1.0]]), "_at_nodes": lambda *asked: found.append(asked[2]) or rows,
         "balance_of_steps": lambda *_: None, "is_broken": lambda *_: True, "_weights_and_jumps": lambda *_: (None, None),
     }  # fmt: skip
     with patch.multiple(balance_within_steps, **changes):

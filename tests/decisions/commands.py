@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 import sys
+from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
 
 from stiffmbs.commands import process, progress
 from stiffmbs.live import app, page, requests, worker, workers
+from stiffmbs.robots.mjcf import model as mjcf
+from stiffmbs.robots.robot import RobotFault
 from stiffmbs.robots.scene import mechanism
 from stiffmbs.solve.trajectory import Outcome
 from tests.decisions.common import BELOW, Reached, Record, nothing, reach, reached
@@ -84,6 +87,20 @@ def time_between_updates():
     return count_while(lambda passed: not is_updated(1e-3 * passed), DOUBLES)
 
 
+def most_copies():
+    """Return the number of copies by replicate, in quarter octaves of 100, from which on a file is refused."""
+
+    def accepts(count):
+        text = f'<mujoco><replicate count="{count}"/></mujoco>'
+        with patch.object(mjcf, "file_text", lambda _: text):
+            try:
+                return [*mjcf._named(Path("a.xml"), Path())] == []
+            except RobotFault:
+                return False
+
+    return count_while(lambda count: accepts(round(100 * count)), DOUBLES)
+
+
 DECISIONS = {
     "live.app:LARGEST": largest_request,
     "live.page:FRAME_HEIGHT": height_of_a_frame,
@@ -94,11 +111,13 @@ DECISIONS = {
     "commands.process:AGAIN": delay_of_an_interrupt,
     "commands.progress:SHOWN_AFTER": shown_after,
     "commands.progress:BETWEEN_UPDATES": time_between_updates,
+    "robots.mjcf.model:MOST_COPIES": most_copies,
     "robots.scene.mechanism:ROUNDING": lambda: count_while(
         lambda turns: mechanism.whole_turns(np.pi + 2 * np.pi * turns) != 0.0, BELOW
     ),
 }  # fmt: skip
 EXPECTED = {
+    "robots.mjcf.model:MOST_COPIES": 27,
     "live.app:LARGEST": 35, "live.page:FRAME_HEIGHT": 760, "live.requests:MOST_CASES": 41, "live.requests:MOST_INSTANTS": 400,
     "live.worker:BETWEEN": 0.2, "live.workers:MOST_PAGES": 6, "commands.process:AGAIN": 0.01, "commands.progress:SHOWN_AFTER": 18,
     "commands.progress:BETWEEN_UPDATES": 27, "robots.scene.mechanism:ROUNDING": 159,

@@ -158,6 +158,16 @@ def flattest_piece():
     return count_while(bends, BELOW)
 
 
+def largest_jump_by_rounding():
+    """Return the jump of a curvature, in quarter octaves of 1e-8 of the curvature, up to which it is rounding."""
+
+    def is_rounding(jump):
+        pieces_of_table = np.array([[0.0, 1.0, 0.0, 0.0], [0.0, 1.0 - 1e-8 * jump, 0.0, 0.0]])
+        return len(table_ranges._jumps_of_curvature(np.arange(3.0), pieces_of_table)) == 0
+
+    return count_while(is_rounding, DOUBLES)
+
+
 def stretches(around):
     """Return the sizes of the searches for zeros, of which some stretches have to be divided."""
     sizes = []
@@ -452,6 +462,7 @@ DECISIONS = {
     "compile.inputs.pieces:SAMPLE": lambda: reached(lambda: estimated(where=lambda sample: reach(int(sample.sum())))),
     "compile.inputs.pieces:QUANTILE": lambda: estimated(cut=lambda *_, **__: Record(lengths=np.arange(101.0)))[0],
     "compile.inputs.pieces:URGENT": lambda: count_while(lambda bound: not is_estimated(20_000, bound), BELOW),
+    "compile.inputs.table_ranges:CONTINUOUS": largest_jump_by_rounding,
     "compile.inputs.table_ranges:FLAT": flattest_piece,
     "compile.inputs.zeros:FIRST_STRETCHES": lambda: stretches(first_alone)[0],
     "compile.inputs.zeros:SHORTEST_STRETCH": lambda: len(stretches(first_alone)),
@@ -503,6 +514,7 @@ EXPECTED = {
     "compile.inputs.pieces:ALWAYS_ALLOWED": 1e-10, "compile.inputs.pieces:SHORTEST_PIECE": 1e-11, "compile.inputs.pieces:MOST_PIECES": 26,
     "compile.inputs.pieces:MANY_PIECES": 23, "compile.inputs.pieces:ROUNDING_OF_SAMPLES": 27, "compile.inputs.pieces:SAMPLE": 64,
     "compile.inputs.pieces:QUANTILE": 10.0, "compile.inputs.pieces:URGENT": 24, "compile.inputs.table_ranges:FLAT": 155,
+    "compile.inputs.table_ranges:CONTINUOUS": 27,
     "compile.inputs.zeros:FIRST_STRETCHES": 64, "compile.inputs.zeros:SHORTEST_STRETCH": 35, "compile.inputs.zeros:MOST_STRETCHES": 15,
     "compile.law_intervals:FEW": 8, "compile.law_intervals:CLOSE": 0.001, "compile.law_intervals:NOTHING": 119,
     "compile.machine.compiler:_INLINED": 40, "compile.machine.geometry.common_normal:THINNER": 13,

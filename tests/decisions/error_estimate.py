@@ -105,7 +105,9 @@ def is_near(distance):
 
 def is_lost(error):
     dynamics = Record(system=Record(n_u=1, size=1.0, per_velocity=lambda *_: np.ones(1)))
-    return estimate._lost(dynamics, Record(errors=np.array([[error]]), t=np.zeros(1))) is not None
+    found = Record(errors=np.array([[error]]), t=np.zeros(1), recorded_q=np.zeros((1, 1)), recorded_u=np.zeros((1, 1)))
+    with patch.multiple(estimate, evaluated=lambda *_: None, nearly_singular=lambda *_: np.zeros(1, bool)):
+        return estimate._lost(dynamics, found) is not None
 
 
 def noted(group, error):

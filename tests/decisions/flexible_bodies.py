@@ -112,7 +112,7 @@ def lowest_elastic_frequency():
             _free_modes=lambda *_: (np.array([frequency]), eye), _rigid_frequencies=lambda *_: np.ones(1),
             _marker_modes=nothing, _moments=lambda *_: (), second_order=nothing, ReducedBody=nothing,
         ):  # fmt: skip
-            return refused(lambda: reduction.reduce(Record(mass=eye, rigid_modes=lambda _: eye), [], 1))
+            return refused(lambda: reduction.reduce(Record(mass=eye, rigid_modes=lambda _: eye, cells=None), [], 1))
 
     return count_while(is_refused, DOUBLES[:40])
 

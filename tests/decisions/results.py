@@ -124,7 +124,7 @@ def parts_of_stresses():
 
 
 def most_reliable_digits():
-    run = Record(channels={}, requested={}, not_unique=(), errors={"a.x": Record(over_time=1e-300)})
+    run = Record(channels={}, requested={}, not_unique=(), estimate=None, errors={"a.x": Record(over_time=1e-300)})
     with patch.object(digits, "scales", lambda *_: {"a.x": 1.0}):
         return digits.KnownErrors(run).digits(digits.over_time).popitem()[1]
 

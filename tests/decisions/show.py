@@ -232,7 +232,16 @@ def most_plots():
 
 
 def largest_condition():
-    return count_while(lambda x: not flexible_body._notes(Record(dependent=0, condition=1e10 * x)), DOUBLES)
+    return count_while(lambda x: not flexible_body._notes(Record(notes=(), dependent=0, condition=1e10 * x)), DOUBLES)
+
+
+def largest_silent_share():
+    """Return the share of the strain energy, in quarter octaves of 1e-4, up to which no note says that it is not represented."""
+
+    def is_silent(share):
+        return not flexible_body._notes_on_motion(Record(name="a", unrepresented=lambda: (1e-4 * share, 0.0)))
+
+    return count_while(is_silent, DOUBLES)
 
 
 def most_loads():
@@ -353,6 +362,7 @@ DECISIONS = {
     "show.drawing.film:MOST_FRAMES": lambda: count_while(
         lambda end: not refused(lambda: film.Playback().instants(0.0, end)), DOUBLES
     ),
+    "show.drawing.film:SHORTEST_FILM": lambda: len(film.Playback().instants(0.0, 1.0)),
     "show.drawing.film:FAINT": opacity_of_other_runs,
     "show.drawing.film:Playback.rate": lambda: len(film.Playback().instants(0.0, 10.0)),
     "show.drawing.painted:SYMBOLS_BEFORE": lambda: seen_line("joint")[0],
@@ -384,6 +394,7 @@ DECISIONS = {
     "show.figure:SIZE": size_of_a_figure,
     "show.figure:MOST_PLOTS": most_plots,
     "show.flexible_body:MOST_FREQUENCIES": lambda: flexible_body._listed(np.arange(100.0)).count(" ") - 1,
+    "show.flexible_body:UNREPRESENTED": largest_silent_share,
     "show.flexible_body:LARGE_CONDITION": largest_condition,
     "show.force_table:PLENTY": lambda: decimals(force_table.with_bar(1 / 3, 1e-30).partition(" ")[0]),
     "show.force_table:LEAST_WITHOUT_EXPONENT": lambda: count_while(
@@ -414,6 +425,7 @@ EXPECTED = {
     "show.drawing.as_json:DIGITS": 6, "show.drawing.bodies:SAME_WHEEL": 18, "show.drawing.bodies:SAME_POINT": 0.001,
     "show.drawing.deformed:AT_ONCE": 10, "show.drawing.derive:UNIT": 0.024, "show.drawing.derive:CROWDED": 0.016970562748477143,
     "show.drawing.derive:THICK": 0.02, "show.drawing.derive:FRONT": 2.0, "show.drawing.film:MOST_FRAMES": 28, "show.drawing.film:FAINT": 0.4,
+    "show.drawing.film:SHORTEST_FILM": 101,
     "show.drawing.film:Playback.rate": 251, "show.drawing.painted:SYMBOLS_BEFORE": 0.03, "show.drawing.painted:FOREMOST": 0.004,
     "show.drawing.painted:FLOOR_DEPTH": -1000.0, "show.drawing.painted:SHADOW": 0.07, "show.drawing.painted:LONGEST_ARROW": 0.22,
     "show.drawing.painted:HEAD": 1.25, "show.drawing.picture:WIDTH": 8.0, "show.drawing.picture:MOST_NAMES": 60,
@@ -425,7 +437,7 @@ EXPECTED = {
     "show.drawing.surroundings:SurroundingsParameters.instants": 24, "show.drawing.symbols.profiles:TURNS": 16,
     "show.drawing.symbols.shared:FAR_OFF": 27, "show.drawing.symbols.spatial:WIDTH": 0.62, "show.drawing.symbols.spatial:RIM_RADIUS": 0.56,
     "show.drawing.symbols.spatial:SPOKES": 5, "show.figure:SIZE": 13, "show.figure:MOST_PLOTS": 6, "show.flexible_body:MOST_FREQUENCIES": 13,
-    "show.flexible_body:LARGE_CONDITION": 27, "show.force_table:PLENTY": 9, "show.force_table:LEAST_WITHOUT_EXPONENT": 40,
+    "show.flexible_body:UNREPRESENTED": 27, "show.flexible_body:LARGE_CONDITION": 27, "show.force_table:PLENTY": 9, "show.force_table:LEAST_WITHOUT_EXPONENT": 40,
     "show.force_table:Loads.most": 10, "show.force_table:Loads.zero": 146, "show.html:MOST_ROWS": 40, "show.html:MOST_DRAWN": 29,
     "show.modes:MOST_BODIES": 4, "show.modes:LEAST_SHARE": 26, "show.page.data:MOST_POSES": 1200, "show.page.data:POSE_VALUES": 342,
     "show.page.data:POSES_A_SECOND": 60, "show.page.data:CHANNEL_VALUES": 450, "show.page.data:MOST_INSTANTS": 2000,

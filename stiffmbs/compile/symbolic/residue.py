@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 from math import prod
+from typing import Final
 
 import sympy as sp
 
-PRIME = 2**127 - 1
+PRIME: Final = 2**127 - 1
 """A Mersenne prime: a function of degree d that is not zero has the residue 0 with a probability of d/PRIME (Schwartz 1980)."""
 
 

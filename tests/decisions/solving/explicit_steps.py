@@ -179,7 +179,7 @@ def nearest_end():
 
     def turns(distance):
         replaced = {
-            "_depart": nothing, "is_halved": never, "attempt": nothing, "trusted_error": lambda *_: 0.5, "arrive": nothing,
+            "_depart": nothing, "attempt": nothing, "trusted_error": lambda *_: 0.5, "arrive": nothing,
             "distance_of_end": lambda _: distance, "uncertain_end": never, "_watch_stiffness": nothing,
         }  # fmt: skip
         with interpreted(runge_kutta, **replaced):
