@@ -55,7 +55,7 @@ def solution_at_rest(
     notes = (*notes, *flexible_body_notes(system, rows))
     not_unique = job.redundancy.not_unique
     found = solution_of_rows(job.data.name, job.data, system, rows, not_unique, message, notes, solver)
-    return replace(found, provenance=job.provenance())
+    return replace(found, provenance=provenance_of(job.data, job.settings, state=job.start_from))
 
 
 def solution_of_rows(

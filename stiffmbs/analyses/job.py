@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
+from operator import attrgetter
 from pathlib import Path
 from typing import NamedTuple, TypeAlias, TypeVar
 
@@ -20,7 +21,6 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
 from ..dynamics.native.parameters import CONSISTENCY
 from ..dynamics.turns import counted_angles, take_nearest_turns
-from ..elements.joints.drive import Drive
 from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.beams.entries import GROUND_AXES
 from ..model.model_builder import ModelBuilder
@@ -29,7 +29,6 @@ from ..model.scene import Scene
 from ..model.settings import RunSettings, SteadyMotion
 from ..reading.did_you_mean import instead_of
 from ..redundancy.redundancy import Redundancy, examine
-from ..results.provenance import Provenance, provenance_of
 from ..results.saved_state import SavedState
 from ..results.solution import Solution
 from ..run_checks.motion import refuse_far_away
@@ -152,12 +151,6 @@ class Job:
     def on_constraints(self) -> bool:
         """Return True if states satisfy the constraints up to the tolerance."""
         return near_constraints(self.settings)
-
-    def provenance(self) -> Provenance:
-        """Return the origin of its results."""
-        state = self.start_from
-        other_start = (f"start from the state at t = {state.t:g} s of {state.source}",) if state else ()
-        return provenance_of(self.data, self.settings, other_start)
 
     def evaluations(self) -> int:
         """Return the number of evaluations of the equations of the system and its subsystems so far."""
@@ -344,7 +337,7 @@ def examined(
     order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
     placed, turns = in_pose_of(state, data), {}
     system = compile_model(placed)
-    driven = any(isinstance(joint, Drive) for joint in data.joints.values()) or getattr(data, "at_start", None)
+    driven = "drive" in map(attrgetter("kind"), data.joints.values()) or getattr(data, "at_start", None)
     if state is None and driven and (turns := turns_of_drives(data, system, grid.start)):
         placed = with_turns(data, turns)
         system = compile_model(placed)

@@ -226,8 +226,8 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
         requested=requested,
         figure=job.data.figure if isinstance(job.data, Scene) else None,
         presolve=structure.of_presolve,
+        provenance=provenance_of(job.data, job.settings, state=job.start_from),
         turns=turns_of(job.dynamics.system, rows.q),
-        provenance=job.provenance(),
     )
     return assessed(job, trajectory, solution) if job.grid.recorded else solution
 

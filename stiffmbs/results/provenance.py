@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..model.files.stages import WrittenScene
@@ -19,6 +19,9 @@ from ..model.scene import Scene
 from ..model.settings import RunSettings
 from ..reading.files.yaml_text import Content, scene_text
 from .command_line import command_line, date
+
+if TYPE_CHECKING:
+    from .saved_state import SavedState
 
 PROVENANCE = "run/provenance"
 """Name of the origin in .npz files, as JSON."""
@@ -97,14 +100,17 @@ def _pair(scene: Content, in_parts: dict[str, object]) -> tuple[Content, dict[st
 
 
 def provenance_of(
-    data: ModelData | WrittenScene, settings: RunSettings | None = None, others: tuple[str, ...] = ()
-) -> Provenance:
+    data: ModelData | WrittenScene, settings: RunSettings | None = None, others: tuple[str, ...] = (),
+    state: SavedState | None = None,
+) -> Provenance:  # fmt: skip
     """Return the origin of results of a model or scene.
 
-    `settings`: those of the run; by default those of the scene. `others`: further changes, such as another start.
+    `settings`: those of the run; by default those of the scene. `others`: further changes. `state`: start of the run.
     """
     own = data.run if isinstance(data, Scene) else RunSettings()
     chosen = {name: value for name, value in settings or () if value != getattr(own, name)}
+    if state is not None:
+        others = (*others, f"start from the state at t = {state.t:g} s of {state.source}")
     return with_settings(data, chosen, others)
 
 

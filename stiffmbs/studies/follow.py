@@ -16,6 +16,7 @@ from ..model.scene import Scene
 from ..model.settings import DEFAULT_POINTS, RunSettings, Settings, takes_settings
 from ..results.channels import channels_of
 from ..results.energy_balance import energy_balance
+from ..results.provenance import provenance_of
 from ..results.solution import Solution
 from ..solve.settings import changed
 from ..solve.stiff_rows import States, with_stiff_forces
@@ -114,5 +115,5 @@ def _so_far(job: Job, t: np.ndarray, states: States, lengths: np.ndarray, outcom
         solver={"name": job.settings.solver}, history=History(np.empty(0), np.empty(0, dtype=int)), not_unique=job.redundancy.not_unique,
         balance=energy_balance(system, rows),
         requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
-        provenance=job.provenance(),
+        provenance=provenance_of(job.data, job.settings, state=job.start_from),
     )  # fmt: skip

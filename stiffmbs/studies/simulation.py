@@ -22,7 +22,7 @@ from ..results.files import written_whole
 from ..results.frames import own_are_principal
 from ..results.instant import Instant
 from ..results.joint_angles import joint_angles
-from ..results.provenance import PROVENANCE
+from ..results.provenance import PROVENANCE, provenance_of
 from ..results.saved_state import TURNS, SavedState
 from ..run_checks.left_tables import may_refuse, refuse_departure
 from ..solve.error_control.relaxation import drift_at
@@ -311,7 +311,9 @@ class Simulation:
         content: dict[str, Any] = {name: np.array([value]) for name, value in state.channels.items()}
         content |= {TURNS + name: np.array([value]) for name, value in state.turns.items()}
         content |= {INPUT + name: np.array(value) for name, value in self._inputs.values.items()}
-        content[PROVENANCE] = np.array(self._job.provenance().as_json())
+        content[PROVENANCE] = np.array(
+            provenance_of(self._job.data, self._job.settings, state=self._job.start_from).as_json()
+        )
         written_whole(file, lambda part: np.savez(part, time=np.array([self.t]), **content))
 
     def load(self, path: StartFrom) -> None:

@@ -24,7 +24,15 @@ METRICS = {"passed (1 yes, 0 no)": (1.0, ""), "largest yaw rate": (0.5, "rad/s")
 
 
 def _found(angular: bool = True) -> Any:
-    car: Any = SimpleNamespace(wheelbase=2.5, track=1.5, steering="guide", angular=angular, stated=False, measured=(0.0, 0.0, 0.5), behind=lambda place: 1.2)
+    car: Any = SimpleNamespace(
+        wheelbase=2.5,
+        track=1.5,
+        steering="guide",
+        angular=angular,
+        stated=False,
+        measured=(0.0, 0.0, 0.5),
+        behind=lambda place: 1.2,
+    )
     return Handling("car", car, 0.1, {name: Tested(METRICS, [RUN]) for name in TESTS}, 1.8)
 
 

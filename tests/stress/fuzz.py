@@ -39,8 +39,8 @@ class Trial:
 
 def fuzzers() -> dict[str, str]:
     """Return the modules of `tests.stress.fuzzers` by fuzzer name, with hyphens instead of underscores."""
-    found = (module.name for module in pkgutil.iter_modules(package.__path__))
-    return {name.replace("_", "-"): f"{package.__name__}.{name}" for name in found}
+    found = [m.name for m in pkgutil.walk_packages(package.__path__, f"{package.__name__}.") if not m.ispkg]
+    return {name.rpartition(".")[2].replace("_", "-"): name for name in found}
 
 
 def module_of(name: str) -> str:

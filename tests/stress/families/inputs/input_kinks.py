@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from ...case import Case
-from ...fuzzers.kinks import trial
+from ...fuzzers.discontinuities.kinks import trial
 
 SEEDS = [seed for seed in range(41) if seed != 29]
 """Seed 29 is too stiff for the fixed steps that it chooses, which is reported."""

@@ -12,7 +12,7 @@ from stiffmbs.model.scene import Scene
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome as Ended
 
-from ..case import Outcome, Verdict, measured
+from ...case import Outcome, Verdict, measured
 
 WHAT = "fast vibrations that touch windows (even seeds), and guides whose friction loads change sign (odd): against own integration"
 PER_EVENT = 50.0

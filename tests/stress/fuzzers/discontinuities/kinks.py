@@ -17,7 +17,7 @@ from stiffmbs.errors import StiffmbsError
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.solve.trajectory import Outcome as Ending
 
-from ..case import Outcome, Verdict, measured, told
+from ...case import Outcome, Verdict, measured, told
 
 WHAT = "Random drives and forces with kinks (value, rate, acceleration) at known times against minimal equations."
 SOLVERS: dict[str, dict[str, Any]] = {

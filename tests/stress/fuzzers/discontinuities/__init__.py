@@ -1,0 +1,1 @@
+"""Fuzzers of kinks, jumps and events."""
