@@ -423,9 +423,11 @@ class Table(_Table):
         *,
         table: given.Matrix,
         ends: Literal["natural", "clamped", "periodic", "not-a-knot"] | None = ...,
+        beyond: Literal["extend", "hold", "error", "repeat"] | None = ...,
         lines: bool = ...,
         akima: bool = ...,
         spline: bool = ...,
+        smoothing: given.Number | None = ...,
     ) -> None: ...
 
 class TorsionSpring(_TorsionSpring):

@@ -149,6 +149,7 @@ class BeamSection(_BeamSection):
         unloaded: given.Numbers = ...,
         stiffness: given.Matrix,
         damping_ratio: given.Number | None = ...,
+        stretch: given.Number = ...,
         type: Literal["beam_section"] = ...,
     ) -> None: ...
 
@@ -515,7 +516,9 @@ class RackAndPinion(_RackAndPinion):
 
 class Revolute(_Revolute):
     """Hinge: two points coincide, with the z axes of both markers parallel."""
-    def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["revolute"] = ...) -> None: ...
+    def __init__(
+        self, *, i: given.Marker, j: given.Marker, turns: int | None = ..., type: Literal["revolute"] = ...
+    ) -> None: ...
 
 class RevoluteSpherical(_RevoluteSpherical):
     """Massless rod with a hinge at marker j and a ball at marker i."""

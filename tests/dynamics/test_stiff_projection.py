@@ -44,5 +44,5 @@ def test_the_largest_force_is_that_of_the_state(example):
     _, acceleration = job.dynamics.accelerate(0.0)
     forces = np.append(state.vector("motion", "f") / np.sqrt(system.mass), np.sqrt(system.mass) * acceleration)
     state.values["motion"][: system.n_values("motion")] = np.nan
-    found = stiff_rows._largest_force(job.dynamics, (job.start.q[None, :], job.start.u[None, :]), 0.0)
+    found = stiff_rows.largest_force(job.dynamics, (job.start.q[None, :], job.start.u[None, :]), 0.0)
     assert found == pytest.approx(np.abs(forces).max())

@@ -125,3 +125,18 @@ forces: {{push: {{type: force, i: cart, force: ["{force}", 0]}}}}
 """
     with pytest.raises(InputError, match=message):
         stiffmbs.read_scene(text)
+
+
+@pytest.mark.parametrize("torque", ["-0.3*tanh(fx(hinge)/0.2)", "-0.3*max(fx(hinge), 2)", "-0.3*abs(fy(hinge) - 10)"])
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_laws_of_a_reaction_need_no_event_functions(torque, solver):
+    """Their breakpoints are found in the reactions that accelerations give, in a scene without any other event."""
+    model = Model("pendulum", gravity=(0, -9.81))
+    model.add("bar", Body(mass=1.2, inertia=0.036, position=(0.3, 0)))
+    model.add("hinge", Revolute(i=Marker(body="bar", point=(-0.3, 0)), j="ground"))
+    model.add("torque", AppliedTorque(i="bar", torque=torque))
+
+    def found(**settings):
+        return stiffmbs.run(model, duration=1.0, points=11, rtol=1e-8, errors=False, **settings)["bar.angle"]
+
+    assert found(solver=solver) == pytest.approx(found(solver="projected", scheme="dop853"), abs=5e-6)

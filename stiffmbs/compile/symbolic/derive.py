@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from random import Random
 
 import sympy as sp
 
@@ -19,7 +20,7 @@ from ...errors import InputError
 from ..kind import Kind
 from .continuous_angle import away_from_pole
 from .element import SymbolicElement
-from .residue import residue
+from .residue import PRIME, residue
 from .stated import Stated, measured_by_joint, multipliers, stated_by_force, stated_by_joint
 from .symbols import Symbols, symbols_of
 from .variation import Summand, Variation
@@ -305,9 +306,12 @@ def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> t
 
 
 def _vanishes(work: sp.Expr) -> bool:
-    """Return True if a rational function is zero, as its products cancel: the power of a gyroscopic torque."""
-    names = sorted(work.free_symbols, key=str)
-    return residue(work, {name: 2 * k + 3 for k, name in enumerate(names)}) == 0
+    """Return True if a rational function is zero, as its products cancel: the power of a gyroscopic torque.
+
+    It is evaluated at large numbers without a pattern, as small ones may be zeros of factors such as a - 3.
+    """
+    names, numbers = sorted(work.free_symbols, key=str), Random(1)
+    return residue(work, {name: numbers.randrange(PRIME) for name in names}) == 0
 
 
 def _losses(symbols: Symbols, efforts: list[sp.Expr]) -> list[int] | None:

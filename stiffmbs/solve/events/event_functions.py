@@ -81,7 +81,7 @@ class EventSearch:
 
     def follow_reactions(self, dynamics: Dynamics) -> None:
         """Let reactions in event functions follow from accelerations: those of an integrator have no error test."""
-        if self.n_event_functions:
+        if self.n:
             self._cells["dynamics"] = dynamics.table.ctypes.data
 
     def watch_for(self, band: np.ndarray) -> None:
