@@ -85,7 +85,8 @@ def run(
         click.echo(summary.as_json(scene, solution))
     else:
         summary.print_summary(scene, solution, results, _console_for(solution), all_loads)
-    sys.exit(0 if solution.outcome.name == "DONE" and written else Status.FAILED)
+    unverified = "verification interrupted by the user" in solution.verification
+    sys.exit(0 if solution.outcome.name == "DONE" and written and not unverified else Status.FAILED)
 
 
 def _about_errors(errors: bool, accuracy: str | None) -> list[tuple[str, str]]:

@@ -75,17 +75,11 @@ def verify(
             found = verified(job, first, max(least, VERIFICATION.most_effort * job.evaluations()))
         return with_discretisation(job, found)
     except KeyboardInterrupt:
-        return replace(_interrupted(first), verification=(INTERRUPTED,))
+        return replace(first, verification=(INTERRUPTED,))
 
 
 INTERRUPTED = "verification interrupted by the user"
-
-
-def _interrupted(first: Solution) -> Solution:
-    """Return a completed run whose verification was interrupted, so that a command ends with a failure."""
-    if first.outcome is not Outcome.DONE:
-        return first
-    return replace(first, outcome=Outcome.INTERRUPTED, message=f"{first.message}; {INTERRUPTED}")
+"""Sentence of a run that was completed, but not verified: commands end with a failure."""
 
 
 def with_discretisation(job: Job, found: Solution) -> Solution:
@@ -135,7 +129,6 @@ class _Verification:
         try:
             self._solve()
         except KeyboardInterrupt:
-            self._first = _interrupted(self._first)
             self._skipped.append(INTERRUPTED)
         comparison = self._comparison()
         of_steps = tuple(step_diagnostics(comparison, self._along, self._shorter))

@@ -5,13 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...model.settings import RunSettings
-from ...tuning import tuned
+from ...tuning import parameters_of, tuned
 from ..bdf import integrated, refuse_untested_reactions
 from ..cost import ImplicitCost, least_solver, of_evaluation
 from ..error_control.error_test import ErrorControl
+from ..error_control.native.parameters import NEWTON
 from ..formulations import READ_BY_FORMULATIONS
 from ..ida.choice import Driven, chosen, natural
 from ..ida.native_engine import NativeEngine
@@ -94,7 +97,9 @@ def driven_by_radau(dynamics: Dynamics, settings: RunSettings, control: ErrorCon
         stages = None if settings.stages == "auto" else settings.stages
         of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
         of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)
-        formula = Radau(equations, matrix, dynamics.state, stages, of_steps, RADAU)
+        rounding = min(NEWTON.loosest, float(np.sqrt(NEWTON.precision / settings.rtol)))  # small remainders drown in it
+        parameters = replace(parameters_of(RADAU), remainder=max(RADAU.remainder, rounding))
+        formula = Radau(equations, matrix, dynamics.state, stages, of_steps, parameters)
         return NativeEngine(equations, dynamics, matrix, settings, control, formula)
 
     return Driven(equations, cost * (1 + 2 * pair_cost(matrix)) / 3, engine)
