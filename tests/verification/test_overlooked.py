@@ -41,9 +41,9 @@ def no_search(monkeypatch):
     def far_away(system):
         count = len(intervals_of(system).period)
         return Intervals(
-            np.arange(count + 1),
-            np.full(count, 1e300),
-            np.zeros(count),
+            2 * np.arange(count + 1),
+            np.full(2 * count, 1e300),
+            np.zeros(2 * count),
             np.zeros(count),
             np.empty(0, dtype=np.int64),
             np.empty(0),
@@ -53,6 +53,7 @@ def no_search(monkeypatch):
         )
 
     monkeypatch.setattr(event_watch, "intervals_of", far_away)
+    monkeypatch.setattr(event_watch.EventSearch, "watch_for", lambda *_: None)
 
 
 def told(solution):

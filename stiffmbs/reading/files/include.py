@@ -96,7 +96,9 @@ class _Including:
         self.sources.texts.append((str(file), text, path))
         found = read_yaml_file(text, str(file), file)
         if not isinstance(found, dict):
-            raise InputError(f"{file}: found {'nothing' if found is None else 'other content'}, expected a mapping of sections")  # no quote
+            raise InputError(
+                f"{file}: found {'nothing' if found is None else 'other content'}, expected a mapping of sections"
+            )  # no quote
         return self.whole(found, str(file), file.parent, (*within, file.resolve()), path)
 
 
