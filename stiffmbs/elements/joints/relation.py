@@ -35,6 +35,7 @@ class OffsetConstraint(Joint):
         return [cls.relation(e)]
 
     def at_initial_pose(self, model: ModelData) -> Self:
+        """Return the relation for the described poses of the bodies, at the start of a run."""
         if self.offset is not None:
             return self
         without = self.model_copy(update={"offset": 0.0})
