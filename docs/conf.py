@@ -24,6 +24,7 @@ extensions = [
     "gallery",
     "mathml",
     "measured",
+    "note_kinds",
     "shipped_parts",
 ]
 exclude_patterns = ["sphinx_plugins"]

@@ -16,15 +16,15 @@ from ..methods import NotebookMethods
 from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..redundancy.idle_freedoms import IdleFreedom, idle_freedoms
-from ..redundancy.messages.presolve_report import presolve_sentences, unconnected_sentence, unknowns
+from ..redundancy.messages.presolve_report import presolve_sentences, unconnected_notes, unknowns
 from ..redundancy.messages.redundancy import (
     inconsistency_sentences,
     known_near_start,
     overconstraint_sentences,
-    pose_sentences,
+    pose_notes,
     singular_sentence,
 )
-from ..redundancy.opposed_actuators import opposed_sentences
+from ..redundancy.opposed_actuators import opposed_notes
 from ..redundancy.overconstraint import Overconstraint, listed, overconstraints
 from ..solve.subsystems import Subsystem, presolved
 from ..tuning import in_use
@@ -148,7 +148,7 @@ def _of_run(found: Examined) -> Report:
     problems = [*against]
     for case in () if against else cases:
         problems += overconstraint_sentences(case, known_near_start(case, redundancy))
-    problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
+    problems += [*singular_sentence(redundancy), *pose_notes(redundancy)]
     dynamics, subsystems, free = found.dynamics(), tuple[Subsystem, ...](), list[IdleFreedom]()
     start: InitialValues | None = None
     if not against:
@@ -167,7 +167,7 @@ def _of_run(found: Examined) -> Report:
         moved=start.moved if start else (),
         messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free),
                   *(start_force_notes(found.data, dynamics, start, found.grid.start) if start else ()),
-                  *(opposed_sentences(system, found.data, start.q, found.grid) if start else ()), *notes_of(found.data), *table_notes(found.data),
+                  *(opposed_notes(system, found.data, start.q, found.grid) if start else ()), *notes_of(found.data), *table_notes(found.data),
                   *active_damper_notes(found.data)), sound=not problems,
     )  # fmt: skip
 
@@ -196,7 +196,7 @@ def _freedom_sentences(found: Examined, system: System, free: Sequence[IdleFreed
         yield "joints and drives prescribe every coordinate: 0 degrees of freedom, the motion is kinematic"
     for freedom in free:
         yield _idle_freedom_sentence(freedom)
-    yield from unconnected_sentence(system)
+    yield from unconnected_notes(system)
 
 
 def _idle_freedom_sentence(freedom: IdleFreedom) -> str:

@@ -19,6 +19,7 @@ from ..elements.joints.relation import OffsetConstraint
 from ..elements.turns import TURN, full_turns
 from ..model.model_data import ModelData
 from ..model.scene import Scene
+from ..notes import Note, NoteKind, Severity
 from ..reading.marker import GROUND
 
 Data = TypeVar("Data", bound=ModelData)
@@ -100,15 +101,17 @@ def with_turns(data: Data, turns: Mapping[str, int]) -> Data:
     return data.model_copy(update={"bodies": {**data.bodies, **turned}})
 
 
-def note_on_turns(turns: Mapping[str, int]) -> tuple[str, ...]:
+OTHER_TURNS = NoteKind(
+    "other-turns",
+    "drives prescribe angles in other turns than the described ones; bodies start with full turns added: {turns} "
+    "(same pose, other angles)",
+    severity=Severity.REMARK,
+)
+
+
+def note_on_turns(turns: Mapping[str, int]) -> Note:
     """Return a note on the planar bodies that start in another turn than described."""
-    if not turns:
-        return ()
-    listed = ", ".join(f"{body} {n:+d}" for body, n in turns.items())
-    return (
-        f"drives prescribe angles in other turns than the described ones; bodies start with full turns added: {listed} "
-        "(same pose, other angles)",
-    )
+    return OTHER_TURNS(next(iter(turns)), turns=", ".join(f"{body} {n:+d}" for body, n in turns.items()))
 
 
 def _drives(data: ModelData) -> dict[str, str]:

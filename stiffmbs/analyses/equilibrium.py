@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Unpack
 
@@ -17,6 +17,7 @@ from ..errors import AssemblyError, SolverError, prefixed
 from ..model.model_data import ModelData
 from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
+from ..notes import Note, NoteKind
 from ..reading.files.quoted import listed
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
@@ -25,21 +26,15 @@ from ..results.solution import Solution
 from ..solve.sampling import held
 from ..solve.trajectory import History, Outcome
 from ..tuning import in_use
+from .checks import flexible_body_notes
 from .job import Job, Runnable, data_of, prepare, with_elements
-from .run import flexible_body_notes
 from .settled import Settled, settled
 from .start_from import StartFrom
 from .steady import settled_in_motion
 
 
 def solution_at_rest(
-    job: Job,
-    t: np.ndarray,
-    q: np.ndarray,
-    u: np.ndarray,
-    message: str,
-    notes: tuple[str, ...],
-    solver: dict[str, object],
+    job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray, message: str, notes: Sequence[str], solver: dict[str, object]
 ) -> Solution:
     """Return the channels of equilibria with these instants, s, poses and velocities.
 
@@ -60,12 +55,12 @@ def solution_at_rest(
 
 def solution_of_rows(
     name: str, data: ModelData, system: System, rows: OutputRows, not_unique: tuple[str, ...], message: str,
-    notes: tuple[str, ...], solver: dict[str, object],
+    notes: Sequence[str], solver: dict[str, object],
 ) -> Solution:  # fmt: skip
     """Return the channels of rows that no integrator has computed."""
     nothing = np.empty(0)
     return Solution(
-        name=name, time=rows.t, channels=channels_of(data, system, rows), outcome=Outcome.DONE, message=message, notes=notes,
+        name=name, time=rows.t, channels=channels_of(data, system, rows), outcome=Outcome.DONE, message=message, notes=tuple(map(Note.of, notes)),
         solver=solver, history=History(nothing, np.empty(0, dtype=int)), balance=energy_balance(system, rows),
         not_unique=not_unique, requested=units(data.outputs()), turns=turns_of(system, rows.q), provenance=provenance_of(data),
     )  # fmt: skip
@@ -90,7 +85,7 @@ class EquilibriumFound:
         Distance of each body from its described pose: displacement of its centre of mass, m, and rotation, rad.
     free : tuple of str
         First body and its coordinate of each motion that nothing resists.
-    notes : tuple of str
+    notes : tuple of Note
     eigenvalues : tuple of complex
         Eigenvalues of perturbations of a steady motion, 1/s, in the frame that moves with it; empty at rest.
     solution : Solution
@@ -104,7 +99,7 @@ class EquilibriumFound:
     imbalance: float
     moved: dict[str, tuple[float, float]]
     free: tuple[str, ...]
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     eigenvalues: tuple[complex, ...]
     solution: Solution
 
@@ -238,7 +233,13 @@ def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes
     return solution_at_rest(job, times, q, u, f"{len(times)} equilibria after {moves} moves", notes, solver)
 
 
-def _resting_drives(dynamics: Dynamics, times: np.ndarray) -> Iterator[str]:
+RESTING_DRIVES = NoteKind(
+    "resting-drives",
+    "equilibria are at rest: the velocities of {drives} have no effect, and move nothing from one time to another",
+)
+
+
+def _resting_drives(dynamics: Dynamics, times: np.ndarray) -> Iterator[Note]:
     """Yield a note if constraints prescribe velocities, which have no effect on equilibria."""
     system, state = dynamics.system, dynamics.state
     state.u[:], moving = 0.0, np.zeros(system.n_c, dtype=bool)
@@ -247,7 +248,7 @@ def _resting_drives(dynamics: Dynamics, times: np.ndarray) -> Iterator[str]:
         moving |= state.vector("motion", "V") != 0.0
     rows = np.flatnonzero(moving & system.active & ~system.holonomic)
     if names := [*dict.fromkeys(system.equations[row][0] for row in rows)]:
-        yield f"equilibria are at rest: the velocities of {listed(names)} have no effect, and move nothing from one time to another"
+        yield RESTING_DRIVES(names[0], drives=listed(names))
 
 
 def equilibria_over_time(job: Job, times: np.ndarray) -> Iterator[Equilibrium]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..model.settings import LARGEST_RTOL
+from ..notes import NoteKind
 from ..results.estimate import ErrorEstimate
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback, Trajectory
@@ -17,6 +18,11 @@ if TYPE_CHECKING:
     from ..results.solution import Solution
     from .job import Job
 
+NOT_REACHED = NoteKind(
+    "accuracy-not-reached",
+    "the accuracy asked for was not reached: {found} at rtol {rtol:.2g}",
+    "use a smaller rtol, or --verify",
+)
 MOST_REPEATS = 2
 """Runs with another tolerance after the first one, in search of an accuracy."""
 ASK = "--errors, or errors: true in run, estimates it"
@@ -87,9 +93,7 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
     if judged.reached:
         sentence = f"{solution.estimate.sentence}; {judged.sentence} at rtol {rtol:.2g}"
         return replace(solution, estimate=replace(solution.estimate, sentence=sentence))
-    note = (
-        f"the accuracy asked for was not reached: {judged.sentence} at rtol {rtol:.2g}; use a smaller rtol, or --verify"
-    )
+    note = NOT_REACHED(found=judged.sentence, rtol=rtol)
     return replace(solution, notes=(*solution.notes, note))
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..equilibria.equilibrium import Equilibrium
+from ..notes import Note, NoteKind
 
 FAR = 0.2
 """Distance from the described pose, relative to the mechanism's size, above which a note reports it."""
@@ -17,24 +18,31 @@ BEYOND = 2.0
 """Distance, relative to the mechanism's size, above which the pose is no longer that of the model; a pendulum moves by 2."""
 
 
-def far_away(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[str]:
+FAR_AWAY = NoteKind(
+    "equilibrium-far-away",
+    "the equilibrium at the start is {moved:.3g} m away from the described pose ({element})",
+    "if the position matters, as on a road with bumps, describe a pose nearer to the equilibrium",
+)
+BEYOND_ITS_SIZE = NoteKind(
+    "equilibrium-beyond-size",
+    "{element} is {moved:.3g} m away from the described pose, more than {beyond:g} times the size of the model of {size:.3g} "
+    "m: {remedy}",
+    "check the stiffnesses, the loads and their units",
+)
+
+
+def far_away(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[Note]:
     """Yield a note if the equilibrium is far from the described pose, as of a car that has rolled there."""
     body, moved = _farthest(dynamics, start, found)
     if moved > FAR * dynamics.system.size:
-        yield (
-            f"the equilibrium at the start is {moved:.3g} m away from the described pose ({body}); "
-            "if the position matters, as on a road with bumps, describe a pose nearer to the equilibrium"
-        )
+        yield FAR_AWAY(body, moved=moved)
 
 
-def beyond_its_size(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[str]:
+def beyond_its_size(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[Note]:
     """Yield a note if a body moves by more than twice the size of the mechanism, as on a spring in N/mm that is read as N/m."""
     body, moved = _farthest(dynamics, start, found)
     if moved > BEYOND * dynamics.system.size:
-        yield (
-            f"{body} is {moved:.3g} m away from the described pose, more than {BEYOND:g} times the size of the model of {dynamics.system.size:.3g} m: "
-            "check the stiffnesses, the loads and their units"
-        )
+        yield BEYOND_ITS_SIZE(body, moved=moved, beyond=BEYOND, size=dynamics.system.size)
 
 
 def _farthest(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> tuple[str, float]:

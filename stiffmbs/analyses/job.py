@@ -27,6 +27,7 @@ from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings, SteadyMotion
+from ..notes import NoteKind, Severity
 from ..reading.did_you_mean import instead_of
 from ..redundancy.redundancy import Redundancy, examine
 from ..results.saved_state import SavedState
@@ -240,7 +241,7 @@ def prepare(
         if before.name:
             dynamics.place(start.q, start.u, start.lam)
         if found.turns and found.data.dimensions == 2:
-            start = replace(start, notes=(*start.notes, *note_on_turns(found.turns)))
+            start = replace(start, notes=(*start.notes, note_on_turns(found.turns)))
         if isinstance(found.data, Scene) and found.data.start != "described":
             start = replace(start, notes=(*start.notes, *held(dynamics.system)))
         subsystems = presolved(found.placed, dynamics, start, grid, found.settings, partial(before.get, "implicit"))
@@ -290,14 +291,17 @@ def start_of_job(job: Job) -> InitialValues:
         return _start(job.data, job.dynamics, job.grid.start, job.start_from)
 
 
+FROM_STATE = NoteKind(
+    "from-state", "the run starts from the state at t = {t:g} s of {source}", severity=Severity.REMARK
+)
+
+
 def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | None) -> InitialValues:
     """Return the saved state if given, else the equilibrium or the described state, as the scene requests."""
     if state is not None:
         take_nearest_turns(dynamics, t, lambda element: state.turn(element) is None)
         start = consistent_values(dynamics, t)
-        return replace(
-            start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
-        )
+        return replace(start, notes=(*start.notes, FROM_STATE(t=state.t, source=state.source)))
     if isinstance(data, Scene) and data.at_start:
         hold_at_start(dynamics, data, t)
         start = assembled(data, dynamics, t).as_asked_by([*data.at_start])

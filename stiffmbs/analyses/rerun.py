@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..dynamics.dynamics import OutputRows
-from ..run_checks.overlooked import Overlooked, overlooked, overlooked_in_long_steps, together
-from ..solve.error_control.relaxation import Drift, drift_of, drifts
+from ..notes import Note, NoteKind, Severity
+from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_in_long_steps, together
+from ..solve.error_control.relaxation import DRIFT, Drift, drift_of, drifts
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, Trajectory
 
@@ -31,12 +32,10 @@ if TYPE_CHECKING:
 
 ROUNDS, STARTS = 3, 1000
 """Number of reruns, and of restarts in a rerun, at most."""
-AGAIN = "the run was repeated with a restart there; set max_step, or request more output points, to resolve events between output times"
 PART_OF_A_FEATURE = 0.5
 """Longest step of a rerun, relative to the shortest missed feature of a Python function."""
 MOST_STEPS = 100_000
 """Most steps of such a rerun."""
-LEFT = "the results may be wrong from there on; set max_step to a much smaller value"
 
 RELAXED, EXACT = "SI2", "SI2_exact"
 DRIFTED = 10.0
@@ -44,20 +43,39 @@ DRIFTED = 10.0
 LESS = 0.5
 """Part of the drift that exact constraints may leave."""
 
+RESTARTED = NoteKind(
+    "missed-event-restarted", MISSED + "; the run was repeated with a restart there",
+    "set max_step, or request more output points, to resolve events between output times", Severity.REMARK,
+)  # fmt: skip
+SHORTENED = NoteKind(
+    "missed-event-shorter-steps",
+    MISSED + "; the run was repeated with max_step {max_step:.2g} s",
+    severity=Severity.REMARK,
+)
+LEFT = NoteKind(
+    "missed-event", MISSED + "; the results may be wrong from there on", "set max_step to a much smaller value",
+    Severity.DOUBT,
+)  # fmt: skip
+REPEATED = NoteKind(
+    "constraint-drift-removed", f"{DRIFT}; the run was repeated with formulation {EXACT}", severity=Severity.REMARK
+)
+DRIFT_LEFT = NoteKind(
+    "constraint-drift", DRIFT + "; the results may be wrong by this amount{reason}", severity=Severity.DOUBT
+)
+
 
 @dataclass(frozen=True)
 class Computed:
-    """Trajectory and rows of a run, notes on omitted rows, the job that was computed, and notes on doubts."""
+    """Trajectory and rows of a run, the job that was computed, and notes on missed events, drift and omitted rows."""
 
     trajectory: Trajectory
     rows: OutputRows
-    left_out: list[str]
     job: Job
-    doubts: tuple[str, ...] = ()
+    notes: tuple[Note, ...]
 
 
-def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed, list[str]]:
-    """Compute a job until no checked instant contradicts its steps; return it with notes on missed events."""
+def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> Computed:
+    """Compute a job until no checked instant contradicts its steps; return it with a note on missed events."""
     found = compute(job)
     seen = left = _overlooked(job, found)
     if seen and job.dynamics.system.has_functions and "max_step" in traits_of(job.settings).reads:
@@ -74,14 +92,11 @@ def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> t
             break
         found, left = again, _overlooked(job, again)
     if left is not None:
-        note = f"{left.sentence()}; {LEFT}"
-        return replace(found, doubts=(*found.doubts, note)), [note]
-    return found, [f"{seen.sentence()}; {AGAIN}"] if seen else []
+        return _noted(found, left.note(LEFT))
+    return _noted(found, seen.note(RESTARTED)) if seen else found
 
 
-def _with_shorter_steps(
-    job: Job, compute: Callable[[Job], Computed], found: Computed, seen: Overlooked
-) -> tuple[Computed, list[str]]:
+def _with_shorter_steps(job: Job, compute: Callable[[Job], Computed], found: Computed, seen: Overlooked) -> Computed:
     """Repeat a job until its steps resolve the features of Python functions; return it with a note."""
     left: Overlooked | None = seen
     longest = math.inf
@@ -95,10 +110,7 @@ def _with_shorter_steps(
         if again.trajectory.outcome is Outcome.INTERRUPTED:
             break
         found, left = again, _overlooked(job, again)
-    if left is not None:
-        note = f"{seen.sentence()}; {LEFT}"
-        return replace(found, doubts=(*found.doubts, note)), [note]
-    return found, [f"{seen.sentence()}; the run was repeated with max_step {longest:.2g} s"]
+    return _noted(found, seen.note(LEFT) if left else seen.note(SHORTENED, longest))
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
@@ -125,19 +137,17 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
     if not (drift.mean > DRIFTED or (stopped and drift.at_end > DRIFTED)):
         return found
     if found.trajectory.outcome is Outcome.INTERRUPTED:
-        return _doubted(found, f"{drift.sentence()}; the results may be wrong by this amount")
+        return _noted(found, drift.note(DRIFT_LEFT))
     again = compute(exactly(job))
     if len(again.rows.t) >= len(found.rows.t):
         # the rest is no drift, but jumps of velocities without a known breakpoint
         if drift.mean > DRIFTED and _drift(job, again).mean > LESS * drift.mean:
             return found
-        return _noted(again, f"{drift.sentence()}; the run was repeated with formulation {EXACT}")
+        return _noted(again, drift.note(REPEATED))
     if stopped:
         return found
-    return _doubted(
-        found,
-        f"{drift.sentence()}; the results may be wrong by this amount, and formulation {EXACT} stopped earlier: "
-        f"{again.trajectory.message}",
+    return _noted(
+        found, drift.note(DRIFT_LEFT, f", and formulation {EXACT} stopped earlier: {again.trajectory.message}")
     )
 
 
@@ -162,10 +172,5 @@ def exactly(job: Job) -> Job:
     return replace(job, settings=changed(job.settings, {"formulation": EXACT}))
 
 
-def _noted(computed: Computed, note: str) -> Computed:
-    return replace(computed, left_out=[*computed.left_out, note])
-
-
-def _doubted(computed: Computed, note: str) -> Computed:
-    """Add a note that questions the results."""
-    return replace(_noted(computed, note), doubts=(*computed.doubts, note))
+def _noted(computed: Computed, note: Note) -> Computed:
+    return replace(computed, notes=(*computed.notes, note))

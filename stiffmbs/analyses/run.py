@@ -2,44 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Unpack
 
 import numpy as np
 
-from ..compile.active_dampers import active_damper_notes
-from ..compile.callbacks import fault_of, notes_on_functions
-from ..compile.system import System
-from ..compile.written_values import table_notes
+from ..compile.callbacks import fault_of
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
-from ..elements.element import Force
 from ..elements.requests.order import units
 from ..errors import AssemblyError
-from ..model.scene import Scene, notes_of
+from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, takes_settings
+from ..notes import Note, Severity
 from ..redundancy.messages.presolve_report import StructureNotes, structure_notes
 from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
-from ..results.energy_balance_notes import broken_balance, is_broken, range_notes, undefined_values
+from ..results.energy_balance_notes import broken_balance, is_broken
 from ..results.provenance import provenance_of
 from ..results.solution import Solution
-from ..run_checks.growth import motion_within_tolerance, senseless
-from ..run_checks.left_tables import departure_notes, left_tables, refused_departure, stopped_at
-from ..run_checks.motion import motion_notes
-from ..run_checks.uncertain_forces import uncertain_forces
+from ..run_checks.left_tables import left_tables, refused_departure, stopped_at
 from ..solve.missing_rows import reported
-from ..solve.settings import settings_notes, traits_of
 from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
+from .checks import Integrated, notes_on
 from .errors import assessed, recording, to_accuracy
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
 from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
-from .start_forces import start_force_notes
 from .start_from import StartFrom
 
 
@@ -107,7 +100,7 @@ class Finished:
     rows: OutputRows
     outcome: Outcome
     message: str
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     structure: StructureNotes
     balance: Balance
     examined: dict[str, np.ndarray] | None
@@ -136,7 +129,7 @@ def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
 
 def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     compute = partial(on_exact_constraints, compute=partial(_computed, watch=watch))
-    computed, missed_events = rerun_after_missed_events(job, compute)
+    computed = rerun_after_missed_events(job, compute)
     trajectory, rows = computed.trajectory, computed.rows
     if not len(rows.t):
         raise AssemblyError(
@@ -146,28 +139,16 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     system = job.dynamics.system
     balance, broken = _balance(computed.job, trajectory, rows)
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
-    impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or broken
-    uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job)))
-    imprecise = tuple(uncertain_forces(job.dynamics, trajectory, rows))
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
-    notes = (
-        *_notes(job, trajectory, rows, structure),
-        *missed_events,
-        *computed.left_out,
-        *_range_notes(job, rows),
-        *(departure_notes(left_tables(system, trajectory, job.settings)) if system.has_tables else ()),
-        *flexible_body_notes(system, rows),
-        *impossible,
-        *uncertain,
-        *imprecise,
-        *(undefined_values(rows, channels) if channels else ()),
+    again = partial(_reported_at, job)
+    notes = notes_on(Integrated(job, system, trajectory, rows, structure, computed.notes, channels, broken, again))
+    return Finished(
+        job, trajectory, rows, outcome, _headline(outcome, message, notes), notes, structure, balance, channels
     )
-    headline = _headline(outcome, message, (*computed.doubts, *impossible))
-    return Finished(job, trajectory, rows, outcome, headline, notes, structure, balance, channels)
 
 
-def _balance(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balance, tuple[str, ...]]:
-    """Return the energy balance of a run, and a sentence if it is certainly broken."""
+def _balance(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balance, tuple[Note, ...]]:
+    """Return the energy balance of a run, and a note if it is certainly broken."""
     system, settings = job.dynamics.system, job.settings
     balance = energy_balance(system, rows)
     if not is_broken(system, balance, rows, settings):
@@ -181,27 +162,12 @@ def _balance(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balanc
     return balance, ()
 
 
-def flexible_body_notes(system: System, rows: OutputRows) -> Iterator[str]:
-    """Yield the notes on the stiffness and the deformation of flexible bodies."""
-    if system.has_coupled_inertia:
-        from ..run_checks.geometric_stiffness import geometric_stiffness_notes
-
-        yield from geometric_stiffness_notes(system, rows)
-
-
-def _range_notes(job: Job, rows: OutputRows) -> Iterator[str]:
-    """Yield the notes on forces that leave the valid ranges of their data."""
-    limited = {name: x for name, x in job.data.forces.items() if type(x).valid_ranges is not Force.valid_ranges}
-    ranges = {name: found for name, force in limited.items() if (found := force.valid_ranges())}
-    if ranges:
-        yield from range_notes(ranges, partial(series_of, job.data, job.dynamics.system, rows), rows.t)
-
-
-def _headline(outcome: Outcome, message: str, doubts: Sequence[str]) -> str:
+def _headline(outcome: Outcome, message: str, notes: Sequence[Note]) -> str:
     """Return the final message of a run, with the first of the notes that question its results."""
-    if outcome is not Outcome.DONE or not doubts:
+    doubt = next((note for note in notes if note.severity is Severity.DOUBT), None)
+    if outcome is not Outcome.DONE or doubt is None:
         return message
-    return message.replace(Outcome.DONE.value, f"{IN_DOUBT}: {doubts[0].partition(';')[0]}", 1)
+    return message.replace(Outcome.DONE.value, f"{IN_DOUBT}: {doubt.partition(';')[0]}", 1)
 
 
 def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
@@ -238,7 +204,7 @@ def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     if job.dynamics.system.has_tables:
         trajectory = _within_tables(job, trajectory)
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)
-    return Computed(trajectory, rows, left_out, job)
+    return Computed(trajectory, rows, job, tuple(left_out))
 
 
 def _within_tables(job: Job, trajectory: Trajectory) -> Trajectory:
@@ -295,44 +261,3 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
     if fault:
         return Outcome.STOPPED, f"{sentence}; {fault.clause}"
     return Outcome.STOPPED, sentence + suspect(job.dynamics, t, q, u)
-
-
-def _notes(job: Job, trajectory: Trajectory, rows: OutputRows, structure: StructureNotes) -> Iterator[str]:
-    """Yield the notes on the model, its start, the solver and the settings."""
-    system = job.dynamics.system
-    yield from notes_of(job.data)
-    if system.has_laws:
-        yield from table_notes(job.data)
-    yield from active_damper_notes(job.data)
-    yield from structure.of_joints
-    if any(joint.kind == "drive" for joint in job.data.joints.values()):
-        yield from job.dynamics.kept("opposed actuators", None, partial(_opposed, job))
-        yield from _tabled_drives(job)
-    yield from job.start.notes
-    if system.has_functions:
-        yield from notes_on_functions(system)
-    if job.start.moved:
-        yield job.start.sentence()
-    if job.start_from is None:
-        yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, rows)
-    if trajectory.note:
-        yield trajectory.note
-    if system.size == 1.0 and job.settings.atol is None and "rtol" in traits_of(job.settings).reads:
-        yield from motion_within_tolerance(system, job.settings, trajectory)
-    yield from settings_notes(job.settings, system)
-
-
-def _tabled_drives(job: Job) -> Iterator[str]:
-    """Yield notes on drives by tables of positions, if the run passes points of tables."""
-    if not len(job.dynamics.input_features(job.grid.start, job.grid.end).breakpoints):
-        return
-    from ..run_checks.tabled_drives import tabled_drive_notes  # models without drives do not load it
-
-    yield from tabled_drive_notes(job.dynamics.system, job.data.joints)
-
-
-def _opposed(job: Job) -> tuple[str, ...]:
-    """Return sentences on actuators that act on prescribed motions."""
-    from ..redundancy.opposed_actuators import opposed_sentences  # models without drives do not load it
-
-    return opposed_sentences(job.dynamics.system, job.data, job.start.q, job.grid)

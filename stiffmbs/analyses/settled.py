@@ -19,6 +19,7 @@ from ..errors import SolverError
 from ..linear_analysis.eigenvalues import eigen
 from ..linear_analysis.stability import lowest
 from ..linear_analysis.state_space import state_matrix
+from ..notes import Note, NoteKind, Severity
 from ..reading.files.quoted import listed
 from ..results.scales import ROUNDING
 from .far_away import beyond_its_size, far_away
@@ -38,6 +39,32 @@ GROWING = 1e-6
 ROUNDED = 1e-10
 """Real part above which an eigenvalue is unstable, relative to the largest magnitude, in addition to `GROWING` of its own."""
 
+UNCHECKED_START = NoteKind(
+    "equilibrium-not-checked", "the stability of the equilibrium at the start was not checked", severity=Severity.REMARK
+)
+UNCHECKED = NoteKind("stability-not-checked", "{law}the dynamic stability of the equilibrium was not checked: {reason}")
+UNSTABLE = NoteKind(
+    "unstable-equilibrium", "the equilibrium is unstable{where}: disturbances grow at {rate:.3g} 1/s{how}"
+)
+NO_STABLE = NoteKind(
+    "no-stable-equilibrium", "the equilibrium is unstable in {element}, and no stable one was found near it"
+)
+ALSO_UNSTABLE = NoteKind("no-stable-branch", "this equilibrium is also unstable; no stable one was found near it")
+BRANCHED = NoteKind(
+    "equilibrium-branch",
+    "an equilibrium nearer to the described pose is unstable in {element}; of {branches} from it, this is the one towards "
+    "{sign} {element}",
+)
+FREE = NoteKind(
+    "free-motion", "no force determines {motions}: the equilibrium nearest to the described pose is given",
+    severity=Severity.REMARK,
+)  # fmt: skip
+FAMILY = NoteKind(
+    "not-isolated",
+    "{constrain} velocities alone and can hold many poses at rest: the equilibrium given is one of them, which depends on "
+    "the described pose",
+)
+
 FARTHER = replace(MOVES, wide=10 * MOVES.wide, narrow=10 * MOVES.narrow)
 """Perturbations to more distant states on both sides of a breakpoint, whose eigenvalues show the effect of the distance."""
 BY_DISTANCE = (FARTHER.wide / MOVES.wide) ** 0.25
@@ -53,7 +80,7 @@ class Settled:
     moves: int  # number of moves of the search
     imbalance: float  # largest remaining generalised force, relative to the largest acting one
     free: tuple[str, ...]  # largest velocity of each motion that nothing resists
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     # eigenvalues of perturbations of a steady motion, 1/s, in the frame that moves with it; empty at rest
     eigenvalues: tuple[complex, ...] = ()
 
@@ -69,17 +96,15 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     for _ in range(MOST_BRANCHES):
         unstable, free = _directions(dynamics, t)
         if unstable is None:
-            held = f"no force determines {', '.join(free)}: the equilibrium nearest to the described pose is given"
-            return _settled(dynamics, found, start, [*notes, *([held] if free else []), *_growth(dynamics, t)], free)
+            held = [FREE(free[0], motions=", ".join(free))] if free else []
+            return _settled(dynamics, found, start, [*notes, *held, *_growth(dynamics, t)], free)
         poses = [_branch(dynamics, found, sign * unstable, t) for sign in (1.0, -1.0)]
-        notes.append(_branch_sentence(dynamics, unstable, poses))
+        notes.append(_branch_note(dynamics, unstable, poses))
         if not any(poses):
             return _settled(dynamics, found, start, notes)
         found = next(pose for pose in poses if pose is not None)
         state.q[:] = found.q
-    return _settled(
-        dynamics, found, start, [*notes, "this equilibrium is also unstable; no stable one was found near it"]
-    )
+    return _settled(dynamics, found, start, [*notes, ALSO_UNSTABLE()])
 
 
 def driven_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
@@ -105,7 +130,7 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
     state.q[:], state.u[:] = found.q, start.u
-    notes = ("the stability of the equilibrium at the start was not checked", *far_away(dynamics, start, found))
+    notes = (UNCHECKED_START(), *far_away(dynamics, start, found))
     return _moving(dynamics, replace(start, q=found.q, moved=(), notes=notes), "the described velocities", t)
 
 
@@ -124,7 +149,7 @@ def _moving(dynamics: Dynamics, start: InitialValues, velocities: str, t: float)
 
 
 def _settled(
-    dynamics: Dynamics, found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()
+    dynamics: Dynamics, found: Equilibrium, start: InitialValues, notes: Sequence[Note], free: Sequence[str] = ()
 ) -> Settled:
     notes = (*notes, *beyond_its_size(dynamics, start, found))
     resting = replace(
@@ -133,7 +158,7 @@ def _settled(
     return Settled(resting, found.moves, found.imbalance, tuple(free), notes)
 
 
-def _family(system: System) -> Iterator[str]:
+def _family(system: System) -> Iterator[Note]:
     """Yield a note if constraints of velocities alone carry forces, so that equilibria are not isolated.
 
     A drive that prescribes a velocity keeps its coordinate at the described value.
@@ -142,19 +167,17 @@ def _family(system: System) -> Iterator[str]:
     rows = np.flatnonzero(system.active & ~system.holonomic)
     names = [name for name in dict.fromkeys(system.equations[row][0] for row in rows) if name not in drives]
     if names:
-        yield (
-            f"{listed(names)} constrain{'s' * (len(names) == 1)} velocities alone and can hold many poses at rest: the equilibrium "
-            "given is one of them, which depends on the described pose"
-        )
+        yield FAMILY(names[0], constrain=f"{listed(names)} constrain{'s' * (len(names) == 1)}")
 
 
-def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
+def _growth(dynamics: Dynamics, t: float) -> Iterator[Note]:
     """Yield a note if an equilibrium is dynamically unstable, or if this was not assessed."""
     system = dynamics.system
     if not (system.states or system.n_event_functions) and _is_conservative(dynamics, t):
         return  # static stability is sufficient away from breakpoints
     if system.n_u > MOST_FOR_EIGENVALUES:
-        yield f"the dynamic stability of the equilibrium was not checked: the model has {system.n_u} velocities, more than {MOST_FOR_EIGENVALUES}"
+        reason = f"the model has {system.n_u} velocities, more than {MOST_FOR_EIGENVALUES}"
+        yield UNCHECKED(law="", reason=reason)
         return
     _, acceleration = dynamics.accelerate(t)
     instant = Instant(dynamics, t, acceleration)
@@ -167,13 +190,13 @@ def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
     except SolverError as error:
         jumps = isinstance(error, ForceJumpError)
         law = "a law has its value at exactly this state, while sign(v) at rest can hold many poses; " if jumps else ""
-        yield f"{law}the dynamic stability of the equilibrium was not checked: {error}"
+        yield UNCHECKED(law=law, reason=error)
         return
     if len(growing):
         fastest = growing[np.argmax(growing.real)]
         how = f" and oscillate at {abs(fastest.imag) / (2 * np.pi):.3g} Hz" if fastest.imag else ""
         where = "" if kink is None else f" on one side of a breakpoint of a force on {kink.where}"
-        yield f"the equilibrium is unstable{where}: disturbances grow at {fastest.real:.3g} 1/s{how}"
+        yield UNSTABLE(where=where, rate=fastest.real, how=how)
 
 
 def _growing(instant: Instant, moves: Moves) -> tuple[np.ndarray, Kink | None]:
@@ -236,13 +259,11 @@ def _branch(dynamics: Dynamics, found: Equilibrium, direction: np.ndarray, t: fl
         return None
 
 
-def _branch_sentence(dynamics: Dynamics, direction: np.ndarray, poses: list[Equilibrium | None]) -> str:
+def _branch_note(dynamics: Dynamics, direction: np.ndarray, poses: list[Equilibrium | None]) -> Note:
     scale = dynamics.system.per_velocity(dynamics.system.size, 1.0)
     label = _name(dynamics, direction / scale)
     count = sum(pose is not None for pose in poses)
     if not count:
-        return f"the equilibrium is unstable in {label}, and no stable one was found near it"
-    return (
-        f"an equilibrium nearer to the described pose is unstable in {label}; of {count} branch{'es' if count > 1 else ''} "
-        f"from it, this is the one towards {'positive' if poses[0] is not None else 'negative'} {label}"
-    )
+        return NO_STABLE(label)
+    sign = "positive" if poses[0] is not None else "negative"
+    return BRANCHED(label, branches=f"{count} branch{'es' if count > 1 else ''}", sign=sign)

@@ -17,6 +17,7 @@ from ..errors import InputError, StiffmbsError
 from ..model.files.stages import OWN_SETTINGS, Stage, Until
 from ..model.scene import Scene
 from ..model.settings import RunSettings
+from ..notes import NoteKind, Severity
 from ..reading.files.yaml_text import Content
 from ..results.joined import joined
 from ..results.saved_state import SavedState
@@ -109,6 +110,9 @@ def run_until(
     return Ended(solution, ended_by, given)
 
 
+CONDITION = NoteKind("condition", "{what} at t = {t:.9g} s by '{element}'", severity=Severity.REMARK)
+
+
 def _up_to_the_first(
     run: Run, conditions: Mapping[str, Until], interval: float | None, fresh: bool, **changes: object
 ) -> tuple[Solution, str, float]:
@@ -140,8 +144,8 @@ def _up_to_the_first(
     solution = run(**{**changes, **grid, "duration": end - start})
     if not solution.success:
         return solution, "", 0.0
-    message = f"{'ended' if conditions[name].then != 'on' else 'changed'} at t = {end:.9g} s by '{name}'"
-    solution = replace(solution, message=message, notes=(*solution.notes, message))
+    note = CONDITION(name, what="ended" if conditions[name].then != "on" else "changed", t=end)
+    solution = replace(solution, message=str(note), notes=(*solution.notes, note))
     return solution, name, float(whole.time[-1]) - end
 
 

@@ -20,6 +20,7 @@ from ..equilibria.equilibrium import find_equilibrium
 from ..errors import StiffmbsError
 from ..model.model_data import ModelData
 from ..model.scene import Scene
+from ..notes import Note, NoteKind
 from ..results.energy_balance import potentials
 
 MOUNTS = ("bushing",)
@@ -32,6 +33,18 @@ STIFF = 1e-3
 """Deflection of a mount by the weight of all bodies, in sizes of the mechanism, above which it is a spring, and stretched on purpose."""
 STANDARD_GRAVITY: Final = 9.80665
 """Gravity by which bodies are weighed in scenes without, or with less, m/s^2."""
+
+
+_STARTS = "'{element}' starts with {force}{deflected}; {compared}{opened}. {remedy}"
+DRAWN_LOADED = NoteKind(
+    "drawn-loaded",
+    _STARTS,
+    "The vibration that follows comes from the drawn pose: correct markers and positions, or use 'start: settled', which "
+    "starts from the equilibrium",
+)
+HELD_LOADED = NoteKind(
+    "held-loaded", _STARTS, "Bodies are held in a drawn pose that does not fit: correct markers and positions"
+)
 
 
 class Stretched(NamedTuple):
@@ -50,8 +63,8 @@ class Stretched(NamedTuple):
 
 def start_force_notes(
     data: ModelData, dynamics: Dynamics, start: InitialValues, t: float, rows: OutputRows | None = None
-) -> Iterator[str]:
-    """Yield a sentence for the element with by far the largest force that comes from the drawn or assembled pose.
+) -> Iterator[Note]:
+    """Yield a note on the element with by far the largest force that comes from the drawn or assembled pose.
 
     `rows`: output rows whose first is the start, if known. A start in an equilibrium or from a saved state has no such forces.
     """
@@ -133,7 +146,7 @@ def _suspects(system: System, start: InitialValues, elements: list[Stretched]) -
     return sorted(found, key=lambda each: -each.force)
 
 
-def _notes(dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched, energy: float) -> Iterator[str]:
+def _notes(dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched, energy: float) -> Iterator[Note]:
     """Yield the note on an element, unless forces of its size act in the equilibrium."""
     system, heavy = dynamics.system, weight(dynamics.system)
     settled = _in_equilibrium(dynamics, start, t)
@@ -148,14 +161,10 @@ def _notes(dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched,
         else f"{worst.force / heavy:.2g} times the weight of all bodies"
     )
     deflected = f", {_deflected(worst.deflection(energy), worst, system)}, with {energy:.3g} J" if energy > 0 else ""
-    remedy = (
-        "The vibration that follows comes from the drawn pose: correct markers and positions, or use 'start: settled', which "
-        "starts from the equilibrium"
-        if worst.force > OF_EQUILIBRIUM * at_rest
-        else "Bodies are held in a drawn pose that does not fit: correct markers and positions"
-    )
+    kind = DRAWN_LOADED if worst.force > OF_EQUILIBRIUM * at_rest else HELD_LOADED
     opened = _by_assembly(dynamics, start, t, worst, energy)
-    yield f"'{worst.name}' starts with {_written(worst.force, worst, system)}{deflected}; {compared}{opened}. {remedy}"
+    force = _written(worst.force, worst, system)
+    yield kind(worst.name, force=force, deflected=deflected, compared=compared, opened=opened)
 
 
 def _written(force: float, element: Stretched, system: System) -> str:

@@ -22,6 +22,7 @@ from ..equilibria.steady_motion import SteadyMotion
 from ..errors import InputError, SolverError
 from ..model.model_data import ModelData
 from ..model.settings import SteadyMotion as Described
+from ..notes import Note, NoteKind, Severity
 from ..reading.did_you_mean import instead_of
 from .far_away import beyond_its_size, far_away
 
@@ -32,6 +33,26 @@ MOTION_AHEAD = 1e-3
 """Distance along a motion, rad or parts of the mechanism's size, after which the balance of forces is checked."""
 STEADY_IMBALANCE, VELOCITY_ERROR = 1e-6, 1e-8
 """Accepted relative imbalance there, and accepted velocity error of joints relative to the largest velocity."""
+
+
+UNCHECKED_START = NoteKind(
+    "steady-motion-not-checked",
+    "the stability of the steady motion at the start was not checked",
+    severity=Severity.REMARK,
+)
+UNCHECKED = NoteKind("steady-stability-not-checked", "the stability of the steady motion was not checked: {reason}")
+UNSTABLE = NoteKind("unstable-steady-motion", "the steady motion is unstable: disturbances grow at {rate:.3g} 1/s")
+STABLE = NoteKind("stable-steady-motion", "the steady motion is stable: no disturbance grows", severity=Severity.REMARK)
+TURNS = NoteKind(
+    "steady-motion-turns",
+    "the forces do not balance on a straight line: the steady motion turns at {rate:.3g} rad/s",
+    severity=Severity.REMARK,
+)
+ROTATION_LEFT_OUT = NoteKind(
+    "rotation-left-out",
+    "the run starts in the equilibrium at rest, without the centrifugal forces of its rotation",
+    "for the equilibrium in rotation write start: {{rotation: {rotation}, about: {about}}}",
+)
 
 
 def settled_in_motion(
@@ -57,21 +78,15 @@ def start_in_motion(
 ) -> InitialValues:
     """Return initial values in steady motion, unchecked for stability; arguments as for `settled_in_motion`."""
     found = _found(model, dynamics, start, t, described)
-    unseen = "the stability of the steady motion at the start was not checked"
-    return _moving(start, found, (unseen, *far_away(dynamics, start, found)))
+    return _moving(start, found, (UNCHECKED_START(), *far_away(dynamics, start, found)))
 
 
-def rotation_left_out(model: ModelData, dynamics: Dynamics, start: InitialValues) -> tuple[str, ...]:
+def rotation_left_out(model: ModelData, dynamics: Dynamics, start: InitialValues) -> tuple[Note, ...]:
     """Return a note if the described velocities are a rotation of all bodies as one, whose forces deform the mechanism."""
     with dynamics.state.unchanged():
         dynamics.state.q[:] = start.q
         found = rotation_as_one(model, dynamics, start.u)
-    if found is None:
-        return ()
-    return (
-        "the run starts in the equilibrium at rest, without the centrifugal forces of its rotation; for the equilibrium in "
-        f"rotation write start: {{rotation: {found[0]}, about: {found[1]}}}",
-    )
+    return () if found is None else (ROTATION_LEFT_OUT(rotation=found[0], about=found[1]),)
 
 
 def rotation_as_one(
@@ -173,11 +188,11 @@ def _first_found(
     return searches[-1](dynamics, t)
 
 
-def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) -> InitialValues:
+def _moving(start: InitialValues, found: Equilibrium, notes: tuple[Note, ...]) -> InitialValues:
     motion = found.motion
     if motion.upright is not None:
         rate = float(motion.rotation @ motion.upright)
-        notes = (*notes, f"the forces do not balance on a straight line: the steady motion turns at {rate:.3g} rad/s")
+        notes = (*notes, TURNS(rate=rate))
     return replace(start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes)
 
 
@@ -194,16 +209,16 @@ def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray
     return eigenvalues_about(dynamics, t, found.motion, found.acceleration)
 
 
-def _stability(values: np.ndarray | None, n_u: int) -> str:
+def _stability(values: np.ndarray | None, n_u: int) -> Note:
     from .settled import GROWING, MOST_FOR_EIGENVALUES
 
     if values is None:
         reason = f"it has {n_u} velocities" if n_u > MOST_FOR_EIGENVALUES else "its equations change along the motion"
-        return f"the stability of the steady motion was not checked: {reason}"
+        return UNCHECKED(reason=reason)
     fastest = float(np.max(values.real, initial=0.0))
     if fastest > GROWING * np.max(np.abs(values), initial=0.0):
-        return f"the steady motion is unstable: disturbances grow at {fastest:.3g} 1/s"
-    return "the steady motion is stable: no disturbance grows"
+        return UNSTABLE(rate=fastest)
+    return STABLE()
 
 
 def _motion(model: ModelData, dynamics: Dynamics, start: InitialValues, described: Described) -> SteadyMotion:

@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from ..errors import InputError
+from ..notes import note_lines
 from ..reading.files.files_read import content_of
 from .process import Status
 from .scene import CHANGES, assigned, file_beside, is_written, option, output_option, refuse_own_input, refusing
@@ -71,8 +72,8 @@ def _as_dataset(
         scene = load_scene(path, changes)
     spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
     found = written_dataset(spatial, path)
-    for note in found.notes:
-        click.echo(f"note: {note}", err=True)
+    for line in note_lines(found.notes):
+        click.echo(line, err=True)
     return {output: found.text, commands: found.commands}
 
 

@@ -10,6 +10,7 @@ import click
 
 from ..analyses.load_scene import load_scene
 from ..errors import InputError
+from ..notes import note_lines
 from .process import Status
 from .scene import assigned, changes_of, in_file, option, refusing, several, solving_options
 
@@ -53,8 +54,7 @@ def _text(found: Sensitivity) -> str:
     lines = [f"{found.of} = {found.value:.8g}"]
     width = max(map(len, found.to))
     lines += [f"  d/d {name:{width}s}  {slope: .8g}" for name, slope in found.to.items()]
-    lines += [f"note: {note}" for note in found.notes]
-    return "\n".join(lines)
+    return "\n".join([*lines, *note_lines(found.notes)])
 
 
 _search_options = several(

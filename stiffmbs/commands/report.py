@@ -12,6 +12,7 @@ import click
 
 from ..analyses.load_scene import load_scene
 from ..errors import StiffmbsError
+from ..notes import note_lines
 from ..reading.files.text_file import STANDARD_INPUT, file_text
 from .pictures import runs_of
 from .process import Status
@@ -69,9 +70,7 @@ def report(
         sections, complete = _sections([(title, made) for wanted, title, made in asked if wanted])
         text = "" if scene == STANDARD_INPUT else file_text(scene)
         write_report(path, loaded, solution, text, sections, compared_with)
-    for note in solution.notes:
-        click.echo(f"note: {note}")
-    click.echo(f"report: {path}")
+    click.echo("\n".join([*note_lines(solution.notes), f"report: {path}"]))
     sys.exit(0 if solution.outcome.name == "DONE" and complete else Status.FAILED)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..elements.forces.springs import AngleSpring, LineSpring
+from ..notes import Note, NoteKind, of_users
 from ..reading.fields import Described
 from ..reading.formula.formula import Formula
 from ..reading.table import Table
@@ -18,25 +19,33 @@ ROUNDING = 1e-9
 SAMPLES = np.linspace(0.0, 1.0, 65)
 """Places within each piece of a table at which its power is evaluated; they include both ends."""
 REMEDY = "Reverse its sign, unless the vibrations are meant to grow"
+NEGATIVE = NoteKind(
+    "negative-damping", "its damping is negative, {damping:g}, so that its force adds energy. {remedy}", REMEDY
+)
+INDEFINITE = NoteKind(
+    "indefinite-damping", "its damping matrix is negative {where}, so that its force adds energy. {remedy}", REMEDY
+)
+ACTIVE_TABLE = NoteKind(
+    "damping-table",
+    "the table of its damper_law has the wrong sign between v = {low:.4g} and {high:.4g} {unit}, within its own range of "
+    "{first:.4g} to {last:.4g} {unit}, so that its force adds energy there. {remedy}",
+    REMEDY,
+)
 
 
-def active_damper_notes(data: Described) -> Iterator[str]:
+def active_damper_notes(data: Described) -> Iterator[Note]:
     """Yield a note for each damping of a model that adds energy, with the range in which it does."""
-    users: dict[str, list[str]] = {}
-    for name, force in getattr(data, "forces", {}).items():
-        for note in _notes(force):
-            users.setdefault(note, []).append(name)
-    for note, names in users.items():
-        yield f"{', '.join(names)}: {note}. {REMEDY}"
+    found = [(name, note) for name, force in getattr(data, "forces", {}).items() for note in _notes(force)]
+    return of_users(found) if found else iter(())
 
 
-def _notes(force: Described) -> Iterator[str]:
+def _notes(force: Described) -> Iterator[Note]:
     damping = getattr(force, "damping", None)
     table = _table(getattr(force, "damper_law", None))
     if isinstance(force, LineSpring | AngleSpring) and table is not None:
         yield from _of_table(table, damping or 0.0, "m/s" if isinstance(force, LineSpring) else "rad/s")
     elif isinstance(damping, float) and damping < 0:
-        yield f"its damping is negative, {damping:g}, so that its force adds energy"
+        yield NEGATIVE(damping=damping)
     elif isinstance(damping, tuple) and all(isinstance(row, tuple) for row in damping):
         yield from _of_matrix(np.array([[part or 0.0 for part in row] for row in damping], dtype=float))
 
@@ -50,7 +59,7 @@ def _table(law: object) -> Table | None:
     return law if isinstance(law, Table) else None
 
 
-def _of_matrix(damping: np.ndarray) -> Iterator[str]:
+def _of_matrix(damping: np.ndarray) -> Iterator[Note]:
     """Yield a note on a symmetric damping matrix with a negative eigenvalue, in units in which its diagonal is 1."""
     size = np.sqrt(np.abs(np.diag(damping)))
     size[size == 0] = max(float(np.max(size, initial=0.0)), 1.0)
@@ -58,10 +67,10 @@ def _of_matrix(damping: np.ndarray) -> Iterator[str]:
     if lowest < -ROUNDING:
         negative = np.flatnonzero(np.diag(damping) < 0)
         where = f"in component {', '.join(str(k + 1) for k in negative)}" if negative.size else "in coupled motions"
-        yield f"its damping matrix is negative {where}, so that its force adds energy"
+        yield INDEFINITE(where=where)
 
 
-def _of_table(table: Table, damping: float, unit: str) -> Iterator[str]:
+def _of_table(table: Table, damping: float, unit: str) -> Iterator[Note]:
     """Yield a note on the rates at which a table, with the linear damping, pushes in the direction of the rate.
 
     A constant part is no damping: the force at rest is subtracted, if the table has one.
@@ -76,7 +85,4 @@ def _of_table(table: Table, damping: float, unit: str) -> Iterator[str]:
     active = power < -ROUNDING * np.max(np.abs(power), initial=0.0)
     if active.any():
         low, high = float(v[active].min()), float(v[active].max())
-        yield (
-            f"the table of its damper_law has the wrong sign between v = {low:.4g} and {high:.4g} {unit}, within its own "
-            f"range of {x[0]:.4g} to {x[-1]:.4g} {unit}, so that its force adds energy there"
-        )
+        yield ACTIVE_TABLE(low=low, high=high, unit=unit, first=x[0], last=x[-1])

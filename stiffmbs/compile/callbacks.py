@@ -10,6 +10,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ..elements.element import Element
+from ..notes import Note, NoteKind, Severity
 from ..reading.python_function import PythonFunction
 
 if TYPE_CHECKING:
@@ -138,14 +139,19 @@ def fault_of(system: System) -> Fault | None:
     return found
 
 
-def notes_on_functions(system: System) -> Iterator[str]:
+FUNCTION = NoteKind(
+    "python-function",
+    "the law of '{element}' is the Python function {function} ({calls} calls): its derivatives are by {way}, and breakpoints "
+    "in it are not located",
+    severity=Severity.REMARK,
+)
+
+
+def notes_on_functions(system: System) -> Iterator[Note]:
     """Yield a note for each element with a Python function as its law."""
     for name, _, function, callback in callbacks(system):
         way = "a complex step" if function.derivatives == "complex_step" else "central differences"
-        yield (
-            f"the law of '{name}' is the Python function {callback.name} ({callback.calls} calls): its derivatives are by {way}, "
-            "and breakpoints in it are not located"
-        )
+        yield FUNCTION(name, function=callback.name, calls=callback.calls, way=way)
 
 
 def _raised(fault: BaseException) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ..notes import Note, NoteKind, of_users
 from ..reading.fields import Described
 from ..reading.formula.formula import Formula
 from ..reading.table import Table
@@ -73,18 +74,23 @@ BEYOND = 0.1
 SECTIONS = "joints", "forces", "states"
 CURVES = {"akima": "Akima's cubics", "spline": "a cubic spline"}
 """Interpolations that may overshoot."""
+OVERSHOOTS = NoteKind(
+    "table-overshoots",
+    "the table '{label}' is {curve} that reaches {value:.4g} at {at:.4g}, but its points are between {low:.4g} and "
+    "{high:.4g}; {remedy}",
+    "the default interpolation and 'lines: true' stay within this range",
+)
 
 
-def table_notes(data: Described) -> Iterator[str]:
+def table_notes(data: Described) -> Iterator[Note]:
     """Yield a note for each table of a model whose interpolation overshoots its points."""
-    users: dict[str, list[str]] = {}
-    for section in SECTIONS:
-        for name, element in getattr(data, section, {}).items():
-            for label, table in tables_in(element, ""):
-                if note := _beyond(table):
-                    users.setdefault(f"the table '{label}' {note}", []).append(name)
-    for note, names in users.items():
-        yield f"{', '.join(dict.fromkeys(names))}: {note}"
+    return of_users(
+        (name, note)
+        for section in SECTIONS
+        for name, element in getattr(data, section, {}).items()
+        for label, table in tables_in(element, "")
+        for note in _beyond(label, table)
+    )
 
 
 def tables_in(value: object, label: str) -> Iterator[tuple[str, Table]]:
@@ -105,21 +111,18 @@ def tables_in(value: object, label: str) -> Iterator[tuple[str, Table]]:
                 yield from tables_in(part, label)
 
 
-def _beyond(table: Table) -> str:
-    """Return a sentence on the overshoot of a table, or an empty string."""
+def _beyond(label: str, table: Table) -> Iterator[Note]:
+    """Yield a note on the overshoot of a table."""
     if table.interpolation not in CURVES:
-        return ""
+        return
     at, values = _extrema(table)
     y = np.array(table.table)[:, 1]
     low, high = float(y.min()), float(y.max())
     over = np.maximum(values - high, low - values)
     k = int(np.argmax(over))
-    if not over[k] > BEYOND * (high - low):
-        return ""
-    return (
-        f"is {CURVES[table.interpolation]} that reaches {values[k]:.4g} at {at[k]:.4g}, but its points are between {low:.4g} and "
-        f"{high:.4g}; the default interpolation and 'lines: true' stay within this range"
-    )
+    if over[k] > BEYOND * (high - low):
+        curve = CURVES[table.interpolation]
+        yield OVERSHOOTS(label=label, curve=curve, value=values[k], at=at[k], low=low, high=high)
 
 
 def _extrema(table: Table) -> tuple[np.ndarray, np.ndarray]:

@@ -11,12 +11,21 @@ from ..compile.gaps import position_gap
 from ..compile.machine.native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FINITE, SINGULAR
 from ..compile.written_values import values_of
 from ..errors import AssemblyError
+from ..notes import NoteKind, Severity
 from .algebraic_states import failure
 from .dynamics import Dynamics
 from .moves import Move, moves, position_words, velocity_words
 from .native.parameters import CONSISTENCY
 from .storage import FAILURES
 from .turns import take_nearest_turns
+
+CHANGED = "to satisfy {what} at the start, assembly changed {changes}"
+ASSEMBLED = NoteKind("assembled", CHANGED, severity=Severity.REMARK)
+MOVED_FAR = NoteKind(
+    "moved-far",
+    CHANGED + ": {bodies} by more than {part:g} of the mechanism's size ({size:.3g} m) or {turn:g} deg",
+    "check points of markers, positions and angles{hint}",
+)
 
 
 @dataclass(frozen=True)
@@ -41,7 +50,7 @@ class InitialValues:
 
     def sentence(self) -> str:
         """Return a sentence on the largest moves of bodies and changes of their velocities, or an empty string."""
-        return self._changed(self._levels())
+        return self._changed("the joints", self._levels())
 
     def _levels(self) -> str:
         levels = [words(self.moved, self.size, CONSISTENCY.most_listed) for words in (position_words, velocity_words)]
@@ -49,31 +58,27 @@ class InitialValues:
 
     def as_asked_by(self, names: Sequence[str]) -> InitialValues:
         """Replace the moves by a note, where joints that hold at the start only require them."""
-        sentence = f"to satisfy {', '.join(names)} at the start, assembly changed {self._levels() or 'nothing'}"
-        return replace(self, moved=(), notes=(*self.notes, sentence))
+        note = ASSEMBLED(what=", ".join(names), changes=self._levels() or "nothing")
+        return replace(self, moved=(), notes=(*self.notes, note))
 
     def position_sentence(self, most: int) -> str:
         """Return a sentence on the bodies that were moved, the first `most` by name, or an empty string."""
-        return self._changed(position_words(self.moved, self.size, most))
+        return self._changed("the joints", position_words(self.moved, self.size, most))
 
-    def _changed(self, sentence: str) -> str:
-        return f"to satisfy the joints at the start, assembly changed {sentence}{self._too_far()}" if sentence else ""
+    def _changed(self, what: str, changes: str) -> str:
+        far = self.moved_far
+        if not far or not changes:
+            return ASSEMBLED(what=what, changes=changes) if changes else ""
+        bodies = f"{len(far)} bodies move" if len(far) > 1 else f"{far[0].body} moves"
+        part, turn = CONSISTENCY.large_shift, CONSISTENCY.large_turn
+        return MOVED_FAR(
+            what=what, changes=changes, bodies=bodies, part=part, size=self.size, turn=turn, hint=self.hint
+        )
 
     @property
     def moved_far(self) -> tuple[Move, ...]:
         """Moves too large for a correction of a drawing: an input is wrong, or the scene is not drawn closed."""
         return tuple(move for move in self.moved if move.is_large(self.size))
-
-    def _too_far(self) -> str:
-        far = self.moved_far
-        if not far:
-            return ""
-        bodies = f"{len(far)} bodies move" if len(far) > 1 else f"{far[0].body} moves"
-        return (
-            f": {bodies} by more than {CONSISTENCY.large_shift:g} of the mechanism's size ({self.size:.3g} m) "
-            f"or {CONSISTENCY.large_turn:g} deg; "
-            f"check points of markers, positions and angles{self.hint}"
-        )
 
 
 def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:

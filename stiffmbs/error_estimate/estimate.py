@@ -12,6 +12,7 @@ from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_RTOL, RunSettings
+from ..notes import Note, NoteKind
 from ..results.channel_errors import bars
 from ..results.digits import KnownErrors, digits_words, largest_bar, over_time
 from ..results.error_bars import UNKNOWN
@@ -27,6 +28,15 @@ from .linearised import nearly_singular
 from .parameters import ESTIMATE
 
 REMEDY = "use a smaller rtol, or accuracy: to choose it by the estimate"
+LOST = NoteKind(
+    "solution-lost",
+    "the solution is lost from t = {t:.3g} s on: its estimated error exceeds {limit:g} rad or as large a part of the "
+    "mechanism, and grows",
+    "use a smaller rtol",
+)
+LARGE = NoteKind(
+    "large-error", "the estimated error of {element} is {error}, {percent:.2g} % of its largest value", REMEDY
+)
 
 
 def estimated(
@@ -80,8 +90,8 @@ def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solutio
     return replace(solution, estimate=estimate, notes=(*solution.notes, *notes))
 
 
-def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings, size: float) -> Iterator[str]:
-    """Yield a sentence on the largest error, if a position is wrong by many tolerances or any channel by much."""
+def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings, size: float) -> Iterator[Note]:
+    """Yield a note on the largest error, if a position is wrong by many tolerances or any channel by much."""
     rtol = max(settings.rtol, DEFAULT_RTOL)
     absolute = max(settings.atol or 0.0, rtol * min(1.0, size))
     errors, limits = known.relative(over_time), {}
@@ -92,7 +102,7 @@ def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings,
     worst = max(limits, key=lambda name: errors[name] / limits[name], default="")
     if worst and errors[worst] > limits[worst]:
         error = f"{solution.errors[worst].over_time:.2g} {solution.unit(worst)}".strip()
-        yield f"the estimated error of {worst} is {error}, {100 * errors[worst]:.2g} % of its largest value; {REMEDY}"
+        yield LARGE(worst, error=error, percent=100 * errors[worst])
 
 
 def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:
@@ -117,11 +127,8 @@ def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:
 
 def _lost_from(solution: Solution, t: float) -> Solution:
     """Return a solution whose errors are lost from a time on."""
-    sentence = (
-        f"the solution is lost from t = {t:.3g} s on: its estimated error exceeds {ESTIMATE.lost:g} rad or as large a part "
-        "of the mechanism, and grows; use a smaller rtol"
-    )
+    note = LOST(t=t, limit=ESTIMATE.lost)
     return replace(
-        solution, estimate=ErrorEstimate("lost", sentence), notes=(*solution.notes, sentence),
+        solution, estimate=ErrorEstimate("lost", str(note)), notes=(*solution.notes, note),
         errors=dict.fromkeys((name for name in solution.channels if not name.startswith("constraint.")), UNKNOWN),
     )  # fmt: skip

@@ -12,6 +12,7 @@ from ..elements.requests.check import check_output
 from ..elements.requests.order import dimension, dimensions
 from ..elements.roads.field import AnyRoad
 from ..errors import prefixed
+from ..notes import of_users
 from ..reading.fields import Described
 from ..reading.files.unchanged import Unchanged
 from ..reading.formula.text import FormulaError
@@ -126,23 +127,23 @@ class Scene(ModelData):
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
     """Return the notes of a scene, and of the roads, tyres and flexible bodies of a model."""
-    of_parts: dict[str, list[str]] = {}
+    of_parts: list[tuple[str, str]] = []
     for name, element in model.forces.items():
         components = (component for _, component in element.parts(Component))
-        for note in (*element.own_notes(), *(note for component in components for note in component.notes())):
-            of_parts.setdefault(note, []).append(name)
+        of_parts += ((name, note) for note in element.own_notes())
+        of_parts += ((name, note) for component in components for note in component.notes())
     own = list(model.notes) if isinstance(model, Scene) else []
     if model.dimensions == 3:
         from ..elements.spatial.flexible.bodies import FloatingFrame
 
         for name, body in model.bodies.items():
-            for note in body.notes if isinstance(body, FloatingFrame) else ():
-                of_parts.setdefault(note, []).append(f"'{name.removesuffix('.frame')}'")
+            if isinstance(body, FloatingFrame):
+                of_parts += ((f"'{name.removesuffix('.frame')}'", note) for note in body.notes)
     if model.dimensions == 3 and len(model.forces) > 1:
         from .mounted_tyres import mounted_alike
 
         own += mounted_alike(model.bodies, model.forces)
-    return (*own, *(f"{', '.join(names)}: {note}" for note, names in of_parts.items()))
+    return (*own, *of_users(of_parts)) if of_parts else tuple(own)
 
 
 def scene_class(dimensions: int) -> type[Scene]:

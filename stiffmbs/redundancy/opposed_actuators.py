@@ -13,6 +13,7 @@ from ..compile.quaternions import rotated
 from ..compile.state import State
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
+from ..notes import Note, NoteKind
 from ..reading.formula.formula import Formula
 from ..solve.trajectory import Grid
 from .overconstraint import listed
@@ -23,8 +24,15 @@ if TYPE_CHECKING:
     from ..model.model_data import ModelData
 
 
-def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid) -> tuple[str, ...]:
-    """Return a sentence on each controller whose force has a component along the free motions only without the drives.
+OPPOSED = NoteKind(
+    "opposed-actuator",
+    "{element} acts on a motion that {drives} {prescribe}, so it changes only the reaction of {drives}",
+    "remove one of them",
+)
+
+
+def opposed_notes(system: System, data: ModelData, q: np.ndarray, grid: Grid) -> tuple[Note, ...]:
+    """Return a note on each controller whose force has a component along the free motions only without the drives.
 
     A controller is a force that depends on time or states, and that measures motion directly or through states. The
     reaction of a drive to springs, dampers and forces of time alone is a common result. A force on a body is assumed to
@@ -40,22 +48,15 @@ def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid
     everything = found.space(())
     undriven = cache(lambda: found.space(chain(*rows.values())))
     held = _held_by_bushings(data, system)
-    sentences = []
+    notes = []
     for name in controllers:
         for direction in (moved for own in found.of(name) for moved in found.elsewhere(own, held)):
             if _lies_in(direction, everything) and not _lies_in(direction, undriven()):
                 needed = [drive for drive in drives if not _lies_in(direction, found.space(rows[drive]))]
-                sentences.append(_sentence(name, needed or drives))
+                by = needed or drives
+                notes.append(OPPOSED(name, drives=listed(by), prescribe="prescribes" if len(by) == 1 else "prescribe"))
                 break
-    return tuple(sentences)
-
-
-def _sentence(actuator: str, drives: list[str]) -> str:
-    prescribe = "prescribes" if len(drives) == 1 else "prescribe"
-    return (
-        f"{actuator} acts on a motion that {listed(drives)} {prescribe}, so it changes only the reaction of "
-        f"{listed(drives)}; remove one of them"
-    )
+    return tuple(notes)
 
 
 def _measures(force: Force, data: ModelData) -> bool:

@@ -15,18 +15,31 @@ from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
 from ..dynamics.storage import with_gaps
 from ..model.settings import RunSettings
+from ..notes import Note, NoteKind, Severity
 from ..reading.files.quoted import MOST_LISTED
 from ..solve.settings import traits_of
 from .energy_balance import Balance, potentials
 
+OUT_OF_RANGE = NoteKind("outside-valid-ranges", "'{element}' leaves the valid ranges of its data: {channels}")
+NOT_FINITE = NoteKind(
+    "not-finite", "{element} is not finite at {count} of {whole} output times, first at t = {first:.9g} s"
+)
+MORE_NOT_FINITE = NoteKind("more-not-finite", "{count} more channels are not finite at some output times")
+BALANCE = NoteKind(
+    "energy-balance",
+    "the energy balance is broken: {forces} {imbalance:.3g} J of the {scale:.3g} J exchanged (first by more than "
+    "{allowed:.2g} J at t = {first:.6g} s{where})",
+    "{finer}",
+    Severity.DOUBT,
+)
 ACTING = "load"
 """Channel that is zero if the element does not act; its other channels are then ignored."""
 
 
 def range_notes(
     ranges: Mapping[str, Mapping[str, tuple[float, float]]], series: Callable[[str], np.ndarray], t: np.ndarray
-) -> Iterator[str]:
-    """Yield a sentence for each element, with the extremes of its channels outside their ranges.
+) -> Iterator[Note]:
+    """Yield a note for each element, with the extremes of its channels outside their ranges.
 
     `ranges`: valid ranges by element and channel. `series`: returns the values of a channel at the output times t, s.
     """
@@ -38,7 +51,7 @@ def range_notes(
             if (sentence := _beyond(channel, np.where(acts, series(f"{name}.{channel}"), np.nan), low, high, t))
         ]
         if found:
-            yield f"'{name}' leaves the valid ranges of its data: {', '.join(found)}"
+            yield OUT_OF_RANGE(name, channels=", ".join(found))
 
 
 def _beyond(channel: str, values: np.ndarray, low: float, high: float, t: np.ndarray) -> str:
@@ -52,8 +65,8 @@ def _beyond(channel: str, values: np.ndarray, low: float, high: float, t: np.nda
     return f"{channel} reaches {' and '.join(f'{x:.4g}' for x in reached)} (valid from {low:.4g} to {high:.4g}; outside for {duration:.3g} s)"
 
 
-def undefined_values(rows: OutputRows, channels: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Yield a sentence for each channel with NaN or infinite values at solved instants, and one for all beyond the first few."""
+def undefined_values(rows: OutputRows, channels: Mapping[str, np.ndarray]) -> Iterator[Note]:
+    """Yield a note for each channel with NaN or infinite values at solved instants, and one for all beyond the first few."""
     solved = ~np.isnan(rows.position_violation)  # the other instants are reported as left out
     time = rows.t[solved]
     found = {name: ~np.isfinite(values[solved]) for name, values in with_gaps(channels).items()}
@@ -61,9 +74,9 @@ def undefined_values(rows: OutputRows, channels: Mapping[str, np.ndarray]) -> It
     for name in list(found)[:MOST_LISTED]:
         bad = found[name]
         first = float(time[np.argmax(bad)])
-        yield f"{name} is not finite at {np.count_nonzero(bad)} of {len(time)} output times, first at t = {first:.9g} s"
+        yield NOT_FINITE(name, count=np.count_nonzero(bad), whole=len(time), first=first)
     if len(found) > MOST_LISTED:
-        yield f"{len(found) - MOST_LISTED} more channels are not finite at some output times"
+        yield MORE_NOT_FINITE(count=len(found) - MOST_LISTED)
 
 
 FINER = ("rtol", "max_step", "step")
@@ -102,14 +115,14 @@ def may_be_missing(system: System, balance: Balance, rows: OutputRows, settings:
     return _accepted(settings) * balance.scale + _negligible(system, rows, settings)
 
 
-def broken_balance(system: System, balance: Balance, rows: OutputRows, settings: RunSettings) -> str:
-    """Return a sentence on a balance that is broken: how much is missing, since when, and where.
+def broken_balance(system: System, balance: Balance, rows: OutputRows, settings: RunSettings) -> Note:
+    """Return a note on a balance that is broken: how much is missing, since when, and where.
 
     `rows`: those of the balance and others.
     """
     allowed = may_be_missing(system, balance, rows, settings)
     finer = [name for name in FINER if name in traits_of(settings).reads]
-    remedy = f"; use a smaller {' or '.join(finer)}" if finer else ""
+    remedy = f"use a smaller {' or '.join(finer)}" if finer else ""
     steepest = int(np.argmax(np.abs(np.diff(balance.open)))) if len(balance.t) > 1 else 0
     beyond = np.flatnonzero(np.abs(balance.open) > allowed)
     first = balance.t[beyond[0] if len(beyond) else steepest]
@@ -118,10 +131,10 @@ def broken_balance(system: System, balance: Balance, rows: OutputRows, settings:
         if balance.keeps_energy
         else "the energy without work changes by"
     )
-    return (
-        f"the energy balance is broken: {forces} {balance.imbalance:.3g} J of the {balance.scale:.3g} J exchanged (first by "
-        f"more than {allowed:.2g} J at t = {first:.6g} s{_where(system, balance, rows, steepest)}){remedy}"
-    )
+    return BALANCE(
+        forces=forces, imbalance=balance.imbalance, scale=balance.scale, allowed=allowed, first=first,
+        where=_where(system, balance, rows, steepest), finer=remedy,
+    )  # fmt: skip
 
 
 def _accepted(settings: RunSettings) -> float:

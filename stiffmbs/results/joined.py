@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..notes import Note
 from ..solve.trajectory import IN_DOUBT, History
 from .energy_balance import Balance
 from .scales import MECHANICAL, ROUNDING, kind_of
@@ -99,14 +100,14 @@ def _values(solution: Solution, channel: str, requested: Iterable[str]) -> np.nd
     return np.full(len(solution.time), np.nan if there else 0.0)
 
 
-def _notes(of_runs: Sequence[Sequence[str]]) -> tuple[str, ...]:
-    """Return each sentence once, with the numbers of its runs unless all have it."""
+def _notes(of_runs: Sequence[Sequence[str]]) -> tuple[Note, ...]:
+    """Return each note once, with the numbers of its runs unless all have it."""
     all_of_them = dict.fromkeys(sentence for sentences in of_runs for sentence in sentences)
     found = []
     for sentence in all_of_them:
         runs = [str(k) for k, sentences in enumerate(of_runs, start=1) if sentence in sentences]
         place = "" if len(runs) == len(of_runs) else f"run{'s' if len(runs) > 1 else ''} {', '.join(runs)}: "
-        found.append(place + sentence)
+        found.append(Note.of(sentence).after(place))
     return tuple(found)
 
 

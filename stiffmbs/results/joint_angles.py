@@ -17,11 +17,20 @@ from ..dynamics.dynamics import OutputRows
 from ..dynamics.turns import counted_angles
 from ..elements.element import Joint
 from ..elements.turns import INITIAL_COUNT, TURN
+from ..notes import Note, NoteKind
 from ..reading.joint_name import ORDERS
 
 UNCERTAIN_TURN = 1.0
 """Difference of an angle's change between output times and that predicted from its rates, rad, from which on the number
 of turns is uncertain."""
+
+
+UNCERTAIN = NoteKind(
+    "uncertain-joint-angle",
+    "the revolutions of {element} are uncertain: between t = {begin:.6g} s and {end:.6g} s it changes too much for the "
+    "output times",
+    "name it in a request, so that the integration counts its revolutions, or use more output points",
+)
 
 
 @dataclass(frozen=True)
@@ -53,8 +62,8 @@ class JointAngles:
             found |= dict(zip(self.followed, angles.T, strict=True))
         return found
 
-    def uncertain(self, rows: OutputRows) -> Iterator[str]:
-        """Yield a sentence on the angle whose turns between output times are least certain."""
+    def uncertain(self, rows: OutputRows) -> Iterator[Note]:
+        """Yield a note on the angle whose turns between output times are least certain."""
         if not self.followed or len(rows.t) < 2:
             return
         change, predicted = self._changes(rows)
@@ -62,12 +71,7 @@ class JointAngles:
         apart[np.isnan(apart)] = 0.0
         row, k = np.unravel_index(int(np.argmax(apart)), apart.shape)
         if apart[row, k] > UNCERTAIN_TURN:
-            name = self.followed[k]
-            yield (
-                f"the revolutions of {name} are uncertain: between t = {rows.t[row]:.6g} s and {rows.t[row + 1]:.6g} s it changes "
-                "too much for the output times; name it in a request, so that the integration counts its revolutions, or use "
-                "more output points"
-            )
+            yield UNCERTAIN(self.followed[k], begin=rows.t[row], end=rows.t[row + 1])
 
     @cached_property
     def followed(self) -> list[str]:

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..model.scene import Figure
+from ..notes import Note
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
 from .error_bars import ErrorBar
@@ -37,6 +38,7 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
         "outcome": solution.outcome.name,
         "message": solution.message,
         **{name: list(getattr(solution, name)) for name in TEXTS},
+        "note_details": [note.as_dict() for note in solution.notes],
         "requested": dict(solution.requested),
         "solver": solution.solver,
         "errors": {channel: astuple(bar) for channel, bar in solution.errors.items()},
@@ -74,6 +76,8 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
     channels = {name: array for name, array in arrays.items() if "/" not in name and name not in ("time", "not_unique")}
     balance = {part.name: arrays[name] for part in fields(Balance) if (name := BALANCE + part.name) in arrays}
     texts: dict[str, Any] = {name: tuple(about[name]) for name in TEXTS}
+    if "note_details" in about:  # files of earlier versions have the sentences alone
+        texts["notes"] = tuple(map(Note.restored, about["notes"], about["note_details"]))
     return Solution(
         name=about["name"], time=arrays["time"], channels=channels, outcome=Outcome[about["outcome"]], message=about["message"],
         **texts, requested=about["requested"], solver=about["solver"],

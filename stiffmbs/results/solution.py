@@ -13,6 +13,7 @@ from ..dynamics.storage import release
 from ..errors import InputError, refuse_missing
 from ..methods import SolutionMethods
 from ..model.scene import Figure
+from ..notes import Note
 from ..solve.trajectory import History, Outcome
 from .channels import named
 from .energy_balance import Balance
@@ -42,8 +43,8 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     outcome : Outcome
     message : str
         Sentence on the end of the run.
-    notes : tuple of str
-        Further information: moves at the assembly, warnings.
+    notes : tuple of Note
+        Sentences on the model, the run and the results: strings that have a kind, an element, a remedy and a severity.
     solver : dict
         Name, steps, residuals, jacobians, seconds.
     history : History
@@ -77,7 +78,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     channels: dict[str, np.ndarray]
     outcome: Outcome
     message: str
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     solver: dict[str, Any]
     history: History
     balance: Balance

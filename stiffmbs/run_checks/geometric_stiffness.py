@@ -11,16 +11,41 @@ from ..compile.quaternions import rotated
 from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
 from ..elements.spatial.flexible.layout import components, parts
+from ..notes import Note, NoteKind, Severity
 from .parameters import RUN_CHECKS
 
-REMEDY = "use a body of type: beam, or divide the body into several"
+BEAM = "use a body of type: beam, or divide the body into several"
+DEFORMED = NoteKind(
+    "large-deformation",
+    "'{element}' deforms by up to {percent:.2g} % of its length (root mean square), outside the second-order theory: "
+    "deflections of a beam would have an error of about {error:.1g} %",
+    BEAM,
+)
+STIFFENED = NoteKind(
+    "geometric-stiffness",
+    "'{element}': loads and rotation change the stiffness by {lowest:+.2g} % to {highest:+.2g} % at t = {t:.4g} s; "
+    "this geometric stiffness is {included}",
+    severity=Severity.REMARK,
+)
+BUCKLES = NoteKind(
+    "buckling",
+    STIFFENED.text + ". A body that loses all its stiffness buckles, outside the second-order theory: {remedy}",
+    BEAM,
+)
+WITHOUT_MESH = NoteKind(
+    "geometric-stiffness-left-out",
+    "'{element}': rotation at up to {rate:.3g} rad/s and interface forces of up to {force:.3g} N can change its "
+    "stiffness by {percent:.2g} %, estimated by a slender clamped beam with its lowest free frequency of "
+    "{frequency:.3g} Hz; geometric stiffness is not included, because a body described by matrices has no stresses: {remedy}",
+    "use a mesh, or several bodies",
+)
 CLAMPED: Final = 36.0
 """Stiffening of a slender beam clamped at one end, over the square of its angular velocity by its lowest free one."""
 EULER = 4 * 4.730041**4 / np.pi**2
 """Force by the buckling load of that beam, over force by mass, length and the square of its lowest free one."""
 
 
-def geometric_stiffness_notes(system: System, rows: OutputRows) -> Iterator[str]:
+def geometric_stiffness_notes(system: System, rows: OutputRows) -> Iterator[Note]:
     """Yield a note on each flexible body whose geometric stiffness matters, relative to the elastic one."""
     for group in system.groups:
         for e in range(group.count if group.entries["inertia"] and len(rows.t) else 0):
@@ -35,15 +60,12 @@ def geometric_stiffness_notes(system: System, rows: OutputRows) -> Iterator[str]
                 yield from _note_without_mesh(name, numbers, system, rows, int(places[0, 1]))
 
 
-def _note_on_large_deformation(name: str, numbers: dict[str, np.ndarray], y: np.ndarray) -> Iterator[str]:
+def _note_on_large_deformation(name: str, numbers: dict[str, np.ndarray], y: np.ndarray) -> Iterator[Note]:
     """Yield a note by the root mean square of the displacement over the mass, which is that of the modal coordinates."""
     ratio = float(np.sqrt((y**2).sum(axis=1).max(initial=0.0))) / _length(numbers)
     error = RUN_CHECKS.of_second_order * ratio**2
     if error > RUN_CHECKS.too_much:
-        yield (
-            f"'{name}' deforms by up to {100 * ratio:.2g} % of its length (root mean square), outside the second-order theory: "
-            f"deflections of a beam would have an error of about {100 * error:.1g} %; {REMEDY}"
-        )
+        yield DEFORMED(name, percent=100 * ratio, error=100 * error)
 
 
 def _length(numbers: dict[str, np.ndarray]) -> float:
@@ -51,27 +73,21 @@ def _length(numbers: dict[str, np.ndarray]) -> float:
     return float(np.sqrt(12 * numbers["moments"].max() / numbers["modal_mass"][0]))
 
 
-def _note(name: str, numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray) -> Iterator[str]:
+def _note(name: str, numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray) -> Iterator[Note]:
     """Yield a note by the extreme eigenvalues of geometric and elastic stiffness, of all deformations of the free body."""
     chosen = np.unique(np.linspace(0, len(rows.t) - 1, RUN_CHECKS.most_instants).astype(int))
     ratios = _ratios(numbers, rows, places, chosen)
     at = int(np.abs(ratios).max(axis=1).argmax())
     lowest, highest = ratios[at]
     if max(-lowest, highest) > RUN_CHECKS.stiffened:
-        beyond = (
-            f". A body that loses all its stiffness buckles, outside the second-order theory: {REMEDY}"
-            if lowest < -1
-            else ""
-        )
-        yield (
-            f"'{name}': loads and rotation change the stiffness by {100 * lowest:+.2g} % to {100 * highest:+.2g} % at t = {rows.t[chosen[at]]:.4g} s; "
-            f"this geometric stiffness is {'included' if numbers['stiffened'][0] else 'not included (stiffening: false)'}{beyond}"
-        )
+        included = "included" if numbers["stiffened"][0] else "not included (stiffening: false)"
+        kind = BUCKLES if lowest < -1 else STIFFENED
+        yield kind(name, lowest=100 * lowest, highest=100 * highest, t=rows.t[chosen[at]], included=included)
 
 
 def _note_without_mesh(
     name: str, numbers: dict[str, np.ndarray], system: System, rows: OutputRows, motion: int
-) -> Iterator[str]:
+) -> Iterator[Note]:
     """Yield a note by a slender beam of the same mass, moment of inertia and lowest frequency."""
     rate = float(np.linalg.norm(rows.u[:, motion + 3 : motion + 6], axis=1).max())
     mass = float(numbers["modal_mass"][0])
@@ -84,11 +100,7 @@ def _note_without_mesh(
     force = float(max(forces, default=0.0))
     ratio = (CLAMPED * rate**2 + EULER * force / (mass * _length(numbers))) / lowest**2
     if ratio > RUN_CHECKS.stiffened:
-        yield (
-            f"'{name}': rotation at up to {rate:.3g} rad/s and interface forces of up to {force:.3g} N can change its stiffness by {100 * ratio:.2g} %, "
-            f"estimated by a slender clamped beam with its lowest free frequency of {lowest / (2 * np.pi):.3g} Hz; geometric stiffness is not "
-            "included, because a body described by matrices has no stresses: use a mesh, or several bodies"
-        )
+        yield WITHOUT_MESH(name, rate=rate, force=force, percent=100 * ratio, frequency=lowest / (2 * np.pi))
 
 
 def _ratios(numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray, chosen: np.ndarray) -> np.ndarray:

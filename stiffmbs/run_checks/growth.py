@@ -12,31 +12,54 @@ from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import blocks, release
 from ..model.settings import RunSettings
+from ..notes import Note, NoteKind, Severity
 from ..solve.events.refusals import DIVERGENCE, SPEED_OF_LIGHT, exponential, reaches
 from ..solve.trajectory import Trajectory
 from .parameters import RUN_CHECKS
 
+DIVERGES = NoteKind(
+    "divergence",
+    "the motion diverges: at t = {t:.6g} s '{element}' exceeds {what}, and reaches {value:.2g} {unit}{strongest}",
+    "look for a wrong sign of a stiffness, damping or force",
+    Severity.DOUBT,
+)
+OPEN_JOINT = NoteKind(
+    "open-joint",
+    "constraints are violated: joint '{element}' (equation {equation}) has an error of {violation:.3g} at t = {t:.6g} s, "
+    "expected at most {allowed:.1g}, first exceeded at t = {first:.6g} s",
+    severity=Severity.DOUBT,
+)
+WITHOUT_SIZE = NoteKind(
+    "motion-within-tolerance",
+    "the motion of {travel:.2g} m is smaller than the absolute tolerance of {rtol:.2g} m: bodies and markers at a single "
+    "point have no size that it could follow",
+    "set atol",
+)
 
-def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> Iterator[str]:
-    """Yield a sentence on each impossible property of a motion; the state of `dynamics`, of the whole model, is changed.
 
-    Drift is shown if states are not projected onto the constraints (`on_constraints`).
+def senseless(
+    dynamics: Dynamics, rows: OutputRows, on_constraints: bool, otherwise: tuple[Note, ...] = ()
+) -> Iterator[Note]:
+    """Yield a note on each impossible property of a motion; the state of `dynamics`, of the whole model, is changed.
+
+    Drift is shown if states are not projected onto the constraints (`on_constraints`). `otherwise`: notes if there is no
+    such property, on what it would explain.
     """
     with np.errstate(all="ignore"):
-        yield from filter(None, (_grown(dynamics.system, rows), _open_joint(dynamics, rows, on_constraints)))
+        yield from (*_grown(dynamics.system, rows), *_open_joint(dynamics, rows, on_constraints)) or otherwise
 
 
-def _grown(system: System, rows: OutputRows) -> str:
-    """Return a sentence on impossible growth, or an empty string."""
+def _grown(system: System, rows: OutputRows) -> Iterator[Note]:
+    """Yield a note on impossible growth."""
     if not system.bodies:
-        return ""
+        return
     of_places, of_rates = reaches(system), system.per_velocity(1.0, system.size)
     limit, resolved = DIVERGENCE.unbounded * system.size, RUN_CHECKS.coarse * system.size / float(np.finfo(float).eps)
     if (
         np.ptp(rows.q) * of_places.max() <= min(limit, resolved)
         and np.abs(rows.u).max() * of_rates.max() <= SPEED_OF_LIGHT
     ):
-        return ""
+        return
     far, speed = np.empty(len(rows.t)), np.empty(len(rows.t))
     for block in blocks(len(rows.t)):
         far[block] = np.max(np.abs(rows.q[block] - rows.q[0]) * of_places, axis=1)
@@ -48,13 +71,12 @@ def _grown(system: System, rows: OutputRows) -> str:
     )
     if np.nanmax(far) > limit and exponential(rows.t, np.fmax.accumulate(far)):
         what = f"{DIVERGENCE.unbounded:.0e} times the mechanism's size of {system.size:.3g} m"
-        return _growth_sentence(system, rows, far, limit, what, farthest)
-    if np.nanmax(speed) > SPEED_OF_LIGHT:
-        return _growth_sentence(system, rows, speed, SPEED_OF_LIGHT, "the speed of light", fastest)
-    if np.nanmax(far) > resolved and _connected(system):
+        yield _growth(system, rows, far, limit, what, farthest)
+    elif np.nanmax(speed) > SPEED_OF_LIGHT:
+        yield _growth(system, rows, speed, SPEED_OF_LIGHT, "the speed of light", fastest)
+    elif np.nanmax(far) > resolved and _connected(system):
         what = f"the distance where rounding is {RUN_CHECKS.coarse:.0e} of the mechanism's size of {system.size:.3g} m"
-        return _growth_sentence(system, rows, far, resolved, what, farthest)
-    return ""
+        yield _growth(system, rows, far, resolved, what, farthest)
 
 
 def _connected(system: System) -> bool:
@@ -67,10 +89,10 @@ def _connected(system: System) -> bool:
     )
 
 
-def _growth_sentence(
+def _growth(
     system: System, rows: OutputRows, values: np.ndarray, limit: float, what: str, sizes: Callable[[Any], np.ndarray]
-) -> str:
-    """Return the sentence on values beyond a limit, and on the body that has the largest of them.
+) -> Note:
+    """Return the note on values beyond a limit, and on the body that has the largest of them.
 
     `sizes` returns their components at a row or at all rows: those of the first body, of the second, ...
     """
@@ -79,9 +101,9 @@ def _growth_sentence(
     width = largest.shape[1]
     first = int(np.argmax(np.max(sizes(slice(None))[:, body * width : (body + 1) * width], axis=1) > limit))
     unit = "m/s" if limit == SPEED_OF_LIGHT else "m"
-    return (
-        f"the motion diverges: at t = {rows.t[first]:.6g} s '{system.bodies[body]}' exceeds {what}, and reaches "
-        f"{np.nanmax(values):.2g} {unit}{_strongest(system, rows, first)}; look for a wrong sign of a stiffness, damping or force"
+    strongest = _strongest(system, rows, first)
+    return DIVERGES(
+        system.bodies[body], t=rows.t[first], what=what, value=np.nanmax(values), unit=unit, strongest=strongest
     )
 
 
@@ -101,29 +123,28 @@ def _strongest(system: System, rows: OutputRows, row: int) -> str:
     return f" ('{name.rpartition('.')[0]}' acts with {acting[name]:.3g} {unit} there)"
 
 
-def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> str:
-    """Return a sentence on an open joint, or an empty string."""
+def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> Iterator[Note]:
+    """Yield a note on an open joint."""
     system, violation = dynamics.system, rows.position_violation
     if not system.n_c or np.isnan(violation).all():
-        return ""
+        return
     allowed = (RUN_CHECKS.open if on_constraints else RUN_CHECKS.drifted) * max(system.size, 1e-3)
     worst = int(np.nanargmax(violation))
     if violation[worst] <= allowed:
-        return ""
+        return
     state = dynamics.state
     state.q[:], state.u[:] = rows.q[worst], rows.u[worst]
     state.evaluate("motion", rows.t[worst])
     gaps = np.abs(state.vector("motion", "C"))
     joint, equation = system.equations[int(np.argmax(gaps))]
     first = int(np.argmax(violation > allowed))
-    return (
-        f"constraints are violated: joint '{joint}' (equation {equation}) has an error of {violation[worst]:.3g} at "
-        f"t = {rows.t[worst]:.6g} s, expected at most {allowed:.1g}, first exceeded at t = {rows.t[first]:.6g} s"
+    yield OPEN_JOINT(
+        joint, equation=equation, violation=violation[worst], t=rows.t[worst], allowed=allowed, first=rows.t[first]
     )
 
 
-def motion_within_tolerance(system: System, settings: RunSettings, trajectory: Trajectory) -> Iterator[str]:
-    """Yield a sentence if bodies that are all described at one point move by less than the absolute tolerance.
+def motion_within_tolerance(system: System, settings: RunSettings, trajectory: Trajectory) -> Iterator[Note]:
+    """Yield a note if bodies that are all described at one point move by less than the absolute tolerance.
 
     The tolerance is relative to the size of a mechanism; a single point has none, and counts as 1 m.
     """
@@ -133,7 +154,4 @@ def motion_within_tolerance(system: System, settings: RunSettings, trajectory: T
     places = trajectory.q[:, : system.n_pose].reshape(len(trajectory.q), *first.shape[:1], -1)
     travel = float(np.ptp(places[:, :, : system.of_body.linear], axis=0).max())
     if np.finfo(float).eps < travel < settings.rtol:
-        yield (
-            f"the motion of {travel:.2g} m is smaller than the absolute tolerance of {settings.rtol:.2g} m: bodies and markers at a "
-            "single point have no size that it could follow; set atol"
-        )
+        yield WITHOUT_SIZE(travel=travel, rtol=settings.rtol)

@@ -22,6 +22,7 @@ from ..compile.written_values import table_arguments, tables_in
 from ..elements.states.amount import TABLE as INPUT_TABLE
 from ..errors import SolverError
 from ..model.settings import RunSettings
+from ..notes import Note, NoteKind, of_users
 from ..reading.table import Table
 from ..solve.events.departures import Departure, merged
 from ..solve.settings import traits_of
@@ -31,6 +32,13 @@ SAMPLES = 2001
 """Times between which arguments that depend on time alone are taken as straight lines."""
 OF_FIELD = "the table "
 """Beginning of the text of an input that is the table of a field."""
+EXTENDED = NoteKind(
+    "table-extended",
+    "the table '{label}' was left for {duration:.3g} s, first at t = {first:.6g} s: its argument reaches {reached:.6g}, "
+    "{beyond:.3g} beyond its {end}, and the slope there continues it to {continued:.6g} (its points have values from "
+    "{least:.6g} to {greatest:.6g})",
+)
+LEFT = NoteKind("table-left", EXTENDED.text, "state 'beyond': hold, extend, error or repeat, or give more points")
 
 
 def left_tables(system: System, trajectory: Trajectory, settings: RunSettings) -> list[Departure]:
@@ -61,33 +69,26 @@ def _refusal(first: Departure) -> str:
     )
 
 
-def departure_notes(found: list[Departure]) -> Iterator[str]:
-    """Yield a sentence for each table that was extrapolated."""
-    users: dict[str, list[str]] = {}
-    for departure in found:
-        if sentence := _sentence(departure):
-            users.setdefault(sentence, []).append(departure.element)
-    for sentence, names in users.items():
-        yield f"{', '.join(dict.fromkeys(names))}: {sentence}"
+def departure_notes(found: list[Departure]) -> Iterator[Note]:
+    """Yield a note for each table that was extrapolated."""
+    return of_users((departure.element, note) for departure in found for note in _notes(departure))
 
 
-def _sentence(left: Departure) -> str:
-    """Return a sentence on an extrapolation; empty if the table keeps the value of its end as intended."""
+def _notes(left: Departure) -> Iterator[Note]:
+    """Yield a note on an extrapolation, unless the table keeps the value of its end as intended."""
     if left.table.beyond not in (None, "extend"):
-        return ""
+        return
     sides = [side for side in (0, 1) if left.beyond[side] > 0 and not _keeps_value(left.table, side)]
     if not sides:
-        return ""
+        return
     side = max(sides, key=lambda each: left.beyond[each])
     reached = left.reached[side]
     values = [value for _, value in left.table.table]
     continued = float(curve(left.table)(np.array([reached]))[0])
-    remedy = "" if left.table.beyond else "; state 'beyond': hold, extend, error or repeat, or give more points"
-    return (
-        f"the table '{left.label}' was left for {left.duration:.3g} s, first at t = {left.first:.6g} s: its argument reaches "
-        f"{reached:.6g}, {left.beyond[side]:.3g} beyond its {_end(left, side)}, and the slope there continues it to "
-        f"{continued:.6g} (its points have values from {min(values):.6g} to {max(values):.6g}){remedy}"
-    )
+    yield (EXTENDED if left.table.beyond else LEFT)(
+        left.element, label=left.label, duration=left.duration, first=left.first, reached=reached, end=_end(left, side),
+        beyond=left.beyond[side], continued=continued, least=min(values), greatest=max(values),
+    )  # fmt: skip
 
 
 def _end(left: Departure, side: int) -> str:

@@ -14,59 +14,71 @@ from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..errors import InputError
+from ..notes import Note, NoteKind
 from ..results.joint_angles import joint_angles
 from .parameters import RUN_CHECKS
-from .singular_poses import singular_passage_sentence
+from .singular_poses import singular_passage_notes
+
+OUT_OF_RANGE = NoteKind(
+    "force-out-of-range",
+    "'{element}' {doubt}, first at t = {t:.6g} s, for example because of a growing vibration (shimmy); the motion may then "
+    "depend on the tolerances: {remedy}",
+    "check it with --verify, and its growth with 'stiffmbs modes' and an earlier --at",
+)
+UNCERTAIN_TURNS = NoteKind(
+    "uncertain-revolutions",
+    "the revolutions of the angle of '{element}' are uncertain: at t = {t:.6g} s the orientation and the integral of the "
+    "angular velocity differ by {apart:.2g} rad; the steps are too long for the speed ({remedy}), or the reference axis of "
+    "the angle becomes parallel to the axis of rotation",
+    "use a smaller rtol or step",
+)
 
 
 def motion_notes(
     dynamics: Dynamics, rows: OutputRows, rtol: float, again: Callable[[np.ndarray], OutputRows]
-) -> Iterator[str]:
-    """Yield sentences on results that depend on rounding or tolerances: singular poses, missed turns, forces out of range.
+) -> Iterator[Note]:
+    """Yield notes on results that depend on rounding or tolerances: singular poses, missed turns, forces out of range.
 
     The state of `dynamics`, of the whole model, is changed; `again` is a rerun up to the last of other times, s, with rows
     at these.
     """
     if rows.lam.size:
-        yield from singular_passage_sentence(dynamics, rows, rtol, again)
+        yield from singular_passage_notes(dynamics, rows, rtol, again)
     if dynamics.system.n_counters:
-        yield from missed_revolutions_sentence(dynamics, rows)
+        yield from missed_revolutions_notes(dynamics, rows)
     if dynamics.system.of_body.dimensions == 3 and (angles := joint_angles(dynamics.system)) is not None:
         yield from angles.uncertain(rows)
     if dynamics.system.n_event_functions > dynamics.system.first_limit:
-        yield from near_limits_sentence(dynamics, rows)
+        yield from near_limits_notes(dynamics, rows)
 
 
-def near_limits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
-    """Yield a sentence on the first force outside the range in which its kind is reliable; the state is changed."""
+def near_limits_notes(dynamics: Dynamics, rows: OutputRows) -> Iterator[Note]:
+    """Yield a note on the first force outside the range in which its kind is reliable; the state is changed."""
     system, state = dynamics.system, dynamics.state
     first, end = system.first_limit, system.n_event_functions
     if not len(rows.t):
         return
-    doubtful, words = _doubts(system)
+    doubtful, doubts = _doubts(system)
     for k in some_instants(len(rows.t)):
         state.q[:], state.u[:] = rows.q[k], rows.u[k]
         state.evaluate("event_function", rows.t[k])
         passed = np.flatnonzero(state.values["event_function"][first:end] < doubtful)
         if len(passed):
-            yield (
-                f"{words[passed[0]]}, first at t = {rows.t[k]:.6g} s, for example because of a growing vibration (shimmy); "
-                "the motion may then depend on the tolerances: check it with --verify, and its growth with "
-                "'stiffmbs modes' and an earlier --at"
-            )
+            name, doubt = doubts[passed[0]]
+            yield OUT_OF_RANGE(name, doubt=doubt, t=rows.t[k])
             return
 
 
-def _doubts(system: System) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Return, for each limit of a force, the value below which the motion is doubtful, and the doubt."""
+def _doubts(system: System) -> tuple[np.ndarray, tuple[tuple[str, str], ...]]:
+    """Return, for each limit of a force, the value below which the motion is doubtful, and its name with the doubt."""
     found = [
-        (group.kind.element.doubtful, f"'{name}' {group.kind.element.doubt}")  # type: ignore[attr-defined]
+        (group.kind.element.doubtful, (name, group.kind.element.doubt))  # type: ignore[attr-defined]
         for group in system.groups
         if group.entries["limit"]
         for name in group.names
         for _ in range(group.entries["limit"])
     ]
-    return np.array([value for value, _ in found]), tuple(words for _, words in found)
+    return np.array([value for value, _ in found]), tuple(doubt for _, doubt in found)
 
 
 APART_FROM_COUNTERS = Routine(
@@ -76,8 +88,8 @@ APART_FROM_COUNTERS = Routine(
 )
 
 
-def missed_revolutions_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
-    """Yield a sentence on the angle that differs most from the counter of its turns, if the turn is uncertain."""
+def missed_revolutions_notes(dynamics: Dynamics, rows: OutputRows) -> Iterator[Note]:
+    """Yield a note on the angle that differs most from the counter of its turns, if the turn is uncertain."""
     system, state = dynamics.system, dynamics.state
     solved = np.flatnonzero(~np.isnan(rows.position_violation))
     if not len(solved):
@@ -89,11 +101,7 @@ def missed_revolutions_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterato
         return
     k, worst = np.unravel_index(int(np.nanargmax(apart)), apart.shape)
     name = writer(system, "position", int(counted.source[worst]))
-    yield (
-        f"the revolutions of the angle of '{name}' are uncertain: at t = {rows.t[instants[k]]:.6g} s the orientation and the integral of "
-        f"the angular velocity differ by {apart[k, worst]:.2g} rad; the steps are too long for the speed (use a smaller rtol or step), "
-        "or the reference axis of the angle becomes parallel to the axis of rotation"
-    )
+    yield UNCERTAIN_TURNS(name, t=rows.t[instants[k]], apart=apart[k, worst])
 
 
 def _apart(state: State, t: np.ndarray, q: np.ndarray, source: np.ndarray, row: np.ndarray) -> np.ndarray:

@@ -21,6 +21,7 @@ from ..compile.reactions import reactions
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..model.settings import RunSettings
+from ..notes import Note, NoteKind
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.events.long_steps import LONG_STEP, LongSteps, Motion
 from ..solve.settings import near_constraints
@@ -32,6 +33,13 @@ CONTRADICTING_ROWS = Routine(
     "contradicting_rows",
     "int64(int64, int64, float64*, float64*, float64*, float64*, float64, float64*, int64, float64*, int64*)",
 )
+
+
+MISSED = (
+    "a step of {step:.2g} s missed {law} at t = {t:.6g} s{more}: the accelerations of {velocity} there contradict the "
+    "solution of the step"
+)
+"""Text of notes on missed events."""
 
 
 @dataclass(frozen=True)
@@ -52,13 +60,12 @@ class Overlooked:
     element: str
     shortest: float = math.inf
 
-    def sentence(self) -> str:
-        """Return a sentence on the first missed event."""
+    def note(self, kind: NoteKind, max_step: float = 0.0) -> Note:
+        """Return a note on the first missed event, whose kind says what was done about it."""
         more = f" and at {len(self.times) - 1} more times" if len(self.times) > 1 else ""
         law = f"'{self.element}'" if self.element else "a force"
-        return (
-            f"a step of {self.step:.2g} s missed {law} at t = {self.times[0]:.6g} s{more}: "
-            f"the accelerations of {self.velocity} there contradict the solution of the step"
+        return kind(
+            self.element, step=self.step, law=law, t=self.times[0], more=more, velocity=self.velocity, max_step=max_step
         )
 
 

@@ -12,9 +12,29 @@ import numpy as np
 from ..compile.state import State
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
+from ..notes import Note, NoteKind
 from ..redundancy.loops import loops
 from ..redundancy.overconstraint import listed
 from .parameters import RUN_CHECKS
+
+_AT = "near t = {t:.6g} s, where the equations of {joints} are nearly dependent: "
+BRANCHES = NoteKind(
+    "singular-pose",
+    "passes a singular pose "
+    + _AT
+    + "more than one motion may follow, and the motion depends on the last digits of the "
+    "geometry ({where})",
+)
+MAGNIFIES = NoteKind(
+    "nearly-singular-pose",
+    "passes near a singular pose " + _AT + "{decided}errors grow by a factor of about {factor:.1g}; {remedy} ({where})",
+    "use a smaller rtol",
+)
+NOT_EXAMINED = NoteKind(
+    "singular-pose-not-examined",
+    "may pass a singular pose near t = {t:.6g} s or later, where more than one motion may follow; the rerun that examines "
+    "it was aborted",
+)
 
 
 class SingularPose(NamedTuple):
@@ -161,10 +181,10 @@ def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:
     return 1 / np.sqrt(growth), np.abs(vector)
 
 
-def singular_passage_sentence(
+def singular_passage_notes(
     dynamics: Dynamics, rows: OutputRows, rtol: float, again: Callable[[np.ndarray], OutputRows]
-) -> Iterator[str]:
-    """Yield a sentence on the first checked passage if chance decides it, else on the worst one.
+) -> Iterator[Note]:
+    """Yield a note on the first checked passage if chance decides it, else on the worst one.
 
     `again` is a rerun up to the last of other times, s, with rows at these.
     """
@@ -183,12 +203,9 @@ def singular_passage_sentence(
         reached, asked = dense.t, others[-1][-1]
     d, pose = found
     if not _decided_by_chance(d) and not (len(reached) and reached[-1] >= asked):
-        yield (
-            f"may pass a singular pose near t = {rows.t[min(dips)]:.6g} s or later, where more than one motion may follow; "
-            "the rerun that examines it was aborted"
-        )
+        yield NOT_EXAMINED(t=rows.t[min(dips)])
     elif pose is not None:
-        yield from _sentence(pose, d, rtol)
+        yield from _notes(pose, d, rtol)
 
 
 def deepest_dips(log_determinant: np.ndarray) -> list[int]:
@@ -239,18 +256,12 @@ def _decided_by_chance(d: float) -> bool:
     return _magnified(d) * RUN_CHECKS.last_digits >= RUN_CHECKS.decided
 
 
-def _sentence(pose: SingularPose, d: float, rtol: float) -> Iterator[str]:
+def _notes(pose: SingularPose, d: float, rtol: float) -> Iterator[Note]:
     magnified = _magnified(d)
     where = "; ".join(f"{body} at {place}" for body, place in zip(pose.bodies, pose.poses, strict=True))
-    at = f"near t = {pose.t:.6g} s, where the equations of {listed(list(pose.joints))} are nearly dependent"
+    joints = listed(list(pose.joints))
     if _decided_by_chance(d):
-        yield (
-            f"passes a singular pose {at}: more than one motion may follow, and the motion depends on the last digits of the geometry "
-            f"({where})"
-        )
+        yield BRANCHES(pose.joints[0], t=pose.t, joints=joints, where=where)
     elif magnified * rtol >= RUN_CHECKS.worth_telling:
         decided = "more than one motion may follow, and " if magnified * rtol >= RUN_CHECKS.decided else ""
-        yield (
-            f"passes near a singular pose {at}: {decided}errors grow by a factor of about {magnified:.1g}; use a smaller rtol "
-            f"({where})"
-        )
+        yield MAGNIFIES(pose.joints[0], t=pose.t, joints=joints, where=where, decided=decided, factor=magnified)

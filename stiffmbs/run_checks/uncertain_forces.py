@@ -1,30 +1,49 @@
-"""Checks of stiff forces: of their digits, and in long steps of BDF of order 1, as after restarts at loose tolerances."""
+"""Checks of stiff forces: of their digits, and in long steps of BDF of order 1, as after restarts at loose tolerances.
+
+The rounding of coordinates changes a force by 0.01 N at a coordinate of 1 m for a stiffness of 1e14 N/m.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
+from ..compile.state import State
+from ..compile.terms import TERM_SETS
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import blocks, release
+from ..notes import Note, NoteKind
 from ..solve.error_control.newton import stiffness_at
 from ..solve.stiff_rows import largest_force, lengths_of_steps
 from ..solve.trajectory import Trajectory
-from .lost_digits import lost_digits_sentence
 from .parameters import RUN_CHECKS
 
+LOST_DIGITS = NoteKind(
+    "lost-digits",
+    "the force of '{element}' is known to about {lost:.1g} N only, as are reactions: coordinates have 16 digits, and it is "
+    "so stiff; the largest force is {largest:.3g} N",
+    "use a joint, or less stiffness",
+)
+COARSE = NoteKind(
+    "coarse-forces",
+    "stiff forces and reactions are wrong by up to about {percent:.2g} % of the largest at {times} from t = {t:.6g} s on: "
+    "steps of BDF of order 1 are long for them there",
+    "reduce rtol, or use solver: radau",
+)
 
-def uncertain_forces(dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows) -> Iterator[str]:
-    """Yield sentences on forces of a run with implicit steps that are known to a few digits only; the state is changed."""
+
+def uncertain_forces(dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows) -> Iterator[Note]:
+    """Yield notes on forces of a run with implicit steps that are known to a few digits only; the state is changed."""
     if trajectory.statistics.get("jacobians"):
-        yield from lost_digits_sentence(dynamics, rows)
+        yield from lost_digits_notes(dynamics, rows)
         if not trajectory.recorded:  # the estimate from recorded steps includes these errors
-            yield from coarse_forces_sentence(dynamics, trajectory, rows)
+            yield from coarse_forces_notes(dynamics, trajectory, rows)
 
 
-def coarse_forces_sentence(dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows) -> Iterator[str]:
-    """Yield a sentence on stiff forces in long steps of order 1, if they contradict the motion; the state is changed.
+def coarse_forces_notes(dynamics: Dynamics, trajectory: Trajectory, rows: OutputRows) -> Iterator[Note]:
+    """Yield a note on stiff forces in long steps of order 1, if they contradict the motion; the state is changed.
 
     There they follow from second differences of positions, which are no accelerations where the step changes (Gear,
     Hsu and Petzold 1981, Differential-algebraic equations revisited). Accelerations then differ from the mean rate of
@@ -59,11 +78,8 @@ def coarse_forces_sentence(dynamics: Dynamics, trajectory: Trajectory, rows: Out
     long = lengths > stiffness_at(dynamics, float(rows.t[at[-1]])).long_step
     if long.any():
         at, off = at[long], off[long]
-        yield (
-            f"stiff forces and reactions are wrong by up to about {100.0 * off.max():.2g} % of the largest at {len(at)} output "
-            f"time{'s' * (len(at) > 1)} from t = {rows.t[at[0]]:.6g} s on: steps of BDF of order 1 are long for them there; "
-            "reduce rtol, or use solver: radau"
-        )
+        times = f"{len(at)} output time{'s' * (len(at) > 1)}"
+        yield COARSE(percent=100.0 * off.max(), times=times, t=rows.t[at[0]])
 
 
 def _largest_inertia(rows: OutputRows, mass: np.ndarray) -> float:
@@ -73,3 +89,47 @@ def _largest_inertia(rows: OutputRows, mass: np.ndarray) -> float:
         largest = max(largest, float(np.fmax.reduce(rows.acceleration[block] ** 2 @ mass)))
         release(rows.acceleration)
     return float(np.sqrt(largest))
+
+
+class LostDigits(NamedTuple):
+    """Element whose force rounding changes most, that change, and the largest force on a body, N."""
+
+    element: str
+    lost: float
+    largest: float
+
+
+def lost_digits(state: State, t: float) -> LostDigits:
+    """Return the largest change of a force by the rounding of coordinates at a state."""
+    system, found = state.system, [("", 0.0)]
+    state.evaluate("tangent", t)
+    size, width = np.append(np.abs(state.q), np.zeros(system.of_body.n_q)), system.of_body.n_u
+    rounding = 0.5 * RUN_CHECKS.roundings * np.finfo(float).eps
+    at = 1 + TERM_SETS["tangent"].index("f_q")
+    for g, group in enumerate(system.groups):
+        if group.entries["f_q"] and group.kind.element.kind:
+            source, _, column = group.placed("f_q", int(system.places["tangent"][g, at]))
+            row = np.array(group.record.patterns["f_q"])[:, 0]
+            changes = (rounding * np.abs(state.values["tangent"][source]) * size[column]).reshape(group.count, len(row))
+            straight = (row % width < system.of_body.linear)[:, None]
+            of_rows = changes @ (straight & (row[:, None] == np.arange(width * group.kind.n_bodies)))
+            found += zip(group.names, of_rows.max(axis=1).tolist(), strict=True)
+    state.evaluate("motion", t)
+    forces = state.vector("motion", "f")[system.per_velocity(1.0, 0.0) == 1.0]
+    return LostDigits(*max(found, key=lambda each: each[1]), float(np.abs(forces).max(initial=0.0)))
+
+
+def lost_digits_notes(dynamics: Dynamics, rows: OutputRows) -> Iterator[Note]:
+    """Yield a note on the force that rounding changes most at the end of a run, if that is much; the state is changed."""
+    if not len(rows.t):
+        return
+    state, t = dynamics.state, float(rows.t[-1])
+    state.q[:], state.u[:] = rows.q[-1], rows.u[-1]
+    name, lost, at_end = lost_digits(state, t)
+    if not lost > RUN_CHECKS.lost * at_end:
+        return
+    linear = dynamics.system.per_velocity(1.0, 0.0) == 1.0
+    inertia = np.abs(dynamics.system.mass * rows.acceleration)[:, linear]  # forces may vanish at the end of a run
+    largest = max(at_end, float(np.nanmax(inertia, initial=0.0)))
+    if lost > RUN_CHECKS.lost * largest > 0.0:
+        yield LOST_DIGITS(name, lost=lost, largest=largest)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..flexible_bodies.finite_elements import FiniteElements
 from ..flexible_bodies.reduction import ReducedBody
+from ..notes import note_lines
 
 if TYPE_CHECKING:
     from ..results.flexible_motion import FlexibleMotion
@@ -44,7 +45,7 @@ def flexible_body_text(name: str, body: ReducedBody, interfaces: Sequence[str], 
         _line("effective", f"{', '.join(f'{100 * part:.1f} %' for part in body.effective_mass.sum(axis=0))} of the mass along x, y, z "
               "in the normal modes"),
         _line("condition", f"{body.condition:.2g} of the mass matrix of all modes"),
-        *(f"note: {note}" for note in _notes(body)),
+        *note_lines(_notes(body)),
     ]  # fmt: skip
     return "\n".join(lines)
 

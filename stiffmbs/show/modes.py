@@ -13,6 +13,7 @@ from ..compile.bodies import BODY_KINDS
 from ..linear_analysis.modes import Mode, Motion
 from ..linear_analysis.transfer import Transfer
 from ..model.model_data import ModelData
+from ..notes import note_lines
 from .sections import Section, Table
 
 ACTIONS = "force, torque (N, N m)"
@@ -31,7 +32,7 @@ def equilibrium_text(found: EquilibriumFound, model: ModelData) -> str:
     if states:
         width = max(map(len, states))
         lines += ["states:", *(f"  {name:<{width}}  {found.channels[name]:>14.8g}" for name in states)]
-    return "\n".join([*lines, *(f"note: {note}" for note in found.notes)])
+    return "\n".join([*lines, *note_lines(found.notes)])
 
 
 def equilibrium_section(found: EquilibriumFound, model: ModelData) -> Section:
@@ -74,8 +75,7 @@ def modes_text(found: Modes) -> str:
         damping = "rigid body" if mode.motion is Motion.RIGID else f"{mode.damping_ratio:.4g}"
         columns_of = f"{k:>4}  {mode.natural_frequency:>12.6g}  {damping:>10}  {_values(mode):<28}"
         rows.append(f"{columns_of}  {', '.join(_bodies(mode))}")
-    notes = [f"note: {note}" for note in found.notes]
-    return "\n".join([head, *([columns, *rows] if rows else []), *notes])
+    return "\n".join([head, *([columns, *rows] if rows else []), *note_lines(found.notes)])
 
 
 def _values(mode: Mode) -> str:
@@ -109,7 +109,7 @@ def response_text(scene: str, found: Transfer, frequencies: np.ndarray, values: 
             for k in (0, *inner.tolist(), len(gain) - 1):
                 mark = "peak" if k in inner else ""
                 lines.append(f"  {frequencies[k]:>10.5g} Hz  {gain[k]:>12.5g}  {phase[k]:>8.2f} deg  {mark}".rstrip())
-    return "\n".join([*lines, *(f"note: {note}" for note in found.notes)])
+    return "\n".join([*lines, *note_lines(found.notes)])
 
 
 def response_as_json(scene: str, found: Transfer, frequencies: np.ndarray, values: np.ndarray) -> str:

@@ -101,6 +101,7 @@ def as_json(scene: str, solution: Solution) -> str:
             "status": STATUS[solution.outcome],
             "message": solution.message,
             "notes": list(solution.notes),
+            "note_details": [note.as_dict() for note in solution.notes],
             "presolve": list(solution.presolve),
             "time": {"start": float(solution.time[0]), "end": float(solution.time[-1])},
             "solver": solution.solver,

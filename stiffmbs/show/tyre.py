@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from ..notes import note_lines
 from ..studies.tyre_curves import CONSTANTS, TyreCurve
 from .style import dress, legend_below, new_sheet, stroke
 
@@ -52,4 +53,4 @@ def tyre_text(title: str, curves: Sequence[TyreCurve], states: Sequence[dict[str
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = [title, *("  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)]
     lines += [", ".join(f"{name} {x + 0.0:.9g}" for name, x in state.items()) for state in states]
-    return "\n".join([*lines, *(f"note: {note}" for note in notes)])
+    return "\n".join([*lines, *note_lines(notes)])

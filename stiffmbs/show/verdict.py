@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..notes import Note
 from ..results.digits import KnownErrors, digits_words, largest_bar
 from ..results.solution import Solution
 from ..solve.trajectory import IN_DOUBT, Outcome
@@ -20,7 +21,7 @@ class Verdict:
     # reliable digits of positions, velocities and forces, relative to the largest value of each body or element; empty
     # if its errors are unknown
     digits: dict[str, int]
-    to_check: tuple[str, ...]  # notes of the run
+    to_check: tuple[Note, ...]  # notes of the run
 
     @property
     def digits_words(self) -> str:

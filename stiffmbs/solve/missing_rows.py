@@ -9,14 +9,16 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import FAILURES
+from ..notes import Note, NoteKind
 from .stiff_rows import lengths_of_steps, with_stiff_forces
 from .trajectory import Trajectory
 
+MISSING = NoteKind("missing-row", "no accelerations and reactions at t = {t:.9g} s (NaN there): {reason}")
 MOST_MISSING = 100
 """Largest number of gaps; the rows end after it."""
 
 
-def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: float) -> tuple[OutputRows, list[str]]:
+def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: float) -> tuple[OutputRows, list[Note]]:
     """Return the output rows of a trajectory, and a note for each row without a solution.
 
     Projections change forces by less than `rtol` of the largest, if possible. A time without a solution between two that
@@ -24,7 +26,7 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: fl
     """
     t, q, u = trajectory.t, trajectory.q, trajectory.u
     parts: list[OutputRows] = [dynamics.report(t, q, u, project)]
-    notes: list[str] = []
+    notes: list[Note] = []
     done = len(parts[0].t)
     while 0 < done < len(t) - 1 and len(notes) < MOST_MISSING:
         status = parts[-1].status
@@ -33,7 +35,7 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: fl
         following = dynamics.report(t[done + 1 :], q[done + 1 :], u[done + 1 :], project)
         pose = dynamics.system.of_body.moved(q[done], np.zeros_like(u[done]))  # quaternions of length 1
         parts += [_unknown(parts[0], t[done], pose, u[done]), following]
-        notes.append(f"no accelerations and reactions at t = {t[done]:.9g} s (NaN there): {FAILURES[status]}")
+        notes.append(MISSING(t=t[done], reason=FAILURES[status]))
         done += 1 + len(following.t)
     return with_stiff_forces(dynamics, (q, u), _joined(parts), lengths_of_steps(trajectory), rtol), notes
 

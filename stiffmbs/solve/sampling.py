@@ -23,6 +23,7 @@ from ..dynamics.initial import InitialValues
 from ..dynamics.storage import FAILURES
 from ..errors import SolverError
 from ..model.settings import RunSettings
+from ..notes import Note, NoteKind, Severity
 from ..reading.files.quoted import MOST_LISTED
 from .events.restart import just_after, restarted
 from .ida.native.parameters import LOOP
@@ -83,11 +84,14 @@ def solved_between_samples(
     return _joined(parts, start, grid, ending)
 
 
-def held(system: System) -> Iterator[str]:
+HELD = NoteKind("sampled-states-held", "sampled states keep their values: {names}", severity=Severity.REMARK)
+
+
+def held(system: System) -> Iterator[Note]:
     """Yield a note on states that an analysis of one instant keeps constant."""
     names = [system.states[k] for k in np.flatnonzero(system.sampled)]
     if names:
-        yield f"sampled states keep their values: {', '.join(names[:4])}{', ...' if len(names) > 4 else ''}"
+        yield HELD(names=", ".join(names[:4]) + (", ..." if len(names) > 4 else ""))
 
 
 def samples(system: System, grid: Grid) -> Iterator[Sample]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..compile.system import System
 from ..model.settings import DEFAULT_POINTS, RunSettings
+from ..notes import Note, NoteKind, Severity
 from ..tuning import changes_in_use
 from . import SOLVERS
 from .solver import Traits
@@ -59,25 +60,34 @@ def output_grid(settings: RunSettings) -> Grid:
     return Grid(start, end, np.linspace(start, end, points))
 
 
-def settings_notes(settings: RunSettings, system: System) -> Iterator[str]:
+TUNED = NoteKind("tuning", "run.tuning changes parameters of solvers or checks: {changes}", severity=Severity.REMARK)
+NOT_LOCATED = NoteKind(
+    "breakpoints-not-located",
+    "{solver} does not locate breakpoints of forces (contacts, step, abs, tables), and steps of {step:g} s may miss them; "
+    "{remedy}",
+    "dopri5, dop853, radau and bdf locate them",
+)
+IGNORED = NoteKind("setting-ignored", "{settings} no effect: {solver} {reads}", severity=Severity.REMARK)
+
+
+def settings_notes(settings: RunSettings, system: System) -> Iterator[Note]:
     """Yield notes on settings without effect and on events that steps may miss."""
     traits = traits_of(settings)
     yield from _ignored(settings, traits)
     if changes := ", ".join(changes_in_use()):
-        yield f"run.tuning changes parameters of solvers or checks: {changes}"
+        yield TUNED(changes=changes)
     if not traits.locates_events and system.n_values("event_function"):
-        yield (
-            f"{traits.name} does not locate breakpoints of forces (contacts, step, abs, tables), and steps of "
-            f"{settings.step:g} s may miss them; dopri5, dop853, radau and bdf locate them"
-        )
+        yield NOT_LOCATED(solver=traits.name, step=settings.step)
 
 
-def _ignored(settings: RunSettings, traits: Traits) -> Iterator[str]:
+def _ignored(settings: RunSettings, traits: Traits) -> Iterator[Note]:
     ignored = traits.ignored(settings)
     if ignored:
         given = [f"{name} = {f'{value:g}' if isinstance(value, float) else value}" for name, value in ignored.items()]
         reads = f"reads {_listed(traits.reads)}" if traits.reads else "uses the drives alone"
-        yield f"{_listed(given)} {'has' if len(given) == 1 else 'have'} no effect: {traits.name} {reads}"
+        yield IGNORED(
+            settings=f"{_listed(given)} {'has' if len(given) == 1 else 'have'}", solver=traits.name, reads=reads
+        )
 
 
 def _listed(words: Sequence[str]) -> str:

@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ..analyses.job import Job
+from ..notes import Note, NoteKind
 from ..results.error_bars import ErrorBar
 from ..results.scales import kind_of
 from ..results.solution import Solution
@@ -19,6 +20,47 @@ from .divergence import Divergence, distance, divergence
 from .missed_events import Along, DenseSamples, SteppedOver, beyond, poses_of
 from .parameters import VERIFICATION
 from .solve_again import Again
+
+BRANCH = NoteKind(
+    "another-branch",
+    "another branch: at t = {pose:.6g} s the mechanism passes a (nearly) singular pose ({where}), where the equations of "
+    "{joints} lose rank and the motion may branch; the runs diverge there ({element} differs from t = {t:.4g} s on). "
+    "Remedy: {remedy}",
+    "a smaller rtol until two runs agree, exact dimensions, or a gear or stop that selects the branch",
+)
+SENSITIVE = NoteKind(
+    "sensitive-motion",
+    "a sensitive (chaotic) motion: {element} differs in {tighter} from t = {t:.4g} s on, and in {tightest} from t = "
+    "{later:.4g} s on; a smaller tolerance only delays the divergence, and the results after it are one of many possible "
+    "motions",
+)
+NOT_RESOLVED = NoteKind(
+    "motion-not-resolved",
+    "the motion is not resolved: from t = {t:.4g} s on {element} differs in {other}",
+    "tighten {setting} until two runs agree",
+)
+UNCERTAIN_PEAKS = NoteKind("uncertain-peaks", "error bars of peaks are large: {peaks}", "{effect}")
+PEAKS_BETWEEN = NoteKind(
+    "peaks-between-outputs",
+    "peaks lie between the output times: {element} reaches {value:.4g} at t = {t:.6g} s, but {reported:.4g} at output "
+    "times{more}",
+    "use a smaller output interval, or points: steps",
+)
+STEPS_MISS = NoteKind(
+    "steps-miss-events",
+    "runs diverge because some steps miss events, not because of the tolerance: this run agrees with {run}, others do not",
+    "set max_step to this value",
+)
+STEP_LENGTH = NoteKind(
+    "step-length",
+    "the results depend on the step length: {different} in {run}, but not at a smaller tolerance alone",
+    "set max_step to this value, and reduce it until two runs agree",
+)
+STEPPED_OVER = NoteKind(
+    "stepped-over",
+    "missed event: {whose} at t = {t:.6g} s within a step that does not contain its force; {known}",
+    "set max_step to {max_step:.1g} s or less",
+)
 
 
 @dataclass(frozen=True)
@@ -78,20 +120,20 @@ class Comparison:
         return bool(self.uncertain) or any(self.divergences())
 
 
-def diagnostics(comparison: Comparison) -> Iterator[str]:
-    """Yield a sentence on each doubt; nothing if the runs agree."""
+def diagnostics(comparison: Comparison) -> Iterator[Note]:
+    """Yield a note on each doubt; nothing if the runs agree."""
     divergences = comparison.divergences()
     met = [found for found in divergences if found is not None]
     if met:
-        yield _divergence_sentence(comparison, divergences, min(met, key=lambda found: found.t))
+        yield _divergence_note(comparison, divergences, min(met, key=lambda found: found.t))
     if comparison.uncertain:
-        yield _uncertain_sentence(comparison, parted=bool(met))
+        yield _uncertain_note(comparison, parted=bool(met))
     missed = _missed(comparison)
     if missed and not met:
-        yield _missed_sentence(comparison, missed)
+        yield _missed_note(comparison, missed)
 
 
-def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | None], first: Divergence) -> str:
+def _divergence_note(comparison: Comparison, divergences: list[Divergence | None], first: Divergence) -> Note:
     solution = comparison.between.solution if comparison.between else comparison.first
     pose = poses_of(comparison.job, solution).nearest(first.begun, first.t)
     settings = comparison.job.settings
@@ -100,12 +142,7 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
             f"{body} at {words}"
             for body, words in zip(pose.bodies[: VERIFICATION.named], pose.poses[: VERIFICATION.named], strict=True)
         )
-        return (
-            f"another branch: at t = {pose.t:.6g} s the mechanism passes a (nearly) singular pose ({where}), where "
-            f"the equations of {', '.join(pose.joints)} lose rank and the motion may branch; the runs "
-            f"diverge there ({first.body} differs from t = {first.t:.4g} s on). Remedy: a smaller rtol until two runs "
-            "agree, exact dimensions, or a gear or stop that selects the branch"
-        )
+        return BRANCH(first.body, pose=pose.t, where=where, joints=", ".join(pose.joints), t=first.t)
     others = [comparison.other.name] if comparison.other else []
     names = ["this run", *(run.name for run in comparison.tighter), *others]
     of_levels = divergences[: len(comparison.tighter)]
@@ -113,25 +150,20 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
         begin = comparison.job.grid.start
         later = of_levels[1].t - begin
         if later < VERIFICATION.sensitive * (of_levels[0].t - begin):
-            return (
-                f"a sensitive (chaotic) motion: {of_levels[0].body} differs in {names[1]} from t = {of_levels[0].t:.4g} s on, "
-                f"and in {names[2]} from t = {of_levels[1].t:.4g} s on; a smaller tolerance only delays "
-                "the divergence, and the results after it are one of many possible motions"
+            return SENSITIVE(
+                of_levels[0].body, tighter=names[1], t=of_levels[0].t, tightest=names[2], later=of_levels[1].t
             )
-    remedy = f"tighten {'the step' if traits_of(settings).fixed_steps else 'rtol'}"
+    setting = "the step" if traits_of(settings).fixed_steps else "rtol"
     other = names[1] if of_levels and of_levels[0] else names[-1]
-    return (
-        f"the motion is not resolved: from t = {first.t:.4g} s on {first.body} differs in {other}; {remedy} until "
-        "two runs agree"
-    )
+    return NOT_RESOLVED(first.body, t=first.t, other=other, setting=setting)
 
 
-def _uncertain_sentence(comparison: Comparison, parted: bool) -> str:
+def _uncertain_note(comparison: Comparison, parted: bool) -> Note:
     worst = list(comparison.uncertain)[: VERIFICATION.named]
     peaks = ", ".join(_peak(comparison, name) for name in worst)
     more = len(comparison.uncertain) - len(worst)
     others = f" and {more} more channels" if more else ""
-    return f"error bars of peaks are large: {peaks}{others}; {_remedy(comparison, worst[0], parted)}"
+    return UNCERTAIN_PEAKS(worst[0], peaks=peaks + others, effect=_remedy(comparison, worst[0], parted))
 
 
 def _peak(comparison: Comparison, name: str) -> str:
@@ -177,7 +209,7 @@ def _missed(comparison: Comparison) -> list[str]:
     return sorted((name for name, part in parts.items() if part > VERIFICATION.blown_up), key=lambda name: -parts[name])
 
 
-def _missed_sentence(comparison: Comparison, missed: list[str]) -> str:
+def _missed_note(comparison: Comparison, missed: list[str]) -> Note:
     name = missed[0]
     assert comparison.between is not None
     times, values, at = comparison.between.fine(name)
@@ -186,14 +218,11 @@ def _missed_sentence(comparison: Comparison, missed: list[str]) -> str:
     k = int(np.nanargmin(values) if low else np.nanargmax(values))
     reported = np.nanmin(values[at]) if low else np.nanmax(values[at])
     more = f", and {len(missed) - 1} more channels" if len(missed) > 1 else ""
-    return (
-        f"peaks lie between the output times: {name} reaches {values[k]:.4g} at t = {times[k]:.6g} s, but "
-        f"{reported:.4g} at output times{more}; use a smaller output interval, or points: steps"
-    )
+    return PEAKS_BETWEEN(name, value=values[k], t=times[k], reported=reported, more=more)
 
 
-def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[str]:
-    """Yield a sentence on missed events, else on different runs with shorter steps, else on an open energy balance.
+def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[Note]:
+    """Yield a note on missed events, else on different runs with shorter steps, else on an open energy balance.
 
     `comparison`: of the run with others. `along`: result of sampling along the run. `shorter`: rerun with a shorter
     longest step.
@@ -203,17 +232,11 @@ def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None
         return
     if by_luck(comparison, shorter):
         assert shorter is not None
-        yield (
-            "runs diverge because some steps miss events, not because of the tolerance: this run agrees with "
-            f"{shorter.name}, others do not; set max_step to this value"
-        )
+        yield STEPS_MISS(run=shorter.name)
         return
     different = _different(comparison, shorter)
     if shorter is not None and different:
-        yield (
-            f"the results depend on the step length: {different} in {shorter.name}, but not at a smaller tolerance alone; "
-            "set max_step to this value, and reduce it until two runs agree"
-        )
+        yield STEP_LENGTH(different=different, run=shorter.name)
 
 
 def by_luck(comparison: Comparison, shorter: Again | None) -> bool:
@@ -236,13 +259,10 @@ def _parts(comparison: Comparison, channels: Mapping[str, np.ndarray], shorter: 
     return f"from t = {found.t:.4g} s on {found.body} differs" if found is not None else ""
 
 
-def _stepped_over(comparison: Comparison, found: SteppedOver, shorter: Again | None) -> str:
+def _stepped_over(comparison: Comparison, found: SteppedOver, shorter: Again | None) -> Note:
     whose = f"'{found.element}' acts" if found.element else "something acts"
     known = _off(comparison, shorter) or "the errors after it are unknown, and there are no error bars"
-    return (
-        f"missed event: {whose} at t = {found.at:.6g} s within a step that does not contain its force; {known}; "
-        f"set max_step to {found.max_step:.1g} s or less"
-    )
+    return STEPPED_OVER(found.element, whose=whose, t=found.at, known=known, max_step=found.max_step)
 
 
 def _off(comparison: Comparison, shorter: Again | None) -> str:

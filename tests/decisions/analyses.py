@@ -116,9 +116,7 @@ def largest_acceleration_at_rest():
 
     def is_silent(acceleration):
         found = Record(acceleration=np.array([acceleration]), redundancy=Record(degrees_of_freedom=1), **given)
-        with patch.multiple(
-            modes, derivative_sentences=lambda *_: (), held=lambda _: (), rotation_as_one=lambda *_: None
-        ):
+        with patch.multiple(modes, derivative_notes=lambda *_: (), held=lambda _: (), rotation_as_one=lambda *_: None):
             return not [*modes._notes(found, state)]
 
     return count_while(lambda acceleration: is_silent(1e-8 * acceleration), DOUBLES)
@@ -214,11 +212,11 @@ def steps_over_a_feature(shortest):
     steps = []
     left = iter([None])
     replaced = {
-        "_overlooked": lambda *_: next(left), "replace": lambda *_, **__: None,
+        "_overlooked": lambda *_: next(left), "_noted": lambda found, _: found, "replace": lambda *_, **__: None,
         "changed": lambda _, changes: steps.append(changes["max_step"]),
     }  # fmt: skip
-    found = Record(trajectory=Record(outcome=None), doubts=())
-    seen = Record(shortest=shortest, sentence=lambda: "")
+    found = Record(trajectory=Record(outcome=None))
+    seen = Record(shortest=shortest, note=nothing)
     with patch.multiple(rerun, **replaced):
         rerun._with_shorter_steps(Record(grid=Record(start=0.0, end=1.0), settings=None), lambda _: found, found, seen)
     return steps
@@ -230,10 +228,12 @@ def reruns(times):
 
     def compute(_):
         computed.append(len(computed))
-        return Record(trajectory=Record(outcome=None), doubts=())
+        return Record(trajectory=Record(outcome=None))
 
-    missed = Record(times=np.arange(float(times)), sentence=str)
-    with patch.multiple(rerun, _overlooked=lambda *_: missed, replace=lambda *_, **__: None):
+    missed = Record(times=np.arange(float(times)), note=nothing)
+    with patch.multiple(
+        rerun, _overlooked=lambda *_: missed, _noted=lambda found, _: found, replace=lambda *_, **__: None
+    ):
         rerun.rerun_after_missed_events(Record(grid=None, dynamics=Record(system=Record(has_functions=False))), compute)
     return len(computed)
 
@@ -248,7 +248,7 @@ def with_exact_constraints(*drifts):
 
     with patch.multiple(
         rerun, _compared=lambda *_: (), relaxed=lambda _: True, drifts=lambda *_: True, exactly=lambda _: None,
-        _drift=lambda *_: Record(mean=next(means), at_end=0.0, sentence=str), _noted=lambda found, _: found,
+        _drift=lambda *_: Record(mean=next(means), at_end=0.0, note=nothing), _noted=lambda found, _: found,
     ):  # fmt: skip
         found = rerun.on_exact_constraints(None, compute)
     return len(computed), found.number
@@ -281,7 +281,7 @@ def branches():
     dynamics = Record(system=Record(states=[]), state=Record(q=np.zeros(1)))
     with patch.multiple(
         settled, find_equilibrium=lambda *_: pose, _directions=lambda *_: (np.ones(1), []), _branch=lambda *_: pose,
-        _branch_sentence=lambda *_: "", _family=lambda _: (), _settled=lambda _dynamics, _found, _start, notes, *_: len(notes) - 1,
+        _branch_note=lambda *_: "", _family=lambda _: (), _settled=lambda _dynamics, _found, _start, notes, *_: len(notes) - 1,
     ):  # fmt: skip
         return settled.settled(dynamics, Record(q=np.zeros(1)), 0.0)
 

@@ -18,7 +18,7 @@ from stiffmbs.redundancy import (
     uniqueness,
 )
 from stiffmbs.redundancy.loop_equations import LoopEquations
-from stiffmbs.redundancy.messages.redundancy import pose_sentences
+from stiffmbs.redundancy.messages.redundancy import pose_notes
 from stiffmbs.redundancy.overconstraint import listed
 from tests.decisions.common import Reached, Record, always, nothing
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
@@ -26,9 +26,9 @@ from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
 def agreeing(gap):
     """Return whether no sentence is on redundant equations that agree to a gap only."""
-    rank = Record(equations=Record(loop=Record(joints=[])), start=Record(gap=gap))
+    rank = Record(equations=Record(loop=Record(joints=[Record(name="j")])), start=Record(gap=gap))
     result = Record(rank=rank, redundant=[1], nearly_dependent=False, motion_unique=True)
-    return not [*pose_sentences(Record(rank_results=[result]))]
+    return not [*pose_notes(Record(rank_results=[result]))]
 
 
 def assembled(violation=1.0, slope=1.0, step=1e-3):

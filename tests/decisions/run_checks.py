@@ -15,7 +15,6 @@ from stiffmbs.run_checks import (
     growth,
     left_tables,
     locked,
-    lost_digits,
     motion,
     overlooked,
     singular_poses,
@@ -55,8 +54,8 @@ def largest_loss():
     dynamics = Record(state=Record(q=np.zeros(1), u=np.zeros(1)), system=system)
 
     def is_silent(lost):
-        with patch.object(lost_digits, "lost_digits", lambda *_: ("k", lost, 1.0)):
-            return silent(lost_digits.lost_digits_sentence(dynamics, rows))
+        with patch.object(uncertain_forces, "lost_digits", lambda *_: ("k", lost, 1.0)):
+            return silent(uncertain_forces.lost_digits_notes(dynamics, rows))
 
     return count_while(lambda lost: is_silent(1e-6 * lost), DOUBLES)
 
@@ -72,7 +71,7 @@ def contradiction_in_a_step_of_order_1():
         rows = Record(t=ends, q=zeros, u=zeros, acceleration=np.array([[1.0], [off]]))
         replaced = {"stiffness_at": lambda *_: Record(long_step=0.0), "largest_force": lambda *_: 1.0}
         with patch.multiple(uncertain_forces, **replaced):
-            return silent(uncertain_forces.coarse_forces_sentence(dynamics, trajectory, rows))
+            return silent(uncertain_forces.coarse_forces_notes(dynamics, trajectory, rows))
 
     return count_while(is_silent, 1e-3 * DOUBLES)
 
@@ -82,7 +81,7 @@ def lost_force():
     scene = """
     {bodies: {a: {mass: 1, inertia: 1, position: [1, 0]}}, forces: {k: {type: spring_damper, i: a, j: ground, stiffness: 1e9, free_length: 1}}}
     """
-    return lost_digits.lost_digits(prepare(stiffmbs.read_scene(scene)).dynamics.state, 0.0).lost
+    return uncertain_forces.lost_digits(prepare(stiffmbs.read_scene(scene)).dynamics.state, 0.0).lost
 
 
 def geometric_stiffness_without_note():
@@ -112,7 +111,7 @@ def widest_gap(on_constraints):
         rows = Record(
             position_violation=np.array([gap]), q=np.zeros((1, 1)), u=np.zeros((1, 1)), t=np.zeros(1)
         )  # fmt: skip
-        return not growth._open_joint(dynamics, rows, on_constraints)
+        return silent(growth._open_joint(dynamics, rows, on_constraints))
 
     return count_while(lambda gap: accepted(1e-8 * gap), DOUBLES)
 
@@ -164,7 +163,7 @@ def largest_turn():
 
     def is_silent(apart):
         with patch.multiple(motion, _apart=lambda *_: np.array([[apart]]), writer=lambda *_: "j"):
-            return silent(motion.missed_revolutions_sentence(Record(system=system, state=None), rows))
+            return silent(motion.missed_revolutions_notes(Record(system=system, state=None), rows))
 
     return count_while(lambda apart: is_silent(0.01 * apart), DOUBLES)
 
@@ -267,7 +266,7 @@ def instants_of_a_dip():
     }  # fmt: skip
     rows = Record(log_determinant=None, t=np.arange(3.0), q=None)
     with patch.multiple(singular_poses, **replaced):
-        list(singular_poses.singular_passage_sentence(Record(system=None), rows, 1e-6, again))
+        list(singular_poses.singular_passage_notes(Record(system=None), rows, 1e-6, again))
     return asked[0]
 
 
@@ -306,7 +305,7 @@ def poses_of_a_motion():
 
 def pose_note(rtol):
     pose = singular_poses.SingularPose(0.0, ("j",), (), ())
-    return [*singular_poses._sentence(pose, 1.0, rtol)]
+    return [*singular_poses._notes(pose, 1.0, rtol)]
 
 
 DECISIONS = {

@@ -89,7 +89,7 @@ def converges(ratio):
 def named_channels():
     comparison = Record(uncertain=dict.fromkeys("abcdefghijkl", 1.0))
     with patch.multiple(diagnostics, _peak=lambda *_: "peak", _remedy=lambda *_: ""):
-        return diagnostics._uncertain_sentence(comparison, False).split(";")[0].count("peak") - 1
+        return diagnostics._uncertain_note(comparison, False).split(";")[0].count("peak") - 1
 
 
 def is_chaotic(delay):
@@ -100,7 +100,7 @@ def is_chaotic(delay):
         between=None, first=None, other=None, tighter=runs, job=Record(settings=SETTINGS, grid=Record(start=0.0))
     )  # fmt: skip
     with patch.object(diagnostics, "poses_of", lambda *_: Record(nearest=nothing_near)):
-        return "chaotic" in diagnostics._divergence_sentence(comparison, found, found[0])
+        return "chaotic" in diagnostics._divergence_note(comparison, found, found[0])
 
 
 def nothing_near(*_):

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from stiffmbs.run_checks.uncertain_forces import coarse_forces_sentence
+from stiffmbs.run_checks.uncertain_forces import coarse_forces_notes
 from stiffmbs.tuning import in_use
 
 
@@ -19,7 +19,7 @@ def test_many_rows_are_read_in_blocks():
     dynamics = SimpleNamespace(system=SimpleNamespace(mass=np.ones(width)))
     with in_use({"storage": {"block": 100}}):
         tracemalloc.start()
-        assert not [*coarse_forces_sentence(dynamics, trajectory, rows)]
+        assert not [*coarse_forces_notes(dynamics, trajectory, rows)]
         _, peak = tracemalloc.get_traced_memory()
         tracemalloc.stop()
     assert peak < 0.5 * rows.u.nbytes

@@ -14,8 +14,9 @@ from ...errors import InputError, SolverError
 from ...linear_analysis.modes import Mode, Motion, natural_modes
 from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...model.settings import RunSettings, Settings, takes_settings
+from ...notes import Note, NoteKind, Severity
 from ...reading.files.quoted import MOST_LISTED
-from ...redundancy.messages.redundancy import derivative_sentences
+from ...redundancy.messages.redundancy import derivative_notes
 from ...results.energy_balance import energy_balance
 from ...results.solution import Solution
 from ...solve.sampling import held
@@ -145,48 +146,65 @@ def _of_state(found: AtState) -> Modes:
     shapes = tuple(natural_modes(state, linear.mass, system.bodies, scale))
     sides = () if kink is None else tuple(state_matrix(side, scale) for side in kink.sides)
     of_sides = [natural_modes(side, linear.mass, system.bodies, scale) for side in sides]
-    notes = (*_notes(found, state), *([] if kink is None else [_kink_sentence(kink, of_sides)]))
+    notes = (*_notes(found, state), *([] if kink is None else [_kink_note(kink, of_sides)]))
     return Modes(
         found.data.name, found.t, state.degrees_of_freedom, shapes, state, notes, found, linear.own_axes, sides
     )
 
 
-def _kink_sentence(kink: Kink, sides: list[list[Mode]]) -> str:
-    """Return a sentence with the eigenvalues of both sides of a breakpoint, those that differ most."""
+KINK = NoteKind(
+    "state-on-breakpoint",
+    "the state lies on a breakpoint of a force on {element}, or within a millionth of the mechanism's size of one: the modes "
+    "are those of one side; eigenvalues: {one} on one side, {other} on the other",
+)
+NO_EQUILIBRIUM = NoteKind(
+    "modes-of-a-motion",
+    "the state at t = {t:g} s is not an equilibrium: {element} = {value:.3g}; the frequencies hold at this time only, and in "
+    "coordinates that measure displacements in sizes of the mechanism ({size:.3g} m) and rotations in rad: other coordinates "
+    "have others",
+)
+ROTATING = NoteKind(
+    "modes-in-ground-axes",
+    "all bodies rotate as one, and the modes are in ground axes; those in the rotating frame are the eigenvalues of "
+    "stiffmbs.equilibrium(..., motion=SteadyMotion(rotation={rotation}, about={about}))",
+)
+ROLLING = NoteKind(
+    "rolling-modes",
+    "nonholonomic constraints, such as rolling, leave {ways} without a free velocity; zero eigenvalues of these are not modes",
+    severity=Severity.REMARK,
+)
+SINGULAR = NoteKind(
+    "modes-at-singular-pose", "the state is a singular pose: {extra} more degrees of freedom than elsewhere"
+)
+
+
+def _kink_note(kink: Kink, sides: list[list[Mode]]) -> Note:
+    """Return a note with the eigenvalues of both sides of a breakpoint, those that differ most."""
     pairs = [(a.eigenvalues[0], b.eigenvalues[0]) for a, b in zip(*sides, strict=False)]
     none = GROWING * max((abs(each) for pair in pairs for each in pair), default=0.0) or 1.0
     pairs.sort(key=lambda pair: -abs(pair[0] - pair[1]) / (abs(pair[0]) + abs(pair[1]) + none))
     listed = [", ".join(f"{pair[k]:.4g}" for pair in pairs[:MOST_LISTED]) for k in (0, 1)]
-    return (
-        f"the state lies on a breakpoint of a force on {kink.where}, or within a millionth of the mechanism's size of one: the modes "
-        f"are those of one side; eigenvalues: {listed[0]} on one side, {listed[1]} on the other"
-    )
+    return KINK(kink.where, one=listed[0], other=listed[1])
 
 
-def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
+def _notes(found: AtState, state: StateMatrix) -> Iterator[Note]:
     system = found.dynamics.system
     sizes = np.abs(found.acceleration) * system.per_velocity(1.0, system.size)
     if sizes.size and sizes.max() > AT_REST * (float(np.linalg.norm(found.data.gravity)) or 1.0):
         most = int(np.argmax(sizes))
-        yield (
-            f"the state at t = {found.t:g} s is not an equilibrium: {system.name_of(most, system.of_body.accelerations)} = "
-            f"{found.acceleration[most]:.3g}; the frequencies hold at this time only, and in coordinates that measure displacements in "
-            f"sizes of the mechanism ({system.size:.3g} m) and rotations in rad: other coordinates have others"
-        )
+        name = system.name_of(most, system.of_body.accelerations)
+        yield NO_EQUILIBRIUM(name, t=found.t, value=found.acceleration[most], size=system.size)
         turning = rotation_as_one(found.data, found.dynamics, found.dynamics.state.u)
         if turning is not None and not system.has_coupled_inertia:
-            yield (
-                "all bodies rotate as one, and the modes are in ground axes; those in the rotating frame are the eigenvalues of "
-                f"stiffmbs.equilibrium(..., motion=SteadyMotion(rotation={turning[0]}, about={turning[1]}))"
-            )
+            yield ROTATING(rotation=turning[0], about=turning[1])
     rolling = state.n_poses - state.degrees_of_freedom
     if rolling:
         ways = "one pose variation" if rolling == 1 else f"{rolling} pose variations"
-        yield f"nonholonomic constraints, such as rolling, leave {ways} without a free velocity; zero eigenvalues of these are not modes"
+        yield ROLLING(ways=ways)
     extra = state.degrees_of_freedom - found.redundancy.degrees_of_freedom
     if extra > 0:
-        yield f"the state is a singular pose: {extra} more degrees of freedom than elsewhere"
-    yield from derivative_sentences(found.redundancy, ())
+        yield SINGULAR(extra=extra)
+    yield from derivative_notes(found.redundancy, ())
     yield from held(system)
 
 

@@ -18,7 +18,7 @@ from ...linear_analysis.transfer import Input, Transfer, effect
 from ...model.model_data import ModelData
 from ...model.settings import RunSettings, Settings, takes_settings
 from ...reading.did_you_mean import did_you_mean
-from ...redundancy.messages.redundancy import derivative_sentences
+from ...redundancy.messages.redundancy import derivative_notes
 from ...results.channels import channels_of
 from ...tuning import in_use
 from ..job import Runnable, prepare
@@ -114,7 +114,7 @@ def _of_state(
         inputs=tuple(inputs),
         outputs=tuple(outputs),
         at=at_zero,
-        notes=tuple(derivative_sentences(found.redundancy, outputs)),
+        notes=tuple(derivative_notes(found.redundancy, outputs)),
     )
 
 

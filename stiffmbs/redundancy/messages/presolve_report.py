@@ -11,6 +11,7 @@ import numpy as np
 from ...compile.coordinates import FIXED, Coordinates
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
+from ...notes import Note, NoteKind
 from ...solve.subsystems import Subsystem
 from ..overconstraint import listed
 from ..redundancy import Redundancy
@@ -101,7 +102,7 @@ class StructureNotes(NamedTuple):
     that the presolve removes. `not_unique`: channels of the reactions without a unique value.
     """
 
-    of_joints: tuple[str, ...]
+    of_joints: tuple[Note, ...]
     of_presolve: tuple[str, ...]
     not_unique: tuple[str, ...]
 
@@ -112,23 +113,26 @@ def structure_notes(redundancy: Redundancy, subsystems: Sequence[Subsystem], dyn
 
 
 def _found(redundancy: Redundancy, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> StructureNotes:
-    redundant: Iterable[str] = ()
+    redundant: Iterable[Note] = ()
     if redundancy.rank_results:
-        from .redundancy import note_sentences
+        from .redundancy import redundancy_notes
 
-        redundant = note_sentences(redundancy)
+        redundant = redundancy_notes(redundancy)
     return StructureNotes(
-        (*redundant, *unconnected_sentence(dynamics.system)),
+        (*redundant, *unconnected_notes(dynamics.system)),
         tuple(presolve_sentences(dynamics.system, subsystems, dynamics)),
         redundancy.not_unique,
     )
 
 
-def unconnected_sentence(system: System) -> Iterator[str]:
-    """Yield a sentence on unconnected bodies, if others are connected."""
+UNCONNECTED = NoteKind("unconnected", "{names} not connected: no joint and no force except gravity acts there")
+
+
+def unconnected_notes(system: System) -> Iterator[Note]:
+    """Yield a note on unconnected bodies, if others are connected."""
     if alone := _unconnected(system):
         names = f"{', '.join(alone[:-1])} and {alone[-1]} are" if len(alone) > 1 else f"{alone[0]} is"
-        yield f"{names} not connected: no joint and no force except gravity acts there"
+        yield UNCONNECTED(alone[0], names=names)
 
 
 def _unconnected(system: System) -> tuple[str, ...]:

@@ -6,13 +6,36 @@ import math
 from collections.abc import Collection, Iterator, Sequence
 
 from ...errors import AssemblyError
+from ...notes import Note, NoteKind, Severity
 from ..overconstraint import Overconstraint, listed, overconstraints
 from ..parameters import REDUNDANCY
 from ..redundancy import Redundancy
 from ..uniqueness import Direction, Indeterminate, unproven
 
-MOTION_NOT_UNIQUE = "the motion is not unique either"
 STOPS_WHERE = "stops where formulas or tables make these equations independent"
+OVERCONSTRAINED = NoteKind("redundant-equations", "{reason}; left out: {equations}{where}", severity=Severity.REMARK)
+NOT_UNIQUE = NoteKind(
+    "reactions-not-unique", "rigid bodies do not determine {channels}: the values shown are one possible solution"
+)
+DERIVATIVES = NoteKind(
+    "derivatives-not-unique",
+    "rigid bodies do not determine {channels}: the derivatives are those of one possible solution",
+)
+NEARLY_DEPENDENT = NoteKind(
+    "nearly-dependent-equations",
+    "the equations of {joints} are nearly dependent (smallest singular value {least:.1g}), and the motion depends on the "
+    "last digits of the geometry; {remedy}",
+    "expected equations that are exactly dependent or clearly independent",
+)
+DISAGREE = NoteKind(
+    "redundant-equations-disagree",
+    "the redundant equations of {joints} agree only to {gap:.1g} of the size: the equations left out keep this error",
+)
+NO_UNIQUE_MOTION = NoteKind(
+    "motion-not-unique",
+    "friction, a formula or the rate of a state depends on reactions of {joints} that are not unique, so "
+    "the motion is not unique either",
+)
 
 
 def known_near_start(case: Overconstraint, redundancy: Redundancy) -> bool:
@@ -89,40 +112,35 @@ def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
     )
 
 
-def derivative_sentences(redundancy: Redundancy, channels: Collection[str]) -> Iterator[str]:
-    """Yield the sentences on derivatives of channels: those of reactions without a unique value, and of a motion without."""
+def derivative_notes(redundancy: Redundancy, channels: Collection[str]) -> Iterator[Note]:
+    """Yield the notes on derivatives of channels: those of reactions without a unique value, and of a motion without."""
     if found := [name for name in redundancy.not_unique if name in channels]:
-        yield f"rigid bodies do not determine {listed(found)}: the derivatives are those of one possible solution"
-    yield from (sentence for sentence in pose_sentences(redundancy) if sentence.endswith(MOTION_NOT_UNIQUE))
+        yield DERIVATIVES(found[0], channels=listed(found))
+    yield from (note for note in pose_notes(redundancy) if note.kind == NO_UNIQUE_MOTION.name)
 
 
-def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
-    """Yield sentences on nearly dependent equations and on friction with indeterminate loads."""
+def pose_notes(redundancy: Redundancy) -> Iterator[Note]:
+    """Yield notes on nearly dependent equations and on friction with indeterminate loads."""
     for rank_result in redundancy.rank_results:
-        joints = [joint.name for joint in rank_result.rank.equations.loop.joints]
+        names = [joint.name for joint in rank_result.rank.equations.loop.joints]
+        first, joints = names[0], listed(names)
         if rank_result.nearly_dependent and not rank_result.inconsistencies:
-            yield (
-                f"the equations of {listed(joints)} are nearly dependent (smallest singular value {rank_result.rank.least:.1g}), and the motion "
-                "depends on the last digits of the geometry; expected equations that are exactly dependent or clearly independent"
-            )
+            yield NEARLY_DEPENDENT(first, joints=joints, least=rank_result.rank.least)
         if rank_result.redundant and REDUNDANCY.closed < rank_result.rank.start.gap <= REDUNDANCY.agrees:
-            yield (
-                f"the redundant equations of {listed(joints)} agree only to {rank_result.rank.start.gap:.1g} of the size: the equations left out "
-                "keep this error"
-            )
+            yield DISAGREE(first, joints=joints, gap=rank_result.rank.start.gap)
         if not rank_result.motion_unique:
-            yield f"friction, a formula or the rate of a state depends on reactions of {listed(joints)} that are not unique, so {MOTION_NOT_UNIQUE}"
+            yield NO_UNIQUE_MOTION(first, joints=joints)
 
 
-def note_sentences(redundancy: Redundancy) -> Iterator[str]:
-    """Yield the sentences of a run: dropped equations, and channels without a unique value."""
+def redundancy_notes(redundancy: Redundancy) -> Iterator[Note]:
+    """Yield the notes of a run: dropped equations, and channels without a unique value."""
     for case in overconstraints(redundancy):
         where = f"; the run {STOPS_WHERE}" if known_near_start(case, redundancy) else ""
-        yield f"{case.reason}; left out: {_omitted(case)}{where}"
+        yield OVERCONSTRAINED(case.redundant[0][0], reason=case.reason, equations=_omitted(case), where=where)
     if redundancy.indeterminate:
         words = channel_words(redundancy.indeterminate)
-        yield f"rigid bodies do not determine {words}: the values shown are one possible solution"
-    yield from pose_sentences(redundancy)
+        yield NOT_UNIQUE(redundancy.indeterminate[0].element, channels=words)
+    yield from pose_notes(redundancy)
 
 
 def channel_words(parts: Sequence[Indeterminate]) -> str:

@@ -12,6 +12,7 @@ from ...dynamics.dynamics import Dynamics, OutputRows
 from ...dynamics.storage import STORAGE, blocks, release
 from ...errors import SolverError
 from ...model.settings import RunSettings
+from ...notes import Note, NoteKind
 from ...tuning import tuned
 from ..events.native.parameters import INDISTINCT
 from ..suspect import suspect
@@ -44,6 +45,10 @@ class RelaxationParameters:
 RELAXATION = tuned("relaxation", RelaxationParameters())
 
 
+DRIFT = "the reactions in '{element}' cause constraint drift (formulation SI2): an error of {velocity} of {drift:.2g} tolerances"
+"""Text of notes on drift."""
+
+
 class Drift(NamedTuple):
     """Constraint drift of the velocities of a run, in units of their tolerances.
 
@@ -57,13 +62,10 @@ class Drift(NamedTuple):
     velocity: str
     joint: str
 
-    def sentence(self) -> str:
-        """Return a clause that describes the drift."""
-        seen = self.mean >= self.at_end
-        return (
-            f"the reactions in '{self.joint}' cause constraint drift (formulation SI2): an error of "
-            f"{self.velocity if seen else 'velocities'} of {max(self.mean, self.at_end):.2g} tolerances"
-        )
+    def note(self, kind: NoteKind, reason: str = "") -> Note:
+        """Return a note that describes the drift, whose kind says what was done about it."""
+        velocity = self.velocity if self.mean >= self.at_end else "velocities"
+        return kind(self.joint, velocity=velocity, drift=max(self.mean, self.at_end), reason=reason)
 
 
 def relax(dynamics: Dynamics, settings: RunSettings, t: float, factor: float = 1.0) -> None:

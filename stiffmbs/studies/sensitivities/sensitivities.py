@@ -13,7 +13,7 @@ from ...analyses.job import Job, Runnable, prepare
 from ...dynamics.dynamics import OutputRows
 from ...errors import InputError, SolverError
 from ...model.settings import RunSettings
-from ...redundancy.messages.redundancy import derivative_sentences
+from ...redundancy.messages.redundancy import derivative_notes
 from ...results.channels import channels_of
 from ...sensitivity_equations.along_run import AlongRun, Instant, Side
 from ...sensitivity_equations.recorded import SENSITIVITIES, STAGES, Recorder
@@ -242,7 +242,7 @@ class DifferentiatedRun:
         formulas = [Formula(output.text, rows.t, channels) for output in outputs]
         slopes = self._slopes(channels, np.unique(np.concatenate([formula.instants() for formula in formulas])))
         redundancy = self._job.redundancy
-        notes = [tuple(derivative_sentences(redundancy, output.channels)) for output in outputs]
+        notes = [tuple(derivative_notes(redundancy, output.channels)) for output in outputs]
         return [self._of_formula(formula, slopes, own) for formula, own in zip(formulas, notes, strict=True)]
 
     def _of_formula(self, formula: Formula, slopes: dict[str, np.ndarray], notes: tuple[str, ...]) -> Sensitivity:
