@@ -13,7 +13,7 @@ from typing import Any
 
 
 class Severity(Enum):
-    """What a note means for the results."""
+    """Meaning of a note for the results."""
 
     REMARK = "what the program did, or what a model contains; the results are not in question"
     WARNING = "results may be less accurate than the tolerance, or may not be those of the model that was meant"

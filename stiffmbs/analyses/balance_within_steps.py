@@ -14,7 +14,7 @@ from ..results.energy_balance_notes import PER_TOLERANCE, is_broken
 from ..solve import SOLVERS
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.missing_rows import reported
-from ..solve.settings import changed, near_constraints, traits_of
+from ..solve.settings import near_constraints, traits_of
 from ..solve.trajectory import Outcome, Trajectory
 from .job import Job
 
@@ -58,7 +58,7 @@ def _of_one_solver(job: Job, trajectory: Trajectory) -> Job:
     """Return a job with the solver that `auto` chose for the whole run; for a part of the run it may choose another one."""
     solver = trajectory.solver
     chosen = job.settings.solver == "auto" and solver in SOLVERS
-    return replace(job, settings=changed(job.settings, {"solver": solver})) if chosen else job
+    return job.varied({"solver": solver}) if chosen else job
 
 
 def _steps(job: Job, trajectory: Trajectory, rows: OutputRows, nodes: int) -> np.ndarray:
@@ -100,8 +100,7 @@ def _at_nodes(job: Job, steps: np.ndarray, nodes: int) -> OutputRows | None:
     times = (steps[:, :1] + np.diff(steps) * (inside + (1.0 - 2.0 * inside) * _lobatto(nodes)[0])).ravel()
     if not (np.diff(times) > 0).all() or not times[0] > job.grid.start:
         return None
-    grid = replace(job.grid, end=float(steps[-1, 1]), times=np.concatenate([[job.grid.start], times, [steps[-1, 1]]]))
-    trajectory = replace(job, grid=grid).integrate()
+    trajectory = job.varied(times=np.concatenate([[job.grid.start], times, [steps[-1, 1]]])).integrate()
     found, _ = reported(job.dynamics, trajectory, near_constraints(job.settings), job.settings.rtol)
     if trajectory.outcome is not Outcome.DONE or len(found.t) != len(times) + 2:
         return None

@@ -83,8 +83,7 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
     accuracy = Accuracy(job.settings.accuracy)
     rtol = accuracy.first_rtol(job.dynamics.system.size)
     for repeats in range(MOST_REPEATS + 1):
-        settings = changed(job.settings, {"rtol": rtol})
-        solution = solved(replace(job, settings=settings), watch)
+        solution = solved(job.varied({"rtol": rtol}), watch)
         judged = accuracy.judged(solution, rtol)
         if judged.reached or judged.next_rtol >= rtol or repeats == MOST_REPEATS or not solution.success:
             break

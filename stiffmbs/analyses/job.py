@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from operator import attrgetter
 from pathlib import Path
-from typing import NamedTuple, TypeAlias, TypeVar
+from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -157,6 +157,11 @@ class Job:
         """Return the number of evaluations of the equations of the system and its subsystems so far."""
         parts = (self.dynamics, *(subsystem.dynamics for subsystem in self.subsystems))
         return sum(dynamics.state.evaluations for dynamics in parts)
+
+    def varied(self, changes: dict[str, Any] | None = None, times: np.ndarray | None = None) -> Job:
+        """Return the job with changed settings, and with other output times, s, the last of which is its end."""
+        grid = self.grid if times is None else replace(self.grid, end=float(times[-1]), times=times)
+        return replace(self, settings=changed(self.settings, changes) if changes else self.settings, grid=grid)
 
     def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
         """Integrate the presolved model from its start; see `stiffmbs.solve.trajectory`."""

@@ -11,8 +11,7 @@ the masses, lam is not of usual size: velocities drift, and energy is lost.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -22,7 +21,7 @@ from ..dynamics.dynamics import OutputRows
 from ..notes import Note, NoteKind, Severity
 from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_in_long_steps, together
 from ..solve.error_control.relaxation import DRIFT, Drift, drift_of, drifts
-from ..solve.settings import changed, traits_of
+from ..solve.settings import traits_of
 from ..solve.trajectory import Outcome, Trajectory
 
 if TYPE_CHECKING:
@@ -76,41 +75,36 @@ class Computed:
 
 def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> Computed:
     """Compute a job until no checked instant contradicts its steps; return it with a note on missed events."""
-    found = compute(job)
-    seen = left = _overlooked(job, found)
-    if seen and job.dynamics.system.has_functions and "max_step" in traits_of(job.settings).reads:
-        return _with_shorter_steps(job, compute, found, seen)
-    stops = np.empty(0)
-    for _ in range(ROUNDS):
-        if left is None or found.trajectory.outcome is Outcome.INTERRUPTED:
-            break
-        stops = np.union1d(stops, left.times)
-        if len(stops) > STARTS:
-            break
-        again = compute(replace(job, grid=replace(job.grid, stops=stops)))
-        if again.trajectory.outcome is Outcome.INTERRUPTED:
+    found, missed = compute(job), list[Overlooked]()
+    left = _overlooked(job, found)
+    shortens = job.dynamics.system.has_functions and "max_step" in traits_of(job.settings).reads
+    while left is not None and len(missed) < ROUNDS and found.trajectory.outcome is not Outcome.INTERRUPTED:
+        missed.append(left)
+        other = _shortened(job, missed) if shortens else _restarted(job, missed)
+        if other is None or (again := compute(other)).trajectory.outcome is Outcome.INTERRUPTED:
             break
         found, left = again, _overlooked(job, again)
     if left is not None:
         return _noted(found, left.note(LEFT))
-    return _noted(found, seen.note(RESTARTED)) if seen else found
+    if not missed:
+        return found
+    return _noted(found, missed[0].note(SHORTENED if shortens else RESTARTED, _longest_step(missed)))
 
 
-def _with_shorter_steps(job: Job, compute: Callable[[Job], Computed], found: Computed, seen: Overlooked) -> Computed:
-    """Repeat a job until its steps resolve the features of Python functions; return it with a note."""
-    left: Overlooked | None = seen
-    longest = math.inf
-    for _ in range(ROUNDS):
-        if left is None or found.trajectory.outcome is Outcome.INTERRUPTED:
-            break
-        longest = min(longest, PART_OF_A_FEATURE * left.shortest)
-        if job.grid.end - job.grid.start > MOST_STEPS * longest:
-            break
-        again = compute(replace(job, settings=changed(job.settings, {"max_step": longest})))
-        if again.trajectory.outcome is Outcome.INTERRUPTED:
-            break
-        found, left = again, _overlooked(job, again)
-    return _noted(found, seen.note(LEFT) if left else seen.note(SHORTENED, longest))
+def _restarted(job: Job, missed: Sequence[Overlooked]) -> Job | None:
+    """Return a job with restarts at the times of missed events; None if there are too many."""
+    stops = np.unique(np.concatenate([each.times for each in missed]))
+    return replace(job, grid=replace(job.grid, stops=stops)) if len(stops) <= STARTS else None
+
+
+def _shortened(job: Job, missed: Sequence[Overlooked]) -> Job | None:
+    """Return a job whose steps resolve the missed features of Python functions; None if there would be too many."""
+    longest = _longest_step(missed)
+    return job.varied({"max_step": longest}) if job.grid.end - job.grid.start <= MOST_STEPS * longest else None
+
+
+def _longest_step(missed: Sequence[Overlooked]) -> float:
+    return PART_OF_A_FEATURE * min(each.shortest for each in missed)
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
@@ -169,7 +163,7 @@ def relaxed(job: Job) -> bool:
 
 def exactly(job: Job) -> Job:
     """Return the job with exact constraints."""
-    return replace(job, settings=changed(job.settings, {"formulation": EXACT}))
+    return job.varied({"formulation": EXACT})
 
 
 def _noted(computed: Computed, note: Note) -> Computed:

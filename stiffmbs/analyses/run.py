@@ -221,8 +221,7 @@ def _within_tables(job: Job, trajectory: Trajectory) -> Trajectory:
 
 def _reported_at(job: Job, times: np.ndarray) -> OutputRows:
     """Repeat the run up to the last of the given times, with rows at its start and at these times."""
-    grid = replace(job.grid, end=float(times[-1]), times=np.union1d(job.grid.start, times))
-    again = replace(job, grid=grid)
+    again = job.varied(times=np.union1d(job.grid.start, times))
     trajectory = up_to_a_fault(job.dynamics.system, again.integrate())
     rows = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)[0]
     if job.dynamics.system.has_functions:

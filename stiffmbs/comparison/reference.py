@@ -18,7 +18,7 @@ from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome
 from ..verification.parameters import VERIFICATION
-from ..verification.solve_again import BDF, EXPLICIT, Deadline
+from ..verification.solve_again import BDF, EXPLICIT, Deadline, uninterrupted
 from .measures import MEASURES, ROTATION, compared, difference, largest
 
 TIGHT, TIGHTER = 1e-12, VERIFICATION.tightest_rtol
@@ -138,9 +138,7 @@ def _pair(model: ModelData, settings: RunSettings, rtol: float, allowed: float, 
         tell(f"reference: {names[-1]}")
         job = prepare(model, chosen)
         deadline = Deadline(job.grid.start, job.grid.end, allowed)
-        found = solved(job, deadline)
-        if found.outcome is Outcome.INTERRUPTED and not deadline.passed:
-            raise KeyboardInterrupt
+        found = uninterrupted(solved(job, deadline), deadline)
         if found.outcome is not Outcome.DONE:
             return _unended(names[-1], found, job.grid.end, allowed if deadline.passed else 0.0)
         solutions.append(found)

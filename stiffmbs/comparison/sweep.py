@@ -5,7 +5,7 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -17,9 +17,9 @@ from ..model.settings import RunSettings
 from ..results.channels import channels_of
 from ..solve.missing_rows import reported
 from ..solve.settings import near_constraints
-from ..solve.trajectory import Grid, Outcome, Trajectory
+from ..solve.trajectory import Outcome, Trajectory
 from ..tuning import in_use
-from ..verification.solve_again import Deadline
+from ..verification.solve_again import Deadline, uninterrupted
 from .at_error import LINE, Row
 from .plan import Entry
 from .reference import Reference, Tell
@@ -135,9 +135,8 @@ class Sweep:
         deadline = Deadline(job.grid.start, job.grid.end, self.longest)
         seconds, trajectory = seconds_of(lambda: job.integrate(deadline))
         if compiles and seconds >= TIMING.once and trajectory.outcome is Outcome.DONE:
-            seconds, _ = seconds_of(lambda: _again(job))
-        if trajectory.outcome is Outcome.INTERRUPTED and not deadline.passed:
-            raise KeyboardInterrupt
+            seconds, _ = seconds_of(lambda: uninterrupted(job.integrate()))
+        uninterrupted(trajectory, deadline)
         steps = int(trajectory.statistics.get("steps", 0))
         if deadline.passed:
             message = f"aborted at t = {trajectory.t[-1]:.4g} s: it would take more than {self.longest:g} s"
@@ -147,7 +146,7 @@ class Sweep:
         errors = {} if message else self._errors(job, trajectory)
         if not message and not errors:
             message = "some output times have no accelerations and reactions"
-        solve = (lambda: _again(job)) if seconds < TIMING.once and not message else None
+        solve = (lambda: uninterrupted(job.integrate())) if seconds < TIMING.once and not message else None
         return Point(solve, [] if message else [seconds], entry, setting, errors, steps, message), False
 
     @np.errstate(all="ignore")  # numbers of a diverged run overflow
@@ -163,10 +162,4 @@ class Sweep:
 def _warm_up(job: Job) -> None:
     start, end = job.grid.start, job.grid.end
     until = start + WARM_UP * (end - start)
-    if replace(job, grid=Grid(start, until, np.array([start, until]))).integrate().outcome is Outcome.INTERRUPTED:
-        raise KeyboardInterrupt
-
-
-def _again(job: Job) -> None:
-    if job.integrate().outcome is Outcome.INTERRUPTED:
-        raise KeyboardInterrupt
+    uninterrupted(job.varied(times=np.array([start, until])).integrate())

@@ -16,7 +16,7 @@ from ..model.files.stages import WrittenScene
 from ..reading.files.quoted import written as as_written
 from ..results.solution import Solution
 from ..solve.settings import changed
-from ..solve.trajectory import Grid, Outcome
+from ..solve.trajectory import Outcome
 from .case_solver import CaseSolver, Task, written_scene
 from .measured import Measured, measured, of_common_noise, of_separate_noise
 from .outputs import Output, outputs_of
@@ -184,8 +184,7 @@ class _Model:
         scene = self._solver.scene(self._ranges.values(point))
         job = self._solver.job(scene, self._settings)
         self.runs += 1
-        grid = Grid(job.grid.start, job.grid.end, self._times)
-        return solved(replace(job, grid=grid))
+        return solved(replace(job, grid=replace(job.grid, times=self._times)))
 
     def check(self, point: np.ndarray) -> None:
         """Raise an error if the model cannot be solved at the start of the search."""

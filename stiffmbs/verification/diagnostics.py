@@ -104,15 +104,9 @@ class Comparison:
 
     def divergences(self) -> list[Divergence | None]:
         """Return the divergences, or None, between successive tighter runs, and of the first run from the other's."""
-        runs = [self.first.channels, *({name: run.reported(name) for name in self.first} for run in self.tighter)]
-        pairs = [*itertools.pairwise(runs)]
-        if self.other is not None:
-            pairs.append((runs[0], {name: self.other.reported(name) for name in self.first}))
-        found = []
-        for one, two in pairs:
-            count = min(len(one["energy.total"]), len(two["energy.total"]))
-            found.append(divergence(self.first.time, distance(one, two, count, self.sizes)) if count else None)
-        return found
+        runs = [self.first.channels, *(run.channels for run in self.tighter)]
+        pairs = [*itertools.pairwise(runs), *([(runs[0], self.other.channels)] if self.other else [])]
+        return [divergence(self.first.time, distance(one, two, self.sizes)) for one, two in pairs]
 
     @property
     def suspicious(self) -> bool:
@@ -253,9 +247,7 @@ def _whole(shorter: Again | None) -> bool:
 def _parts(comparison: Comparison, channels: Mapping[str, np.ndarray], shorter: Again | None) -> str:
     """Return a clause on the divergence from the motion with shorter steps, or an empty string."""
     assert shorter is not None
-    first = comparison.first
-    other = {name: shorter.reported(name) for name in first}
-    found = divergence(first.time, distance(channels, other, len(first.time), comparison.sizes))
+    found = divergence(comparison.first.time, distance(channels, shorter.channels, comparison.sizes))
     return f"from t = {found.t:.4g} s on {found.body} differs" if found is not None else ""
 
 
@@ -285,7 +277,7 @@ def _different(comparison: Comparison, shorter: Again | None) -> str:
     """Return a clause on the divergence of shorter steps from a run of their tolerance that agrees with the first."""
     if not _whole(shorter) or not comparison.tighter or any(comparison.divergences()):
         return ""
-    tight = {name: comparison.tighter[-1].reported(name) for name in comparison.first}
+    tight = comparison.tighter[-1].channels
     if len(tight["energy.total"]) < len(comparison.first.time):
         return ""
     return _parts(comparison, tight, shorter)

@@ -29,13 +29,14 @@ class Divergence:
 
 
 def distance(
-    first: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], count: int, sizes: Mapping[str, float]
+    first: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], sizes: Mapping[str, float]
 ) -> dict[str, np.ndarray]:
     """Return the distance of each body from that in another run over time, relative to the motion's size or in rad.
 
-    `first`, `other`: channels at the same times. `count`: number of times to compare. `sizes`: scales of the channels.
+    `first`, `other`: channels at the same times, as far as both have them. `sizes`: scales of the channels.
     """
     found: dict[str, np.ndarray] = {}
+    count = min(len(next(iter(run.values()))) for run in (first, other))
     for name, values in first.items():
         kind, (body, _, ending) = kind_of(name), name.rpartition(".")
         if not sizes[name] or not (kind in ("position", "angle") or ending == TURNING[0]):
@@ -70,7 +71,7 @@ def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 def divergence(times: np.ndarray, distances: Mapping[str, np.ndarray]) -> Divergence | None:
     """Return the divergence of two motions, or None. `times` of shape (n,). `distances`: of each body (`distance`)."""
-    if not distances:
+    if not distances or not len(next(iter(distances.values()))):
         return None
     bodies, rows = list(distances), np.array(list(distances.values()))
     beyond = rows > VERIFICATION.diverged

@@ -30,7 +30,7 @@ from ..solve.missing_rows import reported
 from ..solve.settings import changed, near_constraints, traits_of
 from ..solve.trajectory import Grid, Outcome
 from .parameters import VERIFICATION
-from .solve_again import EXPLICIT, Again, Deadline
+from .solve_again import EXPLICIT, Again, Deadline, uninterrupted
 
 
 @dataclass(frozen=True)
@@ -72,12 +72,12 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     """
     begun = job.evaluations()
     times = _instants(job, first, VERIFICATION.of_effort_left * allowed)
-    grid = Grid(job.grid.start, float(times[-1]), times)
+    deadline = Deadline(job.grid.start, float(times[-1]), allowed, job.evaluations)
     try:
-        trajectory = replace(job, grid=grid).integrate(Deadline(grid.start, grid.end, allowed, job.evaluations))
+        trajectory = uninterrupted(job.varied(times=times).integrate(deadline), deadline)
     except StiffmbsError as error:
         return Along(obstacle=str(error))
-    if trajectory.outcome is Outcome.INTERRUPTED:
+    if deadline.passed:
         return Along(obstacle="missed events were not searched: the limit of evaluations is reached")
     rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings), job.settings.rtol)
     left = allowed - (job.evaluations() - begun)
@@ -189,7 +189,8 @@ def _solved_again(
         start = restarted(job.dynamics, begin, rows.q[first], rows.u[first])
         grid = Grid(begin, end, np.array([begin, end]))
         stretch = replace(job, settings=changed(job.settings, how), grid=grid, start=start, subsystems=())
-        found = stretch.integrate(Deadline(begin, end, allowed, job.evaluations))
+        deadline = Deadline(begin, end, allowed, job.evaluations)
+        found = uninterrupted(stretch.integrate(deadline), deadline)
     except StiffmbsError:
         return None
     return found.u[-1] if found.outcome is Outcome.DONE else None

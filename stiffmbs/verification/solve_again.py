@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..errors import StiffmbsError
 from ..model.settings import RunSettings
 from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
-from ..solve.trajectory import Grid, Outcome
+from ..solve.trajectory import Outcome, Trajectory
 from .parameters import VERIFICATION
 
 EXPLICIT: dict[str, object] = {"solver": "projected", "scheme": "dop853", "projection": True}
@@ -74,6 +75,21 @@ class Again:
         assert self.solution is not None
         return self.solution[channel][self.at]
 
+    @property
+    def channels(self) -> dict[str, np.ndarray]:
+        """All channels at the times of the first run that were reached."""
+        return {name: self.reported(name) for name in self.solution or ()}
+
+
+Found = TypeVar("Found", Trajectory, Solution)
+
+
+def uninterrupted(found: Found, deadline: Deadline | None = None) -> Found:
+    """Return what was computed; raise KeyboardInterrupt if the user interrupted it, not its deadline."""
+    if found.outcome is Outcome.INTERRUPTED and not (deadline and deadline.passed):
+        raise KeyboardInterrupt
+    return found
+
 
 def solve_again(
     job: Job, name: str, changes: dict[str, object], times: np.ndarray, at: np.ndarray, allowed: float
@@ -86,16 +102,14 @@ def solve_again(
     """
     if allowed <= 0:
         return Again(name, None, "not started: the limit of evaluations is reached", at[:0])
-    grid = Grid(job.grid.start, float(times[-1]), times)
-    deadline = Deadline(grid.start, grid.end, allowed, job.evaluations)
+    other = job.varied(changes, times)
+    deadline = Deadline(other.grid.start, other.grid.end, allowed, job.evaluations)
     try:
-        solution = solved(replace(job, settings=changed(job.settings, changes), grid=grid), deadline)
+        solution = uninterrupted(solved(other, deadline), deadline)
     except StiffmbsError as error:
         return Again(name, None, str(error), at[:0])
     obstacle = "" if solution.outcome is Outcome.DONE else solution.message
     if solution.outcome is Outcome.INTERRUPTED:
-        if not deadline.passed:
-            raise KeyboardInterrupt
         obstacle = f"aborted at t = {solution.time[-1]:.4g} s: it needs more than {allowed:.2g} evaluations"
     remark = solution.message.partition(f"{solution.outcome.value}; ")[2]
     return Again(name, solution, obstacle, at[at < len(solution.time)], remark)

@@ -90,7 +90,7 @@ def with_discretisation(job: Job, found: Solution) -> Solution:
 
     def solve(scene: Scene) -> Solution:
         other = prepare(scene, job.settings, job.start_from)
-        return solved(replace(other, grid=replace(other.grid, times=found.time)))
+        return solved(other.varied(times=found.time))
 
     errors = discretisation(job.data, found, solve)
     return replace(found, discretisation=errors.errors, verification=(*found.verification, errors.sentence))
@@ -181,12 +181,9 @@ class _Verification:
         """Return a run with a note on an event that its steps missed."""
         if run.solution is None or run.obstacle:
             return run
-        reported = {name: run.reported(name) for name in self._first}
-        away = distance(self._first.channels, reported, len(self._first.time), self._sizes)
-        if divergence(self._first.time, away) is None:
+        if divergence(self._first.time, distance(self._first.channels, run.channels, self._sizes)) is None:
             return run
-        job = replace(self._job, settings=changed(self._job.settings, changes))
-        found = looked_along(job, run.solution, allowed)
+        found = looked_along(self._job.varied(changes), run.solution, allowed)
         self._narrow += found.stretches + found.elsewhere
         if not found.stretches:
             return run

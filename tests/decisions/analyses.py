@@ -207,35 +207,38 @@ def largest_rate_of_an_input():
     return count_while(lambda rate: accepts(1e-8 * rate), DOUBLES)
 
 
-def steps_over_a_feature(shortest):
-    """Return the longest steps of the reruns of a run of 1 s in which a Python function has a feature of some duration."""
-    steps = []
-    left = iter([None])
-    replaced = {
-        "_overlooked": lambda *_: next(left), "_noted": lambda found, _: found, "replace": lambda *_, **__: None,
-        "changed": lambda _, changes: steps.append(changes["max_step"]),
-    }  # fmt: skip
-    found = Record(trajectory=Record(outcome=None))
-    seen = Record(shortest=shortest, note=nothing)
-    with patch.multiple(rerun, **replaced):
-        rerun._with_shorter_steps(Record(grid=Record(start=0.0, end=1.0), settings=None), lambda _: found, found, seen)
-    return steps
+def runs_of(missed, found_again, has_functions):
+    """Return the changed settings and the number of runs of 1 s that miss some events, the first and its reruns."""
+    changes, computed, left = [], [], iter([missed, *found_again])
 
-
-def reruns(times):
-    """Return the number of runs if each of them missed events."""
-    computed = []
+    def varied(settings):
+        changes.append(settings)
+        return job
 
     def compute(_):
         computed.append(len(computed))
         return Record(trajectory=Record(outcome=None))
 
-    missed = Record(times=np.arange(float(times)), note=nothing)
+    dynamics = Record(system=Record(has_functions=has_functions))
+    job = Record(grid=Record(start=0.0, end=1.0), settings=None, dynamics=dynamics, varied=varied)
     with patch.multiple(
-        rerun, _overlooked=lambda *_: missed, _noted=lambda found, _: found, replace=lambda *_, **__: None
-    ):
-        rerun.rerun_after_missed_events(Record(grid=None, dynamics=Record(system=Record(has_functions=False))), compute)
-    return len(computed)
+        rerun, _overlooked=lambda *_: next(left), _noted=lambda found, _: found, replace=lambda job, **_: job,
+        traits_of=lambda _: Record(reads=("max_step",)),
+    ):  # fmt: skip
+        rerun.rerun_after_missed_events(job, compute)
+    return changes, len(computed)
+
+
+def steps_over_a_feature(shortest):
+    """Return the longest steps of the reruns of a run of 1 s in which a Python function has a feature of some duration."""
+    changes, _ = runs_of(Record(shortest=shortest, note=nothing), [None], True)
+    return [each["max_step"] for each in changes]
+
+
+def reruns(times):
+    """Return the number of runs if each of them missed events."""
+    missed = Record(times=np.arange(float(times)), note=nothing)
+    return runs_of(missed, [missed] * 10, False)[1]
 
 
 def with_exact_constraints(*drifts):

@@ -88,8 +88,8 @@ def settings_beyond_the_target():
 
 
 def end_of_a_warm_up():
-    with patch.object(sweep, "replace", lambda _, grid: reach(grid.end)):
-        return reached(lambda: sweep._warm_up(Record(grid=Record(start=0.0, end=1.0))))
+    job = Record(grid=Record(start=0.0, end=1.0), varied=lambda times: reach(times[-1]))
+    return reached(lambda: sweep._warm_up(job))
 
 
 def longest_run_timed_twice():

@@ -116,7 +116,7 @@ def test_bodies_that_turn_apart_are_seen_whatever_the_sign_of_their_quaternions(
         (turning(2 * t + t**2), 0.45),
         (tilted, 0.02),
     ):
-        met = divergence(t, distance(first, other, 201, sizes))
+        met = divergence(t, distance(first, other, sizes))
         assert met is None if expected is None else met.t == pytest.approx(expected, abs=0.05)
 
 

@@ -9,6 +9,7 @@ from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.run import solved
 from stiffmbs.elements.planar_kinds import FORCES
 from stiffmbs.solve.trajectory import Outcome
+from stiffmbs.verification import solve_again
 from stiffmbs.verification import verify as module
 from stiffmbs.verification.missed_events import looked_along
 
@@ -89,6 +90,19 @@ def test_a_run_with_another_longest_step_where_the_scene_has_laws():
     assert not pendulum.dynamics.system.has_laws
     found = module.verify(stiffmbs.load_scene(EXAMPLES / "bouncing_ball.yaml"))
     assert any("with steps of at most" in sentence for sentence in found.verification)
+
+
+def test_an_interruption_of_the_search_is_the_users(monkeypatch):
+    """It counted as a search that has reached its limit, and the verification continued."""
+    job = prepare(stiffmbs.load_scene(EXAMPLES / "bouncing_ball.yaml"), duration=0.5)
+    first = solved(job)
+
+    def interrupted(_watch, t):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(solve_again.Deadline, "__call__", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        looked_along(job, first, 1e9)
 
 
 @pytest.mark.parametrize("at", ["looked_along", "solve_again", "error_bar", "scales"])
