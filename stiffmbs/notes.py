@@ -18,6 +18,7 @@ class Severity(Enum):
     REMARK = "what the program did, or what a model contains; the results are not in question"
     WARNING = "results may be less accurate than the tolerance, or may not be those of the model that was meant"
     DOUBT = "results may be wrong; the message of the run says so, too"
+    STOP = "the run ended early; the results up to there are kept"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

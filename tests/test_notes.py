@@ -16,6 +16,9 @@ from stiffmbs.analyses.job import prepare
 from stiffmbs.notes import Note, NoteKind, Severity, note_lines, of_users
 from stiffmbs.results.joined import joined
 from stiffmbs.show.summary import as_json, summary
+from stiffmbs.solve.reasons import Reason
+
+from .conftest import EXAMPLES
 
 HERE = Path(__file__).parents[1]
 GROWS = "bodies: {b: {mass: 1, inertia: 1, position: [1, 0]}}\nforces: {f: {type: force, i: b, force: ['9*b.x', 0]}}\nrun: {duration: 8 s}"
@@ -84,6 +87,46 @@ def test_the_headline_has_the_first_doubt(grown):
     assert doubt.element == "b" and doubt.partition(";")[0] in grown.message
 
 
+def locked(**run):
+    """A crank that is longer than its rod."""
+    return stiffmbs.run(stiffmbs.load_scene(EXAMPLES / "crank_slider.yaml", [("r", "400 mm")]), **run)
+
+
+def of_force(law, **run):
+    return lambda: stiffmbs.run(stiffmbs.read_scene(GROWS.replace("'9*b.x'", law)), **run)
+
+
+def left_table():
+    scene = GROWS.replace("'9*b.x'", "'f(b.x)'") + "\ntables: {f: {table: [[0, 10], [1.5, 10]], beyond: error}}"
+    return stiffmbs.run(stiffmbs.read_scene(scene))
+
+
+@pytest.mark.parametrize(
+    ("reason", "solve"),
+    [
+        ("LEFT_TABLE", left_table),
+        ("LOCKED", lambda: locked(solver="kinematic")),
+        ("NOT_FINITE", of_force("'1e14*b.x'", solver="projected", scheme="rk4", step=0.1)),
+        ("STIFF", of_force("'-1e17*b.x - 1e8*b.vx'", solver="projected")),
+        ("NO_STEP", of_force("'1/(1.5 - b.x)^2'")),
+    ],
+)
+def test_the_end_of_a_run_has_its_reason(reason, solve, tmp_path):
+    found = solve()
+    assert not found.success, found.message
+    expected = Reason[reason]
+    assert (found.ended.kind, found.ended.remedy) == (expected.name.lower().replace("_", "-"), expected.remedy), (
+        found.message
+    )
+    assert json.loads(as_json("s", found))["ended"]["kind"] == found.ended.kind
+    found.save(tmp_path / "run.npz")
+    assert stiffmbs.Solution.load(tmp_path / "run.npz").ended.as_dict() == found.ended.as_dict()
+
+
+def test_a_completed_run_has_no_reason(grown):
+    assert grown.ended == grown.message and grown.ended.kind == ""
+
+
 def test_notes_of_joined_runs_keep_their_kinds(grown):
     calm = stiffmbs.run(stiffmbs.read_scene(GROWS), duration=0.1)
     found = joined("both", [calm, grown])
@@ -116,3 +159,4 @@ def test_the_page_of_notes_lists_all_kinds():
     assert ".. note_kinds::" in (HERE / "docs" / "reference" / "notes.md").read_text(encoding="utf-8")
     text = "\n".join(kinds().page(found := kinds().note_kinds()))
     assert all(f"``{kind.name}``" in text for kind in found.values())
+    assert all(reason.what in text and reason.remedy in text for reason in Reason)

@@ -1,4 +1,4 @@
-"""The reference page of notes, made from the kinds that the modules of the package declare."""
+"""The reference page of notes, made from the kinds that the modules of the package declare and the reasons of early ends."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from sphinx.util.docutils import SphinxDirective
 
 import stiffmbs
 from stiffmbs.notes import NoteKind, Severity
+from stiffmbs.solve.reasons import Reason
 
 _FIELD = re.compile(r"\{(\w+)(?::[^{}]*)?\}")
 """Field of a text, with a format for numbers."""
@@ -39,7 +40,7 @@ class NoteKinds(SphinxDirective):
 
 def page(kinds: dict[str, NoteKind]) -> Iterator[str]:
     """The sections: what a severity means, and a table of its kinds."""
-    for severity in reversed(Severity):
+    for severity in (Severity.DOUBT, Severity.WARNING, Severity.REMARK):
         title = f"{severity.name.capitalize()}s"
         yield from (title, "-" * len(title), "", f"{severity.value.capitalize()}.", "")
         yield from (".. list-table::", "   :header-rows: 1", "   :widths: 20 55 25", "")
@@ -47,6 +48,18 @@ def page(kinds: dict[str, NoteKind]) -> Iterator[str]:
         for kind in sorted({kind.name: kind for kind in kinds.values() if kind.severity is severity}.items()):
             yield from row(f"``{kind[0]}``", *words(kind[1]))
         yield ""
+    yield from (
+        "Early ends",
+        "----------",
+        "",
+        f"{Severity.STOP.value.capitalize()}. ``solution.ended`` has these kinds.",
+        "",
+    )
+    yield from (".. list-table::", "   :header-rows: 1", "   :widths: 20 40 40", "")
+    yield from row("kind", "reason", "what to do")
+    for reason in Reason:
+        yield from row(f"``{reason.of('').kind}``", reason.what, reason.remedy)
+    yield ""
 
 
 def words(kind: NoteKind) -> tuple[str, str]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 NOT_REACHED = NoteKind(
     "accuracy-not-reached",
-    "the accuracy asked for was not reached: {found} at rtol {rtol:.2g}",
+    "the requested accuracy was not reached: {found} at rtol {rtol:.2g}",
     "use a smaller rtol, or --verify",
 )
 MOST_REPEATS = 2

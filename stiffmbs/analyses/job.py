@@ -35,6 +35,7 @@ from ..results.solution import Solution
 from ..run_checks.motion import refuse_far_away
 from ..solve import SOLVERS
 from ..solve.events.narrow_inputs import solve_up_to_the_inputs_end
+from ..solve.reasons import Reason
 from ..solve.sampling import held
 from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
@@ -97,9 +98,8 @@ def up_to_a_fault(system: System, trajectory: Trajectory) -> Trajectory:
     if isinstance(fault.raised, KeyboardInterrupt):
         return replace(trajectory, outcome=Outcome.INTERRUPTED, message=Outcome.INTERRUPTED.value)
     reached = trajectory.t[-1]
-    return replace(
-        trajectory, outcome=Outcome.STOPPED, message=f"stopped at t = {reached:.9g} s: {fault.clause}"
-    )  # fmt: skip
+    message = Reason.FUNCTION.of(f"stopped at t = {reached:.9g} s: {fault.clause}")
+    return replace(trajectory, outcome=Outcome.STOPPED, message=message)
 
 
 LOGGER = logging.getLogger(__name__)

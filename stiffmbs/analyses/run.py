@@ -25,6 +25,7 @@ from ..results.provenance import provenance_of
 from ..results.solution import Solution
 from ..run_checks.left_tables import left_tables, refused_departure, stopped_at
 from ..solve.missing_rows import reported
+from ..solve.reasons import OF_STATUS, Reason
 from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
@@ -258,5 +259,5 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
     sentence = f"no accelerations and reactions were found at t = {t:.9g} s: {failure(job.dynamics, rows.status, t)}"
     fault = fault_of(job.dynamics.system)
     if fault:
-        return Outcome.STOPPED, f"{sentence}; {fault.clause}"
-    return Outcome.STOPPED, sentence + suspect(job.dynamics, t, q, u)
+        return Outcome.STOPPED, Reason.FUNCTION.of(f"{sentence}; {fault.clause}")
+    return Outcome.STOPPED, OF_STATUS[rows.status].of(sentence + suspect(job.dynamics, t, q, u))

@@ -37,6 +37,7 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
         "name": solution.name,
         "outcome": solution.outcome.name,
         "message": solution.message,
+        "ended": solution.ended.as_dict(),
         **{name: list(getattr(solution, name)) for name in TEXTS},
         "note_details": [note.as_dict() for note in solution.notes],
         "requested": dict(solution.requested),
@@ -74,12 +75,13 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
         )
     about = json.loads(str(arrays[ABOUT]))
     channels = {name: array for name, array in arrays.items() if "/" not in name and name not in ("time", "not_unique")}
+    message = Note.restored(about["message"], about["ended"]) if "ended" in about else about["message"]
     balance = {part.name: arrays[name] for part in fields(Balance) if (name := BALANCE + part.name) in arrays}
     texts: dict[str, Any] = {name: tuple(about[name]) for name in TEXTS}
     if "note_details" in about:  # files of earlier versions have the sentences alone
         texts["notes"] = tuple(map(Note.restored, about["notes"], about["note_details"]))
     return Solution(
-        name=about["name"], time=arrays["time"], channels=channels, outcome=Outcome[about["outcome"]], message=about["message"],
+        name=about["name"], time=arrays["time"], channels=channels, outcome=Outcome[about["outcome"]], message=message,
         **texts, requested=about["requested"], solver=about["solver"],
         errors={channel: ErrorBar(*bar) for channel, bar in about["errors"].items()},
         estimate=ErrorEstimate(*about["estimate"]) if about.get("estimate") else None,

@@ -42,7 +42,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         Every channel over time, SI units, radians.
     outcome : Outcome
     message : str
-        Sentence on the end of the run.
+        Sentence on the end of the run; `ended` has its reason.
     notes : tuple of Note
         Sentences on the model, the run and the results: strings that have a kind, an element, a remedy and a severity.
     solver : dict
@@ -97,6 +97,11 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     def success(self) -> bool:
         """Return True if the whole time was solved."""
         return self.outcome is Outcome.DONE
+
+    @property
+    def ended(self) -> Note:
+        """Return the message as a note: of a run that ended early, its kind is the reason, and its remedy what to do."""
+        return Note.of(self.message)
 
     @property
     def units(self) -> dict[str, str]:

@@ -25,6 +25,7 @@ from ..model.settings import RunSettings
 from ..notes import Note, NoteKind, of_users
 from ..reading.table import Table
 from ..solve.events.departures import Departure, merged
+from ..solve.reasons import Reason
 from ..solve.settings import traits_of
 from ..solve.trajectory import Outcome, Trajectory
 
@@ -62,10 +63,11 @@ def stopped_at(first: Departure, trajectory: Trajectory) -> Trajectory:
     return replace(trajectory, t=t, q=q, u=u, outcome=Outcome.STOPPED, message=_refusal(first))
 
 
-def _refusal(first: Departure) -> str:
-    return (
+def _refusal(first: Departure) -> Note:
+    return Reason.LEFT_TABLE.of(
         f"stopped at t = {first.first:.9g} s: the table '{first.label}' of '{first.element}' was left (beyond: error): its "
-        f"argument passes its {_end(first, int(first.beyond[1] > first.beyond[0]))}; expected more points, or another 'beyond'"
+        f"argument passes its {_end(first, int(first.beyond[1] > first.beyond[0]))}; expected more points, or another 'beyond'",
+        first.element,
     )
 
 

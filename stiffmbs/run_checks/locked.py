@@ -8,24 +8,27 @@ import numpy as np
 
 from ..compile.state import LEFT_OPEN
 from ..dynamics.dynamics import Dynamics
+from ..notes import Note
 from ..redundancy.overconstraint import listed
 from ..redundancy.redundancy import Redundancy
 from ..redundancy.uniqueness import unproven
+from ..solve.reasons import Reason
 from ..solve.trajectory import Trajectory
 from .motion import some_instants
 from .parameters import RUN_CHECKS
 
 
-def locked(dynamics: Dynamics, redundancy: Redundancy, solved: Trajectory) -> tuple[int, str] | None:
+def locked(dynamics: Dynamics, redundancy: Redundancy, solved: Trajectory) -> tuple[int, Note] | None:
     """Return the number of valid outputs (at least the start) and a sentence on the violation after them, or None."""
     equations = dynamics.system.equations
     velocity = unfollowed(dynamics, solved)
     if velocity is not None:
         output, row, gap = velocity
         joint, equation = equations[row]
-        return max(1, output), (
+        return max(1, output), Reason.LOCKED.of(
             f"stopped before t = {solved.t[output]:.6g} s: joint '{joint}' (equation {equation}) is violated there by a velocity of "
-            f"{gap:.3g}: the mechanism locks, or the other joints do not allow a prescribed velocity"
+            f"{gap:.3g}: the mechanism locks, or the other joints do not allow a prescribed velocity",
+            joint,
         )
     others = unproven(redundancy)
     rows = tuple(row for row in others if dynamics.system.holonomic[row])
@@ -35,9 +38,10 @@ def locked(dynamics: Dynamics, redundancy: Redundancy, solved: Trajectory) -> tu
     output, t, row = position
     joint, equation = equations[row]
     names = listed(list(dict.fromkeys(equations[other][0] for other in others[row])) or [joint])
-    return output + 1, (
+    return output + 1, Reason.LOCKED.of(
         f"stopped at t = {t:.6g} s: joint '{joint}' (equation {equation}), left out because near the start it is "
-        f"redundant with {names}, is violated there: the joints lock or contradict each other"
+        f"redundant with {names}, is violated there: the joints lock or contradict each other",
+        joint,
     )
 
 

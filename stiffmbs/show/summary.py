@@ -100,6 +100,7 @@ def as_json(scene: str, solution: Solution) -> str:
             "scene": scene,
             "status": STATUS[solution.outcome],
             "message": solution.message,
+            "ended": solution.ended.as_dict(),
             "notes": list(solution.notes),
             "note_details": [note.as_dict() for note in solution.notes],
             "presolve": list(solution.presolve),

@@ -18,6 +18,7 @@ from .explicit.native.parameters import CONTROL
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
 from .ida.native_engine import Reached
 from .integrator import Integrator
+from .reasons import Reason
 from .solver import Traits
 from .step_logging import is_logged, log_step
 from .suspect import suspect
@@ -86,7 +87,7 @@ def integrated(
             watch(reached.t)
             integrator.reached = reached
             if failure := _failure(integrator, reached):
-                raise SolverError(f"stopped at t = {reached.t:.9g} s: {failure}")
+                raise SolverError(Reason.NO_STEP.of(f"stopped at t = {reached.t:.9g} s: {failure}"))
             if pays and not pays(reached):
                 break
             if reached.t < grid.end and integrator.steps() >= RELAXATION.check_interval:

@@ -14,6 +14,7 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import InputError, SolverError
 from ..model.settings import DEFAULT_POINTS, RunSettings
+from ..notes import Note
 from ..tuning import parameters_of
 from .driven_states import KINEMATIC, Instant, IntegratedMotion, states_after
 from .events.discontinuity import Jumps
@@ -21,6 +22,7 @@ from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
 from .explicit.native.parameters import CONTROL
+from .reasons import OF_STATUS, Reason
 from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
@@ -213,13 +215,14 @@ class _Motion:
         self._dynamics.assemble(t, tolerance=0.0, most=2)
         self._dynamics.correct_velocities(t)
 
-    def _stuck(self) -> str:
+    def _stuck(self) -> Note:
         """Return why the shortest step failed: the mechanism locks, unless the last attempt has another cause."""
         if self._status in (NOT_FINITE, NO_BALANCE, NO_MEMORY, NO_STATE):
-            return f"stopped after t = {self.t:.9g} s: {failure(self._dynamics, self._status, self.t)}"
+            reason = failure(self._dynamics, self._status, self.t)
+            return OF_STATUS[self._status].of(f"stopped after t = {self.t:.9g} s: {reason}")
         return self._locked()
 
-    def _locked(self) -> str:
+    def _locked(self) -> Note:
         system, state = self._dynamics.system, self._dynamics.state
         state.q[:], state.u[:] = self.q, self.u
         state.evaluate("motion", self.t)
@@ -228,7 +231,7 @@ class _Motion:
         involved = list(dict.fromkeys(names[k] for k in np.argsort(-np.abs(directions[:, -1]))[:4]))
         pose = ", ".join(f"{body} at {system.of_body.place(self.q, k)}" for k, body in enumerate(system.bodies[:6]))
         more = ", ..." if len(system.bodies) > 6 else ""
-        return (
+        return Reason.LOCKED.of(
             f"the mechanism locks at t = {self.t:.9g} s (dead centre): the drives prescribe a motion that "
             f"{', '.join(involved)} do not allow; last pose: {pose}{more}"
         )

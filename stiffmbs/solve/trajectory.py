@@ -23,8 +23,10 @@ import numpy as np
 from ..compile.inputs.enclosure import ROUNDING
 from ..compile.inputs.features import InputFeatures
 from ..dynamics.storage import STORAGE, allocated, release
-from ..errors import SolverError
+from ..errors import ChatteringError, SolverError
 from ..model.settings import RunSettings
+from ..notes import Note
+from .reasons import Reason
 
 if TYPE_CHECKING:
     from ..compile.system import System
@@ -137,7 +139,7 @@ class Trajectory:
     t, q, u : ndarrays, shapes (n,), (n, n_q), (n, n_u)
     outcome : Outcome
     message : str
-        One sentence: the outcome, and for an early stop where and why.
+        One sentence: the outcome, and for an early stop where and why, as a note of the `stiffmbs.solve.reasons.Reason`.
     statistics : dict
         ``steps``, ``seconds`` and other counters of the solver.
     history : History
@@ -189,7 +191,9 @@ class Ending:
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
         self.seconds = time.perf_counter() - self._begun
         if isinstance(error, SolverError):
-            self.stop(str(error))
+            reason = Reason.CHATTERING if isinstance(error, ChatteringError) else Reason.OTHER
+            message = error.args[0]
+            self.stop(message if isinstance(message, Note) else reason.of(str(error)))
         elif isinstance(error, KeyboardInterrupt):
             self.outcome, self.message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
         return isinstance(error, SolverError | KeyboardInterrupt)

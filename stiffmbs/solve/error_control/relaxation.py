@@ -15,6 +15,7 @@ from ...model.settings import RunSettings
 from ...notes import Note, NoteKind
 from ...tuning import tuned
 from ..events.native.parameters import INDISTINCT
+from ..reasons import Reason
 from ..suspect import suspect
 from ..trajectory import Trajectory
 from .tolerances import absolute_tolerances
@@ -173,8 +174,10 @@ def refuse_drift(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, set
         dynamics.state.q[:] = q
         if (drift := drift_at(dynamics, t, u, settings)) > RELAXATION.refused:
             raise SolverError(
-                f"stopped at t = {t:.9g} s: constraint drift: velocities violate the constraints by {drift:.2g} tolerances"
-                f"{suspect(dynamics, t, q, u)}"
+                Reason.DRIFTED.of(
+                    f"stopped at t = {t:.9g} s: constraint drift: velocities violate the constraints by {drift:.2g} tolerances"
+                    f"{suspect(dynamics, t, q, u)}"
+                )
             )
 
 

@@ -12,7 +12,9 @@ from ...compile.written_values import beyond
 from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
 from ...model.settings import DEFAULT_POINTS
+from ...notes import Note
 from ...tuning import tuned
+from ..reasons import Reason
 from ..suspect import suspect
 from ..trajectory import Rows
 
@@ -63,10 +65,10 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
         raise SolverError(_sentence(dynamics, t, q, u, what))
 
 
-def _sentence(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, what: str) -> str:
+def _sentence(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, what: str) -> Note:
     likely = suspect(dynamics, t, q.copy(), u.copy())
     remedy = "look for a wrong sign of a stiffness, damping or force"
-    return f"stopped at t = {t:.9g} s: the motion diverges: {what}{likely}; {remedy}"
+    return Reason.DIVERGED.of(f"stopped at t = {t:.9g} s: the motion diverges: {what}{likely}; {remedy}")
 
 
 def reaches(system: System) -> np.ndarray:
@@ -111,4 +113,5 @@ def refuse_beyond_limits(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndar
     state.evaluate("event_function", t)
     passed = np.flatnonzero(state.values["event_function"][first:end] <= 0)
     if len(passed):
-        raise SolverError(f"stopped at t = {t:.9g} s: {beyond(system, first + int(passed[0]))}")
+        found = beyond(system, first + int(passed[0]))
+        raise SolverError(Reason.OUT_OF_RANGE.of(f"stopped at t = {t:.9g} s: {found}"))

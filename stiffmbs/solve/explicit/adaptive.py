@@ -19,6 +19,7 @@ from ..events.chattering import Chattering
 from ..events.discontinuity import Jumps
 from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
 from ..events.restart import restarted
+from ..reasons import OF_STATUS, Reason
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
@@ -91,9 +92,10 @@ class AdaptiveRun:
             self._store_rows()
         if status < 0:
             self.left = True
-            ending.stop(f"stopped at t = {work.t:.9g} s: {self._reason(status)}")
+            ending.stop(OF_STATUS[status].of(f"stopped at t = {work.t:.9g} s: {self._reason(status)}"))
         elif work.count("stiff_steps") > CONTROL.stiff_part * work.count("steps"):
-            ending.message = f"{ending.message}; {stiff_sentence(work)}"
+            message = f"{ending.message}; {stiff_sentence(work)}"
+            ending.message = Reason.STIFF.of(message) if ending.outcome is Outcome.STOPPED else message
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": ending.seconds}
         note = "; ".join(filter(None, (self._note, self._jumps.sentence(), self.work.unresolved())))

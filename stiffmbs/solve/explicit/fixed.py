@@ -21,6 +21,7 @@ from ..events.discontinuity import JUMP, Jumps, sliding
 from ..events.narrow_inputs import narrower_than_steps
 from ..events.refusals import refuse_beyond_limits
 from ..events.restart import restarted
+from ..reasons import OF_STATUS
 from ..trajectory import SAME_TIME, Ending, Grid, ProgressCallback, Rows, Trajectory
 from .integration import REASONS, Integration
 from .scheme import Scheme
@@ -111,7 +112,7 @@ def solve_with_fixed_steps(
             longest = max(longest, (end - t) / count)
             status = stepper.take(t, (end - t) / count, count)
             if status < 0:
-                raise SolverError(f"stopped after t = {t:.9g} s: {REASONS[status]}")
+                raise SolverError(OF_STATUS[status].of(f"stopped after t = {t:.9g} s: {REASONS[status]}"))
             t, steps = end, steps + count
             refuse_beyond_limits(dynamics, t, stepper.q, stepper.u)
             while row < len(times) and outputs[row] <= t:
