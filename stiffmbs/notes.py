@@ -1,7 +1,7 @@
 """Notes on a model, a run or its results: each is a sentence with a kind, an element, a remedy and a severity.
 
 A kind of note is declared next to the code that writes it, and called with the values of its fields.  The page of all notes in
-the documentation (`docs/reference/notes.rst`) lists every kind of the package.
+the documentation (`docs/reference/notes.md`) lists every kind of the package.
 """
 
 from __future__ import annotations
