@@ -71,15 +71,18 @@ class Eliminated:
             self._lists = of_pins or block_lists(joints, system, kept)
             force, gamma = (system.term("acceleration", name) for name in ("f", "gamma"))
             own = np.flatnonzero(solved[gamma.row])
+            scale = self._lists.get("pivot_scale", np.zeros(0))
+            self._largest_scale = np.zeros_like(scale)
             arrays = {
                 "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u + 3),
                 "q_before": np.zeros(system.n_q), "u_before": np.zeros(system.n_u),
                 "left": np.zeros(system.n_c), "sizes": np.zeros(system.n_c),
                 "j_source": jacobian.source[kept], "j_row": jacobian.row[kept], "j_column": jacobian.column[kept],
                 "gamma_source": gamma.source[own], "gamma_row": gamma.row[own],
-                "lists": packed(layout, self._lists),
+                "lists": packed(layout, self._lists), "pivot_scale": scale, "largest_scale": self._largest_scale,
             }  # fmt: skip
             numbers = {
+                "n_scales": len(scale),
                 "n_u": system.n_u,
                 "n_f": len(force.source),
                 "n_j": len(kept),
@@ -106,9 +109,8 @@ class Eliminated:
     def forget(self) -> None:
         """Reset the largest pivots, so that rounding in a run does not depend on earlier runs."""
         self._cells["most_kept"] = 0.0
-        scale = self._lists.get("pivot_scale") if self.serves else None
-        if isinstance(scale, np.ndarray):
-            scale[:] = 0.0
+        if self.serves:
+            self._largest_scale[:] = 0.0
 
 
 def _bodies(joint: np.ndarray, body: np.ndarray) -> dict[int, list[int]]:
