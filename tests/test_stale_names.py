@@ -35,10 +35,10 @@ ROOMS = "|".join(sorted(path.parent.name for path in ROOT.glob("stiffmbs/*/__ini
 FOLDER_OR_FILE = re.compile(
     rf"(?<![\w./-])((?:stiffmbs|tests|examples|docs|\.ci)/[\w./*-]*[\w*])|`((?:{ROOMS})/[\w./*]+)`"
 )
-MODULE = re.compile(r"`(stiffmbs(?:\.\w+)+)(?:\(|`)")
+MODULE = re.compile(r"`((?:stiffmbs|tests)(?:\.\w+)+)(?:\(|`)")
 COMMAND = re.compile(r"(?:^ {4}|^\$ |`)stiffmbs ([a-z]\w*)([^`\n]*)", re.MULTILINE)
 PYTHON = re.compile(r"python (?:-m (tests[.\w]*)|(\.ci/\w+\.py))((?:\s+[^\s`\"#)]+)*)")
-IDENTIFIER = re.compile(r"`([A-Za-z_]\w*(?:\.\w+)*)`")
+IDENTIFIER = re.compile(r"`([A-Za-z_]\w*(?:\.\w+)*)(?:\([^`]*\))?`")
 PLACE = re.compile(r"`((?:[\w.]+/)*\w+\.py)?(?::(\w+(?:\.\w+)?))?`")
 """A file of the package, a name in a file, or a name in the file before."""
 FENCE = re.compile(r"^(```+|:::+).*?^\1", re.MULTILINE | re.DOTALL)
@@ -87,6 +87,8 @@ def _resolved(name: str) -> bool:
         file = next((file for file in (place.with_suffix(".py"), place / "__init__.py") if file.is_file()), None)
         if file is not None and (count == len(parts) or ".".join(parts[count:]) in _defined_in(file)):
             return True
+    if parts[0] != "stiffmbs":
+        return False
     with suppress(ImportError):
         import_module(".".join(parts[:2]))
     found: object = stiffmbs

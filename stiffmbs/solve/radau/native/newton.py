@@ -204,7 +204,7 @@ def stage_time(x, t):
 
 @compiled
 def _stage_residual(x, c, t, h, i, target):
-    """Compute the residual of a stage."""
+    """Compute r(t + c_i h, y + Z_i, (1/h) sum_j D_ij Z_j) and the misfit of the efforts of stage i."""
     z = shifted(x.z, i * x.n_all)
     for k in range(x.n_all):
         x.y_stage[k] = x.y[k] + z[k]
