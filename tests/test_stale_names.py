@@ -50,7 +50,7 @@ OTHERS = frozenset((
     "axle_1e7", "half_car_1e6", "half_car_1e8", "c_k", "inner_x", "inner_y", "inner_z", "lower_ball_x",
     "lower_ball_y", "bar_in_plane", "NAME_in_plane", "NAME_input", "NAME_activation", "pin_interface", "K_data",
     "K_indices", "K_indptr", "r_lam", "r_p", "EULER_EXPLICIT", "mjd_transitionFD", "JPRIM_2", "BUSHING_2",
-    "GFORCE_3_torque", "DIFF_1_rate", "CVCV_1_touch", "chain_10_of_1_m", "chain_100_of_1_m", "chain_1000_of_1_m",
+    "GFORCE_3_torque", "DIFF_1_rate", "CVCV_1_touch", "chain_10_of_1_m", "chain_100_of_1_m", "chain_1000_of_1_m", "to_dataframe",
 ))  # fmt: skip
 """Names that are composed at run time, belong to other programs, are symbols of equations, or stand for a user's own."""
 
