@@ -10,7 +10,7 @@ radau_view = view_of("Radau", RADAU)
 @compiled
 def basis(c, node, place):
     """Return the Lagrange polynomial of a node at a place; the nodes are 0, c_1 to c_s."""
-    value = c.weights[node + 1] * place  # the node 0 has weight 0 of the list
+    value = c.weights[node + 1] * place  # the first weight and the factor `place` are of the node 0
     for k in range(c.stages):
         if k != node:
             value *= place - c.nodes[k]

@@ -330,7 +330,7 @@ def iterated(x, c, t, h):
         if count > 2:  # the first correction has the errors of extrapolated multipliers, which are in no norm
             if not x.contraction < DIVERGING:
                 return DIVERGED
-            # With q = contraction, the remainder is q / (1 - q) times the last correction: what it would be at `most`.
+            # The remainder is q / (1 - q) times the last correction, with the rate q; `left` is that after `most` iterations.
             left = x.contraction / (1.0 - x.contraction) * size * x.contraction ** (most - 1 - count) / x.newton
             if left >= 1.0 and count < most:
                 x.suggested = SHORTER * min(MOST_LEFT, left) ** (-1.0 / (3.0 + most - count))
