@@ -88,7 +88,7 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
         sentence = f"{solution.estimate.sentence}; {judged.sentence} at rtol {rtol:.2g}"
         return replace(solution, estimate=replace(solution.estimate, sentence=sentence))
     note = (
-        f"the accuracy asked for was not reached: {judged.sentence} at rtol {rtol:.2g}; use a smaller rtol, or --verify"
+        f"the requested accuracy was not reached: {judged.sentence} at rtol {rtol:.2g}; use a smaller rtol, or --verify"
     )
     return replace(solution, notes=(*solution.notes, note))
 

@@ -124,7 +124,7 @@ class Finished:
 
     @property
     def channels(self) -> dict[str, np.ndarray]:
-        """All channels."""
+        """All channels by name, computed unless the checks of the run needed them before."""
         return self.examined or channels_of(self.job.data, self.job.dynamics.system, self.rows)
 
 

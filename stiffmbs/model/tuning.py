@@ -13,7 +13,7 @@ from ..tuning import SUBSYSTEMS, defaults_of, numbers_of
 MOST = 1000
 """Largest ratio of an integer to its default, as some are sizes of arrays."""
 
-REMOVED = {"masking": "no event is left out by a number of steps any more, expected no such entry"}
+REMOVED = {"masking": "events are no longer left out after a number of steps; remove this entry"}
 """Subsystems of earlier versions, and what replaces them."""
 
 Read = Callable[[Any], float]

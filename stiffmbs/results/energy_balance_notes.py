@@ -116,7 +116,7 @@ def broken_balance(system: System, balance: Balance, rows: OutputRows, settings:
     forces = (
         "all forces are conservative, but the energy changes by"
         if balance.keeps_energy
-        else "the energy without work changes by"
+        else "the energy changes, apart from the work of forces, by"
     )
     return (
         f"the energy balance is broken: {forces} {balance.imbalance:.3g} J of the {balance.scale:.3g} J exchanged (first by "

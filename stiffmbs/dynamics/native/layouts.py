@@ -1,4 +1,7 @@
-"""Memory layouts of the dynamics and of elimination."""
+"""Memory layouts of the dynamics and of elimination.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from stiffmbs.compile.machine.layout import CACHE_LINE, FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
 

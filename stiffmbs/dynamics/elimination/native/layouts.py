@@ -1,4 +1,7 @@
-"""Memory layouts of matrix and factors of an elimination."""
+"""Memory layouts of matrix and factors of an elimination.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Memory layouts of a Runge-Kutta scheme and of explicit integration."""
+"""Memory layouts of a Runge-Kutta scheme and of explicit integration.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 

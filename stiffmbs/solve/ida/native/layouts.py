@@ -1,4 +1,7 @@
-"""Memory layouts of IDA's callbacks, loop, starts and norms."""
+"""Memory layouts of IDA's callbacks, loop, starts and norms.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 

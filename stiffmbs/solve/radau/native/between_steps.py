@@ -55,6 +55,8 @@ def closed(x, t, most):
     that Newton's iteration may leave; or OPEN if forces do not agree after the corrections, or if these exceed a number of
     tolerances.
     """
+    # Efforts are known to rtol of the largest.  Of the state, only what closes joints and balances stiff forces changes:
+    # the other equations are taken as satisfied, as the error of the step in them needs no correction.
     allowed = 0.0
     for k in range(x.n, x.n_all):
         allowed = max(allowed, abs(x.y_stage[k]))
@@ -74,7 +76,7 @@ def closed(x, t, most):
         if apart <= allowed and (count > 0 or x.n_closing == 0):
             enough = True
             break
-        rate = apart / before if count > 0 else 1.0
+        rate = apart / before if count > 0 else 1.0  # of convergence; its product with `apart` predicts the next misfit
         before = max(apart, 1e-300)
         for k in range(x.n_levers):
             x.b[x.lever_unknown[k]] += x.lever[k] * x.misfit[x.lever_effort[k]]
@@ -113,6 +115,7 @@ def close_end(x, c, t, h):
 @compiled
 def _corrected(x, c, place, count):
     """Compute the state in `x.y_stage`, with the first corrections; return their common factor at the place."""
+    # Newton's form with the nodes 0 and 1, where states are closed, and the places before this one.
     polynomial(x, place, x.n_all, x.y_stage)
     factor = place * (1.0 - place)
     for j in range(count):
@@ -159,7 +162,7 @@ def _find_corrections(x, c):
         outcome = closed(x, x.t - (1.0 - place) * x.h_past, _most_moved_within(c))
         if outcome == OPEN:
             return
-        for k in range(x.n_all):
+        for k in range(x.n_all):  # divided difference: earlier terms are in the state that was closed
             correction[k] = (x.y_stage[k] - correction[k]) / factor
         if outcome == AGREED and j + 1 >= c.stages:
             x.suffice = 1
@@ -174,7 +177,7 @@ def dense_output(x, t, place, target):
         return True
     c = collocation_view(ints(x.methods[x.method_past]))
     x.outputs += 1
-    if x.outputs == FEW + 1:
+    if x.outputs == FEW + 1:  # from here on, a polynomial of corrections costs less than a Newton iteration per output
         _find_corrections(x, c)
     succeeded = True
     if x.outputs > FEW and x.suffice:

@@ -1,4 +1,7 @@
-"""Memory layouts of a Radau method and of its steps."""
+"""Memory layouts of a Radau method and of its steps.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
 
