@@ -80,12 +80,12 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
 def renumberable(job: Job) -> bool:
     """Return True if other numbers may be written into a job.
 
-    Presolve must separate no mechanism, with any numbers, and leave out no modes, which other numbers may excite.
+    Presolve must separate no mechanism, with any numbers.
     """
     system = job.dynamics.system
     if not job.settings.presolve:
         return True
-    if job.subsystems or job.dynamics.coordinates.at_rest:
+    if job.subsystems:
         return False
     return not job.dynamics.kept("apart", None, lambda: may_be_apart(system))
 

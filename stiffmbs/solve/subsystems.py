@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -42,13 +42,12 @@ def subsystem_of(part: Part, start: InitialValues, t: float) -> Subsystem:
     return Subsystem(part, dynamics, restarted(dynamics, t, *part.reduced(start.q, start.u), project=False))
 
 
-def leave_out_coordinates(dynamics: Dynamics, t: float, at_rest: Mapping[str, Sequence[int]]) -> None:
+def leave_out_coordinates(dynamics: Dynamics, t: float) -> None:
     """Reduce the unknowns of integrators to independent coordinates; the state must satisfy the constraints.
 
-    All coordinates stay if none is independent, as an integrator needs an unknown. `at_rest`: coordinates that stay
-    zero, by bodies (`stiffmbs.presolve.modes_at_rest`).
+    All coordinates stay if none is independent, as an integrator needs an unknown.
     """
-    found = independent_coordinates(dynamics.system, dynamics.state, t, at_rest)
+    found = independent_coordinates(dynamics.system, dynamics.state, t)
     if found.independent.any():
         dynamics.coordinates = found
 
@@ -62,8 +61,7 @@ def presolved(
     For implicit solvers, dependent coordinates are eliminated from their dynamics or from those of the whole system.
     If steps are implicit from the start, the spin of axisymmetric bodies is removed from their quaternions. Explicit
     steps would only come closer to their stability limit. `dynamics`: of the whole system, at its start. `decided`: returns
-    an earlier decision to begin with implicit steps, or calls the function that makes it. `start`: modal coordinates that
-    are left out are set to zero in it.
+    an earlier decision to begin with implicit steps, or calls the function that makes it.
     """
     if not may_presolve(settings):
         return ()
@@ -72,31 +70,13 @@ def presolved(
         not traits.switches or decided(partial(_begins_implicit, dynamics, start, grid, settings))
     )
     travel = (grid.end - grid.start) * start.u if implicit else None
-    at_rest = _set_modes_to_rest(model, dynamics, start) if traits.implicit else {}
     together = partial(alike, dynamics, start, (grid.start, grid.end), implicit)
     parts = parts_of(model, dynamics.system, travel, together if grid.times is not None else None)
     subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
     if traits.implicit:
         for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
-            leave_out_coordinates(solved, grid.start, at_rest)
+            leave_out_coordinates(solved, grid.start)
     return subsystems
-
-
-def _set_modes_to_rest(model: ModelData, dynamics: Dynamics, start: InitialValues) -> Mapping[str, Sequence[int]]:
-    """Return the modal coordinates that stay zero, and set them and their rates to zero, as they may differ by rounding.
-
-    Their module is loaded for flexible bodies only.
-    """
-    if all(getattr(body, "weighs", True) for body in model.bodies.values()):
-        return {}
-    from ..presolve.modes_at_rest import modes_at_rest
-
-    system = dynamics.system
-    found = modes_at_rest(model, system, start.q, start.u)
-    for k, body in enumerate(system.bodies):
-        axes = np.array(found.get(body, ()), dtype=int)
-        start.q[system.of_body.n_q * k + axes] = start.u[system.of_body.n_u * k + axes] = 0.0
-    return found
 
 
 def _begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> bool:

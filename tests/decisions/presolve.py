@@ -7,7 +7,6 @@ from unittest.mock import patch
 import numpy as np
 
 from stiffmbs.presolve import presolve
-from stiffmbs.presolve.modes_at_rest import _Mirror
 from stiffmbs.presolve.relations import Relations
 from stiffmbs.presolve.spinning_bodies import _alike
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
@@ -34,10 +33,9 @@ DECISIONS = {
     ),
     "presolve.independent": lambda: count_while(used, HALVES),
     "presolve.alike": lambda: count_while(lambda off: _alike(1.0, 1.0 + 1e-14 * off), DOUBLES),
-    "presolve.at_rest": lambda: count_while(lambda value: _Mirror._zero(None, 1e-12 * value, 1.0), DOUBLES),
     "presolve.most_apart": lambda: count_while(solved_apart, range(2, 100)),
 }
 EXPECTED = {
-    "presolve.negligible": 173, "presolve.independent": 72, "presolve.alike": 27, "presolve.at_rest": 40,
+    "presolve.negligible": 173, "presolve.independent": 72, "presolve.alike": 27,
     "presolve.most_apart": 7,
 }  # fmt: skip
