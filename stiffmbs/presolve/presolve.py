@@ -7,7 +7,7 @@ equations of the whole model.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -127,9 +127,6 @@ BodyFixedPoses = PlanarPoses | SpatialPoses
 BODY_FIXED_POSES: dict[int, type[PlanarPoses] | type[SpatialPoses]] = {2: PlanarPoses, 3: SpatialPoses}
 
 
-Alike = Callable[[Sequence[np.ndarray]], Sequence[Sequence[int]]]
-
-
 @dataclass(frozen=True)
 class Part:
     """Mechanism to solve, and the bodies of the whole model that its bodies carry.
@@ -191,30 +188,18 @@ class Part:
             spin.turned(places, rates, q[:, spin.angle])
 
 
-def may_be_apart(system: System) -> bool:
-    """Return True if parameter values may decide whether mechanisms are solved separately."""
-    return 1 < len(mechanisms(system)) <= PRESOLVE.most_apart
-
-
-def parts_of(
-    model: ModelData, whole: System, travel: np.ndarray | None, alike: Alike | None = None
-) -> tuple[Part, ...]:
+def parts_of(model: ModelData, whole: System, travel: np.ndarray | None, apart: bool) -> tuple[Part, ...]:
     """Return the mechanisms to solve in place of a compiled model; empty if none replaces it.
 
     `whole`: with its redundant equations marked. `travel` of shape (n_u,): initial velocities times the duration of the
-    run; None to keep all spins in the quaternions. `alike`: return the sets of mechanisms to solve together, given
-    their body numbers in the whole model. By default all are solved together.
+    run; None to keep all spins in the quaternions. `apart`: whether independent mechanisms are solved separately, if they
+    are few.
     """
     held = {joint for joint, _ in whole.equations} - {joint for (joint, _), on in zip(whole.equations, whole.active, strict=True) if not on}  # fmt: skip
     merged = merge(model, held)
     spun = None if travel is None else spinning(merged or model, _turns(merged, whole, travel))
     system = _compiled(spun or merged, whole) if spun or merged else whole  # type: ignore[arg-type]
-    found = mechanisms(system) if alike else []
-    if alike and 1 < len(found) <= PRESOLVE.most_apart:
-        carried = [_carried(bodies, system, whole, merged) for bodies in found]
-        found = sorted(
-            (np.sort(np.concatenate([found[k] for k in each])) for each in alike(carried)), key=lambda bodies: bodies[0]
-        )
+    found = mechanisms(system) if apart else []
     if not 1 < len(found) <= PRESOLVE.most_apart:
         if system is whole:
             return ()
@@ -237,14 +222,6 @@ def _compiled(model: MergedBodies | SpinningBodies, whole: System) -> System:
     system = compile_model(model)
     on = dict(zip(whole.equations, whole.active, strict=True))
     return replace(system, active=np.array([on[equation] for equation in system.equations], dtype=bool))
-
-
-def _carried(bodies: np.ndarray, system: System, whole: System, merged: MergedBodies | None) -> np.ndarray:
-    """Return the numbers of the bodies in the whole model that some solved bodies carry."""
-    if merged is None:
-        return bodies
-    names = {system.bodies[k] for k in bodies}
-    return np.array([k for k, name in enumerate(whole.bodies) if merged.members[name][0] in names])
 
 
 def _part(

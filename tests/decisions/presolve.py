@@ -9,6 +9,7 @@ import numpy as np
 from stiffmbs.presolve import presolve
 from stiffmbs.presolve.relations import Relations
 from stiffmbs.presolve.spinning_bodies import _alike
+from tests.decisions.common import Record, nothing
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
 
@@ -17,8 +18,9 @@ def relations(n=2):
 
 
 def solved_apart(count):
-    with patch.object(presolve, "mechanisms", lambda _: [None] * count):
-        return presolve.may_be_apart(None)
+    replaced = {"mechanisms": lambda _: [None] * count, "merge": nothing, "_part": nothing}
+    with patch.multiple(presolve, **replaced):
+        return bool(presolve.parts_of(None, Record(equations=(), active=()), None, apart=True))
 
 
 def used(independence):
