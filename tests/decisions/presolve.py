@@ -18,7 +18,11 @@ def relations(n=2):
 
 
 def solved_apart(count):
-    replaced = {"mechanisms": lambda _: [None] * count, "merge": nothing, "_part": nothing}
+    replaced = {
+        "mechanisms": lambda _: [None] * count,
+        "merge": lambda *_: Record(members={}, axes={}),
+        "_part": nothing,
+    }
     with patch.multiple(presolve, **replaced):
         return bool(presolve.parts_of(None, Record(equations=(), active=()), None, apart=True))
 
