@@ -15,7 +15,7 @@ MOST = 1000
 
 REMOVED = {
     "masking": "no event is left out by a number of steps any more, expected no such entry",
-    "presolve: at_rest": "all modes of flexible bodies are solved for, expected no such entry",
+    "presolve: at_rest": "all modes of flexible bodies are solved for; remove this entry",
 }
 """Subsystems and parameters of earlier versions, and what replaces them."""
 
