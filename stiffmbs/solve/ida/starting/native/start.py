@@ -122,8 +122,6 @@ def begun(w, c, t):
     search.ready = 0
     for k in range(w.n_watched):
         search.found[k] = 0
-    for k in range(c.n_event_functions):
-        c.signs[k] = 0.0
     for k in range(LOOP.samples * (1 + c.n_reported)):
         c.samples[k] = NAN
     c.returned = t
