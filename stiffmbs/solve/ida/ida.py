@@ -179,14 +179,10 @@ class NativeIda(Connection):
         self.history.begin(t)
         self.begun, self._flag = True, 0
 
-    def starts(
-        self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl
-    ) -> Starts | None:
-        """Return compiled starts; None if they do not apply."""
+    def starts(self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl) -> Starts:
+        """Return compiled starts."""
         from .starting.starts import Starts
 
-        if not Starts.serve(dynamics):
-            return None
         return Starts(dynamics, equations, self, self._statistics, settings, control)
 
     def advance(self, times: np.ndarray, stop: float, y_out: np.ndarray) -> tuple[int, Status]:

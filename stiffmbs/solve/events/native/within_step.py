@@ -31,7 +31,7 @@ from stiffmbs.solve.events.native.bounds import (
     turned_argument,
     turned_arguments,
 )
-from stiffmbs.solve.events.native.parameters import BISECTIONS, INDISTINCT, SEARCH
+from stiffmbs.solve.events.native.parameters import BISECTIONS, SEARCH
 from stiffmbs.solve.events.native.values import switches
 
 INFINITE = float("inf")

@@ -33,7 +33,7 @@ STEP_WIDTH = len(STEP)
 
 
 START = Layout({
-    "dynamics": INTS, "ida": INT, "error_norm": INTS, "n_watched": INT, "rate": FLOATS, "leader": INTS,
+    "dynamics": INTS, "ida": INT, "error_norm": INTS, "n_watched": INT, "rate": FLOATS, "kept": FLOATS, "leader": INTS,
     "n_q": INT, "q_of": INTS, "q_at": INTS, "n_u": INT, "u_of": INTS, "u_at": INTS,
     "relaxations": FLOATS, "n_position_entries": INT, "position_source": INTS, "position_row": INTS, "position_drift": FLOAT_CELL,
     "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "inverse_mass": FLOATS, "velocity_drift": FLOAT_CELL,
@@ -44,7 +44,7 @@ START = Layout({
     "n_counters": INT, "counter": INTS, "counted": INTS, "count": INTS, "counts": INTS,
     "set_newton": INT, "reinitialise": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
 })  # fmt: skip
-"""Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): independent coordinates and velocities, and their
+"""Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): memory for rates of coordinates, and for a state; independent coordinates and velocities, and their
 positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
 term set; counter functions, their arguments, space for one number, and their sums; functions of SUNDIALS.  A start changes only
 both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave."""
