@@ -15,12 +15,12 @@ from .events.discontinuity import Jumps
 from .events.long_steps import LongSteps
 from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
-from .events.restart import just_after, restarted, straight_on
+from .events.restart import restarted, straight_on
 from .ida.choice import Driven, driven_natively
 from .ida.native.parameters import LOOP
 from .ida.native_engine import Reached
 from .stiff_rows import States, projected
-from .trajectory import Grid
+from .trajectory import Grid, just_after
 
 Driver = Callable[[Dynamics, RunSettings, ErrorControl], Driven]
 

@@ -15,7 +15,7 @@ from ...dynamics.dynamics import Dynamics
 from .chattering import CHATTERING
 from .departures import Departure, departures
 from .long_steps import WHOLE
-from .native.layouts import EVENT_SEARCH, STEP_BOUND
+from .native.layouts import ALWAYS, EVENT_SEARCH, STEP_BOUND
 
 NODES = len(WHOLE)
 """Number of interpolation nodes of a step."""
@@ -71,7 +71,7 @@ class EventSearch:
         """End steps at the kinks of tables from now on."""
         if self.n:
             intervals = intervals_of(self._system)
-            self._cells["at_kinks"] = 1
+            self._cells["at_kinks"] = ALWAYS
             self._overlap[np.repeat(intervals.kinks, np.diff(intervals.first)) > 0] = 0.0
 
     def begin(self) -> None:

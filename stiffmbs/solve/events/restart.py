@@ -12,7 +12,6 @@ from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...tuning import tuned
-from .native.parameters import INDISTINCT
 
 
 @dataclass(frozen=True)
@@ -29,16 +28,6 @@ class RestartParameters:
 
 
 RESTARTS = tuned("restarts", RestartParameters())
-
-
-def just_before(t: float) -> float:
-    """Return the first instant that counts as t."""
-    return t - INDISTINCT * abs(t)
-
-
-def just_after(t: float) -> float:
-    """Return the last instant that counts as t: IDA refuses to start towards one nearer than two roundings."""
-    return t + INDISTINCT * abs(t)
 
 
 def straight_on(t: float, step: float, rtol: float) -> float:

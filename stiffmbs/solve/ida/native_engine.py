@@ -16,11 +16,10 @@ from ..error_control.error_test import ErrorControl
 from ..error_control.native.parameters import NEWTON, POLISHING
 from ..error_control.newton import Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
-from ..events.restart import just_after
 from ..linear_solvers.fixed_order import FixedOrder
 from ..radau.collocation import radau
 from ..recorded_steps import Piece, StepRecorder
-from ..trajectory import History
+from ..trajectory import History, just_after
 from .connection import BDF, Formula
 from .ida import AT_THE_END, NativeIda
 from .native.parameters import LOOP

@@ -12,6 +12,9 @@ LONG_STEPS = Layout({
 `width` numbers, at the nodes.  Cells: ratio of a long step to the usual one, number of steps in the mean that is usual,
 space for rows (0 for none), stored rows, usual step."""
 
+ALWAYS, IN_THIS_STEP = 1, 2
+"""Values of the cell `at_kinks`: kinks of tables end all steps, or this step of a method whose error estimate does not hold."""
+
 EVENT_SEARCH = Layout({
     "n": INT, "n_event_functions": INT, "band": FLOATS, "farthest": FLOATS, "first_breakpoint": INTS, "breakpoints": FLOATS, "overlap": FLOATS, "period": FLOATS,
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
@@ -27,7 +30,7 @@ function near a breakpoint; states of the step at nodes, of `n_state` numbers an
 and their unit in radians; the range of arguments of tables in steps near their ends, the time outside, and that of the
 first departure; tables that end; arguments of tables with a kink; number of functions with breakpoints.
 
-Cells: 1 if kinks of tables end steps, 1 if values at the start of the step are known, time of that start, least depth of an event below zero; shortest
+Cells: 0 if kinks of tables do not end steps; 1 if values at the start of the step are known, time of that start, least depth of an event below zero; shortest
 and longest step for the arguments of sines; longest step until the motion leaves its initial law, longest first step
 there; 1 after the beginning of the run, time of the beginning, number of steps limited by features, end of the passage;
 number of steps with unresolved arguments, first such argument, and its time; time up to which ranges are noted."""

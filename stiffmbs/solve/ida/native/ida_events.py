@@ -28,6 +28,7 @@ from stiffmbs.solve.events.native.bounds import (
     watch_for,
 )
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
+from stiffmbs.solve.events.native.layouts import ALWAYS, IN_THIS_STEP
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
 from stiffmbs.solve.events.native.outside import note_outside
 from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
@@ -242,7 +243,8 @@ def _passes_smoothly(w, h):
             farthest = max(
                 abs(w.value_after[k] - w.value_before[k]), h * max(abs(w.rate_before[k]), abs(w.rate_after[k]))
             )
-            others += k < w.n_event_functions or (smooth < SEARCH.difference * farthest and not lands(w, k))
+            restarts = w.at_kinks == ALWAYS if lands(w, k) else smooth < SEARCH.difference * farthest
+            others += k < w.n_event_functions or restarts
     return others == 0
 
 
@@ -274,7 +276,8 @@ def look_within(ida):
     copied(w.m, _evaluate_near(w, s, place), w.n)
     note_farthest(w, w.m)
     load(s, e, array_of(c, c.y), array_of(c, c.yp))
-    w.at_kinks = 1 if c.repeat and not call_int(c.resolves, (c.memory,)) else 0
+    if w.at_kinks != ALWAYS:
+        w.at_kinks = IN_THIS_STEP if c.repeat and not call_int(c.resolves, (c.memory,)) else 0
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):
             if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:

@@ -19,7 +19,7 @@ NATIVE_IDA = Layout({
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
 functions and objects, values of the matrix, and reported unknowns; function by which a one-step method
-repeats its last step with another length, 0 for a multistep method, and one that tells whether the error estimate of the
+repeats its last step with another length, 0 for a multistep method; function that tells whether the error estimate of the
 step holds over jumps; absolute and relative tolerances.
 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,

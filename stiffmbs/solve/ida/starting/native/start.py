@@ -55,7 +55,12 @@ def _fill_unknowns(w, s, e, y, yp):
 
 @compiled
 def _relax(w, s, t):
-    """Apply `stiffmbs.solve.error_control.relaxation.relax` at the current state."""
+    """Set the relaxations of all rows at the current state.
+
+    They are the diagonals of E_mu = eps C_q C_q^T and E_lam = eps J M^-1 J^T, with eps in proportion to the tolerance.
+    The drift in tolerances then does not depend on the sizes of lengths, angles, masses and forces.  M is the inertia of
+    the heaviest body at an arm as long as the mechanism: light bodies and small moments of inertia may carry its weight.
+    """
     if s.n_c == 0:
         return
     values = evaluate(s, MOTION, t)
