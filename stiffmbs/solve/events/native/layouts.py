@@ -12,7 +12,7 @@ LONG_STEPS = Layout({
 `width` numbers, at the nodes.  Cells: ratio of a long step to the usual one, number of steps in the mean that is usual,
 space for rows (0 for none), stored rows, usual step."""
 
-ALWAYS, IN_THIS_STEP = 1, 2
+ALWAYS, IN_THIS_STEP = range(1, 3)
 """Values of the cell `at_kinks`: kinks of tables end all steps, or this step of a method whose error estimate does not hold."""
 
 EVENT_SEARCH = Layout({
