@@ -94,8 +94,7 @@ class Integrator:
                 continue
             if ready:
                 refuse_beyond_limits(self.dynamics, t, ready.q, ready.u)
-                self.engine.ida.watch.watch_for(self._hovering.band)
-                self.engine.begin_at(ready, t)
+                self._begin(ready, t)
                 chattering.begin(t, ready.q, ready.u)
             for reached in self._segment(t, stops[: LOOP.most_passed if passing else 1], grid):
                 del stops[: reached.passed]
@@ -123,6 +122,10 @@ class Integrator:
                     yield from self._at_once(before, t, grid, (state.q, state.u))
                 self._events += not at_breakpoint
                 self._breakpoints += at_breakpoint
+
+    def _begin(self, start: InitialValues, t: float) -> None:
+        self.engine.ida.watch.watch_for(self._hovering.band)
+        self.engine.begin_at(start, t)
 
     def _restarted(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
