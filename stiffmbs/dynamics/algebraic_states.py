@@ -13,23 +13,6 @@ BEYOND_LAST_STATE = np.geomspace(1e-9, 1e-5, 3)
 """Times after the last state, relative to the time, s, at which missing values are searched for."""
 
 
-def rates_of_algebraic(
-    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray
-) -> np.ndarray:
-    """Return the rates of the algebraic states along the motion, shape (algebraic states,); zero if they have none."""
-    places = dynamics.system.algebraic_coordinates
-    if not len(places):
-        return np.zeros(0)
-    state, interval = dynamics.state, CONSISTENCY.rate_interval
-    with state.unchanged():
-        there = dynamics.system.of_body.moved(q, interval * u)
-        there[dynamics.system.n_pose :] += interval * dynamics.position_rates(q, u)[dynamics.system.n_pose :]
-        state.q[:], state.u[:] = there, u + interval * acceleration
-        status, _ = dynamics.accelerate(t + interval)
-        rates = (state.q[places] - q[places]) / interval
-    return rates if status >= 0 and np.all(np.isfinite(rates)) else np.zeros(len(places))
-
-
 def rates_by_states(dynamics: Dynamics) -> np.ndarray:
     """Return the Jacobian of the rates of differential states by these states, with algebraic states eliminated.
 

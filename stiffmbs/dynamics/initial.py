@@ -76,15 +76,6 @@ class InitialValues:
         )
 
 
-def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
-    """Return q' at consistent values, and set the dynamics' state to them."""
-    state, system = dynamics.state, dynamics.system
-    state.q[:], state.u[:], state.lam[:] = start.q, start.u, start.lam
-    if system.n_q > system.n_pose:
-        state.evaluate("acceleration", t)
-    return dynamics.position_rates(start.q, start.u)
-
-
 def initial_values(dynamics: Dynamics, t: float, first: np.ndarray | None = None) -> InitialValues:
     """Make the described start consistent.
 

@@ -25,6 +25,7 @@ from ..compile.inputs.features import InputFeatures
 from ..dynamics.storage import STORAGE, allocated, release
 from ..errors import SolverError
 from ..model.settings import RunSettings
+from .events.native.parameters import INDISTINCT
 
 if TYPE_CHECKING:
     from ..compile.system import System
@@ -41,6 +42,16 @@ SAME_TIME = 1e-9
 
 def unwatched(t: float) -> None:
     """Ignore the progress."""
+
+
+def just_before(t: float) -> float:
+    """Return the first instant that counts as t."""
+    return t - INDISTINCT * abs(t)
+
+
+def just_after(t: float) -> float:
+    """Return the last instant that counts as t: IDA refuses to start towards one nearer than two roundings."""
+    return t + INDISTINCT * abs(t)
 
 
 class Outcome(Enum):

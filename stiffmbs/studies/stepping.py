@@ -14,13 +14,13 @@ from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..solve import SOLVERS
-from ..solve.events.restart import just_after, just_before, restarted
+from ..solve.events.restart import restarted
 from ..solve.ida.native_engine import Reached
 from ..solve.integrator import Integrator
 from ..solve.radau.radau import radau_integrator
 from ..solve.settings import changed
 from ..solve.stiff_rows import lengths_of_steps, projected
-from ..solve.trajectory import Grid, Outcome
+from ..solve.trajectory import Grid, Outcome, just_after, just_before
 
 PART, FINEST = 0.01, 1e-12
 """Part of the tolerance that restarts get, and the finest tolerance; errors of restarts accumulate."""

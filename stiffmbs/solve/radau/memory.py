@@ -23,7 +23,7 @@ from ..linear_solvers.block_lu import BlockLU
 from ..linear_solvers.fixed_order import Assembled, FixedOrder
 from .collocation import MOST_BETWEEN, Collocation, radau
 from .condensed import condensed_efforts, indices
-from .interface import COUNTER, REPEAT, RadauFunctions
+from .interface import COUNTER, REPEAT, RESOLVES, RadauFunctions
 from .native.layouts import COLLOCATION, RADAU
 from .parameters import RadauParameters
 
@@ -116,6 +116,11 @@ class Radau:
         """Return the address of the function that repeats the last step."""
         return REPEAT.address
 
+    @property
+    def resolves(self) -> int:
+        """Return the address of the function that tells whether the error estimate of the last step holds over jumps."""
+        return RESOLVES.address
+
     def libraries(self) -> Libraries:
         """Return the SUNDIALS functions, with those of IDA replaced."""
         return RadauFunctions(ida_libraries())
@@ -146,10 +151,6 @@ class Radau:
         number[imaginary] = np.arange(len(imaginary))
         algebraic = np.ones(n)
         algebraic[equations.pattern[0][imaginary]] = 0.0
-        events = functions = system.n_event_functions
-        compute = connection.event_functions
-        if intervals_of(system).kinks.any():
-            functions, compute = connection.watch.n, connection.event_functions_and_places
         efforts = condensed_efforts(equations)
         n_efforts, n_all = efforts["n_efforts"], n + efforts["n_efforts"]
         values = {
@@ -169,8 +170,7 @@ class Radau:
             "corrections": np.zeros((self._most - 1 + MOST_BETWEEN) * n_all),
             **{name: np.zeros(n_all) for name in ("y", "y_stage", "y_past")},
             **{name: np.zeros(self._most * n_all) for name in ("z", "d", "past")},
-            "n_events": events, "n_functions": functions, "functions": compute if functions else 0, "ida": connection.words,
-            **{name: np.zeros(functions) for name in ("before", "after", "within")}, "fired": np.zeros(events, dtype=np.int64),
+            "has_kinks": int(system.n_event_functions > 0 or intervals_of(system).kinks.any()),
             **asdict(parameters_of(self._parameters)),
         }  # fmt: skip
         fill(self._words, RADAU, values)

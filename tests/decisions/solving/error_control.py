@@ -9,11 +9,13 @@ import numpy as np
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OPERATIONS
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import bdf
-from stiffmbs.solve.error_control.newton import Stiffness, newton_tolerance
+from stiffmbs.solve.error_control.newton import Stiffness
 from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
 from stiffmbs.solve.ida.native import error_norm, iteration, output_correction
 from stiffmbs.solve.ida.native_engine import NativeEngine
+from stiffmbs.solve.ida.starting.native import start
+from stiffmbs.solve.ida.starting.starts import newton_bounds
 from stiffmbs.solve.trajectory import Grid
 from tests.decisions.common import Record, always, nothing
 from tests.interpreted import interpreted
@@ -79,7 +81,9 @@ def eased(newton, failures=1000, steps=1000):
 
 
 def tolerance(of_positions, rtol=1e-6):
-    return newton_tolerance(Stiffness(of_positions, 0.0), RunSettings(duration=1.0, rtol=rtol))
+    w = Record(**newton_bounds(rtol, None), of_positions=of_positions, of_velocities=0.0, newton=0.0)
+    start.allow_remainder(w)
+    return w.newton
 
 
 def balance_between_steps():

@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.native.access import address_of, compiled, equatio
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
-from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, interval, place, repeats
+from stiffmbs.solve.events.native.bounds import bounded_by_feature, departed, event_search_view, repeats
 from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
 from stiffmbs.solve.events.native.step_bound import (
     STRETCHED,
@@ -18,9 +18,9 @@ from stiffmbs.solve.events.native.step_bound import (
 )
 from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
-from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view, watched
+from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
-from stiffmbs.solve.ida.native.layouts import NO_EVENT, PASSED_INTERVAL, STEP_WIDTH
+from stiffmbs.solve.ida.native.layouts import EVENT, NO_EVENT, STEP_WIDTH
 from stiffmbs.solve.ida.native.output_correction import (
     corrected,
     corrected_at_event,
@@ -28,7 +28,6 @@ from stiffmbs.solve.ida.native.output_correction import (
     output_correction_view,
 )
 from stiffmbs.solve.ida.native.parameters import LOOP
-from stiffmbs.solve.ida.native.passage import switches
 
 STALLED: Final = -101
 """Flag for steps that have shrunk to the rounding of the time; none of ida.h."""
@@ -74,28 +73,6 @@ def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
     iteration_view(c.iteration).age = MADE
     add_entries(e, evaluate(s, e.matrix_set, t), cj, a)
     return int32(OK if _finite(a, e.n_slots) else RECOVERABLE)
-
-
-def event_functions(t, yy, yp, g, user_data):
-    """Compute the event functions of breakpoints of forces (IDARootFn)."""
-    c = native_ida_view(user_data)
-    s = state_view(c.state)
-    load(s, equations_view(c.equations), array_of(c, yy), array_of(c, yp))
-    values = switches(event_search_view(c.watch), s, t)
-    c.seen = t
-    watched(values, c.signs, c.band, g, c.n_event_functions)
-    return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)
-
-
-def event_functions_and_places(t, yy, yp, g, user_data):
-    """Compute the event functions, and the places of other functions among the breakpoints of tables with a kink."""
-    flag = event_functions(t, yy, yp, g, user_data)
-    c = native_ida_view(user_data)
-    w = event_search_view(c.watch)
-    values = floats(state_view(c.state).values[SWITCH])
-    for k in range(c.n_event_functions, w.n):
-        g[k] = float(place(w, k, values[k])) if w.kinked[k] else 0.0
-    return flag
 
 
 @compiled
@@ -157,24 +134,23 @@ def _seen(c, ida, flag):
 def stepped(c, ida, toward, stop):
     """Take one step; note its end, order and size in the history, and return IDA's flag.
 
-    A one-step method that has passed an interval of a law repeats the step into that interval: no restart is needed.
+    A one-step method may repeat the step up to an event or a passed law.
     """
     before = c.internal
     begun = c.returned
-    c.within = 0
     if c.look_at_start:
         call_int(c.look_at_start, (toward, stop, ida))
     flag = _attempt(c, toward, stop)
     seen = _seen(c, ida, flag)
     for _ in range(LOCATION.most_retaken):
-        if seen != PASSED_INTERVAL or not c.repeat:
+        event = c.returned
+        h = _repeated(c, begun, seen)
+        if h == 0.0:
             break
-        call_int(c.repeat, (c.memory, begun, (1.0 + SEARCH.difference) * (c.returned - begun)))
-        c.returned = begun
-        c.internal = begun
-        c.within = 0
         flag = _attempt(c, toward, stop)
         seen = _seen(c, ida, flag)
+        if seen == NO_EVENT:
+            event_search_view(c.watch).target = event + (event - begun - h)
     if c.internal != before and flag >= 0:
         call_int(c.order_of, (c.memory, address_of(c.order)))
         row = shifted(c.history, STEP_WIDTH * c.recorded)
@@ -195,6 +171,32 @@ def stepped(c, ida, toward, stop):
 
 
 @compiled
+def _repeated(c, begun, seen):
+    """Make a one-step method repeat its step with another length; return that, or 0 if the step stays.
+
+    A step that has passed an interval of a law ends in it: no restart is needed. One whose error estimate is not valid
+    over a jump ends shortly before the event, and the next one as shortly after it.
+    """
+    if seen == NO_EVENT or not c.repeat or (seen == EVENT and call_int(c.resolves, (c.memory,))):
+        return 0.0
+    w = event_search_view(c.watch)
+    crossed = 0
+    for k in range(w.n_event_functions):
+        crossed += w.found[k] != 0 and departed(w, k, w.value_after[k])
+    if seen == EVENT and crossed == 0:  # a short visit, which the search has resolved
+        return 0.0
+    ahead = c.returned - begun
+    h = ahead / STRETCHED if seen == EVENT else (1.0 + SEARCH.difference) * ahead
+    shortest = LOOP.most_tiny**2 * EPSILON * abs(begun)
+    if not shortest < h < (1.0 - SEARCH.difference) * c.size:
+        return 0.0
+    call_int(c.repeat, (c.memory, begun, h))
+    c.returned = begun
+    c.internal = begun
+    return h
+
+
+@compiled
 def _before_event(c, begun):
     """Return a time just before the event at the returned state, at which all laws are those at the start of the step."""
     w = event_search_view(c.watch)
@@ -208,10 +210,7 @@ def _before_event(c, begun):
         values = evaluate(s, SWITCH, c.returned - ahead)
         changed = 0
         for k in range(w.n):
-            if c.within and w.found[k]:
-                changed += interval(w, k, values[k]) != interval(w, k, w.value_before[k])
-            elif k < c.n_event_functions and abs(w.value_before[k]) > w.band[k]:
-                changed += w.value_before[k] * values[k] < 0.0
+            changed += w.found[k] != 0 and departed(w, k, values[k])
     return c.returned - ahead
 
 

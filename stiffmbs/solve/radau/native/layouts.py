@@ -27,7 +27,7 @@ RADAU = Layout({
     "h_factored": FLOAT_CELL, "stages_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "ahead": INT_CELL, "error_size": FLOAT_CELL, "left": FLOAT_CELL, "suggested": FLOAT_CELL,
     "corrections": FLOATS, "n_corrections": INT_CELL, "suffice": INT_CELL, "outputs": INT_CELL,
     "contraction": FLOAT_CELL, "last_error": FLOAT_CELL, "h_accepted": FLOAT_CELL, "since_change": INT_CELL, "iterations_taken": INT_CELL,
-    "n_events": INT, "n_functions": INT, "functions": INT, "ida": INTS, "before": FLOATS, "after": FLOATS, "within": FLOATS, "fired": INTS,
+    "has_kinks": INT,
     "steps": INT_CELL, "residuals": INT_CELL, "jacobians": INT_CELL, "factorizations": INT_CELL, "error_failures": INT_CELL,
     "step_failures": INT_CELL, "iterations": INT_CELL, "newton_failures": INT_CELL,
     "least_factor": FLOAT_CELL, "largest_factor": FLOAT_CELL, "keep_matrix": FLOAT_CELL, "keep_high": FLOAT_CELL,
@@ -48,6 +48,5 @@ Cells: tolerances, the requested relative one, part that Newton's iteration may 
 time; time, next step, last step, methods of both; step size, method and time of the factors, 1 if the matrix belongs to
 the beginning of the step, 1 to make it that of the predicted end.  Convergence rate of Newton's iteration, its last ratio, and what it left, in tolerances; error and size of the last
 accepted step; 1 before motions that decay within a first step are removed; steps since a change of the method.  Corrections between steps (`stiffmbs.solve.radau.native.between_steps`),
-their number, 1 if they suffice, and outputs of the step. Event functions, of which `n_events` end steps, and places among breakpoints of
-tables with a kink, at both ends of the step and within.  Counters, then the parameters of
+their number, 1 if they suffice, and outputs of the step. 1 if laws have jumps or kinks.  Counters, then the parameters of
 `stiffmbs.solve.radau.parameters`."""

@@ -339,7 +339,7 @@ def _after_failed_iteration(x, outcome, h):
     if not x.current:
         x.renewed = 1
         return h * x.suggested if outcome == SLOW else h
-    if x.n_functions > 0 and (outcome == DIVERGED or x.ahead):
+    if x.has_kinks and (outcome == DIVERGED or x.ahead):
         x.renewed = 1
         x.ahead = 1 - x.ahead
         if x.ahead:
