@@ -37,7 +37,7 @@ def estimated(
     parts = subsystems or (None,)
     try:
         found = [
-            state_errors(part.dynamics if part else dynamics, pieces)
+            state_errors(part.dynamics if part else dynamics, pieces, settings.rtol)
             for part, pieces in zip(parts, trajectory.recorded, strict=False)
         ]
         lost = [
@@ -100,19 +100,15 @@ def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:
 
     Raise a SolverError if the motion has passed a singular pose before, where the linear equations do not hold.
     """
-    system = dynamics.system
-    of_poses = np.abs(found.errors[:, : system.n_u])
-    scale = system.per_velocity(system.size, 1.0)
-    beyond = ~(of_poses <= ESTIMATE.lost * scale).all(axis=1)
-    if not beyond.any():
+    if not found.lost.any():
         return None
-    before = slice(0, int(np.argmax(beyond)) + 1)
+    before = slice(0, int(np.argmax(found.lost)) + 1)
     at = evaluated(dynamics, found.t[before], found.recorded_q[before], found.recorded_u[before])
     singular = nearly_singular(dynamics, at)
     if singular.any():
         t = at.t[np.argmax(singular)]
         raise SolverError(f"no linear equations transport errors through the nearly singular pose at t = {t:.4g} s")
-    return float(found.t[np.argmax(beyond)])
+    return float(found.t[before.stop - 1])
 
 
 def _lost_from(solution: Solution, t: float) -> Solution:
