@@ -46,8 +46,8 @@ def evaluated(
 ) -> Evaluated:
     """Project states onto the constraints and evaluate them; raise a SolverError if one has no solution.
 
-    `balance`: lengths of the implicit steps that end in these states, shape (n,), s, whose balance of stiff forces the projection
-    is to keep, and the change of a force that is allowed, relative to the largest.
+    `balance`: lengths of the implicit steps that end in these states, shape (n,), s, and a change of forces, relative to the
+    largest. The projection changes stiff forces by less than that, if possible.
     """
     system = dynamics.system
     rows = dynamics.report(t, q, u, project=bool(system.n_c))
