@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..model.settings import LARGEST_RTOL
+from ..errors import StiffmbsError
+from ..model.settings import LARGEST_RTOL, RunSettings
 from ..results.estimate import ErrorEstimate
+from ..solve.explicit import DOP853
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
@@ -45,25 +47,60 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
         if traits.fixed_steps or job.dynamics.system.sampled.any():
             why = "fixed steps" if traits.fixed_steps else "sampled states"
             return _without(solution, f"not estimated for {why}; --verify compares with other runs")
-        if job.settings.errors or job.settings.accuracy:
+        if _work(job, trajectory) <= job.grid.recorded:
             return _by_second_run(job, solution)
-    return _without(solution, f"not estimated: {_reason(trajectory)}; {ASK}")
+    return _without(
+        solution, f"not estimated: that takes some time for {_steps(trajectory)} steps of this model; {ASK}"
+    )
+
+
+def _steps(trajectory: Trajectory) -> int:
+    return int(trajectory.statistics.get("steps", 0))
+
+
+def _work(job: Job, trajectory: Trajectory) -> float:
+    """Return the work of a second run: steps times unknowns; infinite if recorded steps have been too many."""
+    system = job.dynamics.system
+    if trajectory.statistics.get("jacobians") and "projected" not in trajectory.solver:
+        return np.inf
+    return _steps(trajectory) * (system.n_q + system.n_u + system.n_c)
 
 
 def _by_second_run(job: Job, solution: Solution) -> Solution:
-    """Return the results with errors from a run at a larger tolerance."""
+    """Return the results with errors from a run at a smaller tolerance, or at a larger one if there is none."""
     from ..error_estimate.estimate import with_bars
-    from ..results.channel_errors import LARGER, bars_by_difference
+    from ..results.channel_errors import bars_by_difference
     from .run import finished
 
-    settings = changed(job.settings, {"rtol": min(LARGER * job.settings.rtol, LARGEST_RTOL)})
-    other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=0.0, times=solution.time)))
+    part = _second(job.settings)
+    settings = _with_errors(job.settings, part)
+    try:
+        other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=0.0, times=solution.time)))
+    except StiffmbsError as error:
+        return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} failed: {error}; use --verify")
     if len(other.time) != len(solution.time):
         return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")
     return with_bars(
-        replace(solution, errors=bars_by_difference(solution.time, solution.channels, other.channels)),
+        replace(solution, errors=bars_by_difference(solution.time, solution.channels, other.channels, part)),
         job.settings, job.dynamics.system.size,
     )  # fmt: skip
+
+
+def _second(settings: RunSettings) -> float:
+    """Return the tolerance of a second run in that of a run."""
+    from ..error_estimate.parameters import ESTIMATE
+
+    return ESTIMATE.second if ESTIMATE.second * settings.rtol >= ESTIMATE.smallest_rtol else 1.0 / ESTIMATE.second
+
+
+def _with_errors(settings: RunSettings, part: float) -> RunSettings:
+    """Return the settings of a run whose errors are a part of those of another one."""
+    changes: dict[str, float] = {"rtol": min(part * settings.rtol, LARGEST_RTOL)}
+    if settings.atol is not None:
+        changes["atol"] = part * settings.atol
+    if settings.max_step:
+        changes["max_step"] = settings.max_step * part ** (1.0 / DOP853.order)
+    return changed(settings, changes)
 
 
 def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
@@ -91,13 +128,6 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
         f"the accuracy asked for was not reached: {judged.sentence} at rtol {rtol:.2g}; use a smaller rtol, or --verify"
     )
     return replace(solution, notes=(*solution.notes, note))
-
-
-def _reason(trajectory: Trajectory) -> str:
-    steps = trajectory.statistics.get("steps", 0)
-    if trajectory.statistics.get("jacobians") and "projected" not in trajectory.solver:
-        return f"that takes some time for {steps} steps of this model"
-    return "that takes a second run for explicit steps"
 
 
 def _without(solution: Solution, sentence: str) -> Solution:

@@ -13,7 +13,7 @@ from ..errors import SolverError
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_RTOL, RunSettings
 from ..results.channel_errors import bars
-from ..results.digits import KnownErrors, digits_words, largest_bar, over_time
+from ..results.digits import KnownErrors, over_time
 from ..results.error_bars import UNKNOWN
 from ..results.estimate import ErrorEstimate
 from ..results.solution import Solution
@@ -66,18 +66,10 @@ def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solutio
     `size`: size of the mechanism, m.
     """
     absolute = settings.atol or settings.rtol * min(1.0, size)  # an error of it is not large, as where nothing moves
-    estimate = ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large)
-    known = KnownErrors(replace(solution, estimate=estimate))
-    largest, relative = known.largest(over_time)
-    peak, of_peak = known.largest(largest_bar)
-    sentence = digits_words(known.digits(over_time))
-    if largest:
-        sentence += f"; largest error: {largest} {100 * relative:.2g} %"
-    if of_peak - relative > relative:
-        sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
+    solution = replace(solution, estimate=ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large))
+    known = KnownErrors(solution)
     notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings, size))
-    estimate = replace(estimate, sentence=sentence, largest=largest, relative=relative)
-    return replace(solution, estimate=estimate, notes=(*solution.notes, *notes))
+    return replace(solution, estimate=known.estimate(), notes=(*solution.notes, *notes))
 
 
 def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings, size: float) -> Iterator[str]:

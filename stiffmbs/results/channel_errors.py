@@ -10,13 +10,6 @@ import numpy as np
 from .error_bars import ErrorBar, between
 from .scales import ROUNDING, kind_of
 
-LARGER = 10.0
-"""Tolerance of a second run in that of the first, by which the errors of explicit steps are estimated.
-
-Errors grow about as the tolerance, so that a ninth of the difference is the error. The second run takes about three quarters
-of the steps of the first.
-"""
-
 
 @dataclass(frozen=True)
 class ChannelErrors:
@@ -63,20 +56,24 @@ def _peak(
 
 
 def bars_by_difference(
-    times: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray]
+    times: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray], part: float
 ) -> dict[str, ErrorBar]:
-    """Return the error bars of the channels of a run, from those of a run with a larger tolerance at the same times."""
+    """Return the error bars of the channels of a run, from those of a run with another tolerance at the same times.
+
+    `part`: error of that run in the error of this one, as expected.
+    """
     found = {}
     every = np.arange(len(times))
     for name, values in channels.items():
         if name.startswith("constraint."):
             continue
-        error = np.abs(difference(name, values, others[name])) / (LARGER - 1.0)
+        error = np.abs(difference(name, values, others[name])) / abs(1.0 - part)
         sampled = [between(times, sign * values, every) for sign in (-1.0, 1.0)]
-        peaks = [error[int(np.nanargmin(values))], error[int(np.nanargmax(values))]]
-        found[name] = ErrorBar(
-            float(np.nanmax(error)), *(float(peak + more) for peak, more in zip(peaks, sampled, strict=True)), *sampled
-        )
+        over_time, least, greatest = 0.0, np.nan, np.nan
+        if not np.isnan(error).all():
+            over_time = float(np.nanmax(error))
+            least, greatest = (float(error[peak(values)]) for peak in (np.nanargmin, np.nanargmax))
+        found[name] = ErrorBar(over_time, least + sampled[0], greatest + sampled[1], *sampled)
     return found
 
 
