@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .error_bars import ErrorBar, between
+from .error_bars import UNKNOWN, ErrorBar, between
 from .scales import ROUNDING, kind_of
 
 
@@ -56,24 +56,25 @@ def _peak(
 
 
 def bars_by_difference(
-    times: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray], part: float
+    times: np.ndarray, at: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray], part: float
 ) -> dict[str, ErrorBar]:
-    """Return the error bars of the channels of a run, from those of a run with another tolerance at the same times.
+    """Return the error bars of the channels of a run, from those of a run with another tolerance, at more times.
 
-    `part`: error of that run in the error of this one, as expected.
+    `at`: places of the times of the run among `times`. `part`: error of the other run in the error of this one, as expected.
     """
     found = {}
-    every = np.arange(len(times))
     for name, values in channels.items():
         if name.startswith("constraint."):
             continue
-        error = np.abs(difference(name, values, others[name])) / abs(1.0 - part)
-        sampled = [between(times, sign * values, every) for sign in (-1.0, 1.0)]
-        over_time, least, greatest = 0.0, np.nan, np.nan
-        if not np.isnan(error).all():
-            over_time = float(np.nanmax(error))
-            least, greatest = (float(error[peak(values)]) for peak in (np.nanargmin, np.nanargmax))
-        found[name] = ErrorBar(over_time, least + sampled[0], greatest + sampled[1], *sampled)
+        error = np.abs(difference(name, values, others[name][at])) / abs(1.0 - part)
+        if np.isnan(error).all():
+            found[name] = UNKNOWN
+            continue
+        fine = others[name].copy()
+        fine[at] = values
+        sampled = [between(times, sign * fine, at) for sign in (-1.0, 1.0)]
+        least, greatest = (float(error[peak(values)]) for peak in (np.nanargmin, np.nanargmax))
+        found[name] = ErrorBar(float(np.nanmax(error)), least + sampled[0], greatest + sampled[1], *sampled)
     return found
 
 
