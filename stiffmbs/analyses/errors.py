@@ -21,10 +21,6 @@ if TYPE_CHECKING:
 
 MOST_REPEATS = 2
 """Runs with another tolerance after the first one, in search of an accuracy, or of errors where steps do not change."""
-SAME_TIME = 1e-9
-"""Distance of the end of a step from an output time, in the duration, below which it is no instant between."""
-MOST_NUMBERS = 4_000_000
-"""Numbers in the channels of a second run at the ends of its steps, 32 MB."""
 ASK = "--errors, or errors: true in run, estimates it"
 
 
@@ -99,14 +95,16 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
 
 def _with_steps(solution: Solution, trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray]:
     """Return the output times with those of steps between them, where peaks may be, and the places of the output times."""
+    from ..error_estimate.parameters import ESTIMATE
+
     outputs, steps = np.unique(solution.time), np.unique(trajectory.step_times)
-    steps = steps[:: 1 + len(steps) * len(solution.channels) // MOST_NUMBERS]
+    least = ESTIMATE.difference * np.ptp(outputs)
+    steps = steps[:: 1 + len(steps) * len(solution.channels) // ESTIMATE.numbers_at_once]
+    steps = steps[np.diff(steps, prepend=-np.inf) > least]
     after = np.searchsorted(outputs, steps)
-    inside = (after > 0) & (after < len(outputs))
-    steps, after = steps[inside], after[inside]
-    apart = np.minimum(outputs[after] - steps, steps - outputs[after - 1])
-    steps = steps[apart > SAME_TIME * np.ptp(outputs)]
-    times = np.sort(np.concatenate([outputs, steps[np.diff(steps, prepend=-np.inf) > SAME_TIME * np.ptp(outputs)]]))
+    steps, after = (each[(after > 0) & (after < len(outputs))] for each in (steps, after))
+    steps = steps[np.minimum(outputs[after] - steps, steps - outputs[after - 1]) > least]
+    times = np.sort(np.concatenate([outputs, steps]))
     return times, np.searchsorted(times, solution.time)
 
 
