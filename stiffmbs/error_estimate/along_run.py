@@ -83,7 +83,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     starts = np.append(0, np.cumsum([len(piece.t) for piece in pieces]))
     t, q, u = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("t", "q", "u"))
     steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
-    states = evaluated(dynamics, t, q, u, (steps, ESTIMATE.large * rtol))
+    states = evaluated(dynamics, t, q, u, (steps, rtol))
     prepared = [
         _prepared(dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired))
         for k, (piece, first) in enumerate(zip(pieces, starts, strict=False))
@@ -182,10 +182,14 @@ def _without_errors(dynamics: Dynamics, found: _Found) -> Closed:
     open_ = np.zeros(len(rows), dtype=bool)
     places = np.searchsorted(rows, each.rows)
     slopes = np.full((len(each.rows), errors.shape[1]), np.nan)
-    for block in compress(each.blocks, ~found.step_wise):
-        nodes, own = np.searchsorted(rows, block.nodes), np.searchsorted(each.rows, block.nodes[1:])
-        times = np.broadcast_to(np.append(0.0, block.times), (len(nodes), len(nodes)))
-        slopes[own] = (slope_weights(times, np.arange(len(nodes))) @ errors[nodes])[1:]
+    own = list(compress(each.blocks, ~found.step_wise))
+    for size in {len(block.nodes) for block in own}:
+        some = [block for block in own if len(block.nodes) == size]
+        nodes, times = np.array([block.nodes for block in some]), np.array([block.times for block in some])
+        times = np.hstack([np.zeros((len(some), 1)), times])
+        of_nodes, ends = errors[np.searchsorted(rows, nodes)], np.searchsorted(each.rows, nodes)
+        for k in range(1, size):
+            slopes[ends[:, k]] = np.einsum("bn,bnf->bf", slope_weights(times, k), of_nodes)
     slopes -= each.at_ends[each.rows]
     step = float(np.diff(each.piece.t).max())
     q[places], u[places], open_[places] = closed(dynamics, at.at(places), found.space, errors[places], slopes, step)
