@@ -95,7 +95,7 @@ def run(
     job = prepare(data, settings, start_from, **changes)
     if job.settings.errors is not False or job.settings.accuracy:
         job = recording(job)
-    return to_accuracy(job, watch) if job.settings.accuracy else solved(job, watch)
+    return to_accuracy(job, watch)[1] if job.settings.accuracy else solved(job, watch)
 
 
 @dataclass(frozen=True)

@@ -130,6 +130,11 @@ class NativeIda(Connection):
         """Return True if `advance_past` applies: no steps are stored, and states within long steps can be corrected."""
         return self._polished and not len(self._trace)
 
+    @property
+    def usual_steps(self) -> int:
+        """Return the number of steps after which a call returns that `pause_after` does not shorten."""
+        return min(self._usual_batch, self._look)
+
     def look_after(self, steps: int) -> None:
         """Make the next call of `advance` or `steps` return after this number of steps at the latest."""
         self._look = max(steps, 1)

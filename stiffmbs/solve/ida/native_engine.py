@@ -183,10 +183,12 @@ class NativeEngine:
     def _ease_newton(self) -> None:
         """Relax Newton's tolerance after many failures: rounding may prevent its convergence.
 
-        Calls of a few steps are counted together, as those of a simulation.
+        Calls of a few steps, as those of a simulation, are counted together up to the number of steps of a call in a run.
         """
         counted = self.ida.counted()
         steps = counted["steps"] - self._counted["steps"]
+        if steps < self.ida.usual_steps:
+            return
         failures = counted["convergence_failures"] - self._counted["convergence_failures"]
         if steps >= NEWTON.trusted:
             self._counted = counted

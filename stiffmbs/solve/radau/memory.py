@@ -96,7 +96,7 @@ class Radau:
         cost: ImplicitCost,
         parameters: RadauParameters,
     ) -> None:
-        self._equations, self._parameters = equations, parameters
+        self._equations, self._parameters, self._state = equations, parameters, state
         for term_set in ("effort", "effort_tangent"):
             state.load(term_set)
         self._pairs = in_pairs(matrix, equations.slots_with_rates)
@@ -152,6 +152,7 @@ class Radau:
         algebraic = np.ones(n)
         algebraic[equations.pattern[0][imaginary]] = 0.0
         efforts = condensed_efforts(equations)
+        n_terms = len(self._state.values[equations.formulation.matrix_set])
         n_efforts, n_all = efforts["n_efforts"], n + efforts["n_efforts"]
         values = {
             "state": connection.state_table, "equations": self._of_equations[0], "array_of": session.libraries.address("N_VGetArrayPointer"), "n": n, "algebraic": algebraic,
@@ -163,6 +164,7 @@ class Radau:
             "re_re": indices(pairs.re_re), "im_im": indices(pairs.im_im),
             "n_imaginary": len(imaginary), "imaginary_of": number.astype(np.int32),
             "im_re": indices(pairs.im_re), "re_im": indices(pairs.re_im),
+            "n_terms": n_terms, "terms": np.zeros(n_terms), "terms_aside": np.zeros(n_terms + efforts["n_levers"] + efforts["n_slopes"]),
             "entries": np.zeros(len(number)), **vectors, **at, "output_correction": connection.output_correction.table, "error_norm": connection.error_norm.table,
             "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
             "misfit": np.zeros(self._most * n_efforts), "r": np.zeros(self._most * n),

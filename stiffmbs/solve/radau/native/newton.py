@@ -23,6 +23,7 @@ from stiffmbs.compile.machine.native.evaluate import (
     evaluate,
     load,
 )
+from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.solve.error_control.native.parameters import NEWTON
 from stiffmbs.solve.events.native.parameters import INDISTINCT
@@ -121,6 +122,20 @@ def _set_up(x, number):
 
 
 @compiled
+def exchange_terms(x):
+    """Exchange the terms of the matrices, with levers and slopes of efforts, for those aside."""
+    aside = x.terms_aside
+    for k in range(x.n_terms):
+        x.terms[k], aside[k] = aside[k], x.terms[k]
+    aside = shifted(aside, x.n_terms)
+    for k in range(x.n_levers):
+        x.lever[k], aside[k] = aside[k], x.lever[k]
+    aside = shifted(aside, x.n_levers)
+    for k in range(x.n_slopes):
+        x.slope[k], aside[k] = aside[k], x.slope[k]
+
+
+@compiled
 def factored(x, c, h, t, y, yp, renewed):
     """Factor the matrices of a step of length h; their terms are those at (t, y, y') if `renewed`, or the last ones."""
     s = state_view(x.state)
@@ -128,11 +143,11 @@ def factored(x, c, h, t, y, yp, renewed):
     x.h_factored = 0.0
     if renewed:
         load(s, e, y, yp)
-        evaluate(s, e.matrix_set, t)
+        copied(x.terms, evaluate(s, e.matrix_set, t), x.n_terms)
         x.jacobians += 1
         if x.acting > 0:
             _store_slopes(x, s, t)
-    values = floats(s.values[e.matrix_set])
+    values = x.terms
     a = x.entries
     add_entries(e, values, c.gamma / h, a)
     into = floats(x.values[0])

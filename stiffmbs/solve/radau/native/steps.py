@@ -12,7 +12,7 @@ from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
-from stiffmbs.solve.radau.native.between_steps import CLOSED, MOST_MOVED, close_end, closed
+from stiffmbs.solve.radau.native.between_steps import CLOSED, MOST_MOVED, UNKNOWN, close_end, closed
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
@@ -271,7 +271,7 @@ def _accept(x, c, t, h):
     x.t = t + h
     x.h_past = h
     x.method_past = x.method
-    x.outputs = 0
+    x.suffice = UNKNOWN
     x.steps += 1
 
 
