@@ -136,10 +136,13 @@ def _see_inputs(c, stop):
 
 
 @compiled
-def _attempt(c, toward, stop):
-    """Take one step, and return IDA's flag."""
+def _attempt(c, stop):
+    """Take one step, and return IDA's flag.
+
+    IDA's first step is a part of the distance to a given time: that is the stop, so that output times change no step.
+    """
     _see_inputs(c, stop)
-    flag = call_int(c.solve, (c.memory, toward, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
+    flag = call_int(c.solve, (c.memory, stop, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
     if flag == STOP_RETURN and c.returned < stop:
         flag = int32(OK)
     call_int(c.time_of, (c.memory, address_of(c.internal)))
@@ -154,7 +157,7 @@ def _seen(c, ida, flag):
 
 
 @compiled
-def stepped(c, ida, toward, stop):
+def stepped(c, ida, stop):
     """Take one step; note its end, order and size in the history, and return IDA's flag.
 
     A one-step method that has passed an interval of a law repeats the step into that interval: no restart is needed.
@@ -163,8 +166,8 @@ def stepped(c, ida, toward, stop):
     begun = c.returned
     c.within = 0
     if c.look_at_start:
-        call_int(c.look_at_start, (toward, stop, ida))
-    flag = _attempt(c, toward, stop)
+        call_int(c.look_at_start, (stop, stop, ida))
+    flag = _attempt(c, stop)
     seen = _seen(c, ida, flag)
     for _ in range(LOCATION.most_retaken):
         if seen != PASSED_INTERVAL or not c.repeat:
@@ -173,7 +176,7 @@ def stepped(c, ida, toward, stop):
         c.returned = begun
         c.internal = begun
         c.within = 0
-        flag = _attempt(c, toward, stop)
+        flag = _attempt(c, stop)
         seen = _seen(c, ida, flag)
     if c.internal != before and flag >= 0:
         call_int(c.order_of, (c.memory, address_of(c.order)))
@@ -316,17 +319,13 @@ def _served(c, times, count, y_out):
 
 @compiled
 def advanced(c, ida, count, times, stop, most, y_out):
-    """Take at most `most` steps towards `stop`, and report at output times; return IDA's last flag.
-
-    The first step's size follows from the distance to the first output time, as in IDA's normal mode.
-    """
+    """Take at most `most` steps towards `stop`, and report at output times; return IDA's last flag."""
     c.stopping = stop
     flag = _served(c, times, count, y_out)
     for _ in range(min(most, LOOP.most_steps)):
         if flag != OK:
             break
-        toward = times[c.served] if c.served < count else stop
-        flag = stepped(c, ida, min(toward, stop), stop)
+        flag = stepped(c, ida, stop)
         if flag >= 0:
             outcome = _served(c, times, count, y_out)
             flag = outcome if outcome < 0 else flag
@@ -355,7 +354,7 @@ def steps(most, stop, t_out, y_out, ida):
     clear_call(c)
     flag = int32(OK)
     while flag == OK and c.served < min(most, LOOP.most_steps):
-        flag = stepped(c, ida, stop, stop)
+        flag = stepped(c, ida, stop)
         if flag >= 0:
             k = c.served
             t_out[k] = c.returned
