@@ -279,7 +279,7 @@ def _accept(x, c, t, h):
 def _choose_unknowns(x):
     """Make the efforts of stiff forces unknowns if the step is long for these forces."""
     acting = x.n_efforts if x.h > output_correction_view(x.output_correction).long else 0
-    x.newton = x.remainder if acting > 0 else x.part
+    x.newton = max(x.remainder, x.part) if acting > 0 else x.part
     x.decaying = MOST_DECAYS if x.h_past == 0.0 else 0
     if acting > 0 and (x.acting == 0 or x.h_past == 0.0):
         x.acting = acting
