@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.access import compiled, equations_view, flo
 from stiffmbs.compile.machine.native.evaluate import add_rate_terms
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.error_control.native.parameters import EXCLUDED
-from stiffmbs.solve.events.native.parameters import INDISTINCT
+from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
 from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
@@ -142,6 +142,24 @@ def _wandering(x, c):
         part = _unresolved_degree(x, c, k) * x.weight[k]
         total += part * part
     return sqrt(total / x.n_tested) / (2.0 ** (2 * c.stages - 1) * max(1.0, c.relaxed))
+
+
+@compiled
+def _turned_apart(x, c, h):
+    """Return the largest difference of the rate of an angle's polynomial from its angular velocity at a stage, times the step.
+
+    Both agree but for the error of the polynomial. Stages of an angle that joints and drives prescribe may differ by full
+    turns, or lie on another branch of the joints.
+    """
+    largest = 0.0
+    for i in range(c.stages):
+        for k in range(x.n_angles):
+            rate = 0.0
+            for j in range(c.stages):
+                rate += c.derivative[i * c.stages + j] * x.z[j * x.n_all + x.angle[k]]
+            turned = h * (x.y[x.spin[k]] + x.z[i * x.n_all + x.spin[k]])
+            largest = max(largest, abs(rate - turned))
+    return largest
 
 
 @compiled
@@ -366,6 +384,7 @@ def _error(x, c, h, untested):
     if untested and error < 1.0:
         error = max(error, _filtered(x, c, h))
     wandering = _wandering(x, c) if x.acting == 0 else 0.0  # efforts of decaying motions are removed or closed
+    wandering = max(wandering, _turned_apart(x, c, h) / SEARCH.turned)
     return max(error, wandering) if wandering > 1.0 else error
 
 
