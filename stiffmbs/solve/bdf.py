@@ -85,6 +85,7 @@ def integrated(
             if is_logged() and (step := integrator.engine.last_step()):
                 log_step(reached.t, *step)
             watch(reached.t)
+            integrator.engine.ida.watch.refuse_departures(reached.t)
             integrator.reached = reached
             if failure := _failure(integrator, reached, grid):
                 raise SolverError(f"stopped at t = {reached.t:.9g} s: {failure}")
