@@ -15,8 +15,8 @@ from stiffmbs import tuning
 from tests.parameters import CASES, changed
 
 TABLE = [
-    ("error_filter.fades", "cam_follower", "newton_failures", 70, 87, None),
-    ("error_filter.fades_low", "cam_follower", "newton_failures", 70, 87, None),
+    ("error_filter.fades", "cam_follower", "newton_failures", 97, 73, None),
+    ("error_filter.fades_low", "cam_follower", "newton_failures", 88, 73, None),
     ("error_filter.troubled", "stick_slip", "newton_failures", 18, 10, None),
     ("error_test.growth", "cart_pendulum", "steps", 150, 180, 383),
     ("error_test.margin", "half_car 1e-09", "steps", 3610, 3168, 2764),
