@@ -146,7 +146,8 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     system = job.dynamics.system
     balance, broken = _balance(computed.job, trajectory, rows)
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
-    impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or broken
+    several = _several_solutions(job, rows) if system.forces_by_reactions else ()
+    impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or several or broken
     uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job)))
     imprecise = tuple(uncertain_forces(job.dynamics, trajectory, rows))
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
@@ -179,6 +180,13 @@ def _balance(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balanc
     if balance.resolved and is_broken(system, balance, rows, settings):
         return balance, (broken_balance(system, balance, rows, settings),)
     return balance, ()
+
+
+def _several_solutions(job: Job, rows: OutputRows) -> tuple[str, ...]:
+    """Return a sentence on friction with several solutions, whose rows may follow different ones: their energies differ."""
+    from ..run_checks.several_solutions import several_solutions_sentence
+
+    return tuple(several_solutions_sentence(job.dynamics, rows))
 
 
 def flexible_body_notes(system: System, rows: OutputRows) -> Iterator[str]:

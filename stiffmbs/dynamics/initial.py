@@ -15,7 +15,6 @@ from .algebraic_states import failure
 from .dynamics import Dynamics
 from .moves import Move, moves, position_words, velocity_words
 from .native.parameters import CONSISTENCY
-from .storage import FAILURES
 from .turns import take_nearest_turns
 
 
@@ -139,8 +138,7 @@ def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
     if status == SINGULAR:
         return _dependent_sentence(dynamics)
     if status == NO_BALANCE:
-        rubbing = ", ".join(dynamics.system.forces_by_reactions)
-        return f"the start has no accelerations: {FAILURES[NO_BALANCE]}; expected less friction in {rubbing}"
+        return f"the start has no accelerations: {failure(dynamics, status, t)}"
     if status == NOT_FINITE:
         return _undefined_sentence(dynamics, t)
     return f"no consistent start was found: {failure(dynamics, status, t)}"

@@ -12,6 +12,7 @@ from ...compile.system import System
 from ...compile.terms import TERM_SETS
 from ...compile.written_values import writer
 from ...dynamics.dynamics import Dynamics
+from ...errors import SolverError
 from .chattering import CHATTERING
 from .departures import Departure, departures
 from .long_steps import WHOLE
@@ -116,6 +117,11 @@ class EventSearch:
             return ()
         found = zip(*(values[self.n_event_functions :].tolist() for values in self._extent.values()), strict=True)
         return departures(self._system, found)
+
+    def refuse_departures(self, t: float) -> None:
+        """Raise a SolverError if the steps up to t have left a table with ``beyond: error``."""
+        if left := [each for each in self.departures() if each.table.beyond == "error"]:
+            raise SolverError(f"stopped at t = {t:.9g} s: the table '{left[0].label}' of '{left[0].element}' was left")
 
     def note(self) -> str:
         """Return a sentence on a periodic law with more periods than steps; empty if there is none."""

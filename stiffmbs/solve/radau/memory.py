@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 
-from ...compile.equations import Equations
+from ...compile.equations import ABSENT, Equations
 from ...compile.law_intervals import intervals_of
 from ...compile.machine.layout import fill, packed
 from ...compile.state import State
@@ -166,7 +166,7 @@ class Radau:
             "im_re": indices(pairs.im_re), "re_im": indices(pairs.re_im),
             "n_terms": n_terms, "terms": np.zeros(n_terms), "terms_aside": np.zeros(n_terms + efforts["n_levers"] + efforts["n_slopes"]),
             "entries": np.zeros(len(number)), **vectors, **at, "output_correction": connection.output_correction.table, "error_norm": connection.error_norm.table,
-            "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
+            **_angles(equations), "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
             "misfit": np.zeros(self._most * n_efforts), "r": np.zeros(self._most * n),
             **{name: np.zeros(n) for name in ("yp", "yp_stage", "error", "weight", "atol")},
             "corrections": np.zeros((self._most - 1 + MOST_BETWEEN) * n_all),
@@ -189,6 +189,15 @@ class Radau:
         for each in self._kept[1]:
             if each.pivots is not None:
                 each.pivots["ready"] = 0
+
+
+def _angles(equations: Equations) -> dict[str, Any]:
+    """Return the unknowns that are angles of bodies in the plane, and their angular velocities."""
+    of_body, n_pose = equations.system.of_body, equations.system.n_pose
+    turning = np.arange(n_pose) % of_body.n_q >= (of_body.linear if of_body.dimensions == 2 else of_body.n_q)
+    angle, spin = (equations.at[name][:n_pose][turning[: len(equations.at[name])]] for name in ("q", "u"))
+    both = (angle != ABSENT) & (spin != ABSENT)
+    return {"n_angles": int(both.sum()), "angle": np.int64(angle[both]), "spin": np.int64(spin[both])}
 
 
 def _arrays(c: Collocation) -> dict[str, Any]:

@@ -113,10 +113,13 @@ def _see_inputs(c, stop):
 
 
 @compiled
-def _attempt(c, toward, stop):
-    """Take one step, and return IDA's flag."""
+def _attempt(c, stop):
+    """Take one step, and return IDA's flag.
+
+    IDA's first step is a part of the distance to a given time: that is the stop, so that output times change no step.
+    """
     _see_inputs(c, stop)
-    flag = call_int(c.solve, (c.memory, toward, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
+    flag = call_int(c.solve, (c.memory, stop, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
     if flag == STOP_RETURN and c.returned < stop:
         flag = int32(OK)
     call_int(c.time_of, (c.memory, address_of(c.internal)))
@@ -131,7 +134,7 @@ def _seen(c, ida, flag):
 
 
 @compiled
-def stepped(c, ida, toward, stop):
+def stepped(c, ida, stop):
     """Take one step; note its end, order and size in the history, and return IDA's flag.
 
     A one-step method may repeat the step up to an event or a passed law.
@@ -139,15 +142,15 @@ def stepped(c, ida, toward, stop):
     before = c.internal
     begun = c.returned
     if c.look_at_start:
-        call_int(c.look_at_start, (toward, stop, ida))
-    flag = _attempt(c, toward, stop)
+        call_int(c.look_at_start, (stop, stop, ida))
+    flag = _attempt(c, stop)
     seen = _seen(c, ida, flag)
     for _ in range(LOCATION.most_retaken):
         event = c.returned
         h = _repeated(c, begun, seen)
         if h == 0.0:
             break
-        flag = _attempt(c, toward, stop)
+        flag = _attempt(c, stop)
         seen = _seen(c, ida, flag)
         if seen == NO_EVENT:
             event_search_view(c.watch).target = event + (event - begun - h)
@@ -315,17 +318,13 @@ def _served(c, times, count, y_out):
 
 @compiled
 def advanced(c, ida, count, times, stop, most, y_out):
-    """Take at most `most` steps towards `stop`, and report at output times; return IDA's last flag.
-
-    The first step's size follows from the distance to the first output time, as in IDA's normal mode.
-    """
+    """Take at most `most` steps towards `stop`, and report at output times; return IDA's last flag."""
     c.stopping = stop
     flag = _served(c, times, count, y_out)
     for _ in range(min(most, LOOP.most_steps)):
         if flag != OK:
             break
-        toward = times[c.served] if c.served < count else stop
-        flag = stepped(c, ida, min(toward, stop), stop)
+        flag = stepped(c, ida, stop)
         if flag >= 0:
             outcome = _served(c, times, count, y_out)
             flag = outcome if outcome < 0 else flag
@@ -354,7 +353,7 @@ def steps(most, stop, t_out, y_out, ida):
     clear_call(c)
     flag = int32(OK)
     while flag == OK and c.served < min(most, LOOP.most_steps):
-        flag = stepped(c, ida, stop, stop)
+        flag = stepped(c, ida, stop)
         if flag >= 0:
             k = c.served
             t_out[k] = c.returned

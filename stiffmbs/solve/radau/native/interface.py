@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.access import compiled, floats, ints
 from stiffmbs.compile.machine.native.calls import call_address, int32
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, RECOVERABLE, STOP_RETURN
-from stiffmbs.solve.error_control.native.parameters import EXCLUDED
+from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
 from stiffmbs.solve.radau.native.between_steps import dense_output
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial_rates, radau_view
 from stiffmbs.solve.radau.native.steps import SMALLEST, first_step, set_weights, step
@@ -134,9 +134,12 @@ def set_longest_step(memory, h):
 
 
 def set_newton(memory, part):
-    """Set the part of the requested tolerance that Newton's iteration may leave (IDASetNonlinConvCoef)."""
+    """Set the part of the requested tolerance that Newton's iteration may leave (IDASetNonlinConvCoef).
+
+    A larger one than usual was relaxed after many failures. It counts at tolerances whose usual part is near rounding.
+    """
     x = radau_view(ints(memory))
-    x.part = min(part, x.remainder)
+    x.part = part if part > NEWTON.loosest <= x.remainder else min(part, x.remainder)
     return int32(OK)
 
 

@@ -228,7 +228,7 @@ def advance_from(t, end, highest_order, table):
     for _ in range(LOOP.most_steps):
         if flag != OK:
             break
-        flag = stepped(c, ints(b.ida), end, end)
+        flag = stepped(c, ints(b.ida), end)
     if flag != STOP_RETURN:
         return int32(UNFINISHED)
     load(state_view(c.state), equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
