@@ -270,7 +270,7 @@ def smallest_departure_from_half_a_turn():
     def is_negative(beyond):
         rows = Record(values=np.array([[-np.pi + beyond]]))
         angles = Record(
-            places={"j": [0]}, counters={}, followed=["j"], start={}, _changes=lambda _: (np.zeros((0, 1)), np.zeros((0, 1)))
+            places={"j": [0]}, counters={}, followed=["j"], start={}, _changes=lambda _: (np.zeros((0, 1)),) * 3
         )  # fmt: skip
         return JointAngles.continuous(angles, rows)["j"][0] < 0.0
 

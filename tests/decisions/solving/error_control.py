@@ -71,7 +71,7 @@ def eased(newton, failures=1000, steps=1000):
     """Return the Newton tolerance after a call with a number of failures."""
     begun = [newton]
     counted = {"steps": steps, "convergence_failures": failures}
-    ida = Record(counted=lambda: counted, t=0.0, y=np.zeros(1), yp=np.zeros(1))
+    ida = Record(counted=lambda: counted, usual_steps=0, t=0.0, y=np.zeros(1), yp=np.zeros(1))
     engine = Record(
         ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _stiffness=None,
         begin=lambda t, y, yp, eased, stiffness: begun.append(eased),
@@ -167,7 +167,7 @@ def first_check_of_drift(name, counts):
         made = []
         integrator = Record(
             dynamics=job, run=lambda *_, **__: [reached], equations=Record(states=lambda rows: (rows, rows)),
-            engine=Record(last_step=nothing, history=nothing, recorded=tuple, ida=Record(watch=Record(departures=nothing))), steps=lambda: steps,
+            engine=Record(last_step=nothing, history=nothing, recorded=tuple, ida=Record(watch=Record(departures=nothing, refuse_departures=nothing))), steps=lambda: steps,
             split=lambda y: (y, y), settings=None, statistics=dict, note=str, long_steps=nothing,
         )  # fmt: skip
         checks = {"refuse_drift": nothing, "refuse_beyond_sense": nothing, name: lambda *_: made.append(1)}
@@ -186,7 +186,7 @@ def steps_that_rounding_governs():
 
     reached = Record(y=np.zeros(1), failure="", t=0.0)
     with patch.multiple(bdf, governed_by_rounding=always, too_fine=lambda *_: "too fine"):
-        return count_while(lambda n: not bdf._failure(integrator(n), reached), range(100))
+        return count_while(lambda n: not bdf._failure(integrator(n), reached, Grid(0.0, 1.0, None)), range(100))
 
 
 def tolerance_of_a_counter():

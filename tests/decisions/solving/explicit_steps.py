@@ -146,7 +146,11 @@ def searches_after_a_start():
 
 
 def uncertain(kept, rate):
-    x = stepping(pivots_tell=1, eliminated=Record(kept=kept, most_kept=1.0), k=np.array([0.0, rate]))
+    x = stepping(
+        pivots_tell=1,
+        eliminated=Record(kept=kept, most_kept=1.0, n_scales=0, pivot_scale=(), largest_scale=()),
+        k=np.array([0.0, rate]),
+    )
     return attempt.uncertain_end(x, scheme(), 1.0, attempt.distance_of_end(x))
 
 

@@ -60,7 +60,7 @@ def _note_sides(c, w, s, toward):
 
 
 def look_at_start(toward, stop, ida):
-    """Evaluate the event functions at a restart of IDA; next output time `toward`, next breakpoint `stop`."""
+    """Evaluate the event functions at a restart of IDA; times of the first step `toward` and of the next breakpoint `stop`."""
     c = native_ida_view(ida)
     w = event_search_view(c.watch)
     if not w.ready:

@@ -113,13 +113,20 @@ def _see_inputs(c, stop):
 
 
 @compiled
-def _attempt(c, stop):
-    """Take one step, and return IDA's flag.
+def _toward(c, stop):
+    """Return the time whose distance is a thousand times IDA's first step: a part of the way to the stop.
 
-    IDA's first step is a part of the distance to a given time: that is the stop, so that output times change no step.
+    It does not depend on output times, so that these change no step.
     """
+    way = LOOP.first_part * (stop - c.returned)
+    return c.returned + way if way > LOOP.most_tiny * EPSILON * abs(stop) else stop
+
+
+@compiled
+def _attempt(c, stop):
+    """Take one step, and return IDA's flag."""
     _see_inputs(c, stop)
-    flag = call_int(c.solve, (c.memory, stop, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
+    flag = call_int(c.solve, (c.memory, _toward(c, stop), address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
     if flag == STOP_RETURN and c.returned < stop:
         flag = int32(OK)
     call_int(c.time_of, (c.memory, address_of(c.internal)))
@@ -142,7 +149,7 @@ def stepped(c, ida, stop):
     before = c.internal
     begun = c.returned
     if c.look_at_start:
-        call_int(c.look_at_start, (stop, stop, ida))
+        call_int(c.look_at_start, (_toward(c, stop), stop, ida))
     flag = _attempt(c, stop)
     seen = _seen(c, ida, flag)
     for _ in range(LOCATION.most_retaken):
