@@ -34,7 +34,7 @@ ROUNDS, STARTS = 3, 1000
 AGAIN = "the run was repeated with a restart there; set max_step, or request more output points, to resolve events between output times"
 PART_OF_A_FEATURE = 0.5
 """Longest step of a rerun, relative to the shortest missed feature of a Python function."""
-MOST_STEPS = 100_000
+MOST_STEPS = 200_000
 """Most steps of such a rerun."""
 LEFT = "the results may be wrong from there on; set max_step to a much smaller value"
 

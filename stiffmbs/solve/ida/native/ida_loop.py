@@ -116,10 +116,11 @@ def _see_inputs(c, stop):
 def _toward(c, stop):
     """Return the time whose distance is a thousand times IDA's first step: a part of the way to the stop.
 
-    It does not depend on output times, so that these change no step.
+    It does not depend on output times, so that these change no step. Later steps go towards the stop itself: IDA returns
+    a step that ends there as the stop only if it was to go so far.
     """
     way = LOOP.first_part * (stop - c.returned)
-    return c.returned + way if way > LOOP.most_tiny * EPSILON * abs(stop) else stop
+    return c.returned + way if c.size == 0.0 and way > LOOP.most_tiny * EPSILON * abs(stop) else stop
 
 
 @compiled
