@@ -8,11 +8,11 @@ from tests.error_estimate.test_against_truth import ratio
 from tests.solve.test_stiff_reactions import REACTIONS, four_bar
 
 WELL_DAMPED = (1e12, 7e9)
-LIGHTLY_DAMPED = (1e14, None)
+LIGHTLY_DAMPED = (1e13, None)
 
 
 @pytest.mark.parametrize("solver", ["radau", "bdf"])
-@pytest.mark.parametrize("bushing", [WELL_DAMPED, LIGHTLY_DAMPED], ids=["1e12", "1e14"])
+@pytest.mark.parametrize("bushing", [WELL_DAMPED, LIGHTLY_DAMPED], ids=["1e12", "1e13"])
 def test_errors_of_poses_do_not_stretch_stiff_bushings(solver, bushing):
     """Bars of forces were 1000 to 3e8 times the errors, as poses without their errors were off by 1e-10 m; or all was lost."""
     found = stiffmbs.run(four_bar(f"solver: {solver}, rtol: 1e-4, errors: true", *bushing))

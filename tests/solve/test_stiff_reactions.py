@@ -193,9 +193,13 @@ def simulated(scene):
 
 
 def test_simulations_restart_without_a_change_of_stiff_forces():
-    """At jumps, and after the duration of the scene, the smallest move made reactions wrong by 1.4 times the largest."""
+    """At jumps, and after the duration of the scene, the smallest move made reactions wrong by 1.4 times the largest.
+
+    A force between bodies is as wrong as their accelerations, after a jump by a tolerance of velocities per step: 0.2 at 1e-4.
+    """
     exact = simulated(four_bar("solver: radau, rtol: 1e-10"))
-    assert error(simulated(four_bar("solver: bdf, rtol: 1e-4", 1e14)), exact) < 0.05
+    for rtol in (7e-5, 3e-5):
+        assert error(simulated(four_bar(f"solver: bdf, rtol: {rtol}", 1e14)), exact) < 0.05
 
 
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
