@@ -248,7 +248,7 @@ EXPECTED = {
     "analyses.beam_elements:MOST": 512, "analyses.check:MOST_MOVES": 50, "analyses.given_inputs:FEWEST": 513,
     "analyses.given_inputs:MOST": 65579, "analyses.given_inputs:FOLLOWED": 27, "analyses.given_inputs:JUMP": 4,
     "analyses.given_inputs:ROUNDINGS": 9.094947017729282e-13, "analyses.job:DEPENDENT": 120, "analyses.rerun:ROUNDS": 4,
-    "analyses.rerun:PART_OF_A_FEATURE": 0.0625, "analyses.rerun:MOST_STEPS": 36, "analyses.rerun:STARTS": 14,
+    "analyses.rerun:PART_OF_A_FEATURE": 0.0625, "analyses.rerun:MOST_STEPS": 40, "analyses.rerun:STARTS": 14,
     "analyses.rerun:DRIFTED": 14, "analyses.rerun:LESS": 4, "analyses.staged:POINTS": 33, "analyses.staged:LEVELS": 3,
     "analyses.staged:LEAST": 1001, "analyses.staged:MOST": 500, "analyses.staged:SAME": 119,
 }  # fmt: skip

@@ -35,7 +35,7 @@ def steps_in_memory():
 
 def part_of_the_way():
     with interpreted(ida_loop):
-        return ida_loop._toward(Record(returned=0.0), 1.0)
+        return ida_loop._toward(Record(returned=0.0, size=0.0), 1.0)
 
 
 def tiny_steps():

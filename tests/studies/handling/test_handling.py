@@ -225,6 +225,7 @@ def test_a_tight_turn_at_low_speed_is_no_spin():
     assert found["vehicle.sideslip"].max() > 0.25
 
 
+@pytest.mark.long
 def test_a_car_that_does_not_keep_the_speed_of_a_test_is_refused():
     """A distance of braking from 20 m/s was that of a test from 28 m/s."""
     with pytest.raises(stiffmbs.InputError, match=r"found a steady speed of 0.381 m/s, expected 20 m/s: the engine"):
