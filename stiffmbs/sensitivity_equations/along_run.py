@@ -308,7 +308,9 @@ class Touches:
     def _turns(self, before: np.ndarray, at: tuple[float, np.ndarray], after: np.ndarray, event: int) -> bool:
         """Return True if an event function of the motion turns: in short steps, recorded reactions and their rates are not those of the motion."""
         n = self._recorder.equations.n
-        g = [self._consistent(t, y, event) for t, y in ((before[0], before[2 : 2 + n]), at, (after[0], after[2 : 2 + n]))]
+        g = [
+            self._consistent(t, y, event) for t, y in ((before[0], before[2 : 2 + n]), at, (after[0], after[2 : 2 + n]))
+        ]
         return (g[1] - g[0]) * (g[2] - g[1]) < 0
 
     def _touched(self, t: float, y: np.ndarray, event: int, steps: int) -> bool:

@@ -97,9 +97,7 @@ def test_a_run_is_not_verified_where_one_says_so(page_of):
 def test_the_verdict_stands_first(page_of):
     page = page_of("cart_pendulum", "--duration", "2")
     assert page.texts.index("Completed: 0 s to 2 s") < page.texts.index("Motion")
-    assert any(
-        re.search(r"positions to \d digits, velocities to \d, forces to \d\.", text) for text in page.texts
-    )
+    assert any(re.search(r"positions to \d digits, velocities to \d, forces to \d\.", text) for text in page.texts)
 
 
 @pytest.mark.long
