@@ -71,6 +71,12 @@ def test_the_readme_lists_the_packages_in_their_order():
     assert tuple(rows) == ORDER
 
 
+def test_the_figure_of_rooms_has_the_packages_in_their_order():
+    page = (ROOT.parent / "docs" / "project" / "architecture.md").read_text(encoding="utf-8")
+    lines = re.findall(r"^ \w+ {2,}(\w+(?:, \w+)*)$", page.partition("## Rooms")[2], re.MULTILINE)
+    assert tuple(name for line in lines for name in line.split(", ")) == ORDER
+
+
 def _folders() -> Iterator[Path]:
     """All folders of the repository but for what tools leave there, and for the films of the gallery."""
     for top in (".ci", "docs", "examples", ROOT.name, "tests"):

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..model.settings import LARGEST_RTOL
+from ..errors import StiffmbsError
+from ..model.settings import LARGEST_RTOL, RunSettings
 from ..notes import NoteKind
 from ..results.estimate import ErrorEstimate
+from ..solve.explicit import DOP853
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
@@ -24,7 +26,7 @@ NOT_REACHED = NoteKind(
     "use a smaller rtol, or --verify",
 )
 MOST_REPEATS = 2
-"""Runs with another tolerance after the first one, in search of an accuracy."""
+"""Runs with another tolerance after the first one, in search of an accuracy, or of errors where steps do not change."""
 ASK = "--errors, or errors: true in run, estimates it"
 
 
@@ -51,31 +53,94 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
         if traits.fixed_steps or job.dynamics.system.sampled.any():
             why = "fixed steps" if traits.fixed_steps else "sampled states"
             return _without(solution, f"not estimated for {why}; --verify compares with other runs")
-        if job.settings.errors or job.settings.accuracy:
-            return _by_second_run(job, solution)
-    return _without(solution, f"not estimated: {_reason(trajectory)}; {ASK}")
+        if _work(job, trajectory) <= job.grid.recorded:
+            return _by_second_run(job, trajectory, solution)
+    return _without(
+        solution, f"not estimated: that takes some time for {_steps(trajectory)} steps of this model; {ASK}"
+    )
 
 
-def _by_second_run(job: Job, solution: Solution) -> Solution:
-    """Return the results with errors from a run at a larger tolerance."""
+def _steps(trajectory: Trajectory) -> int:
+    return int(trajectory.statistics.get("steps", 0))
+
+
+def _work(job: Job, trajectory: Trajectory) -> float:
+    """Return the work of a second run: steps times unknowns; infinite if recorded steps have been too many."""
+    system = job.dynamics.system
+    if trajectory.statistics.get("jacobians") and "projected" not in trajectory.solver:
+        return np.inf
+    return _steps(trajectory) * (system.n_q + system.n_u + system.n_c)
+
+
+def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
+    """Return the results with errors from a run at a smaller tolerance, or at a larger one if there is none.
+
+    Where breakpoints limit the steps, both runs may take the same ones; the tolerance is then smaller still.
+    """
     from ..error_estimate.estimate import with_bars
-    from ..results.channel_errors import LARGER, bars_by_difference
+    from ..results.channel_errors import bars_by_difference
     from .run import finished
 
-    settings = changed(job.settings, {"rtol": min(LARGER * job.settings.rtol, LARGEST_RTOL)})
-    other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=0.0, times=solution.time)))
-    if len(other.time) != len(solution.time):
+    part, steps = _second(job.settings), _steps(trajectory)
+    times, at = _with_steps(solution, trajectory)
+    for repeats in range(1, MOST_REPEATS + 1):
+        settings = _with_errors(job.settings, part**repeats)
+        try:
+            other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=0.0, times=times)))
+        except StiffmbsError as error:
+            return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} failed: {error}; use --verify")
+        if part > 1.0 or _steps(other.trajectory) > steps * part ** (-0.5 / DOP853.order):
+            break
+        if part * settings.rtol < _smallest_rtol():
+            break
+    if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")
-    return with_bars(
-        replace(solution, errors=bars_by_difference(solution.time, solution.channels, other.channels)),
-        job.settings, job.dynamics.system.size,
-    )  # fmt: skip
+    found = bars_by_difference(times, at, solution.channels, other.channels, part**repeats)
+    return with_bars(replace(solution, errors=found), job.settings, job.dynamics.system.size)
 
 
-def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
+def _with_steps(solution: Solution, trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """Return the output times with those of steps between them, where peaks may be, and the places of the output times."""
+    from ..error_estimate.parameters import ESTIMATE
+
+    outputs, steps = np.unique(solution.time), np.unique(trajectory.step_times)
+    least = ESTIMATE.difference * np.ptp(outputs)
+    steps = steps[:: 1 + len(steps) * len(solution.channels) // ESTIMATE.numbers_at_once]
+    steps = steps[np.diff(steps, prepend=-np.inf) > least]
+    after = np.searchsorted(outputs, steps)
+    steps, after = (each[(after > 0) & (after < len(outputs))] for each in (steps, after))
+    steps = steps[np.minimum(outputs[after] - steps, steps - outputs[after - 1]) > least]
+    times = np.sort(np.concatenate([outputs, steps]))
+    return times, np.searchsorted(times, solution.time)
+
+
+def _second(settings: RunSettings) -> float:
+    """Return the tolerance of a second run in that of a run."""
+    from ..error_estimate.parameters import ESTIMATE
+
+    return ESTIMATE.second if ESTIMATE.second * settings.rtol >= _smallest_rtol() else 1.0 / ESTIMATE.second
+
+
+def _smallest_rtol() -> float:
+    from ..error_estimate.parameters import ESTIMATE
+
+    return ESTIMATE.smallest_rtol
+
+
+def _with_errors(settings: RunSettings, part: float) -> RunSettings:
+    """Return the settings of a run whose errors are a part of those of another one."""
+    changes: dict[str, float] = {"rtol": min(part * settings.rtol, LARGEST_RTOL)}
+    if settings.atol is not None:
+        changes["atol"] = part * settings.atol
+    if settings.max_step:
+        changes["max_step"] = settings.max_step * part ** (1.0 / DOP853.order)
+    return changed(settings, changes)
+
+
+def to_accuracy(job: Job, watch: ProgressCallback | None) -> tuple[Job, Solution]:
     """Solve a job with a tolerance, chosen by the estimate of the errors, at which it has the accuracy asked for.
 
-    The run is repeated twice at most; the rtol of its settings has no effect.
+    Returns the job with that tolerance too. The run is repeated twice at most; the rtol of its settings has no effect.
     """
     from ..error_estimate.accuracy import Accuracy
     from .run import solved
@@ -83,7 +148,8 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
     accuracy = Accuracy(job.settings.accuracy)
     rtol = accuracy.first_rtol(job.dynamics.system.size)
     for repeats in range(MOST_REPEATS + 1):
-        solution = solved(job.varied({"rtol": rtol}), watch)
+        job = job.varied({"rtol": rtol})
+        solution = solved(job, watch)
         judged = accuracy.judged(solution, rtol)
         if judged.reached or judged.next_rtol >= rtol or repeats == MOST_REPEATS or not solution.success:
             break
@@ -91,16 +157,9 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> Solution:
     assert solution.estimate is not None
     if judged.reached:
         sentence = f"{solution.estimate.sentence}; {judged.sentence} at rtol {rtol:.2g}"
-        return replace(solution, estimate=replace(solution.estimate, sentence=sentence))
+        return job, replace(solution, estimate=replace(solution.estimate, sentence=sentence))
     note = NOT_REACHED(found=judged.sentence, rtol=rtol)
-    return replace(solution, notes=(*solution.notes, note))
-
-
-def _reason(trajectory: Trajectory) -> str:
-    steps = trajectory.statistics.get("steps", 0)
-    if trajectory.statistics.get("jacobians") and "projected" not in trajectory.solver:
-        return f"that takes some time for {steps} steps of this model"
-    return "that takes a second run for explicit steps"
+    return job, replace(solution, notes=(*solution.notes, note))
 
 
 def _without(solution: Solution, sentence: str) -> Solution:

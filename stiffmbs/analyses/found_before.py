@@ -16,19 +16,17 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ..cache import entries
 from ..cache.installed import installed_version
 from ..cache.source_files import versions_within
-from ..compile.machine.cache import own_folder
+from ..compile.machine.compiler import machine
 from ..model.files.scenes_read_before import ScenePickler
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings
-from ..reading.files.read_before import folder_of_files, keep
 from ..results.saved_state import SavedState
 
 Found = TypeVar("Found")
-START = "start"
-"""Prefix of the names of the entries."""
 PACKAGE = Path(__file__).parents[1]
 
 
@@ -43,7 +41,7 @@ class FoundBefore:
     def __init__(self, data: ModelData, settings: RunSettings, state: SavedState | None) -> None:
         searched = isinstance(data, Scene) and data.start != "described" and not data.at_start and state is None
         self.name = _name(data, settings) if searched else ""
-        stored = folder_of_files().read(self.name) if self.name else None
+        stored = entries.read(self.name) if self.name else None
         self._found: dict[str, Any] = {} if stored is None else pickle.loads(stored)
         self._stored = len(self._found)
 
@@ -57,7 +55,7 @@ class FoundBefore:
     def keep(self) -> None:
         """Store the findings if some are new."""
         if self.name and len(self._found) > self._stored:
-            keep(self.name, pickle.dumps(self._found))
+            entries.write(self.name, pickle.dumps(self._found))
 
 
 def _name(data: ModelData, settings: RunSettings) -> str:
@@ -67,7 +65,7 @@ def _name(data: ModelData, settings: RunSettings) -> str:
         _ByContent(content, pickle.HIGHEST_PROTOCOL).dump((data, settings))
     except (pickle.PicklingError, AttributeError, TypeError, RecursionError):
         return ""
-    return f"{START}-{sha256(_solver() + content.getbuffer()).hexdigest()[:40]}"
+    return entries.name_of("start", _solver(), sha256(content.getbuffer()).hexdigest())
 
 
 class _ByContent(ScenePickler):
@@ -78,8 +76,8 @@ class _ByContent(ScenePickler):
 
 
 @cache
-def _solver() -> bytes:
+def _solver() -> str:
     """Return the dependencies of the rounding of a start: files, libraries, threads, compiler, processor."""
     threads = os.cpu_count(), *map(os.environ.get, ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"))
     libraries = np.__version__, installed_version("scipy"), installed_version("sympy")
-    return repr(([*versions_within(str(PACKAGE))], threads, libraries, own_folder().path.name)).encode()
+    return repr(([*versions_within(str(PACKAGE))], threads, libraries, machine()))

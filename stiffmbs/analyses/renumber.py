@@ -17,7 +17,6 @@ from ..elements.states.state import StateValue
 from ..errors import InputError, prefixed
 from ..model.model_data import ModelData
 from ..model.scene import Scene
-from ..presolve.presolve import may_be_apart
 from ..reading.did_you_mean import instead_of
 from ..reading.formula.formula import Formula
 from ..reading.formula.nodes import TIME
@@ -63,7 +62,7 @@ def write_numbers(job: Job, data: ModelData) -> bool:
 def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
     """Return the force changes from a job to another model, or None if that model must be prepared again."""
     system = job.dynamics.system
-    if not renumberable(job) or not _same_structure(job.data, data):
+    if job.subsystems or not _same_structure(job.data, data):
         return None
     written = []
     placed = job.placed(data)
@@ -75,19 +74,6 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
     forces = ((job.data.forces[c.name], data.forces[c.name]) for c in written if c.name in data.forces)
     moved = any(list(before.markers()) != list(after.markers()) for before, after in forces)
     return None if moved and data.size() != system.size else written  # tolerances depend on the size
-
-
-def renumberable(job: Job) -> bool:
-    """Return True if other numbers may be written into a job.
-
-    Presolve must separate no mechanism, with any numbers, and leave out no modes, which other numbers may excite.
-    """
-    system = job.dynamics.system
-    if not job.settings.presolve:
-        return True
-    if job.subsystems or job.dynamics.coordinates.at_rest:
-        return False
-    return not job.dynamics.kept("apart", None, lambda: may_be_apart(system))
 
 
 def _same_structure(before: ModelData, after: ModelData) -> bool:

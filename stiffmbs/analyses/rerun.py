@@ -33,7 +33,7 @@ ROUNDS, STARTS = 3, 1000
 """Number of reruns, and of restarts in a rerun, at most."""
 PART_OF_A_FEATURE = 0.5
 """Longest step of a rerun, relative to the shortest missed feature of a Python function."""
-MOST_STEPS = 100_000
+MOST_STEPS = 200_000
 """Most steps of such a rerun."""
 
 RELAXED, EXACT = "SI2", "SI2_exact"

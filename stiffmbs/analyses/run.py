@@ -89,7 +89,7 @@ def run(
     job = prepare(data, settings, start_from, **changes)
     if job.settings.errors is not False or job.settings.accuracy:
         job = recording(job)
-    return to_accuracy(job, watch) if job.settings.accuracy else solved(job, watch)
+    return to_accuracy(job, watch)[1] if job.settings.accuracy else solved(job, watch)
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class Finished:
 
     @property
     def channels(self) -> dict[str, np.ndarray]:
-        """All channels."""
+        """All channels by name, computed unless the checks of the run needed them before."""
         return self.examined or channels_of(self.job.data, self.job.dynamics.system, self.rows)
 
 
@@ -140,9 +140,12 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     system = job.dynamics.system
     balance, broken = _balance(computed.job, trajectory, rows)
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
+    several = _several_solutions(job, rows) if system.forces_by_reactions else ()
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     again = partial(_reported_at, job)
-    notes = notes_on(Integrated(job, system, trajectory, rows, structure, computed.notes, channels, broken, again))
+    notes = notes_on(
+        Integrated(job, system, trajectory, rows, structure, computed.notes, channels, several or broken, again)
+    )
     return Finished(
         job, trajectory, rows, outcome, _headline(outcome, message, notes), notes, structure, balance, channels
     )
@@ -161,6 +164,13 @@ def _balance(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balanc
     if balance.resolved and is_broken(system, balance, rows, settings):
         return balance, (broken_balance(system, balance, rows, settings),)
     return balance, ()
+
+
+def _several_solutions(job: Job, rows: OutputRows) -> tuple[Note, ...]:
+    """Return a note on friction with several solutions, whose rows may follow different ones: their energies differ."""
+    from ..run_checks.several_solutions import several_solutions_note
+
+    return tuple(several_solutions_note(job.dynamics, rows))
 
 
 def _headline(outcome: Outcome, message: str, notes: Sequence[Note]) -> str:

@@ -198,4 +198,4 @@ def _by_assembly(dynamics: Dynamics, start: InitialValues, t: float, worst: Stre
     before = drawn[0].deflection(_energy(system, rows, worst.name)) if drawn else 0.0
     opened = worst.deflection(energy) - before
     by = _deflected(opened, worst, system).removeprefix("deflected ").removeprefix("turned ")
-    return f"; assembly closed the joints alone and opened it {by}" if opened > 0 else ""
+    return f"; assembly considers joints only, and has stretched it {by}" if opened > 0 else ""

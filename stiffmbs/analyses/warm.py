@@ -17,7 +17,8 @@ from ..elements.joints.revolute import Revolute
 from ..elements.samples import Samples
 from ..model.model import Model
 from ..model.model_builder import ModelBuilder
-from ..presolve.spinning_bodies import AXES, SpinningBodies
+from ..presolve.reduced_model import ReducedModel
+from ..presolve.spinning_bodies import AXES
 from ..processes import process_pool
 
 
@@ -36,7 +37,8 @@ def warm() -> None:
 def usual_kinds() -> tuple[Kind, ...]:
     """Return the usual kinds of elements, and joints of bodies whose quaternions do not follow their spin."""
     models = [usual_elements(dimensions).data() for dimensions in (2, 3)]
-    spun = [SpinningBodies(usual_bearings().data(), {"a": axis}) for axis in AXES]
+    bearings = usual_bearings().data()
+    spun = [ReducedModel(bearings, bearings.bodies, axes={"a": axis}) for axis in AXES]
     return tuple(dict.fromkeys(kind for model in (*models, *spun) for kind in kinds_of(model)))
 
 

@@ -1,9 +1,12 @@
-"""Entries of the cache: written once, read only if they are undamaged and the user's own.
+"""Memo on disk: what was derived, compiled, read or found before, by name.
 
-An entry is one file: a message authentication code, then the content. It is written to a temporary file and moved in
-one step, so that a crash or a second process leaves no partial entry. The code is an HMAC (RFC 2104) with a secret of
-the user. It covers the entry's name, its content, and the dependencies of its folder. An entry that is damaged,
-misplaced, or made by someone else does not match, and is made again. Folders and files that others may write are
+An entry is one file: a message authentication code, then the content. Its name is that of its kind and a digest of what the
+content follows from: sources, versions of packages, and the processor, where they matter (`name_of`). An entry of another
+version or machine is thus never read; it is removed when it is long unused (`stiffmbs.cache.contents.tend`).
+
+An entry is written to a temporary file and moved in one step, so that a crash or a second process leaves no partial entry.
+The code is an HMAC (RFC 2104) with a secret of the user. It covers the entry's name and its content. An entry that is
+damaged, misplaced, or made by someone else does not match, and is made again. Folders and files that others may write are
 refused with a note.
 """
 
@@ -14,80 +17,15 @@ import hmac
 import logging
 import os
 import secrets
-import stat
 import tempfile
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
-OTHERS = stat.S_IRWXG | stat.S_IRWXO
-
-
-class NotOwnError(Exception):
-    """File or folder that another user made or could have put there; the message names the reason."""
-
-
-def check_folder(path: Path) -> None:
-    """Refuse a folder in which another user may replace files.
-
-    `path`: a nonexistent one is not refused. Raises NotOwnError.
-    """
-    try:
-        found = path.stat()
-    except OSError:
-        return
-    if not stat.S_ISDIR(found.st_mode):
-        return
-    if not _mine(found):
-        raise NotOwnError(f"it belongs to the user with number {found.st_uid}")
-    # In a sticky folder others may add files, but not replace the owner's.
-    if found.st_mode & OTHERS_WRITE and not found.st_mode & stat.S_ISVTX:
-        raise NotOwnError(f"others may write to it (mode {stat.S_IMODE(found.st_mode):o})")
-
-
-def read_own(path: Path, secret: bool = False) -> bytes | None:
-    """Return the content of a regular file of the user; None if it does not exist or cannot be read.
-
-    `path`: symbolic links are not followed; pipes and devices do not block. `secret`: whether to refuse files that
-    others may read. Raises NotOwnError when it is not a regular file, or others may have written it.
-    """
-    flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
-    try:
-        handle = os.open(path, flags)
-    except OSError:
-        if path.is_symlink():
-            raise NotOwnError("it is a symbolic link") from None
-        return None
-    try:
-        _check_file(os.fstat(handle), secret)
-        with os.fdopen(os.dup(handle), "rb") as file:
-            return file.read()
-    except OSError:
-        return None
-    finally:
-        os.close(handle)
-
-
-def _check_file(found: os.stat_result, secret: bool) -> None:
-    if not stat.S_ISREG(found.st_mode):
-        raise NotOwnError("it is not a regular file")
-    if not _mine(found):
-        raise NotOwnError(f"it belongs to the user with number {found.st_uid}")
-    if found.st_mode & (OTHERS if secret else OTHERS_WRITE):
-        raise NotOwnError(f"others may {'read' if secret else 'write'} it (mode {stat.S_IMODE(found.st_mode):o})")
-
-
-def _mine(found: os.stat_result) -> bool:
-    return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
-
+from .contents import ENTRIES, PART, SECRET, Kind, mark_used, tend
+from .ownership import NotOwnError, check_folder, read_own
 
 DIRECTORY_VARIABLE = "STIFFMBS_CACHE"
-PART = ".part-"
-"""Prefix of the name of a file that is being written."""
-SECRET = "secret"
-"""File that holds the user's secret."""
 SECRET_SIZE = CODE_SIZE = 32
 NOWHERE = Path(os.devnull) / "nowhere"
 """Directory in which nothing can be stored."""
@@ -123,68 +61,50 @@ def _tell(note: str) -> None:
     logging.getLogger(__name__).warning("stiffmbs: note: %s", note)
 
 
-@dataclass(frozen=True)
-class Folder:
-    """Entries with the same dependencies.
-
-    `kind`: first word of the folder's name. `tag`: digest of the dependencies of its entries apart from their names.
-    """
-
-    kind: str
-    tag: str
-
-    @property
-    def path(self) -> Path:
-        """Directory of its entries."""
-        return cache_directory() / f"{self.kind}-{self.tag}"
-
-    def read(self, name: str) -> bytes | None:
-        """Return the content of an entry, or None if none of this name is undamaged and the user's own."""
-        directory = self.path
-        if not _trusted(directory) or (secret := _secret(directory.parent)) is None:
-            return None
-        try:
-            stored = read_own(directory / name)
-        except NotOwnError as fault:
-            _tell(f"the cache's entry {directory / name} is replaced, because {fault}; expected a file of your own")
-            return None
-        if stored is None:
-            return None
-        code, content = stored[:CODE_SIZE], stored[CODE_SIZE:]
-        return content if hmac.compare_digest(self._code(secret, name, content), code) else None
-
-    def write(self, name: str, content: bytes) -> None:
-        """Store an entry; if the directory is not writable, nothing is stored."""
-        directory = self.path
-        with suppress(OSError):
-            directory.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            directory.mkdir(mode=0o700, exist_ok=True)
-            secret = (_secret(directory.parent) or _new_secret(directory.parent)) if _trusted(directory) else None
-            if secret is not None:
-                _put(directory / name, self._code(secret, name, content) + content)
-
-    def keep_newest(self, most: int, most_bytes: int) -> None:
-        """Remove the oldest entries until half the limits remain, if their number or their bytes exceed a limit."""
-        with suppress(OSError):
-            found = sorted(
-                (entry.stat().st_mtime_ns, entry.stat().st_size, entry.path) for entry in os.scandir(self.path)
-            )
-            count, size = len(found), sum(of_entry for _, of_entry, _ in found)
-            if count <= most and size <= most_bytes:
-                return
-            for _, of_entry, path in found:
-                if count <= most // 2 and size <= most_bytes // 2:
-                    return
-                os.unlink(path)
-                count, size = count - 1, size - of_entry
-
-    def _code(self, secret: bytes, name: str, content: bytes) -> bytes:
-        return hmac.digest(secret, b"\0".join((self.tag.encode(), name.encode(), content)), "sha256")
+def name_of(kind: Kind, *parts: str) -> str:
+    """Return the name of an entry from all that its content follows from."""
+    return f"{kind}-{digest(*parts)}"
 
 
-def tag_of(*parts: str) -> str:
-    """Return a short digest of the dependencies of a folder's entries."""
-    return digest(*parts)[:12]
+def folder() -> Path:
+    """Return the folder of the entries."""
+    return cache_directory() / ENTRIES
+
+
+def read(name: str) -> bytes | None:
+    """Return the content of an entry, or None if none of this name is undamaged and the user's own."""
+    path = folder() / name
+    if not _trusted(path.parent) or (secret := _secret(path.parents[1])) is None:
+        return None
+    try:
+        stored = read_own(path)
+    except NotOwnError as fault:
+        _tell(f"the cache's entry {path} is replaced, because {fault}; expected a file of your own")
+        return None
+    if stored is None:
+        return None
+    code, content = stored[:CODE_SIZE], stored[CODE_SIZE:]
+    if not hmac.compare_digest(_code(secret, name, content), code):
+        return None
+    mark_used(path)
+    return content
+
+
+def write(name: str, content: bytes) -> None:
+    """Store an entry, and remove long unused ones; if the directory is not writable, nothing is stored."""
+    place = folder()
+    root = place.parent
+    with suppress(OSError):
+        root.mkdir(mode=0o700, parents=True, exist_ok=True)
+        place.mkdir(mode=0o700, exist_ok=True)
+        secret = (_secret(root) or _new_secret(root)) if _trusted(place) else None
+        if secret is not None:
+            tend(root)
+            _put(place / name, _code(secret, name, content) + content)
+
+
+def _code(secret: bytes, name: str, content: bytes) -> bytes:
+    return hmac.digest(secret, name.encode() + b"\0" + content, "sha256")
 
 
 def digest(*parts: str) -> str:

@@ -13,8 +13,9 @@ WORDS = {
     "routine": "routines",
     "file": "contents of YAML files",
     "scene": "scenes read before",
+    "start": "starts of runs",
     "body": "reduced flexible bodies",
-    "other": "of other versions or machines",
+    "other": "of earlier versions, or unfinished",
 }
 
 
@@ -31,10 +32,10 @@ def cache() -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def show(as_json: bool) -> None:
     """Show the directory of the cache and its content."""
+    from ..cache.contents import stored
     from ..cache.entries import DIRECTORY_VARIABLE, cache_directory
-    from ..compile.machine.cache_contents import stored
 
-    found = stored()
+    found = stored(cache_directory())
     if as_json:
         kinds = {kind: {"entries": own.entries, "bytes": own.size} for kind, own in found.items()}
         click.echo(json.dumps({"directory": str(cache_directory()), **kinds}))
@@ -47,11 +48,11 @@ def show(as_json: bool) -> None:
 @cache.command()
 def clear() -> None:
     """Remove all entries; the next runs compile again."""
+    from ..cache.contents import clear as cleared
     from ..cache.entries import cache_directory
-    from ..compile.machine.cache_contents import clear as cleared
 
     try:
-        removed = cleared()
+        removed = cleared(cache_directory())
     except OSError as error:
         click.echo(f"stiffmbs: {cache_directory()}: {error.strerror}", err=True)
         sys.exit(1)
@@ -62,12 +63,11 @@ def clear() -> None:
 def warm() -> None:
     """Compile all kinds of elements in their usual forms and all solvers, to shorten first runs."""
     from ..analyses.warm import warm as fill
+    from ..cache.contents import stored
     from ..cache.entries import cache_directory
-    from ..compile.machine.cache import KERNEL, RECORD, ROUTINE
-    from ..compile.machine.cache_contents import stored
 
     fill()
-    own = [found for kind, found in stored().items() if kind in (RECORD, KERNEL, ROUTINE)]
+    own = [found for kind, found in stored(cache_directory()).items() if kind in ("record", "kernel", "routine")]
     if not any(found.entries for found in own):
         click.echo(f"stiffmbs: {cache_directory()} cannot be written to: nothing is kept", err=True)
         sys.exit(1)

@@ -46,7 +46,7 @@ READ_BY_RICH = "COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "J
 @option("--all", "List the loads of all elements, not only the ten largest.", "all_loads")
 @state_options
 @solving_options
-@option("--errors", "Estimate the errors of all channels, however long the run is.")
+@option("--errors", "Estimate the errors of all channels, for runs of any length.")
 @option("--accuracy TEXT", "Accuracy to reach, by the choice of rtol: forces=1%,positions=0.1mm.")
 @option("--verify", "Rerun at a smaller tolerance and with another integrator: error bars, and warnings.")
 def run(

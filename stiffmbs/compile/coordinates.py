@@ -25,7 +25,6 @@ class Coordinates:
     - `ratio` of shape (n_q,).
     - `u_independent_of`, `u_ratio` of shape (n_u,): leaders and ratios of velocities.
     - `satisfied` of shape (n_c,): equations satisfied for any values of the independent coordinates.
-    - `at_rest`: fixed coordinates that no equation holds (`stiffmbs.presolve.modes_at_rest`).
     """
 
     independent_of: np.ndarray
@@ -33,7 +32,6 @@ class Coordinates:
     u_independent_of: np.ndarray
     u_ratio: np.ndarray
     satisfied: np.ndarray
-    at_rest: tuple[int, ...] = ()
 
     @cached_property
     def independent(self) -> np.ndarray:

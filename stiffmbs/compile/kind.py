@@ -68,35 +68,6 @@ class Compilable(Protocol):
 
 
 @dataclass(frozen=True)
-class ChangedModel:
-    """Base of models that are `model` with some changes."""
-
-    model: Any
-
-    @property
-    def dimensions(self) -> int:
-        """Dimensions of the model."""
-        return int(self.model.dimensions)
-
-    @property
-    def joints(self) -> Mapping[str, Joint]:
-        """All joints by name."""
-        return self.model.joints  # type: ignore[no-any-return]
-
-    def joint_at_initial_pose(self, name: str) -> Joint:
-        """Return a joint of the model."""
-        return self.model.joint_at_initial_pose(name)  # type: ignore[no-any-return]
-
-    def state_outputs(self) -> Mapping[str, Formula]:
-        """Return the outputs that formulas use by a name."""
-        return self.model.state_outputs()  # type: ignore[no-any-return]
-
-    def size(self) -> float:
-        """Return the size of the model as described, m."""
-        return float(self.model.size())
-
-
-@dataclass(frozen=True)
 class Kind:
     """Structure that elements with one kernel have in common.
 

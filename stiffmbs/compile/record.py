@@ -17,6 +17,7 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..cache import entries
 from ..cache.installed import installed_version
 from ..cache.source_files import digest_of, python_files
 from ..elements.element import CompiledTerms, Component, Element
@@ -24,7 +25,6 @@ from ..errors import InputError
 from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
-from .machine import cache as store
 from .machine.compiler import CALLS_WITH_LOOPS, FULL, SHORT, Compiled, Description, compiled_source
 from .terms import KERNEL_SIGNATURE, TERM_SETS
 
@@ -106,13 +106,13 @@ def _record_of(kind: Kind, place: Description) -> KindRecord:
     with uncollected():
         record = _derived(kind)
     if entry:
-        store.own_folder().write(entry, json.dumps(asdict(record)).encode())
+        entries.write(entry, json.dumps(asdict(record)).encode())
     return record
 
 
 def _read(entry: str) -> KindRecord | None:
     """Return a record from the cache; None if missing or unreadable."""
-    stored = store.own_folder().read(entry)
+    stored = entries.read(entry)
     try:
         return None if stored is None else KindRecord(**json.loads(stored))
     except (ValueError, TypeError):
@@ -152,14 +152,14 @@ def compile_usual(kind: Kind) -> None:
 
 def _rare_source(kind: Kind, term_set: str) -> str:
     entry = _entry(kind, term_set)
-    stored = store.own_folder().read(entry) if entry else None
+    stored = entries.read(entry) if entry else None
     if stored is not None:
         return stored.decode()
     from .symbolic.generate import kernel_source  # loads SymPy
 
     source = kernel_source(term_set, _terms(kind), "kernel")
     if entry:
-        store.own_folder().write(entry, source.encode())
+        entries.write(entry, source.encode())
     return source
 
 
@@ -222,8 +222,8 @@ def _entry(kind: Kind, *part: str) -> str | None:
         texts = _files(bases) if is_shipped else _equations(kind)
     except (OSError, TypeError):
         return None
-    return store.name_of(
-        store.RECORD,
+    return entries.name_of(
+        "record",
         _own_files(),
         *texts,
         kind.element.__qualname__,

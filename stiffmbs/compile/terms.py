@@ -1,4 +1,7 @@
-"""Names of the kernel terms, sets of terms computed together, and kernel arguments."""
+"""Names of the kernel terms, sets of terms computed together, and kernel arguments.
+
+Symbols: docs/project/notation.md.
+"""
 
 from __future__ import annotations
 

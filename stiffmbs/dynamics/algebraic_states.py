@@ -4,30 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.machine.native.statuses import NO_STATE
+from ..compile.machine.native.statuses import NO_BALANCE, NO_STATE
 from .dynamics import Dynamics
+from .friction_loads import REMEDY
 from .native.parameters import CONSISTENCY
 from .storage import FAILURES
 
 BEYOND_LAST_STATE = np.geomspace(1e-9, 1e-5, 3)
-"""Times after the last state, relative to the time, s, at which missing values are searched for."""
-
-
-def rates_of_algebraic(
-    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray
-) -> np.ndarray:
-    """Return the rates of the algebraic states along the motion, shape (algebraic states,); zero if they have none."""
-    places = dynamics.system.algebraic_coordinates
-    if not len(places):
-        return np.zeros(0)
-    state, interval = dynamics.state, CONSISTENCY.rate_interval
-    with state.unchanged():
-        there = dynamics.system.of_body.moved(q, interval * u)
-        there[dynamics.system.n_pose :] += interval * dynamics.position_rates(q, u)[dynamics.system.n_pose :]
-        state.q[:], state.u[:] = there, u + interval * acceleration
-        status, _ = dynamics.accelerate(t + interval)
-        rates = (state.q[places] - q[places]) / interval
-    return rates if status >= 0 and np.all(np.isfinite(rates)) else np.zeros(len(places))
+"""Times after the last state, relative to the time, at which missing values are searched for."""
 
 
 def rates_by_states(dynamics: Dynamics) -> np.ndarray:
@@ -48,14 +32,16 @@ def rates_by_states(dynamics: Dynamics) -> np.ndarray:
 
 
 def failure(dynamics: Dynamics, status: int, t: float) -> str:
-    """Return a clause on why accelerations have no solution; it names an algebraic state without a value."""
+    """Return a clause on why accelerations have no solution; it names an algebraic state without a value, or friction."""
+    if status == NO_BALANCE and dynamics.system.forces_by_reactions:
+        return f"{FAILURES[status]}: {' and '.join(dynamics.system.forces_by_reactions)}; {REMEDY}"
     return (no_value(dynamics, t) if status == NO_STATE else "") or FAILURES[status]
 
 
 def no_value_ahead(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
-    """Return a clause on the algebraic state that has no value at or just after a state, or an empty string."""
+    """Return a clause on the algebraic state or friction without a solution at or just after a state, or an empty string."""
     system, state = dynamics.system, dynamics.state
-    if not system.algebraic.any():
+    if not (system.algebraic.any() or system.forces_by_reactions):
         return ""
     state.q[:], state.u[:] = q, u
     status, acceleration = dynamics.accelerate(t)
@@ -68,9 +54,9 @@ def no_value_ahead(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -
                 state.q[system.n_pose :] += later * rates[system.n_pose :]
                 state.u[:] += later * acceleration
                 status, _ = dynamics.accelerate(t + later)
-                if status == NO_STATE:
-                    return no_value(dynamics, t + later)
-    return no_value(dynamics, t)
+                if status in (NO_STATE, NO_BALANCE):
+                    return failure(dynamics, status, t + later)
+    return no_value(dynamics, t) if system.algebraic.any() else ""
 
 
 def no_value(dynamics: Dynamics, t: float) -> str:

@@ -16,7 +16,6 @@ from .algebraic_states import failure
 from .dynamics import Dynamics
 from .moves import Move, moves, position_words, velocity_words
 from .native.parameters import CONSISTENCY
-from .storage import FAILURES
 from .turns import take_nearest_turns
 
 CHANGED = "to satisfy {what} at the start, assembly changed {changes}"
@@ -79,15 +78,6 @@ class InitialValues:
     def moved_far(self) -> tuple[Move, ...]:
         """Moves too large for a correction of a drawing: an input is wrong, or the scene is not drawn closed."""
         return tuple(move for move in self.moved if move.is_large(self.size))
-
-
-def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
-    """Return q' at consistent values, and set the dynamics' state to them."""
-    state, system = dynamics.state, dynamics.system
-    state.q[:], state.u[:], state.lam[:] = start.q, start.u, start.lam
-    if system.n_q > system.n_pose:
-        state.evaluate("acceleration", t)
-    return dynamics.position_rates(start.q, start.u)
 
 
 def initial_values(dynamics: Dynamics, t: float, first: np.ndarray | None = None) -> InitialValues:
@@ -153,8 +143,7 @@ def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
     if status == SINGULAR:
         return _dependent_sentence(dynamics)
     if status == NO_BALANCE:
-        rubbing = ", ".join(dynamics.system.forces_by_reactions)
-        return f"the start has no accelerations: {FAILURES[NO_BALANCE]}; expected less friction in {rubbing}"
+        return f"the start has no accelerations: {failure(dynamics, status, t)}"
     if status == NOT_FINITE:
         return _undefined_sentence(dynamics, t)
     return f"no consistent start was found: {failure(dynamics, status, t)}"

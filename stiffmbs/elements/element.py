@@ -79,15 +79,6 @@ def _reserved(element: type[Described], base: type[Described]) -> str:
     return f"found the field '{found[0]}', expected names other than {listed}"
 
 
-def _extends(element: type[Described]) -> bool:
-    """Return True if a class adds fields, functions or properties to its first base."""
-    base = element.__mro__[1]
-    added = (value for name, value in vars(element).items() if not name.startswith(("__", "model_")))
-    return element.model_fields.keys() != getattr(base, "model_fields", {}).keys() or any(
-        isinstance(value, property | staticmethod | classmethod) or callable(value) for value in added
-    )
-
-
 @cache
 def _names_of(base: type[Described]) -> frozenset[str]:
     """Return the names that fields of subclasses must not have."""
@@ -141,11 +132,7 @@ class Element(Described):
         Names of fields that name joints: as the product of their coordinates. For a marker: the axis whose direction
         matters, such as ``z``.
     symmetric_with : mapping of str to str, optional
-        Conditions on its markers, by field, under which the element is its own mirror image about a plane
-        (`stiffmbs.presolve.modes_at_rest`). ``point``: its point is in the plane. ``z``: also its z axis is in the plane or normal
-        to it; ``axes``: all three are. ``along z``: the axis alone. ``body``: none. Fields of `reflected` must have no components
-        out of the plane. None: the element is not symmetric about any plane. A subclass with fields or functions of its
-        own does not inherit it.
+        Accepted from elements of earlier versions, without effect.
     spin_conditions : mapping of str to str
         Markers whose bodies may spin without changing the equations, by field, with the conditions. ``x``, ``y`` or
         ``z``: the marker's point is on the spin axis, which is parallel to this axis of the marker. ``along x`` and so
@@ -175,8 +162,6 @@ class Element(Described):
         base = next(base for base in cls.__mro__ if base.__module__ == __name__)
         if reason := _reserved(cls, base):
             raise InputError(f"{cls.__name__}: {reason}")
-        if "symmetric_with" not in vars(cls) and _extends(cls):
-            cls.symmetric_with = None
 
     @model_validator(mode="before")
     @classmethod

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import compress, pairwise
 
 import numpy as np
 
+from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..solve.recorded_steps import Piece
-from .defects import Rates, of_bdf, of_radau
+from .closed import Closed, closed
+from .defects import Rates, of_bdf, of_radau, slope_weights
 from .evaluated import Evaluated, evaluated
-from .linearised import Linearised, linearised
+from .linearised import Linearised, displaced, linearised
 from .parameters import ESTIMATE
-from .restarts import after_restart, displaced, is_autonomous, just_before, motion
+from .restarts import after_restart, is_autonomous, just_before, motion
 from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
 from .vibrations import are_affordable, are_resolved, changes_little, step_by_step
 
@@ -25,7 +28,9 @@ class StateErrors:
     - `t` of shape (n,): times of the nodes, s; `recorded_q`, `recorded_u`: states of the integrator there.
     - `q`, `u`: better states, without the estimated errors.
     - `errors` of shape (n, full): the errors (x, v, s) of the states after projection onto the constraints.
-    - `at_event`: mask of the nodes at events, where errors of time are errors as large as jumps.
+    - `left_out`: mask of nodes with other errors of forces than those nearby: at events, where errors of time are errors as
+      large as jumps; at restarts, where stiff forces are not in balance; and where they could not be balanced.
+    - `lost`: mask of nodes with errors too large for linear equations; if there is one, `q` and `u` are those of the integrator.
     """
 
     t: np.ndarray
@@ -34,19 +39,21 @@ class StateErrors:
     q: np.ndarray
     u: np.ndarray
     errors: np.ndarray
-    at_event: np.ndarray
+    left_out: np.ndarray
+    lost: np.ndarray
 
 
 @dataclass(frozen=True)
 class _Prepared:
     """Piece with its evaluated states, the defects of its steps, their blocks and the rows of the nodes of these.
 
-    `opened`: True if it starts after an event.
+    `at_ends`: defects at the rows themselves, zero at the start. `opened`: True if it starts after an event.
     """
 
     piece: Piece
     states: Evaluated
     defects: np.ndarray
+    at_ends: np.ndarray
     blocks: list[Block]
     rows: np.ndarray
     opened: bool
@@ -60,64 +67,133 @@ class _Prepared:
         return np.clip(rows, first, max(first, last))
 
 
-def state_errors(dynamics: Dynamics, pieces: Sequence[Piece]) -> StateErrors:
-    """Return the errors of the states of a run; raise a SolverError if a state has no solution."""
+@dataclass(frozen=True)
+class _Found:
+    """Errors at rows of a piece, the tangent spaces at the nodes of its blocks, and a mask of the blocks taken step by step."""
+
+    piece: _Prepared
+    space: Linearised
+    errors: np.ndarray
+    rows: np.ndarray
+    step_wise: np.ndarray
+
+
+def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> StateErrors:
+    """Return the errors of the states of a run with a tolerance; raise a SolverError if a state has no solution."""
     starts = np.append(0, np.cumsum([len(piece.t) for piece in pieces]))
     t, q, u = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("t", "q", "u"))
-    states = evaluated(dynamics, t, q, u)
+    steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
+    states = evaluated(dynamics, t, q, u, (steps, rtol))
     prepared = [
         _prepared(dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired))
         for k, (piece, first) in enumerate(zip(pieces, starts, strict=False))
     ]
     nodes = np.concatenate([first + each.within(each.rows) for each, first in zip(prepared, starts, strict=False)])
-    space = linearised(dynamics, states.at(nodes))
-    found, rows, done = [np.zeros((0, space.basis.shape[1]))], [], 0
-    error, shift = np.zeros(space.basis.shape[1]), 0.0
+    reach = max((block.times[-1] for each in prepared for block in each.blocks), default=0.0)
+    space = linearised(dynamics, states.at(nodes), float(reach))
+    found: list[_Found] = []
+    error, shift, done = np.zeros(space.basis.shape[1]), 0.0, 0
     for k, each in enumerate(prepared):
-        own, done = slice(done, done + len(each.rows)), done + len(each.rows)
+        own, done = space.at(slice(done, done + len(each.rows))), done + len(each.rows)
         if k:
             error, shift = _restarted(dynamics, prepared[k - 1], each, error, shift)
-        errors, of_errors = _transported(dynamics, each, space.at(own), error)
+        errors, of_errors, step_wise = _transported(dynamics, each, own, error)
         error = errors[-1]
-        found.append(errors + shift * motion(dynamics.system, each.states.at(of_errors)))
-        rows.append(starts[k] + of_errors)
-    errors, nodes = np.concatenate(found), np.concatenate(rows)
+        errors = errors + shift * motion(dynamics.system, each.states.at(of_errors))
+        found.append(_Found(each, own, errors, of_errors, step_wise))
+    errors = np.concatenate([each.errors for each in found])
+    nodes = np.concatenate([first + each.rows for each, first in zip(found, starts, strict=False)])
     fired = np.array([bool(piece.fired) for piece in pieces])
-    at_event = np.zeros(len(t) + 1, dtype=bool)
-    at_event[np.concatenate([starts[1:][fired] - 1, starts[1:][fired]])] = True
-    better = displaced(dynamics, states.at(nodes), -errors)
-    return StateErrors(t[nodes], q[nodes], u[nodes], *better, errors, at_event[nodes])
+    left_out = np.zeros(len(t) + 1, dtype=bool)
+    left_out[starts[1:][fired] - 1] = True
+    left_out[starts[1:]] = True
+    lost = _are_lost(dynamics.system, errors)
+    if lost.any():
+        return StateErrors(t[nodes], q[nodes], u[nodes], q[nodes], u[nodes], errors, left_out[nodes], lost)
+    q_better, u_better, fails = (
+        np.concatenate(parts) for parts in zip(*(_without_errors(dynamics, each) for each in found), strict=True)
+    )
+    return StateErrors(t[nodes], q[nodes], u[nodes], q_better, u_better, errors, left_out[nodes] | fails, lost)
+
+
+def _are_lost(system: System, errors: np.ndarray) -> np.ndarray:
+    """Return a mask of errors (x, v, s) that are too large for linear equations."""
+    scale = system.per_velocity(system.size, 1.0)
+    return np.asarray(~(np.abs(errors[:, : system.n_u]) <= ESTIMATE.lost * scale).all(axis=1))
 
 
 def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool) -> _Prepared:
     rates = Rates(dynamics.system, states)
     if piece.points > 1:
         defects = of_radau(piece, rates)
+        at_ends = np.vstack([np.zeros_like(defects[0, :1]), defects.reshape(-1, defects.shape[2])])
         blocks = blocks_of_radau(piece.t, defects)
     else:
-        defects = of_bdf(piece, rates, opened)
+        defects, at_ends = of_bdf(piece, rates, opened)
         blocks = blocks_of_bdf(piece.t, defects)
     is_node = np.zeros(len(piece.t), dtype=bool)
     for block in blocks:
         is_node[block.nodes] = True
-    return _Prepared(piece, states, defects, blocks, np.flatnonzero(is_node), opened)
+    return _Prepared(piece, states, defects, at_ends, blocks, np.flatnonzero(is_node), opened)
 
 
 def _transported(
     dynamics: Dynamics, each: _Prepared, space: Linearised, error: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the errors at rows of a piece, from that at its start, and these rows."""
-    t, rows = each.piece.t, each.rows
-    steps = np.diff(t, prepend=2 * t[0] - t[1])[rows]
-    by_steps = each.piece.points == 1 and are_affordable(len(t), len(error))
-    if by_steps and not are_resolved(space, t[rows], steps):
-        everywhere = np.arange(len(t))
-        if not changes_little(space, t[rows]):
-            rows, space = everywhere, linearised(dynamics, each.states.at(each.within(everywhere)))
-        return step_by_step(t, each.defects, space, rows, error), everywhere
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the errors at rows of a piece, from that at its start, these rows, and a mask of the blocks taken step by step."""
+    t, rows, blocks = each.piece.t, each.rows, each.blocks
     place = np.full(len(t), -1)
     place[rows] = np.arange(len(rows))
-    return transported(each.blocks, space, place, error), rows
+    step_wise = np.zeros(len(blocks), dtype=bool)
+    if each.piece.points == 1 and are_affordable(len(t), len(error)):
+        step_wise = ~are_resolved(space, t, rows, blocks)
+    errors, of_errors = [error[None]], [rows[:1]]
+    for first, last in pairwise([0, *1 + np.flatnonzero(np.diff(step_wise)), len(blocks)]):
+        begin, end = int(blocks[first].nodes[0]), int(blocks[last - 1].nodes[-1])
+        own = slice(place[begin], place[end] + 1)
+        if step_wise[first]:
+            found, at = _step_by_step(dynamics, each, space.at(own), slice(begin, end + 1), errors[-1][-1])
+        else:
+            found, at = transported(blocks[first:last], space, place, errors[-1][-1])[own], rows[own]
+        errors.append(found[1:])
+        of_errors.append(at[1:])
+        if not first:
+            errors[0], of_errors[0] = found[:1], at[:1]
+    return np.concatenate(errors), np.concatenate(of_errors), step_wise
+
+
+def _step_by_step(
+    dynamics: Dynamics, each: _Prepared, space: Linearised, steps: slice, error: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the errors at all rows of some steps of a piece, from that at their start, and these rows."""
+    everywhere = np.arange(steps.start, steps.stop)
+    nodes, t = each.rows[(each.rows >= steps.start) & (each.rows < steps.stop)], each.piece.t
+    if not changes_little(space, t[nodes]):
+        nodes, reach = everywhere, float(np.diff(t[steps]).max())
+        space = linearised(dynamics, each.states.at(each.within(everywhere)), reach)
+    return step_by_step(t[steps], each.defects[steps], space, nodes - steps.start, error), everywhere
+
+
+def _without_errors(dynamics: Dynamics, found: _Found) -> Closed:
+    """Return q and u at rows of a piece without their errors, closed at the ends of blocks, and a mask of failures."""
+    each, errors, rows = found.piece, found.errors, found.rows
+    at = each.states.at(rows)
+    q, u = displaced(dynamics, at, -errors)
+    open_ = np.zeros(len(rows), dtype=bool)
+    places = np.searchsorted(rows, each.rows)
+    slopes = np.full((len(each.rows), errors.shape[1]), np.nan)
+    own = list(compress(each.blocks, ~found.step_wise))
+    for size in {len(block.nodes) for block in own}:
+        some = [block for block in own if len(block.nodes) == size]
+        nodes, times = np.array([block.nodes for block in some]), np.array([block.times for block in some])
+        times = np.hstack([np.zeros((len(some), 1)), times])
+        of_nodes, ends = errors[np.searchsorted(rows, nodes)], np.searchsorted(each.rows, nodes)
+        for k in range(1, size):
+            slopes[ends[:, k]] = np.einsum("bn,bnf->bf", slope_weights(times, k), of_nodes)
+    slopes -= each.at_ends[each.rows]
+    step = float(np.diff(each.piece.t).max())
+    q[places], u[places], open_[places] = closed(dynamics, at.at(places), found.space, errors[places], slopes, step)
+    return q, u, open_
 
 
 def _restarted(

@@ -38,7 +38,8 @@ def channel_errors(
         for (q, u), projected in zip(states, (project, True), strict=True)
     )
     errors = {name: difference(name, values[name], better[name]) for name in values}
-    kept = ~found.at_event
+    kept = ~found.left_out
+    kept[[0, -1]] = True
     return ChannelErrors(
         found.t[kept], {name: each[kept] for name, each in values.items()},
         {name: each[kept] for name, each in errors.items()},

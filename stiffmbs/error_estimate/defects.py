@@ -51,8 +51,8 @@ def slope_weights(nodes: np.ndarray, at: int | np.ndarray) -> np.ndarray:
     return np.asarray(weights / span)
 
 
-def of_bdf(piece: Piece, rates: Rates, opened: bool) -> np.ndarray:
-    """Return the mean defects of the steps of bdf, shape (rows, full); that of row 0, the start, is zero.
+def of_bdf(piece: Piece, rates: Rates, opened: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mean defects of the steps of bdf, and those at their ends, shape (rows, full); row 0, the start, is zero.
 
     The curve is the polynomial through the neighbouring accepted states, integrated by the trapezoid rule. Where steps
     change a lot the formula of the step gives the defect. `opened`: True if the piece starts after an event, where the
@@ -61,6 +61,7 @@ def of_bdf(piece: Piece, rates: Rates, opened: bool) -> np.ndarray:
     t, steps = piece.t, len(piece.t) - 1
     points = ESTIMATE.points
     found = np.zeros((steps + 1, rates.variation(rates.states[:1], np.arange(1)).shape[1]))
+    at_ends = np.zeros_like(found)
     by_formula = np.ones(steps, dtype=bool)
     h = np.diff(t)
     if steps + 1 >= points:
@@ -75,15 +76,15 @@ def of_bdf(piece: Piece, rates: Rates, opened: bool) -> np.ndarray:
             sides[0][0] = sides[1][0]
         if piece.fired:
             sides[1][-1] = sides[0][-1]
-        found[1:] = 0.5 * (sides[0] + sides[1])
+        found[1:], at_ends[1:] = 0.5 * (sides[0] + sides[1]), sides[1]
     for n in 1 + np.flatnonzero(by_formula):
         row = np.array([n])
         change = _of_formula(piece, rates.states, int(n))
         given = np.concatenate([piece.q_rates[n], piece.u_rates[n]])
         at_end = n == steps and bool(piece.fired)
         remainder = np.zeros(found.shape[1]) if at_end else rates.defects(given[None], row)[0]
-        found[n] = rates.variation(change[None], row)[0] + remainder
-    return found
+        found[n] = at_ends[n] = rates.variation(change[None], row)[0] + remainder
+    return found, at_ends
 
 
 def _windows(h: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:

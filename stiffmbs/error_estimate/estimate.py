@@ -14,7 +14,7 @@ from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_RTOL, RunSettings
 from ..notes import Note, NoteKind
 from ..results.channel_errors import bars
-from ..results.digits import KnownErrors, digits_words, largest_bar, over_time
+from ..results.digits import KnownErrors, over_time
 from ..results.error_bars import UNKNOWN
 from ..results.estimate import ErrorEstimate
 from ..results.solution import Solution
@@ -47,7 +47,7 @@ def estimated(
     parts = subsystems or (None,)
     try:
         found = [
-            state_errors(part.dynamics if part else dynamics, pieces)
+            state_errors(part.dynamics if part else dynamics, pieces, settings.rtol)
             for part, pieces in zip(parts, trajectory.recorded, strict=False)
         ]
         lost = [
@@ -76,18 +76,10 @@ def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solutio
     `size`: size of the mechanism, m.
     """
     absolute = settings.atol or settings.rtol * min(1.0, size)  # an error of it is not large, as where nothing moves
-    estimate = ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large)
-    known = KnownErrors(replace(solution, estimate=estimate))
-    largest, relative = known.largest(over_time)
-    peak, of_peak = known.largest(largest_bar)
-    sentence = digits_words(known.digits(over_time))
-    if largest:
-        sentence += f"; largest error: {largest} {100 * relative:.2g} %"
-    if of_peak - relative > relative:
-        sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
+    solution = replace(solution, estimate=ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large))
+    known = KnownErrors(solution)
     notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings, size))
-    estimate = replace(estimate, sentence=sentence, largest=largest, relative=relative)
-    return replace(solution, estimate=estimate, notes=(*solution.notes, *notes))
+    return replace(solution, estimate=known.estimate(), notes=(*solution.notes, *notes))
 
 
 def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings, size: float) -> Iterator[Note]:
@@ -110,19 +102,15 @@ def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:
 
     Raise a SolverError if the motion has passed a singular pose before, where the linear equations do not hold.
     """
-    system = dynamics.system
-    of_poses = np.abs(found.errors[:, : system.n_u])
-    scale = system.per_velocity(system.size, 1.0)
-    beyond = ~(of_poses <= ESTIMATE.lost * scale).all(axis=1)
-    if not beyond.any():
+    if not found.lost.any():
         return None
-    before = slice(0, int(np.argmax(beyond)) + 1)
+    before = slice(0, int(np.argmax(found.lost)) + 1)
     at = evaluated(dynamics, found.t[before], found.recorded_q[before], found.recorded_u[before])
     singular = nearly_singular(dynamics, at)
     if singular.any():
         t = at.t[np.argmax(singular)]
         raise SolverError(f"no linear equations transport errors through the nearly singular pose at t = {t:.4g} s")
-    return float(found.t[np.argmax(beyond)])
+    return float(found.t[before.stop - 1])
 
 
 def _lost_from(solution: Solution, t: float) -> Solution:

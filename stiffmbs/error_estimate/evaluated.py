@@ -9,6 +9,7 @@ import numpy as np
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..errors import SolverError
+from ..solve.stiff_rows import with_stiff_forces
 from .variations import position_rates
 
 
@@ -40,12 +41,20 @@ class Evaluated:
         )  # fmt: skip
 
 
-def evaluated(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> Evaluated:
-    """Project states onto the constraints and evaluate them; raise a SolverError if one has no solution."""
+def evaluated(
+    dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray, balance: tuple[np.ndarray, float] | None = None
+) -> Evaluated:
+    """Project states onto the constraints and evaluate them; raise a SolverError if one has no solution.
+
+    `balance`: lengths of the implicit steps that end in these states, shape (n,), s, and a change of forces, relative to the
+    largest. The projection changes stiff forces by less than that, if possible.
+    """
     system = dynamics.system
     rows = dynamics.report(t, q, u, project=bool(system.n_c))
     if len(rows.t) < len(t):
         raise SolverError(f"no accelerations were found at t = {t[len(rows.t)]:.6g} s")
+    if balance and system.n_c:
+        rows = with_stiff_forces(dynamics, (q, u), rows, *balance)
     q, u, acceleration = (np.ascontiguousarray(each) for each in (rows.q, rows.u, rows.acceleration))
     trailing = _trailing_rates(dynamics, t, q, u)
     return Evaluated(t, q, u, acceleration, position_rates(system, q, u, trailing), rows)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from .evaluated import Evaluated, evaluated, with_rates
 from .parameters import ESTIMATE
@@ -32,68 +33,101 @@ class Linearised:
         """Dimension of the tangent space."""
         return self.basis.shape[2]
 
-    def at(self, chosen: slice) -> Linearised:
+    def at(self, chosen: slice | np.ndarray) -> Linearised:
         """Return the tangent spaces at some of the states."""
         return Linearised(self.basis[chosen], self.rates[chosen], self.left[chosen])
 
 
-def linearised(dynamics: Dynamics, at: Evaluated) -> Linearised:
-    """Return the tangent spaces at evaluated states, and the rates of their variations."""
+def linearised(dynamics: Dynamics, at: Evaluated, reach: float) -> Linearised:
+    """Return the tangent spaces at evaluated states, and the rates of their variations.
+
+    `reach`: longest time over which an error is transported with the same rates, s.
+    """
     system = dynamics.system
     width = (system.n_q + 2 * system.n_u) * (2 * system.n_u + system.n_q - system.n_pose)
     count = max(1, ESTIMATE.numbers_at_once // max(width, 1))
-    parts = [_linearised(dynamics, at.at(slice(k, k + count))) for k in range(0, len(at.t), count)]
+    parts = [_linearised(dynamics, at.at(slice(k, k + count)), reach) for k in range(0, len(at.t), count)]
     if len(parts) == 1:
         return parts[0]
     return Linearised(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("basis", "rates", "left")))
 
 
-def _linearised(dynamics: Dynamics, at: Evaluated) -> Linearised:
-    """Return the tangent spaces at a few states."""
+def _linearised(dynamics: Dynamics, at: Evaluated, reach: float) -> Linearised:
+    """Return the tangent spaces at a few states.
+
+    A displacement that stretches a stiff spring turns its force too. Where such an error of the differences would accelerate
+    others, they are repeated along the directions of decreasing rates, of which most do not stretch it.
+    """
+    moves, left = _moves(dynamics, at)
+    basis, rates = _differences(dynamics, at, moves)
+    of_moves = left @ rates
+    errors = ESTIMATE.difference * reach**2 * np.linalg.norm(of_moves, axis=(1, 2))
+    stiff = np.flatnonzero((errors > ESTIMATE.large) & np.isfinite(errors))
+    if len(stiff):
+        directions = np.linalg.svd(of_moves[stiff])[2]
+        basis[stiff], rates[stiff] = _differences(dynamics, at.at(stiff), directions @ moves[stiff])
+    return Linearised(basis, rates, left)
+
+
+def _moves(dynamics: Dynamics, at: Evaluated) -> tuple[np.ndarray, np.ndarray]:
+    """Return displacements (x, v, s) of states along their tangent spaces, shape (count, n, full), and the matrices `left`."""
     system, count = dynamics.system, len(at.t)
     n_u, trailing = system.n_u, with_rates(system)
-    geometry = Variations(system, at.q)
     scale = system.per_velocity(system.size, 1.0)
-    jacobian = geometry.ground(_velocity_constraints(dynamics, at)) * scale
+    jacobian = Variations(system, at.q).ground(_velocity_constraints(dynamics, at)) * scale
     free = _null_spaces(jacobian[:, system.active])
     holonomic = system.active & system.holonomic
     poses = free if holonomic.sum() == system.active.sum() else _null_spaces(jacobian[:, holonomic])
     n_a, n_b, n_s = poses.shape[2], free.shape[2], len(trailing)
     n = n_a + n_b + n_s
-    full = 2 * n_u + n_s
-    left = np.zeros((count, n, full))
+    moves, left = np.zeros((count, n, 2 * n_u + n_s)), np.zeros((count, n, 2 * n_u + n_s))
     left[:, :n_a, :n_u] = (poses / scale[:, None]).transpose(0, 2, 1)
     left[:, n_a : n_a + n_b, n_u : 2 * n_u] = (free / scale[:, None]).transpose(0, 2, 1)
     left[:, n_a + n_b :, 2 * n_u :] = np.eye(n_s)
-    basis, rates = np.zeros((count, full, n)), np.zeros((count, full, n))
-    if not n:
-        return Linearised(basis, rates, left)
-    part = ESTIMATE.difference
-    moves = np.zeros((count, n, full))  # (x, v, s) of each displaced state
-    moves[:, :n_a, :n_u] = part * (poses * scale[:, None]).transpose(0, 2, 1)
-    speed = part * max(1.0, float(np.abs(at.u / scale).max(initial=0.0)))
+    speed = max(1.0, float(np.abs(at.u / scale).max(initial=0.0)))
+    moves[:, :n_a, :n_u] = (poses * scale[:, None]).transpose(0, 2, 1)
     moves[:, n_a : n_a + n_b, n_u : 2 * n_u] = speed * (free * scale[:, None]).transpose(0, 2, 1)
-    of_states = part * np.maximum(1.0, np.abs(at.q[:, trailing]).max(axis=0, initial=0.0))
+    of_states = np.maximum(1.0, np.abs(at.q[:, trailing]).max(axis=0, initial=0.0))
     moves[:, n_a + n_b :, 2 * n_u :] = np.diag(of_states)
-    sizes = np.concatenate([np.full(n_a, part), np.full(n_b, speed), of_states])
-    q = geometry.moved(at.q, moves[..., :n_u])
-    q[..., trailing] += moves[..., 2 * n_u :]
-    u = at.u[:, None] + geometry.own(moves[..., n_u : 2 * n_u])
-    there = evaluated(dynamics, np.repeat(at.t, n), q.reshape(count * n, -1), u.reshape(count * n, -1))
+    return moves, left
 
-    def change(moved: np.ndarray, still: np.ndarray) -> np.ndarray:
-        return (moved.reshape(count, n, -1) - still[:, None]) / sizes[:, None]
 
-    dq, du = change(there.q, at.q), change(there.u, at.u)
-    v = geometry.ground(du)
-    basis[:, :n_u] = geometry.displacement(dq).transpose(0, 2, 1)
-    basis[:, n_u : 2 * n_u] = v.transpose(0, 2, 1)
-    basis[:, 2 * n_u :] = dq[..., trailing].transpose(0, 2, 1)
-    rates[:, :n_u] = geometry.ground(system.followed * du).transpose(0, 2, 1)
-    spin = geometry.spun(geometry.ground(system.followed * at.u), v)
-    rates[:, n_u : 2 * n_u] = (geometry.ground(change(there.acceleration, at.acceleration)) + spin).transpose(0, 2, 1)
-    rates[:, 2 * n_u :] = change(there.q_rates, at.q_rates)[..., trailing].transpose(0, 2, 1)
-    return Linearised(basis, rates, left)
+def _differences(dynamics: Dynamics, at: Evaluated, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the variations of states by small parts of given moves, and their rates, shape (count, full, n)."""
+    system, part = dynamics.system, ESTIMATE.difference
+    count, n, full = moves.shape
+    if not n:
+        return np.zeros((count, full, n)), np.zeros((count, full, n))
+    origins = at.at(np.repeat(np.arange(count), n))
+    there = evaluated(dynamics, origins.t, *displaced(dynamics, origins, part * moves.reshape(count * n, full)))
+    changes = state_changes(system, origins, there), rate_changes(system, origins, there)
+    basis, rates = (each.reshape(count, n, full).transpose(0, 2, 1) / part for each in changes)
+    return basis, rates
+
+
+def displaced(dynamics: Dynamics, at: Evaluated, variations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return q and u of states moved by variations (x, v, s), one row each."""
+    system = dynamics.system
+    geometry, n_u = Variations(system, at.q), system.n_u
+    q = geometry.moved(at.q, variations[:, :n_u])
+    q[:, with_rates(system)] += variations[:, 2 * n_u :]
+    return q, at.u + geometry.own(variations[:, n_u : 2 * n_u])
+
+
+def state_changes(system: System, at: Evaluated, there: Evaluated) -> np.ndarray:
+    """Return the small changes from states to others as rows (x, v, s)."""
+    geometry, dq = Variations(system, at.q), there.q - at.q
+    return np.hstack([geometry.displacement(dq), geometry.ground(there.u - at.u), dq[:, with_rates(system)]])
+
+
+def rate_changes(system: System, at: Evaluated, there: Evaluated) -> np.ndarray:
+    """Return the changes of the rates from states to others nearby, as those of rows (x, v, s)."""
+    geometry, du = Variations(system, at.q), there.u - at.u
+    spin = geometry.spun(geometry.ground(system.followed * at.u), geometry.ground(du))
+    return np.hstack([
+        geometry.ground(system.followed * du), geometry.ground(there.acceleration - at.acceleration) + spin,
+        (there.q_rates - at.q_rates)[:, with_rates(system)],
+    ])  # fmt: skip
 
 
 def nearly_singular(dynamics: Dynamics, at: Evaluated) -> np.ndarray:

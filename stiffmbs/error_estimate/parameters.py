@@ -42,6 +42,9 @@ class EstimateParameters:
     """Error of a pose, rad or relative to the size of the mechanism, above which the linear estimate is lost."""
     tolerances: float = 100.0
     """Error of a position relative to its size, in relative tolerances, above which a note appears."""
+    second: float = 0.1
+    """Tolerance of the second run by which the errors of explicit steps are estimated, in that of the run. It takes a third more
+    steps; its own errors, about as small a part, are in the estimate. Beyond `smallest_rtol` the inverse."""
     large: float = 0.01
     """Error of any channel relative to its size above which a note appears."""
     part: float = 1e-2

@@ -11,6 +11,7 @@ from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from ..solve.events.restart import restarted
 from .evaluated import Evaluated, evaluated, with_rates
+from .linearised import displaced
 from .parameters import ESTIMATE
 from .variations import Variations
 
@@ -55,15 +56,6 @@ def is_autonomous(dynamics: Dynamics, at: Evaluated) -> bool:
     now = evaluated(dynamics, at.t, at.q, at.u)
     pairs = ((now.q, later.q), (now.u, later.u), (now.q_rates, later.q_rates), (now.acceleration, later.acceleration))
     return all(np.array_equal(*pair) for pair in pairs)
-
-
-def displaced(dynamics: Dynamics, at: Evaluated, variations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return q and u of states moved by variations (x, v, s), one row each."""
-    system = dynamics.system
-    geometry, n_u = Variations(system, at.q), system.n_u
-    q = geometry.moved(at.q, variations[:, :n_u])
-    q[:, with_rates(system)] += variations[:, 2 * n_u :]
-    return q, at.u + geometry.own(variations[:, n_u : 2 * n_u])
 
 
 def just_before(dynamics: Dynamics, piece: Evaluated, fired: tuple[int, ...]) -> Evaluated:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .linearised import Linearised
 from .parameters import ESTIMATE
-from .transport import at_once
+from .transport import Block, at_once
 
 
 def are_affordable(steps: int, size: int) -> bool:
@@ -18,20 +18,30 @@ def are_affordable(steps: int, size: int) -> bool:
     return steps * size**3 < ESTIMATE.operations
 
 
-def are_resolved(space: Linearised, t: np.ndarray, steps: np.ndarray) -> bool:
-    """Return True if blocks resolve the vibrations that the steps of a run resolve.
+def are_resolved(space: Linearised, t: np.ndarray, nodes: np.ndarray, blocks: list[Block]) -> np.ndarray:
+    """Return a mask of the blocks that resolve the vibrations that the steps of a run resolve.
 
-    `space`: at the times `t` of the nodes. `steps` of shape (n,): lengths of the steps that end there, s.
+    `space`: at the rows `nodes` of a piece with the times `t`. All blocks do if most of them do. Otherwise those do whose steps
+    are far longer than the vibrations that others do not resolve.
     """
     if not space.n:
-        return True
-    some = np.linspace(0, len(t) - 1, min(len(t), ESTIMATE.spectra)).astype(int)
+        return np.ones(len(blocks), dtype=bool)
+    some = np.linspace(0, len(nodes) - 1, min(len(nodes), ESTIMATE.spectra)).astype(int)
     left = space.left[some]
     matrices = np.linalg.solve(left @ space.basis[some], left @ space.rates[some])
     rates = np.linalg.eigvals(np.where(np.isfinite(matrices), matrices, 0.0))
-    waves = np.where(np.abs(rates.real) < np.abs(rates.imag), np.abs(rates.imag), 0.0) * steps[some][:, None]
-    waves[waves > ESTIMATE.resolved] = 0.0
-    return bool(np.sort(waves.max(axis=1))[len(some) // 2] * ESTIMATE.block <= ESTIMATE.turn)
+    frequencies = np.where(np.abs(rates.real) < np.abs(rates.imag), np.abs(rates.imag), 0.0)
+
+    def longest(steps: np.ndarray, at: np.ndarray, resolved: float) -> np.ndarray:
+        waves = frequencies[at] * steps[:, None]
+        return np.asarray(np.where(waves > resolved, 0.0, waves).max(axis=1))
+
+    at_some = longest(np.diff(t, prepend=2 * t[0] - t[1])[nodes[some]], np.arange(len(some)), ESTIMATE.resolved)
+    if np.sort(at_some)[len(some) // 2] * ESTIMATE.block <= ESTIMATE.turn:
+        return np.ones(len(blocks), dtype=bool)
+    nearest = np.abs(t[[block.nodes[-1] for block in blocks]][:, None] - t[nodes[some]]).argmin(axis=1)
+    steps = np.array([np.diff(t[block.nodes[0] : block.nodes[-1] + 1]).max() for block in blocks])
+    return longest(steps, nearest, ESTIMATE.resolved * ESTIMATE.block) * ESTIMATE.block <= ESTIMATE.turn
 
 
 def _between(matrices: np.ndarray, t: np.ndarray, times: np.ndarray) -> np.ndarray:

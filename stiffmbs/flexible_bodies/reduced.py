@@ -11,16 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from ..cache.entries import Folder, digest, tag_of
+from ..cache import entries
+from ..cache.installed import installed_version
 from ..cache.source_files import digest_of, python_files
 from ..errors import InputError
 from .description import FlexibleBody, UpTo
 from .reduction import ReducedBody, reduce, rigid_body
 from .second_order import SecondOrder
 
-FOLDER, BODY, SECOND = "bodies", "body", "second_order"
-MOST, MOST_BYTES = 100, 2_000_000_000
-"""Limits on the number of entries and on their total size in bytes."""
+SECOND = "second_order"
 SAME_MASS = 0.05
 """Difference from the stated mass that is refused, relative to it."""
 
@@ -35,8 +34,8 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     highest = body.modes.up_to * np.sqrt(density / modulus) if isinstance(body.modes, UpTo) else None
     if body.material:
         body = body.model_copy(update={"material": body.material.model_copy(update={"E": 1.0, "density": 1.0})})
-    name = f"{BODY}-{_key(body, highest, folder)}"
-    stored = folder_of_bodies().read(name)
+    name = _name(body, highest, folder)
+    stored = entries.read(name)
     if stored is not None:
         found = _loaded(stored)
         _check_mass(body, found.mass * density)
@@ -51,8 +50,7 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
         **{name: value for name, value in vars(found).items() if name != SECOND},
         **{f"{SECOND}.{name}": value for name, value in vars(found.second_order).items()},
     )
-    folder_of_bodies().write(name, out.getvalue())
-    folder_of_bodies().keep_newest(MOST, MOST_BYTES)
+    entries.write(name, out.getvalue())
     return found.of_material(modulus, density)
 
 
@@ -66,19 +64,17 @@ def _check_mass(body: FlexibleBody, mass: float) -> None:
 
 
 @cache
-def folder_of_bodies() -> Folder:
-    """Return the folder for this version of the reduction."""
-    from importlib.metadata import version
-
+def _reduction() -> str:
+    """Return a digest of the reduction."""
     own = digest_of(python_files(Path(__file__).parent))
-    return Folder(FOLDER, tag_of(own, version("numpy"), version("scipy")))
+    return entries.digest(own, installed_version("numpy"), installed_version("scipy"))
 
 
-def _key(body: FlexibleBody, highest: float | None, folder: Path) -> str:
+def _name(body: FlexibleBody, highest: float | None, folder: Path) -> str:
     contents = (hashlib.sha256(content).hexdigest() for content in body.contents(folder))
     unused = {"stiffening", "mass", "modes"} if highest else {"stiffening", "mass"}
     described = body.model_dump_json(include=FlexibleBody.model_fields.keys() - unused)
-    return digest(described, repr(highest), *contents)
+    return entries.name_of("body", _reduction(), described, repr(highest), *contents)
 
 
 def _loaded(content: bytes) -> ReducedBody:

@@ -13,8 +13,11 @@ from ..tuning import SUBSYSTEMS, defaults_of, numbers_of
 MOST = 1000
 """Largest ratio of an integer to its default, as some are sizes of arrays."""
 
-REMOVED = {"masking": "no event is left out by a number of steps any more, expected no such entry"}
-"""Subsystems of earlier versions, and what replaces them."""
+REMOVED = {
+    "masking": "events are no longer left out after a number of steps; remove this entry",
+    "presolve: at_rest": "all modes of flexible bodies are solved for; remove this entry",
+}
+"""Subsystems and parameters of earlier versions, and what replaces them."""
 
 Read = Callable[[Any], float]
 """Conversion of an entry to a number; raises a ValueError for other entries."""
@@ -27,8 +30,6 @@ def checked(found: object, read: Read) -> dict[str, dict[str, object]]:
     """
     changes: dict[str, dict[str, object]] = {}
     for name, values in _entries(found, "subsystems"):
-        if name in REMOVED:
-            raise ValueError(f"found the removed subsystem '{name}': {REMOVED[name]}")
         _refuse_unknown("", "subsystem", name, SUBSYSTEMS)
         usual = numbers_of(defaults_of(name))
         changes[name] = {}
@@ -45,6 +46,8 @@ def _entries(found: object, names: str) -> list[tuple[Any, Any]]:
 
 
 def _refuse_unknown(where: str, what: str, found: object, known: Mapping[str, object]) -> None:
+    if (removed := f"{where}{found}") in REMOVED:
+        raise ValueError(f"{where}found the removed {what} '{found}': {REMOVED[removed]}")
     if found not in known:
         raise ValueError(f"{where}found the unknown {what} '{quoted(found)}'{instead_of(found, known)}")
 

@@ -7,7 +7,7 @@ equations of the whole model.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,9 +19,10 @@ from ..compile.quaternions import CONJUGATE, rotated, times
 from ..compile.system import System
 from ..model.model_data import ModelData
 from ..reading.marker import Placement
-from .merged_bodies import MergedBodies, merge
+from .merged_bodies import merge
+from .reduced_model import ReducedModel, name_of_angle
 from .relations import PRESOLVE
-from .spinning_bodies import AXES, SpinningBodies, name_of_angle, spinning
+from .spinning_bodies import AXES, spinning
 from .subsystems import mechanisms, part_of, trailing_coordinates
 
 if TYPE_CHECKING:
@@ -35,11 +36,6 @@ class PlanarPoses(NamedTuple):
 
     point: np.ndarray
     angle: np.ndarray
-
-    @classmethod
-    def none(cls, count: int) -> PlanarPoses:
-        """Return identity poses."""
-        return cls(np.zeros((count, 2)), np.zeros(count))
 
     @classmethod
     def of(cls, placements: Sequence[Placement]) -> PlanarPoses:
@@ -75,11 +71,6 @@ class SpatialPoses(NamedTuple):
 
     point: np.ndarray
     turn: np.ndarray
-
-    @classmethod
-    def none(cls, count: int) -> SpatialPoses:
-        """Return identity poses."""
-        return cls(np.zeros((count, 3)), np.tile(IDENTITY, (count, 1)))
 
     @classmethod
     def of(cls, placements: Sequence[SpatialPlacement]) -> SpatialPoses:
@@ -125,9 +116,6 @@ def _turned(phi: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 BodyFixedPoses = PlanarPoses | SpatialPoses
 BODY_FIXED_POSES: dict[int, type[PlanarPoses] | type[SpatialPoses]] = {2: PlanarPoses, 3: SpatialPoses}
-
-
-Alike = Callable[[Sequence[np.ndarray]], Sequence[Sequence[int]]]
 
 
 @dataclass(frozen=True)
@@ -191,65 +179,43 @@ class Part:
             spin.turned(places, rates, q[:, spin.angle])
 
 
-def may_be_apart(system: System) -> bool:
-    """Return True if parameter values may decide whether mechanisms are solved separately."""
-    return 1 < len(mechanisms(system)) <= PRESOLVE.most_apart
-
-
-def parts_of(
-    model: ModelData, whole: System, travel: np.ndarray | None, alike: Alike | None = None
-) -> tuple[Part, ...]:
+def parts_of(model: ModelData, whole: System, travel: np.ndarray | None, apart: bool) -> tuple[Part, ...]:
     """Return the mechanisms to solve in place of a compiled model; empty if none replaces it.
 
     `whole`: with its redundant equations marked. `travel` of shape (n_u,): initial velocities times the duration of the
-    run; None to keep all spins in the quaternions. `alike`: return the sets of mechanisms to solve together, given
-    their body numbers in the whole model. By default all are solved together.
+    run; None to keep all spins in the quaternions. `apart`: whether independent mechanisms are solved separately, if they
+    are few.
     """
     held = {joint for joint, _ in whole.equations} - {joint for (joint, _), on in zip(whole.equations, whole.active, strict=True) if not on}  # fmt: skip
-    merged = merge(model, held)
-    spun = None if travel is None else spinning(merged or model, _turns(merged, whole, travel))
-    system = _compiled(spun or merged, whole) if spun or merged else whole  # type: ignore[arg-type]
-    found = mechanisms(system) if alike else []
-    if alike and 1 < len(found) <= PRESOLVE.most_apart:
-        carried = [_carried(bodies, system, whole, merged) for bodies in found]
-        found = sorted(
-            (np.sort(np.concatenate([found[k] for k in each])) for each in alike(carried)), key=lambda bodies: bodies[0]
-        )
+    reduced = merge(model, held)
+    if travel is not None and whole.of_body.dimensions == 3:
+        reduced = replace(reduced, axes=spinning(reduced, _turns(reduced, whole, travel)))
+    system = _compiled(reduced, whole) if reduced.members or reduced.axes else whole
+    found = mechanisms(system) if apart else []
     if not 1 < len(found) <= PRESOLVE.most_apart:
         if system is whole:
             return ()
         found = [np.arange(len(system.bodies))]
-    return tuple(_part(bodies, system, whole, merged, spun) for bodies in found)
+    return tuple(_part(bodies, system, whole, reduced) for bodies in found)
 
 
-def _turns(merged: MergedBodies | None, whole: System, travel: np.ndarray) -> dict[str, np.ndarray]:
+def _turns(reduced: ReducedModel, whole: System, travel: np.ndarray) -> dict[str, np.ndarray]:
     """Return the angular displacement of each solved body about its principal axes."""
     of_bodies = travel.reshape(len(whole.bodies), -1)[:, whole.of_body.linear :]
     turns = dict(zip(whole.bodies, of_bodies, strict=True))
-    if merged is None or merged.dimensions == 2:
-        return turns
-    on_carrier = {name: np.array(merged.members[name][1].orientation) for name in merged.bodies}
-    return {name: rotated(orientation, turns[name]) for name, orientation in on_carrier.items()}
+    for name in reduced.bodies.keys() & reduced.members.keys():
+        turns[name] = rotated(np.array(reduced.members[name][1].orientation), turns[name])
+    return turns
 
 
-def _compiled(model: MergedBodies | SpinningBodies, whole: System) -> System:
+def _compiled(model: ReducedModel, whole: System) -> System:
     """Compile the model in place of the whole one, with the same redundant equations and the same size."""
     system = compile_model(model)
     on = dict(zip(whole.equations, whole.active, strict=True))
     return replace(system, active=np.array([on[equation] for equation in system.equations], dtype=bool))
 
 
-def _carried(bodies: np.ndarray, system: System, whole: System, merged: MergedBodies | None) -> np.ndarray:
-    """Return the numbers of the bodies in the whole model that some solved bodies carry."""
-    if merged is None:
-        return bodies
-    names = {system.bodies[k] for k in bodies}
-    return np.array([k for k, name in enumerate(whole.bodies) if merged.members[name][0] in names])
-
-
-def _part(
-    bodies: np.ndarray, system: System, whole: System, merged: MergedBodies | None, spun: SpinningBodies | None
-) -> Part:
+def _part(bodies: np.ndarray, system: System, whole: System, reduced: ReducedModel) -> Part:
     own = part_of(system, bodies)
     number = {name: k for k, name in enumerate(own.bodies)}
     of_whole, of_part = trailing_coordinates(whole), trailing_coordinates(own)
@@ -257,17 +223,15 @@ def _part(
     trailing, kept = (np.array([of[key] for key in shared], dtype=np.int64) for of in (of_whole, of_part))
     spins = tuple(
         Spin(number[name], AXES.index(axis), of_part[name_of_angle(name), None])
-        for name, axis in (spun.axes if spun else {}).items()
+        for name, axis in reduced.axes.items()
         if name in number
     )
-    poses = BODY_FIXED_POSES[whole.of_body.dimensions]
-    if merged is None:
-        return Part(own, bodies, np.arange(len(bodies)), poses.none(len(bodies)), trailing, kept, spins)
-    carried = [(k, *merged.members[name]) for k, name in enumerate(whole.bodies) if merged.members[name][0] in number]
-    numbers = np.array([k for k, _, _ in carried])
-    parent = np.array([number[name] for _, name, _ in carried])
+    on_parents = [(k, *reduced.on_parent(name)) for k, name in enumerate(whole.bodies)]
+    carried = [(k, number[parent], placed) for k, parent, placed in on_parents if parent in number]
+    numbers, parent = (np.array([each[k] for each in carried]) for k in (0, 1))
     at_initial_pose = whole.q[: whole.n_pose].reshape(len(whole.bodies), -1)[numbers]
-    placed = poses.of([place for _, _, place in carried]).like(at_initial_pose, parent)
+    poses = BODY_FIXED_POSES[whole.of_body.dimensions].of([placed for _, _, placed in carried])
+    placed = poses.like(at_initial_pose, parent)
     return Part(own, numbers, parent, placed, trailing, kept, spins)
 
 

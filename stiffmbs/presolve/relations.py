@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from typing import NamedTuple
@@ -21,7 +21,7 @@ from ..tuning import tuned
 
 @dataclass(frozen=True)
 class PresolveParameters:
-    """Parameters of dependent coordinates, of bodies that spin, of modes at rest, and of separate mechanisms.
+    """Parameters of dependent coordinates, of bodies that spin, and of separate mechanisms.
 
     Source: tests/presolve.
     """
@@ -33,8 +33,6 @@ class PresolveParameters:
     alike: float = 1e-12
     """Largest relative difference of the moments across an axis, offset of a marker from it in sizes, and tilt, of a body
     that may spin about the axis."""
-    at_rest: float = 1e-9
-    """Largest antisymmetric number that counts as zero, relative to the size, mass or speed: rounding of eigenvectors."""
     most_apart: int = 8
     """Largest number of mechanisms solved separately, as each has the cost of its own start and steps."""
 
@@ -51,8 +49,6 @@ class Relations:
     satisfied: np.ndarray
     held: list[int] = field(default_factory=list)
     """Bodies with constant orientation."""
-    at_rest: list[int] = field(default_factory=list)
-    """Coordinates that no equation holds."""
 
     @classmethod
     def none(cls, system: System) -> Relations:
@@ -70,7 +66,7 @@ class Relations:
         for body in self.held:
             turning = slice(system.of_body.n_u * body + system.of_body.linear, system.of_body.n_u * (body + 1))
             independent_of[turning], ratio[turning] = FIXED, 0.0
-        return Coordinates(self.independent_of, self.ratio, independent_of, ratio, self.satisfied, tuple(self.at_rest))
+        return Coordinates(self.independent_of, self.ratio, independent_of, ratio, self.satisfied)
 
     def extended(self, rows: dict[int, list[tuple[int, float]]]) -> bool:
         """Use rows with one or two leaders, else a set with common leaders; return True if there was any."""
@@ -264,18 +260,12 @@ def _sizes(group: Group, of_kind: _Summands) -> np.ndarray:
     return products
 
 
-def independent_coordinates(
-    system: System, state: State, t: float, at_rest: Mapping[str, Sequence[int]]
-) -> Coordinates:
+def independent_coordinates(system: System, state: State, t: float) -> Coordinates:
     """Return the coordinates that remain after elimination by equations with constant coefficients.
 
-    `state`: at a pose that satisfies the constraints; it is not changed. `t`: s. `at_rest`: positions that stay zero, by
-    bodies.
+    `state`: at a pose that satisfies the constraints; it is not changed. `t`: s.
     """
     found = Relations.none(system)
-    for k, body in enumerate(system.bodies):
-        found.at_rest += [system.of_body.n_q * k + axis for axis in at_rest.get(body, ())]
-    found.independent_of[found.at_rest], found.ratio[found.at_rest] = FIXED, 0.0
     candidates = _candidates(system)
     if not candidates.any():
         return found.coordinates(system)

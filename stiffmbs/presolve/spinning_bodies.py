@@ -9,81 +9,31 @@ unchanged. Constraints and the angular momentum, which are differentiated by tim
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compile.kind import ChangedModel, Compilable
+from ..compile.kind import Compilable
 from ..elements.element import Element
-from ..elements.states.equation import StateName
-from ..elements.states.state import StateValue
 from ..reading.formula.formula import Formula
 from ..reading.joint_name import JointName
 from ..reading.marker import MarkerReference
 from .relations import PRESOLVE
 
 AXES = "xyz"
-ANGLE = "spin_angle"
-"""Suffix of a body's name for the name of its state."""
 
 
-@dataclass(frozen=True)
-class SpinningBodies(ChangedModel):
-    """Model with quaternions that exclude the spin of some bodies.
-
-    `model`: as described, or with merged bodies. `axes`: principal axis of the spin of each of these bodies, ``x``,
-    ``y`` or ``z``.
-    """
-
-    model: Compilable
-    axes: Mapping[str, str]
-
-    @property
-    def bodies(self) -> Mapping[str, object]:
-        """All bodies by name."""
-        return self.model.bodies
-
-    def state_values(self) -> dict[str, StateValue]:
-        """Return the values of the states of the model, and of the spin angles, which start at zero."""
-        return {**self.model.state_values(), **{name_of_angle(body): StateValue(None, 0.0, 1.0) for body in self.axes}}
-
-    def carried(self, marker: object) -> tuple[str, object]:
-        """Return the body that carries a marker, and the marker's placement on it."""
-        return self.model.carried(marker)
-
-    def spin_axes(self) -> Mapping[str, str]:
-        """Return the axes of the bodies whose quaternions exclude their spin."""
-        return self.axes
-
-    def elements(self) -> Iterator[tuple[str, Element]]:
-        """Yield the elements of the model, and the rates of the spin angles."""
-        from ..elements.states.equation import SpinAngle
-
-        yield from self.model.elements()
-        for body, axis in self.axes.items():
-            state, marker = StateName(name_of_angle(body)), MarkerReference.model_construct(body=body)
-            yield state, SpinAngle.model_construct(state=state, i=marker, axis=axis)  # type: ignore[arg-type]
-
-
-def name_of_angle(body: str) -> str:
-    """Return the name of the state that holds the spin angle of a body."""
-    return f"{body}.{ANGLE}"
-
-
-def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodies | None:
-    """Return the model with spins removed from quaternions, or None if no body qualifies.
+def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> dict[str, str]:
+    """Return the principal axes about which bodies spin, of those whose quaternions need not follow their spin.
 
     A body qualifies if its moments across the axis are equal and nothing that acts on it depends on its spin angle.
     Only elements that `stiffmbs.elements.element.Element.spins_with` allows may act on it: no angles, no joint that
     another element refers to. It must also rotate in a bearing, roll on a tyre, or spin at the start. `turns` of shape
     (3,): rotation of each body about its principal axes during the run at the initial angular velocity, rad.
     """
-    if model.dimensions == 2:
-        return None
     found: dict[str, list[_Demand]] = {name: [] for name, body in model.bodies.items() if any(_symmetric_about(body))}
     if not found:
-        return None
+        return {}
     for _, element in model.elements():
         for marker, what, bears in _demands(element, model):
             body, placed = model.carried(marker)
@@ -91,8 +41,7 @@ def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodi
                 found[body].append(_Demand(what, placed, bears))
     size = model.size()
     axes = {body: _axis(model.bodies[body], found[body], turns.get(body, np.zeros(3)), size) for body in found}
-    spun = {body: axis for body, axis in axes.items() if axis}
-    return SpinningBodies(model, spun) if spun else None
+    return {body: axis for body, axis in axes.items() if axis}
 
 
 REFUSED, POINT, BODY, ALONG = "", "point", "body", "along "

@@ -7,15 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .error_bars import ErrorBar, between
+from .error_bars import UNKNOWN, ErrorBar, between
 from .scales import ROUNDING, kind_of
-
-LARGER = 10.0
-"""Tolerance of a second run in that of the first, by which the errors of explicit steps are estimated.
-
-Errors grow about as the tolerance, so that a ninth of the difference is the error. The second run takes about three quarters
-of the steps of the first.
-"""
 
 
 @dataclass(frozen=True)
@@ -63,20 +56,25 @@ def _peak(
 
 
 def bars_by_difference(
-    times: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray]
+    times: np.ndarray, at: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray], part: float
 ) -> dict[str, ErrorBar]:
-    """Return the error bars of the channels of a run, from those of a run with a larger tolerance at the same times."""
+    """Return the error bars of the channels of a run, from those of a run with another tolerance, at more times.
+
+    `at`: places of the times of the run among `times`. `part`: error of the other run in the error of this one, as expected.
+    """
     found = {}
-    every = np.arange(len(times))
     for name, values in channels.items():
         if name.startswith("constraint."):
             continue
-        error = np.abs(difference(name, values, others[name])) / (LARGER - 1.0)
-        sampled = [between(times, sign * values, every) for sign in (-1.0, 1.0)]
-        peaks = [error[int(np.nanargmin(values))], error[int(np.nanargmax(values))]]
-        found[name] = ErrorBar(
-            float(np.nanmax(error)), *(float(peak + more) for peak, more in zip(peaks, sampled, strict=True)), *sampled
-        )
+        error = np.abs(difference(name, values, others[name][at])) / abs(1.0 - part)
+        if np.isnan(error).all():
+            found[name] = UNKNOWN
+            continue
+        fine = others[name].copy()
+        fine[at] = values
+        sampled = [between(times, sign * fine, at) for sign in (-1.0, 1.0)]
+        least, greatest = (float(error[peak(values)]) for peak in (np.nanargmin, np.nanargmax))
+        found[name] = ErrorBar(float(np.nanmax(error)), least + sampled[0], greatest + sampled[1], *sampled)
     return found
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from .error_bars import ErrorBar
+from .estimate import ErrorEstimate
 from .scales import REQUEST_ROUNDING, kind_of, scales
 from .solution import Solution
 
@@ -71,6 +72,18 @@ class KnownErrors:
         known = self.relative(error_of)
         name = max(known, key=lambda each: known[each], default="")
         return name, known.get(name, math.nan)
+
+    def estimate(self) -> ErrorEstimate:
+        """Return the estimate of the errors in words."""
+        largest, relative = self.largest(over_time)
+        peak, of_peak = self.largest(largest_bar)
+        sentence = digits_words(self.digits(over_time))
+        if largest:
+            sentence += f"; largest error: {largest} {100 * relative:.2g} %"
+        if of_peak - relative > relative:
+            sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
+        resolved = self._solution.estimate.resolved if self._solution.estimate else 0.0
+        return ErrorEstimate("estimated", sentence, largest, relative, resolved)
 
 
 def _group(kind: str) -> str:

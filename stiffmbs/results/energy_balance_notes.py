@@ -129,7 +129,7 @@ def broken_balance(system: System, balance: Balance, rows: OutputRows, settings:
     forces = (
         "all forces are conservative, but the energy changes by"
         if balance.keeps_energy
-        else "the energy without work changes by"
+        else "the energy changes, apart from the work of forces, by"
     )
     return BALANCE(
         forces=forces, imbalance=balance.imbalance, scale=balance.scale, allowed=allowed, first=first,

@@ -10,7 +10,10 @@ import numpy as np
 
 from ..notes import Note
 from ..solve.trajectory import IN_DOUBT, History
+from .digits import KnownErrors
 from .energy_balance import Balance
+from .error_bars import ErrorBar
+from .estimate import ErrorEstimate
 from .scales import MECHANICAL, ROUNDING, kind_of
 from .solution import Solution
 
@@ -39,7 +42,7 @@ def joined(name: str, solutions: Sequence[Solution]) -> Solution:
     requested = {key: unit for solution in solutions for key, unit in solution.requested.items()}
     kept = _kept_rows(solutions)
     pairs = list(zip(solutions, kept, strict=True))
-    return Solution(
+    found = Solution(
         name=name,
         time=np.concatenate([s.time[rows] for s, rows in pairs]),
         channels={
@@ -62,7 +65,9 @@ def joined(name: str, solutions: Sequence[Solution]) -> Solution:
             key: np.concatenate([s.turns.get(key, np.full(len(s.time), np.nan))[rows] for s, rows in pairs])
             for key in turns
         },
+        errors=_bars(solutions, channels) if all(s.errors for s in solutions if s.estimate) else {},
     )
+    return replace(found, estimate=_estimate(found, [s.estimate for s in solutions if s.estimate]))
 
 
 def _kept_rows(solutions: Sequence[Solution]) -> list[slice]:
@@ -98,6 +103,35 @@ def _values(solution: Solution, channel: str, requested: Iterable[str]) -> np.nd
         return solution.channels[channel]
     there = kind_of(channel) not in MECHANICAL or channel in requested
     return np.full(len(solution.time), np.nan if there else 0.0)
+
+
+def _bars(solutions: Sequence[Solution], channels: Sequence[str]) -> dict[str, ErrorBar]:
+    """Return the error bars of channels over all runs; those of a peak are from the run that has it."""
+    found = {}
+    for name in channels:
+        parts = [s for s in solutions if name in s.errors]
+        if not parts:
+            continue
+        least = min(parts, key=lambda s: float(np.nanmin(s.channels[name], initial=np.inf))).errors[name]
+        greatest = max(parts, key=lambda s: float(np.nanmax(s.channels[name], initial=-np.inf))).errors[name]
+        over_time = float(np.max([s.errors[name].over_time for s in parts]))
+        found[name] = ErrorBar(
+            over_time, least.least, greatest.greatest, least.sampled_least, greatest.sampled_greatest
+        )
+    return found
+
+
+def _estimate(joined: Solution, estimates: Sequence[ErrorEstimate]) -> ErrorEstimate | None:
+    """Return the estimate over all runs; each begins with the errors of the one before it, which it does not know."""
+    if not estimates:
+        return None
+    others = [each for each in estimates if each.status != "estimated"]
+    if others:
+        status = next((each.status for each in others if each.status == "lost"), others[0].status)
+        return ErrorEstimate(status, "; ".join(_notes([[each.sentence] for each in estimates])))
+    resolved = ErrorEstimate("estimated", "", resolved=max(each.resolved for each in estimates))
+    found = KnownErrors(replace(joined, estimate=resolved)).estimate()
+    return replace(found, sentence=f"{found.sentence}; of each run alone, without the errors of those before it")
 
 
 def _notes(of_runs: Sequence[Sequence[str]]) -> tuple[Note, ...]:

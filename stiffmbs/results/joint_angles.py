@@ -22,13 +22,14 @@ from ..reading.joint_name import ORDERS
 
 UNCERTAIN_TURN = 1.0
 """Difference of an angle's change between output times and that predicted from its rates, rad, from which on the number
-of turns is uncertain."""
+of turns is uncertain. The same limit holds for the part of the prediction that follows from accelerations: changes are
+known up to full turns, so that a prediction over too long an interval may agree by chance."""
 
 
 UNCERTAIN = NoteKind(
     "uncertain-joint-angle",
-    "the revolutions of {element} are uncertain: between t = {begin:.6g} s and {end:.6g} s it changes too much for the "
-    "output times",
+    "the revolutions of {element}{more} are uncertain: between t = {begin:.6g} s and {end:.6g} s the angle changes too "
+    "much for the output times",
     "name it in a request, so that the integration counts its revolutions, or use more output points",
 )
 
@@ -54,32 +55,34 @@ class JointAngles:
                 angle = rows.values[:, places[0]]
                 found[name] = angle + TURN * np.round((rows.q[:, self.counters[name]] - angle) / TURN)
         if self.followed:
-            change, predicted = self._changes(rows)
+            change, by_rates, by_accelerations = self._changes(rows)
             angles = rows.values[:, [self.places[name][0] for name in self.followed]]
             known = np.array([self.start.get(name, INITIAL_COUNT) for name in self.followed])
             angles += TURN * np.round((known - angles[0]) / TURN)
-            angles[1:] += TURN * np.cumsum(np.round((predicted - change) / TURN), axis=0)
+            angles[1:] += TURN * np.cumsum(np.round((by_rates + by_accelerations - change) / TURN), axis=0)
             found |= dict(zip(self.followed, angles.T, strict=True))
         return found
 
     def uncertain(self, rows: OutputRows) -> Iterator[Note]:
-        """Yield a note on the angle whose turns between output times are least certain."""
+        """Yield a note on the angles whose turns between output times are uncertain, the least certain first."""
         if not self.followed or len(rows.t) < 2:
             return
-        change, predicted = self._changes(rows)
-        apart = np.abs(np.remainder(predicted - change + np.pi, TURN) - np.pi)
-        apart[np.isnan(apart)] = 0.0
+        change, by_rates, by_accelerations = self._changes(rows)
+        apart = np.abs(np.remainder(by_rates + by_accelerations - change + np.pi, TURN) - np.pi)
+        apart = np.nan_to_num(np.maximum(apart, np.abs(by_accelerations)))
         row, k = np.unravel_index(int(np.argmax(apart)), apart.shape)
         if apart[row, k] > UNCERTAIN_TURN:
-            yield UNCERTAIN(self.followed[k], begin=rows.t[row], end=rows.t[row + 1])
+            others = int(np.count_nonzero(np.any(apart > UNCERTAIN_TURN, axis=0))) - 1
+            more = f" and of {others} other angle{'s' * (others > 1)}" if others else ""
+            yield UNCERTAIN(self.followed[k], more=more, begin=rows.t[row], end=rows.t[row + 1])
 
     @cached_property
     def followed(self) -> list[str]:
         """Angles without a counter."""
         return [name for name in self.places if name not in self.counters]
 
-    def _changes(self, rows: OutputRows) -> tuple[np.ndarray, np.ndarray]:
-        """Return the changes of angles between instants, and those of the Hermite polynomial of their rates.
+    def _changes(self, rows: OutputRows) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the changes of angles between instants, and the parts by rates and accelerations of the Hermite polynomial.
 
         Shape (n - 1, angles).
         """
@@ -87,8 +90,7 @@ class JointAngles:
             rows.values[:, [self.places[name][order] for name in self.followed]] for order in range(len(ORDERS))
         )
         h = np.diff(rows.t)[:, None]
-        predicted = h / 2 * (rate[:-1] + rate[1:]) - h**2 / 12 * np.diff(acceleration, axis=0)
-        return np.diff(angle, axis=0), predicted
+        return np.diff(angle, axis=0), h / 2 * (rate[:-1] + rate[1:]), -(h**2) / 12 * np.diff(acceleration, axis=0)
 
 
 def joint_angles(system: System) -> JointAngles | None:

@@ -69,7 +69,9 @@ def scales(
         kind = kinds[name]
         origin = values[0] if kind in PLACES or name == "energy.potential" else 0.0
         key = (_owner(name), kind)
-        own[key] = max(own.get(key, 0.0), float(np.nanmax(np.abs(values - origin))))
+        sizes = np.abs(values - origin)
+        # A request may have no value (sqrt(-1)) or a pole (1/0) at some times or at all: neither is a size.
+        own[key] = max(own.get(key, 0.0), float(sizes.max(initial=0.0, where=np.isfinite(sizes))))
     nothing = REQUEST_ROUNDING * max(own.values(), default=0.0)
     own = {key: value if key[1] or value > nothing else 0.0 for key, value in own.items()}
     largest: dict[str, float] = {}

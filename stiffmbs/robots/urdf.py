@@ -145,7 +145,8 @@ def _inertial(name: str, element: Node | None) -> tuple[float, tuple[float, ...]
     tensor = A @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ A.T
     if mass < 0:
         raise RobotFault(f"{where}: found a mass of {mass:g}, expected 0 or more")
-    return mass, centre, (tensor + tensor.T) / 2
+    with np.errstate(over="ignore"):  # moments that are not finite are refused with the body
+        return mass, centre, (tensor + tensor.T) / 2
 
 
 def _moving(name: str, element: Node) -> Iterator[LinkJoint]:

@@ -205,7 +205,7 @@ class Touches:
             part = rates[k, event] / (rates[k, event] - rates[k + 1, event])
             y = self._between(rows[k], rows[k + 1], part)
             t = rows[k, 0] + part * steps[k]
-            if self._touched(t, y, event, len(rows)):
+            if self._turns(rows[k], (t, y), rows[k + 1], event) and self._touched(t, y, event, len(rows)):
                 name = writer(self._dynamics.system, "event_function", int(event))
                 raise SolverError(
                     f"sensitivities: found that '{name}' grazes its breakpoint at t = {t:.9g} s, within the integration error, where "
@@ -305,6 +305,14 @@ class Touches:
             + s * s * (s - 1) * h * zp
         )
 
+    def _turns(self, before: np.ndarray, at: tuple[float, np.ndarray], after: np.ndarray, event: int) -> bool:
+        """Return True if an event function of the motion turns: in short steps, recorded reactions and their rates are not those of the motion."""
+        n = self._recorder.equations.n
+        g = [
+            self._consistent(t, y, event) for t, y in ((before[0], before[2 : 2 + n]), at, (after[0], after[2 : 2 + n]))
+        ]
+        return (g[1] - g[0]) * (g[2] - g[1]) < 0
+
     def _touched(self, t: float, y: np.ndarray, event: int, steps: int) -> bool:
         """Return True if an event function is zero within the integration error, and rates are discontinuous there."""
         tolerance = steps * (self._recorder.settings.rtol * np.abs(y) + self._atol)
@@ -328,6 +336,13 @@ class Touches:
 
     def _value(self, t: float, y: np.ndarray, event: int) -> float:
         self._recorder.take(y, self._dynamics.state)
+        self._dynamics.state.evaluate("event_function", t)
+        return float(self._dynamics.state.values["event_function"][event])
+
+    def _consistent(self, t: float, y: np.ndarray, event: int) -> float:
+        """Return an event function with the reactions and algebraic states of the motion."""
+        self._recorder.take(y, self._dynamics.state)
+        self._dynamics.accelerate(t)
         self._dynamics.state.evaluate("event_function", t)
         return float(self._dynamics.state.values["event_function"][event])
 

@@ -215,8 +215,13 @@ class Recorder(Integrator):
     def _restarted(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
     ) -> tuple[InitialValues, float]:
-        """Return consistent values for the segment; the engine does not restart by itself."""
-        return self._consistent(q, u, before, t, ahead)
+        """Return consistent values for the segment, from which the engine starts once more."""
+        start, t = super()._restarted(q, u, before, t, ahead, chattering)
+        if start is None:
+            state = self.dynamics.state
+            values = state.q.copy(), state.u.copy(), state.a.copy(), state.lam.copy()
+            start = InitialValues(*values, (), self.dynamics.system.size)
+        return start, t
 
     def _begin(self, start: InitialValues, t: float) -> None:
         super()._begin(start, t)

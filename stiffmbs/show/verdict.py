@@ -27,7 +27,7 @@ class Verdict:
     def digits_words(self) -> str:
         """Reliable digits as a phrase."""
         if not self.digits:
-            return "the number of reliable digits is unknown: give --errors or --verify"
+            return "the number of reliable digits is unknown: use --errors or --verify"
         return f"reliable: {digits_words(self.digits)}"
 
 

@@ -13,6 +13,7 @@ from ..model.settings import RunSettings
 from .error_control.error_test import ErrorControl
 from .error_control.precision import governed_by_rounding, too_fine
 from .error_control.relaxation import RELAXATION, refuse_drift
+from .events.chattering import CHATTERING
 from .events.refusals import DIVERGENCE, refuse_beyond_sense
 from .explicit.native.parameters import CONTROL
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
@@ -85,8 +86,9 @@ def integrated(
             if is_logged() and (step := integrator.engine.last_step()):
                 log_step(reached.t, *step)
             watch(reached.t)
+            integrator.engine.ida.watch.refuse_departures(reached.t)
             integrator.reached = reached
-            if failure := _failure(integrator, reached):
+            if failure := _failure(integrator, reached, grid):
                 raise SolverError(Reason.NO_STEP.of(f"stopped at t = {reached.t:.9g} s: {failure}"))
             if pays and not pays(reached):
                 break
@@ -110,14 +112,16 @@ def integrated(
     )
 
 
-def _failure(integrator: Integrator, reached: Reached) -> str:
+def _failure(integrator: Integrator, reached: Reached, grid: Grid) -> str:
     """Return the reason why the run ends at this state, or an empty string."""
-    by_rounding = integrator.steps() > CONTROL.enough_steps and governed_by_rounding(integrator.statistics())
+    steps = integrator.steps()
+    endless = (grid.end - reached.t) * steps > CHATTERING.steps_ahead * (reached.t - grid.start)
+    by_rounding = steps > CONTROL.enough_steps and (endless or governed_by_rounding(integrator.statistics()))
     if not (by_rounding or reached.failure):
         return ""
     q, u = integrator.split(reached.y)
-    reason = too_fine(integrator.dynamics, integrator.settings, reached.t, q) if by_rounding else ""
+    missing = no_value_ahead(integrator.dynamics, reached.t, q, u) if reached.failure else ""
+    reason = missing or too_fine(integrator.dynamics, integrator.settings, reached.t, q)
     if reason or not reached.failure:
         return reason
-    missing = no_value_ahead(integrator.dynamics, reached.t, q, u)
-    return missing or reached.failure + suspect(integrator.dynamics, reached.t, q, u)
+    return reached.failure + suspect(integrator.dynamics, reached.t, q, u)

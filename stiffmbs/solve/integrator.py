@@ -6,25 +6,21 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..compile.equations import ABSENT
-from ..dynamics.algebraic_states import rates_of_algebraic
 from ..dynamics.dynamics import Dynamics
-from ..dynamics.initial import InitialValues, rates_of
+from ..dynamics.initial import InitialValues
 from ..model.settings import RunSettings
 from .error_control.error_test import CHOSEN, ErrorControl
-from .error_control.newton import newton_tolerance, stiffness_at
-from .error_control.relaxation import relax
 from .events.chattering import Chattering, HoveringEvents
 from .events.discontinuity import Jumps
 from .events.long_steps import LongSteps
 from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
-from .events.restart import just_after, restarted_past, straight_on
+from .events.restart import restarted, straight_on
 from .ida.choice import Driven, driven_natively
 from .ida.native.parameters import LOOP
 from .ida.native_engine import Reached
 from .stiff_rows import States, projected
-from .trajectory import Grid
+from .trajectory import Grid, just_after
 
 Driver = Callable[[Dynamics, RunSettings, ErrorControl], Driven]
 
@@ -127,31 +123,28 @@ class Integrator:
                 self._events += not at_breakpoint
                 self._breakpoints += at_breakpoint
 
+    def _begin(self, start: InitialValues, t: float) -> None:
+        self.engine.ida.watch.watch_for(self._hovering.band)
+        self.engine.begin_at(start, t)
+
     def _restarted(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
     ) -> tuple[InitialValues | None, float]:
         """Restart at t from a state reached at `before`, past events within `ahead`.
 
-        Return consistent values to start from, or None if the engine has restarted, and their time.
+        Return consistent values to start from, or None if the engine has restarted, and their time. Raises SolverError if
+        there are none.
         """
         self.engine.ida.watch.watch_for(self._hovering.band)
         begun = self.engine.begin_restart(q, u, t, ahead)
-        if begun is None:
-            return self._consistent(q, u, before, t, ahead)
+        if begun is None:  # a force is beyond its limits, unless this raises
+            return restarted(self.dynamics, t, q, u), t
         state = self.dynamics.state
         if begun.jumps:
             self._note_jump(before, q, u, ahead > 0.0)
         if begun.meets:
             chattering.begin(begun.t, state.q.copy(), state.u.copy())
         return None, begun.t
-
-    def _consistent(
-        self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float
-    ) -> tuple[InitialValues, float]:
-        """Return consistent values near a state reached at `before`, past events within `ahead`, and their time."""
-        start, t = restarted_past(self.dynamics, t, q, u, ahead)
-        self._note_jump(before, q, u, ahead > 0.0)
-        return start, t
 
     def _note_jump(self, before: float, q: np.ndarray, u: np.ndarray, event: bool) -> None:
         """Note a jump at a restart; the current state is that after it.
@@ -202,33 +195,6 @@ class Integrator:
             y = np.zeros(self.equations.n)
             y[self.equations.independent] = self.equations.coordinates.state(*state)
             yield Reached(times, np.tile(y[self.equations.independent], (len(times), 1)), t, y)
-
-    def _begin(self, start: InitialValues, t: float) -> None:
-        self.engine.ida.watch.watch_for(self._hovering.band)
-        if not self.engine.begin_at(start, t):
-            self._begin_step_by_step(start, t)
-
-    def _begin_step_by_step(self, start: InitialValues, t: float) -> None:
-        """Start without the compiled routine: the first start, algebraic states, infinite stiffness."""
-        equations, at = self.equations, self.equations.at
-        state, coordinates = self.dynamics.state, equations.coordinates
-        rates = rates_of(self.dynamics, t, start)
-        state.a[:], state.mu[:] = start.acceleration, 0.0
-        equations.start_from(start.q)
-        y, yp = np.zeros(equations.n), np.zeros(equations.n)
-        y[equations.independent] = coordinates.state(start.q, start.u)
-        if len(self.dynamics.system.algebraic_coordinates):
-            rates[self.dynamics.system.algebraic_coordinates] = rates_of_algebraic(
-                self.dynamics, t, start.q, start.u, start.acceleration
-            )
-        yp[equations.independent] = coordinates.state(rates, start.acceleration)
-        solved = at["lam"] != ABSENT
-        multipliers = yp if equations.formulation.integrated else y
-        multipliers[at["lam"][solved]] = start.lam[solved]
-        relax(self.dynamics, self.settings, t, self.control.relaxation)
-        stiffness = stiffness_at(self.dynamics, t)
-        newton = self.control.newton or newton_tolerance(stiffness, self.settings)
-        self.engine.begin(t, y, yp, newton, stiffness)
 
     def statistics(self) -> dict[str, int | float | str]:
         """Return the linear solver, IDA's counters, and the numbers of restarts at breakpoints and events."""

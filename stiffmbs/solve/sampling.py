@@ -25,9 +25,20 @@ from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..notes import Note, NoteKind, Severity
 from ..reading.files.quoted import MOST_LISTED
-from .events.restart import just_after, restarted
+from .events.restart import restarted
 from .ida.native.parameters import LOOP
-from .trajectory import SAME_TIME, Ending, Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
+from .trajectory import (
+    SAME_TIME,
+    Ending,
+    Grid,
+    History,
+    Outcome,
+    ProgressCallback,
+    Solver,
+    Trajectory,
+    just_after,
+    summed,
+)
 
 
 class Sample(NamedTuple):

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..dynamics.storage import allocated
@@ -18,9 +17,7 @@ from ..model.settings import RunSettings
 from ..presolve.presolve import Part, parts_of
 from ..presolve.relations import independent_coordinates
 from .auto import begins_implicit
-from .cost import COSTS, ImplicitCost, of_explicit_step
 from .events.restart import restarted
-from .explicit.native.parameters import FASTEST_RATE
 from .settings import may_presolve, traits_of
 from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
@@ -42,13 +39,12 @@ def subsystem_of(part: Part, start: InitialValues, t: float) -> Subsystem:
     return Subsystem(part, dynamics, restarted(dynamics, t, *part.reduced(start.q, start.u), project=False))
 
 
-def leave_out_coordinates(dynamics: Dynamics, t: float, at_rest: Mapping[str, Sequence[int]]) -> None:
+def leave_out_coordinates(dynamics: Dynamics, t: float) -> None:
     """Reduce the unknowns of integrators to independent coordinates; the state must satisfy the constraints.
 
-    All coordinates stay if none is independent, as an integrator needs an unknown. `at_rest`: coordinates that stay
-    zero, by bodies (`stiffmbs.presolve.modes_at_rest`).
+    All coordinates stay if none is independent, as an integrator needs an unknown.
     """
-    found = independent_coordinates(dynamics.system, dynamics.state, t, at_rest)
+    found = independent_coordinates(dynamics.system, dynamics.state, t)
     if found.independent.any():
         dynamics.coordinates = found
 
@@ -62,8 +58,7 @@ def presolved(
     For implicit solvers, dependent coordinates are eliminated from their dynamics or from those of the whole system.
     If steps are implicit from the start, the spin of axisymmetric bodies is removed from their quaternions. Explicit
     steps would only come closer to their stability limit. `dynamics`: of the whole system, at its start. `decided`: returns
-    an earlier decision to begin with implicit steps, or calls the function that makes it. `start`: modal coordinates that
-    are left out are set to zero in it.
+    an earlier decision to begin with implicit steps, or calls the function that makes it.
     """
     if not may_presolve(settings):
         return ()
@@ -72,31 +67,12 @@ def presolved(
         not traits.switches or decided(partial(_begins_implicit, dynamics, start, grid, settings))
     )
     travel = (grid.end - grid.start) * start.u if implicit else None
-    at_rest = _set_modes_to_rest(model, dynamics, start) if traits.implicit else {}
-    together = partial(alike, dynamics, start, (grid.start, grid.end), implicit)
-    parts = parts_of(model, dynamics.system, travel, together if grid.times is not None else None)
+    parts = parts_of(model, dynamics.system, travel, apart=grid.times is not None)
     subsystems = tuple(subsystem_of(part, start, grid.start) for part in parts)
     if traits.implicit:
         for solved in [subsystem.dynamics for subsystem in subsystems] or [dynamics]:
-            leave_out_coordinates(solved, grid.start, at_rest)
+            leave_out_coordinates(solved, grid.start)
     return subsystems
-
-
-def _set_modes_to_rest(model: ModelData, dynamics: Dynamics, start: InitialValues) -> Mapping[str, Sequence[int]]:
-    """Return the modal coordinates that stay zero, and set them and their rates to zero, as they may differ by rounding.
-
-    Their module is loaded for flexible bodies only.
-    """
-    if all(getattr(body, "weighs", True) for body in model.bodies.values()):
-        return {}
-    from ..presolve.modes_at_rest import modes_at_rest
-
-    system = dynamics.system
-    found = modes_at_rest(model, system, start.q, start.u)
-    for k, body in enumerate(system.bodies):
-        axes = np.array(found.get(body, ()), dtype=int)
-        start.q[system.of_body.n_q * k + axes] = start.u[system.of_body.n_u * k + axes] = 0.0
-    return found
 
 
 def _begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> bool:
@@ -170,126 +146,3 @@ def _merged(histories: Sequence[History]) -> History:
     t, order = (np.concatenate(parts) for parts in zip(*((h.t, h.order) for h in histories), strict=True))
     sequence = np.argsort(t, kind="stable")
     return History(t[sequence], order[sequence] if len(order) == len(t) else order)
-
-
-IMPLICIT_STEPS, EXPLICIT_STEPS = 30.0, 2.0
-"""Steps of BDF and of DOP853 per radian of the motion, at rtol 1e-6."""
-
-
-def alike(
-    dynamics: Dynamics,
-    start: InitialValues,
-    during: tuple[float, float],
-    implicit: bool,
-    mechanisms: Sequence[np.ndarray],
-) -> list[list[int]]:
-    """Return the sets of mechanisms to solve together that minimize the estimated cost.
-
-    The fastest mechanism of a set determines its number of steps. Each step has a fixed cost and a cost per unknown.
-    Mechanisms with formulas, tables, events or states are solved separately, as each of their breakpoints is a
-    restart. `dynamics`: of the whole system. `during`: start and end of the run, s. `implicit`: true if BDF solves it.
-    `mechanisms`: body numbers of each mechanism.
-    """
-    system = dynamics.system
-    width = system.of_body.n_u
-    label = np.full(system.n_u, -1)
-    for k, bodies in enumerate(mechanisms):
-        label[(width * bodies[:, None] + np.arange(width)).ravel()] = k
-    alone = _with_laws(system)
-    smooth = [k for k, bodies in enumerate(mechanisms) if not alone[bodies].any()]
-    sets = [[k] for k in range(len(mechanisms)) if k not in smooth]
-    if len(smooth) < 2:
-        return sets + [[k] for k in smooth]
-    rates = _rates(dynamics, during[0], start, label, len(mechanisms))
-    whole = ImplicitCost.of(dynamics).step if implicit else of_explicit_step(dynamics)
-    itself = COSTS.step_residuals * COSTS.residual if implicit else COSTS.explicit_step
-    share = np.bincount(label[label >= 0], minlength=len(mechanisms)) / np.count_nonzero(label >= 0)
-    of_unknowns = (whole - itself) * share
-    steps = COSTS.start_steps + (IMPLICIT_STEPS if implicit else EXPLICIT_STEPS) * (during[1] - during[0]) * rates
-    current: list[int] = []
-    for k in sorted(smooth, key=lambda k: -steps[k]):
-        more = (steps[current[0]] - steps[k]) * of_unknowns[k] if current else np.inf
-        if more < COSTS.start + steps[k] * itself:
-            current.append(k)
-        else:
-            current = [k]
-            sets.append(current)
-    return sets
-
-
-def _with_laws(system: System) -> np.ndarray:
-    """Return a mask of the bodies with elements that have breakpoints, formulas, tables or states, shape (bodies,)."""
-    found = np.zeros(len(system.bodies) + 1, dtype=bool)
-    for group in system.groups:
-        if group.has_law or group.states.shape[1]:
-            found[group.bodies.ravel()] = True
-    return found[:-1]
-
-
-def _rates(dynamics: Dynamics, t: float, start: InitialValues, label: np.ndarray, count: int) -> np.ndarray:
-    """Return a characteristic rate of each mechanism at the start, 1/s; infinite where accelerations have no solution.
-
-    It is the largest of the natural angular frequencies, the decay rates, the angular velocities and the square roots
-    of the angular accelerations.
-    """
-    system, state = dynamics.system, dynamics.state
-    q, u = start.q, start.u
-    state.q[:], state.u[:] = q, u
-    status, at_start = dynamics.accelerate(t)
-    if status < 0:
-        return np.full(count, np.inf)
-    moving = label >= 0
-    angular = np.zeros(system.n_u, dtype=bool)
-    angular.reshape(-1, system.of_body.n_u)[:, system.of_body.linear :] = True
-    of_angles = np.where(angular, np.maximum(np.abs(u), np.sqrt(np.abs(at_start))), 0.0)
-    found = np.zeros(count)
-    np.maximum.at(found, label[moving], of_angles[moving])
-    stiffness = _growth(dynamics, t, (q, u), at_start, label, of_pose=True)
-    damping = _growth(dynamics, t, (q, u), at_start, label, of_pose=False)
-    state.q[:], state.u[:] = q, u
-    dynamics.forget_pivots()
-    return np.maximum(found, np.maximum(np.sqrt(stiffness), damping))
-
-
-def _growth(
-    dynamics: Dynamics,
-    t: float,
-    at: tuple[np.ndarray, np.ndarray],
-    at_start: np.ndarray,
-    label: np.ndarray,
-    of_pose: bool,
-) -> np.ndarray:
-    """Return the norm of the derivative of accelerations by the pose, or by velocities, of each mechanism.
-
-    The power method treats all mechanisms at once, as the accelerations of each depend on its own motion alone.
-    """
-    (q, u), state, mass = at, dynamics.state, dynamics.system.mass
-    own = np.flatnonzero(label >= 0)
-    of = label[own]
-    count = int(of.max()) + 1
-
-    def largest(v: np.ndarray) -> np.ndarray:
-        found = np.zeros(count)
-        np.maximum.at(found, of, np.abs(v[own]))
-        return np.maximum(found, np.finfo(float).tiny)
-
-    def size(v: np.ndarray) -> np.ndarray:
-        return np.sqrt(np.bincount(of, mass[own] * v[own] ** 2, count))
-
-    v = np.zeros(len(u))
-    v[own] = np.sin(1.0 + 3.7 * own) / mass[own]
-    growth = np.zeros(count)
-    for _ in range(FASTEST_RATE.iterations):
-        scale = FASTEST_RATE.move / largest(v)
-        move = np.zeros(len(u))
-        move[own] = scale[of] * v[own]
-        state.q[:], state.u[:] = (dynamics.system.of_body.moved(q, move), u) if of_pose else (q, u + move)
-        status, acceleration = dynamics.accelerate(t)
-        if status < 0:
-            return np.full(count, np.inf)
-        w = np.zeros(len(u))
-        w[own] = (acceleration[own] - at_start[own]) / scale[of]
-        before = size(v)
-        growth = np.divide(size(w), before, out=np.zeros(count), where=before > 0.0)
-        v = w
-    return growth

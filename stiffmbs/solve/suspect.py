@@ -11,6 +11,7 @@ from ..compile.state import LEFT_OPEN
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
+from ..dynamics.friction_loads import ambiguous_loads_clause
 from .events.native.parameters import EPSILON, SEARCH
 
 TERM_SETS = ("motion", "acceleration")
@@ -19,8 +20,8 @@ TERM_SETS = ("motion", "acceleration")
 def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     """Return a clause on the element that probably caused a run to stop, or an empty string.
 
-    It is an element with an undefined value at or just after a state, else an open joint, else the element with the
-    largest acceleration of a body. `t`: s. `q`, `u`: last state that was reached.
+    It is an element with an undefined value at or just after a state. Otherwise it is an open joint, joints whose loads by
+    friction have several solutions, or the element with the largest acceleration of a body. `t`: s. `q`, `u`: last state that was reached.
     """
     for ahead in _ahead():
         later = ahead * max(1.0, abs(t))
@@ -31,7 +32,10 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
             if name:
                 return f"; '{name}' has no finite value {'after' if ahead else 'at'} that time"
     _move(dynamics, q, u)
-    return _open(dynamics, t) or _hardest(dynamics, t)
+    if clause := _open(dynamics, t):
+        return clause
+    loads = ambiguous_loads_clause(dynamics, t, q, u)
+    return f"; {loads}" if loads else _hardest(dynamics, t)
 
 
 def _ahead() -> Iterator[float]:

@@ -26,6 +26,7 @@ from ..dynamics.storage import STORAGE, allocated, release
 from ..errors import ChatteringError, SolverError
 from ..model.settings import RunSettings
 from ..notes import Note
+from .events.native.parameters import INDISTINCT
 from .reasons import Reason
 
 if TYPE_CHECKING:
@@ -43,6 +44,16 @@ SAME_TIME = 1e-9
 
 def unwatched(t: float) -> None:
     """Ignore the progress."""
+
+
+def just_before(t: float) -> float:
+    """Return the first instant that counts as t."""
+    return t - INDISTINCT * abs(t)
+
+
+def just_after(t: float) -> float:
+    """Return the last instant that counts as t: IDA refuses to start towards one nearer than two roundings."""
+    return t + INDISTINCT * abs(t)
 
 
 class Outcome(Enum):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -12,6 +11,7 @@ import numpy as np
 from ..compile.equations import ABSENT, Equations
 from ..compile.system import System
 from ..compile.terms import TERM_AXES
+from .minimum_degree import minimum_degree
 
 
 class EliminationOrder(NamedTuple):
@@ -32,10 +32,6 @@ def elimination_order(equations: Equations) -> EliminationOrder:
     The diagonal block of a joint is zero, or nearly zero with relaxed rows, until bodies of the joint are eliminated.
     A joint waits until its block is regular in every pose (`stiffmbs.sparse.elimination_order`).  Pivots then
     stay on the diagonal and the fill-in is as estimated, for trees and loops.
-
-    References
-    ----------
-    George and Liu, The evolution of the minimum degree ordering algorithm, SIAM Review 31 (1989) 1-19.
     """
     n_bodies, owner = _owners(equations)
     present = [at[at != ABSENT] for at in reversed(equations.at.values())]  # u before q of a body
@@ -52,7 +48,7 @@ def elimination_order(equations: Equations) -> EliminationOrder:
 def _ordered(
     parts: list[np.ndarray], coupled: Iterable[tuple[int, int]], counted: list[int], n_bodies: int
 ) -> EliminationOrder:
-    """Return the order of unknowns in parts, given the pairs of coupled parts; the rest as in `_least_degree`."""
+    """Return the order of unknowns in parts, given the pairs of coupled parts; the rest as in `_in_order`."""
     sizes = [len(part) for part in parts]
     neighbours: list[set[int]] = [set() for _ in parts]
     for a, b in coupled:
@@ -60,7 +56,7 @@ def _ordered(
             neighbours[a].add(b)
             neighbours[b].add(a)
     order, fill, updates = [np.empty(0, dtype=np.int64)], 0, 0
-    for node, around in _least_degree(neighbours, counted, n_bodies):
+    for node, around in _in_order(neighbours, counted, n_bodies):
         order.append(parts[node])
         height = sizes[node] + sum(sizes[other] for other in around)
         fill += sizes[node] * height
@@ -152,34 +148,26 @@ def _counted(equations: Equations, owner: np.ndarray, n_owners: int) -> list[int
     return counted
 
 
-def _least_degree(neighbours: list[set[int]], counted: list[int], n_bodies: int) -> Iterator[tuple[int, set[int]]]:
+def _in_order(neighbours: list[set[int]], counted: list[int], n_bodies: int) -> Iterator[tuple[int, set[int]]]:
     """Yield nodes in minimum degree order, bodies before joints, with the neighbours that each has then.
 
     `counted` holds the velocities of bodies and the equations of joints.  A waiting joint is checked after the
-    elimination of each neighbour.
+    elimination of each neighbour; those that wait at the end come last.
     """
     bodies_of = [sorted(k for k in around if k < n_bodies) for around in neighbours[n_bodies:]]
     bodies = EliminatedBodies(bodies_of, counted[:n_bodies], counted[n_bodies:])
-    queue = [(len(neighbours[node]), node) for node in range(n_bodies)]
-    heapq.heapify(queue)
-    gone = [False] * len(neighbours)
-    while queue:
-        degree, node = heapq.heappop(queue)
-        if gone[node] or degree != len(neighbours[node]):
-            continue
-        if node < n_bodies:
-            bodies.eliminate(node)
-        elif not bodies.eliminated_joint(node - n_bodies):
-            continue
-        gone[node] = True
-        around = neighbours[node]
+
+    def may_go(node: int) -> bool:
+        if node >= n_bodies:
+            return bodies.eliminated_joint(node - n_bodies)
+        bodies.eliminate(node)
+        return True
+
+    waiting = dict.fromkeys(range(len(neighbours)))
+    for node, around in minimum_degree(neighbours, range(n_bodies), may_go):
+        del waiting[node]
         yield node, around
-        for other in around:
-            neighbours[other] |= around
-            neighbours[other] -= {node, other}
-        for other in around:
-            heapq.heappush(queue, (len(neighbours[other]), other))
-    yield from ((node, set()) for node, done in enumerate(gone) if not done)
+    yield from ((node, set()) for node in waiting)
 
 
 class EliminatedBodies:

@@ -10,7 +10,6 @@ from typing import Any, Unpack
 import numpy as np
 
 from ..analyses.job import Job, Runnable, data_of, prepare
-from ..analyses.renumber import renumberable
 from ..analyses.rerun import DRIFTED, exactly, relaxed
 from ..analyses.start_from import StartFrom, in_pose_of, started_from, state_to_start_from
 from ..dynamics.algebraic_states import failure
@@ -99,7 +98,7 @@ class Simulation:
     def __init__(self, solver: CaseSolver, inputs: Mapping[str, float], settings: RunSettings) -> None:
         scene = solver.scene([float(value) for value in inputs.values()])
         job = prepare(scene, settings)
-        self._job: Job = job if renumberable(job) else prepare(scene, changed(settings, {"presolve": False}))
+        self._job: Job = prepare(scene, changed(settings, {"presolve": False})) if job.subsystems else job
         self._first = dict(inputs)
         self._bounded = may_refuse(self._job.dynamics.system)
         self._inputs = InputNumbers(self._job, solver, self._first)

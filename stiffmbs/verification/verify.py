@@ -26,6 +26,7 @@ from typing import Unpack
 
 import numpy as np
 
+from ..analyses.errors import recording, to_accuracy
 from ..analyses.job import Job, Runnable, data_of, prepare, with_elements
 from ..analyses.run import run as simulated
 from ..analyses.run import solved
@@ -63,7 +64,7 @@ def verify(
     """
     data = with_elements(data_of(model), lambda scene: simulated(scene, settings, None, start_from, **changes))
     job = prepare(data, settings, start_from, **changes)
-    first = solved(job, watch)
+    job, first = to_accuracy(recording(job), watch) if job.settings.accuracy else (job, solved(job, watch))
     if len(first.time) < 2:
         return replace(first, verification=("not verified: the run has no results",))
     if first.outcome is Outcome.INTERRUPTED:

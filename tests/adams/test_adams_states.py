@@ -147,7 +147,7 @@ def test_spheres_collide_without_loss():
 def test_a_sliding_sphere_comes_to_roll_at_five_sevenths():
     law = "IMPACT, STIFFNESS=1e5, DAMPING=500, EXPONENT=1.5, DMAX=0.0001, COULOMB_FRICTION=ON, MU_STATIC=0.3, MU_DYNAMIC=0.2, "
     found = balls(
-        "CONTACT/1, IGEOM=1, JGEOM=2, " + law + "STICTION=0.001, FRICTION_TRANS=0.002\n", duration=0.25, points=26
+        "CONTACT/1, IGEOM=1, JGEOM=2, " + law + "STICTION_TRANS=0.001, FRICTION_TRANS=0.002\n", duration=0.25, points=26
     )
     t = found.time
     sliding = t < 0.12  # 2/7 v/(mu g) = 0.146 s

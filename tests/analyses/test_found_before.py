@@ -13,10 +13,12 @@ from .test_settled_start import SCENE
 
 @pytest.fixture
 def scene(tmp_path, monkeypatch):
-    monkeypatch.setattr(found_before, "START", f"start-{tmp_path.name}")
+    monkeypatch.setattr(found_before, "machine", lambda: str(tmp_path))
+    found_before._solver.cache_clear()
     path = tmp_path / "scene.yaml"
     path.write_text(SCENE)
-    return path
+    yield path
+    found_before._solver.cache_clear()
 
 
 @pytest.fixture

@@ -32,7 +32,9 @@ def exact(width, centre):
     ).y[0]  # fmt: skip
 
 
-@pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
+@pytest.mark.parametrize(
+    "solver", ["bdf", *(pytest.param(name, marks=pytest.mark.long) for name in ("radau", "projected"))]
+)
 def test_a_repeated_run_is_right(solver):
     """bdf missed later passages in the repeated run: errors of 0.3 m."""
     found = stiffmbs.run(oscillator(0.01, 0.3), duration=1.0, points=51, rtol=1e-4, solver=solver)

@@ -30,7 +30,9 @@ run: {duration: 1, points: 11, rtol: 1e-8}
 """
 
 
-@pytest.mark.parametrize("turns", [1, -1, 3])
+@pytest.mark.parametrize(
+    "turns", [pytest.param(1, marks=pytest.mark.long), pytest.param(-1, marks=pytest.mark.long), 3]
+)
 @pytest.mark.parametrize("phi", [-1.5707963267948966, 3.0])
 def test_welded_bodies_move_as_without_turns_between_them(phi, turns):
     wanted = stiffmbs.run(read(WELDED, phi=phi, turns=0))
@@ -161,7 +163,9 @@ def test_a_lock_closes_in_the_nearest_turn():
     assert found["s.torque"][-1] == pytest.approx(-0.05 * 3 * TURN, abs=1e-9)
 
 
-@pytest.mark.parametrize("kind", ["bushing", "spring", "coupler"])
+@pytest.mark.parametrize(
+    "kind", ["bushing", *(pytest.param(kind, marks=pytest.mark.long) for kind in ("spring", "coupler"))]
+)
 def test_a_restart_from_a_file_keeps_the_turns_of_what_a_stage_has_added(kind, tmp_path):
     scene = read(STAGE, added=ADDED[kind])
     for whole in (scene, spatial.in_space(scene)):
@@ -206,7 +210,10 @@ HELD = "at_start: {m: {type: drive, joint: p, position: 20 deg}}"
 
 
 @pytest.mark.parametrize("motor", [MOTOR, HELD], ids=["drive", "at_start"])
-@pytest.mark.parametrize("angle", ["20 deg", "380 deg", "-1060 deg", "30 deg + 2*pi"])
+@pytest.mark.parametrize(
+    "angle",
+    ["20 deg", "-1060 deg", *(pytest.param(angle, marks=pytest.mark.long) for angle in ("380 deg", "30 deg + 2*pi"))],
+)
 def test_a_drive_selects_the_turn_and_moves_no_geared_wheel(motor, angle):
     near = stiffmbs.run(read(DRIVEN, a="30 deg" if "30 deg" in angle else "20 deg", motor=motor))
     scene = read(DRIVEN, a=angle, motor=motor)
@@ -249,7 +256,7 @@ run: {duration: 0.1}
     assert found["q.angle"][0] == pytest.approx(0, abs=1e-9) and found["p.angle"][0] == pytest.approx(math.radians(200))
 
 
-@pytest.mark.parametrize("angle", [170, 190, 540, -900])
+@pytest.mark.parametrize("angle", [190, -900, *(pytest.param(angle, marks=pytest.mark.long) for angle in (170, 540))])
 def test_the_angle_of_a_joint_has_its_turns_in_space(angle):
     text = f"""
 bodies: {{a: {{mass: 1, inertia: 0.1, angle: {angle} deg, omega: 3}}}}

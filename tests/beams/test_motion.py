@@ -268,7 +268,7 @@ def test_a_rotor_that_starts_in_its_pose_at_rest_is_told_the_other_start():
         assert "write start" not in str(stiffmbs.run(stiffmbs.read_scene(text), duration=1e-3).notes)
 
 
-@pytest.mark.parametrize("torque", [0, 8.9, 9.1])
+@pytest.mark.parametrize("torque", [0, 8.9, pytest.param(9.1, marks=pytest.mark.long)])
 def test_a_twisted_shaft_buckles_at_the_torque_of_greenhill_and_has_no_breakpoint(torque):
     """With clamped ends, tan(M L/2EI) = M L/2EI: M = 8.987 EI/L; the gyroscopic terms of the shaft at rest are smooth."""
     found = stiffmbs.modes(

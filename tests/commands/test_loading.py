@@ -12,7 +12,7 @@ from stiffmbs.commands.run import READ_BY_RICH
 from ..conftest import EXAMPLES
 
 
-@pytest.mark.parametrize("scene", ["car", "half_car"])
+@pytest.mark.parametrize("scene", [pytest.param("car", marks=pytest.mark.long), "half_car"])
 def test_a_run_of_compiled_kernels_loads_neither_scipy_nor_sympy(scene):
     """Loading them takes longer than the search for the steady motion in which the car starts."""
     run = f"stiffmbs.run({str(EXAMPLES / f'{scene}.yaml')!r}, duration=0.1)"

@@ -16,13 +16,12 @@ import stiffmbs
 from stiffmbs import spatial
 from stiffmbs.analyses.warm import routines, usual_elements
 from stiffmbs.cache import entries as kept
+from stiffmbs.cache.contents import OTHER, PART, SECRET, clear, stored
 from stiffmbs.commands.main import main
 from stiffmbs.compile import record
 from stiffmbs.compile.compile_model import kinds_of
 from stiffmbs.compile.kind import sorted_out
-from stiffmbs.compile.machine import cache
 from stiffmbs.compile.machine import compiler as machine
-from stiffmbs.compile.machine.cache_contents import OTHERS, clear, stored
 from stiffmbs.compile.symbolic import derive
 from stiffmbs.elements.tyres.names import SAMPLE
 from stiffmbs.model import model
@@ -45,25 +44,25 @@ def run_in_a_process(arguments, directory, **options):
 
 
 def test_a_damaged_entry_is_none(directory):
-    cache.own_folder().write(NAME, b"content")
-    assert cache.own_folder().read(NAME) == b"content"
-    entry = cache.own_folder().path / NAME
+    kept.write(NAME, b"content")
+    assert kept.read(NAME) == b"content"
+    entry = kept.folder() / NAME
     whole = entry.read_bytes()
     for damaged in (whole[:-1], b"", whole[:20], whole[:-1] + b"x"):
         entry.write_bytes(damaged)
-        assert cache.own_folder().read(NAME) is None
-    assert [path.name for path in cache.own_folder().path.iterdir()] == [NAME]
+        assert kept.read(NAME) is None
+    assert [path.name for path in kept.folder().iterdir()] == [NAME]
 
 
 @pytest.mark.parametrize("place", ["/dev/null/nowhere", "a file"])
 def test_where_nothing_can_be_written_all_works_but_nothing_is_kept(directory, monkeypatch, place):
     (directory / "a file").write_text("of the user's")
     monkeypatch.setenv(kept.DIRECTORY_VARIABLE, str(directory / place))
-    cache.own_folder().write(NAME, b"content")
-    assert cache.own_folder().read(NAME) is None
+    kept.write(NAME, b"content")
+    assert kept.read(NAME) is None
     machine.compiled_source.cache_clear()
     assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
-    assert not any(own.entries for own in stored().values())
+    assert not any(own.entries for own in stored(kept.cache_directory()).values())
     assert (directory / "a file").read_text() == "of the user's"
 
 
@@ -73,7 +72,7 @@ def test_compiled_code_is_read_back(directory, monkeypatch):
     machine.compiled_source.cache_clear()
     monkeypatch.setattr(machine, "_object_code", lambda *_: pytest.fail("compiled again"))
     assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
-    assert len(list(cache.own_folder().path.iterdir())) == 1
+    assert len(list(kept.folder().iterdir())) == 1
 
 
 def test_a_kind_is_derived_once_for_its_record_and_its_rare_kernels(directory, examples, monkeypatch):
@@ -90,59 +89,59 @@ def test_a_kind_is_derived_once_for_its_record_and_its_rare_kernels(directory, e
 def test_a_run_on_a_damaged_cache_gives_the_same_numbers(examples, directory, tmp_path):
     command = ["-m", "stiffmbs", "run", str(examples / "bar_pendulum.yaml"), "--duration", "0.1", "--json"]
     first = run_in_a_process(command, directory, cwd=tmp_path)
-    entries = sorted(cache.own_folder().path.iterdir())
+    entries = sorted(kept.folder().iterdir())
     for k, entry in enumerate(entries):
         content = entry.read_bytes()
         entry.write_bytes([content[: len(content) // 2], b"", os.urandom(len(content))][k % 3])
     again = run_in_a_process(command, directory, cwd=tmp_path)
     assert again.stderr == ""
     assert json.loads(again.stdout)["channels"] == json.loads(first.stdout)["channels"]
-    assert sorted(cache.own_folder().path.iterdir()) == entries
-    assert all(cache.own_folder().read(entry.name) is not None for entry in entries)
+    assert sorted(kept.folder().iterdir()) == entries
+    assert all(kept.read(entry.name) is not None for entry in entries)
 
 
 def write_many(content):
     for _ in range(100):
-        cache.own_folder().write(NAME, content)
+        kept.write(NAME, content)
 
 
 @pytest.mark.long
 def test_two_processes_that_write_one_entry_leave_it_whole_at_all_times(directory):
     contents = b"a" * 200_000, b"b" * 150_000
-    cache.own_folder().write(NAME, contents[0])
+    kept.write(NAME, contents[0])
     context = multiprocessing.get_context("spawn")
     writers = [context.Process(target=write_many, args=(content,)) for content in contents]
     for writer in writers:
         writer.start()
     seen = set()
     while any(writer.is_alive() for writer in writers):
-        seen.add(cache.own_folder().read(NAME))
+        seen.add(kept.read(NAME))
     for writer in writers:
         writer.join()
     assert seen <= set(contents)
-    assert [path.name for path in cache.own_folder().path.iterdir()] == [NAME]
+    assert [path.name for path in kept.folder().iterdir()] == [NAME]
 
 
 def test_clearing_removes_entries_of_all_versions_and_nothing_else(directory):
-    cache.own_folder().write(NAME, b"content")
-    cache.own_folder().write(f"record-{'1' * 40}", b"{}")
+    kept.write(NAME, b"content")
+    kept.write(f"record-{'1' * 40}", b"{}")
     other = directory / f"entries-{'0' * 12}"
     other.mkdir()
-    for entry in (other / NAME, directory / ("a" * 40), cache.own_folder().path / f"{kept.PART}x"):
+    for entry in (other / NAME, directory / ("a" * 40), kept.folder() / f"{PART}x"):
         entry.write_bytes(b"of another version, or left half written")
     of_the_user = directory / "notes.txt"
     of_the_user.write_text("keep")
     (directory / "sub").mkdir()
-    found = stored()
+    found = stored(kept.cache_directory())
     assert (found["kernel"].entries, found["record"].entries, found["routine"].entries) == (1, 1, 0)
-    assert found[OTHERS].entries == 3
-    assert clear().entries == 5
+    assert found[OTHER].entries == 3
+    assert clear(kept.cache_directory()).entries == 5
     assert sorted(path.name for path in directory.iterdir()) == ["notes.txt", "sub"]
-    assert clear().entries == 0
+    assert clear(kept.cache_directory()).entries == 0
 
 
 def test_the_command_shows_and_clears(directory):
-    cache.own_folder().write(NAME, b"content")
+    kept.write(NAME, b"content")
     shown = json.loads(CliRunner().invoke(main, ["cache", "show", "--json"]).output)
     assert shown["directory"] == str(directory)
     assert shown["kernel"] == {"entries": 1, "bytes": 32 + len(b"content")}
@@ -191,15 +190,15 @@ def test_a_warm_run_imports_nothing_that_derives_or_compiles(examples, tmp_path,
 
 WARMED = """
 import sys
-from stiffmbs.cache.entries import Folder
+from stiffmbs.cache import entries
 from stiffmbs.compile.record import compile_usual
 from stiffmbs.analyses.warm import routines, usual_kinds
 
-read = Folder.read
-def noted(folder, name):
+read = entries.read
+def noted(name):
     print(name)
-    return read(folder, name)
-Folder.read, Folder.write = noted, lambda *_: sys.exit("found an entry that was not there")
+    return read(name)
+entries.read, entries.write = noted, lambda *_: sys.exit("found an entry that was not there")
 for kind in usual_kinds():
     compile_usual(kind)
 for routine in routines():
@@ -215,16 +214,21 @@ def test_after_warming_first_runs_compile_nothing(examples, tmp_path, monkeypatc
     assert run_in_a_process(["-m", "stiffmbs", "cache", "warm"], at_hand).returncode == 0
     warmed = run_in_a_process(["-c", WARMED], at_hand)
     assert warmed.returncode == 0, warmed.stderr
-    from_there = cache.own_folder().path
+    from_there = kept.folder()
     monkeypatch.setenv(kept.DIRECTORY_VARIABLE, str(tmp_path))
-    cache.own_folder().path.mkdir(parents=True)
-    shutil.copy(at_hand / kept.SECRET, tmp_path / kept.SECRET)  # entries are signed with it
+    kept.folder().mkdir(parents=True)
+    shutil.copy(at_hand / SECRET, tmp_path / SECRET)  # entries are signed with it
     for name in warmed.stdout.split():
-        shutil.copy(from_there / name, cache.own_folder().path / name)
-    entries = sorted(cache.own_folder().path.iterdir())
+        shutil.copy(from_there / name, kept.folder() / name)
+    entries = compiled_entries()
     for scene in ("cart_pendulum", "crank_slider", "chain", "four_bars", "stick_slip", "heavy_top", "spatial_chain"):
         assert loaded_by_a_run(examples / f"{scene}.yaml", "auto", tmp_path, tmp_path) == "[]"
-    assert sorted(cache.own_folder().path.iterdir()) == entries
+    assert compiled_entries() == entries
+
+
+def compiled_entries():
+    """Return the names of all entries but those of scenes and their files."""
+    return sorted(path.name for path in kept.folder().iterdir() if not path.name.startswith(("file-", "scene-")))
 
 
 def test_one_equation_in_the_plane_and_in_space_has_a_record_for_each(directory):

@@ -9,8 +9,7 @@ import sys
 import pytest
 
 from stiffmbs.cache import entries as kept
-from stiffmbs.cache.entries import NotOwnError, check_folder, read_own
-from stiffmbs.compile.machine import cache
+from stiffmbs.cache.ownership import NotOwnError, check_folder, read_own
 from stiffmbs.compile.machine import compiler as machine
 
 NAME, OTHER = f"kernel-{'0' * 40}", f"kernel-{'1' * 40}"
@@ -32,35 +31,35 @@ def value(source, x):
 
 
 def test_an_entry_counts_in_its_own_place_alone(directory):
-    cache.own_folder().write(NAME, b"content")
-    shutil.copy(cache.own_folder().path / NAME, cache.own_folder().path / OTHER)
-    assert cache.own_folder().read(NAME) == b"content"
-    assert cache.own_folder().read(OTHER) is None
+    kept.write(NAME, b"content")
+    shutil.copy(kept.folder() / NAME, kept.folder() / OTHER)
+    assert kept.read(NAME) == b"content"
+    assert kept.read(OTHER) is None
 
 
 def test_an_entry_of_another_user_s_secret_does_not_count(directory):
-    cache.own_folder().write(NAME, b"content")
-    entry = (cache.own_folder().path / NAME).read_bytes()
+    kept.write(NAME, b"content")
+    entry = (kept.folder() / NAME).read_bytes()
     (directory / kept.SECRET).unlink()
-    cache.own_folder().write(OTHER, b"content")
-    (cache.own_folder().path / NAME).write_bytes(entry)
-    assert cache.own_folder().read(NAME) is None
+    kept.write(OTHER, b"content")
+    (kept.folder() / NAME).write_bytes(entry)
+    assert kept.read(NAME) is None
 
 
 def test_the_secret_is_for_the_user_alone(directory, monkeypatch):
     before = os.umask(0)
     try:
-        cache.own_folder().write(NAME, b"content")
+        kept.write(NAME, b"content")
     finally:
         os.umask(before)
     secret = directory / kept.SECRET
     assert secret.stat().st_mode & 0o077 == 0
     assert directory.stat().st_mode & 0o077 == 0
     secret.chmod(0o644)
-    assert cache.own_folder().read(NAME) is None
-    cache.own_folder().write(NAME, b"content")
+    assert kept.read(NAME) is None
+    kept.write(NAME, b"content")
     assert secret.stat().st_mode & 0o077 == 0
-    assert cache.own_folder().read(NAME) == b"content"
+    assert kept.read(NAME) == b"content"
 
 
 def link(path):
@@ -88,60 +87,60 @@ UNSOUND = {
 
 @pytest.mark.parametrize(("change", "words"), UNSOUND.values(), ids=UNSOUND.keys())
 def test_what_is_no_file_of_the_user_s_own_is_refused_with_a_note(directory, caplog, change, words):
-    cache.own_folder().write(NAME, b"content")
-    change(cache.own_folder().path / NAME)
-    assert cache.own_folder().read(NAME) is None
+    kept.write(NAME, b"content")
+    change(kept.folder() / NAME)
+    assert kept.read(NAME) is None
     assert words in caplog.text
     assert NAME in caplog.text
-    cache.own_folder().write(NAME, b"anew")
+    kept.write(NAME, b"anew")
 
 
 def test_files_and_folders_of_another_user_are_refused(directory, monkeypatch):
-    cache.own_folder().write(NAME, b"content")
-    entry = cache.own_folder().path / NAME
+    kept.write(NAME, b"content")
+    entry = kept.folder() / NAME
     monkeypatch.setattr(os, "geteuid", lambda: 4242)
     with pytest.raises(NotOwnError, match="belongs to the user"):
         read_own(entry)
     with pytest.raises(NotOwnError, match="belongs to the user"):
         check_folder(directory)
-    assert cache.own_folder().read(NAME) is None
+    assert kept.read(NAME) is None
 
 
 @pytest.mark.parametrize("which", ["cache", "entries"])
 def test_a_folder_that_others_may_write_is_refused_with_a_note(directory, caplog, which):
-    cache.own_folder().write(NAME, b"content")
-    (directory if which == "cache" else cache.own_folder().path).chmod(0o777)
-    assert cache.own_folder().read(NAME) is None
+    kept.write(NAME, b"content")
+    (directory if which == "cache" else kept.folder()).chmod(0o777)
+    assert kept.read(NAME) is None
     assert "others may write to it (mode 777)" in caplog.text
-    cache.own_folder().write(NAME, b"anew")
+    kept.write(NAME, b"anew")
     if which == "cache":  # kept in the user's own cache directory in its place
-        assert cache.own_folder().read(NAME) == b"anew"
-        assert directory not in cache.own_folder().path.parents
+        assert kept.read(NAME) == b"anew"
+        assert directory not in kept.folder().parents
         assert value(TWICE, 21.0) == 42.0
 
 
 def test_a_sticky_folder_of_the_user_s_own_serves(directory):
-    cache.own_folder().write(NAME, b"content")
+    kept.write(NAME, b"content")
     directory.chmod(0o1777)
-    assert cache.own_folder().read(NAME) == b"content"
+    assert kept.read(NAME) == b"content"
 
 
 @pytest.mark.long
 def test_code_of_another_function_or_garbage_under_a_right_code_is_compiled_anew(directory):
     assert value(TWICE, 21.0) == 42.0
-    entries = {path.name for path in cache.own_folder().path.iterdir()}
+    entries = {path.name for path in kept.folder().iterdir()}
     assert value(THRICE, 21.0) == 63.0
-    name = next(path.name for path in cache.own_folder().path.iterdir() if path.name not in entries)
-    twice = cache.own_folder().read(*entries)
+    name = next(path.name for path in kept.folder().iterdir() if path.name not in entries)
+    twice = kept.read(*entries)
     script = (
         "import sys; from stiffmbs.compile.machine.compiler import compiled_source\n"
         f"print(compiled_source({THRICE!r}, 'f', 'float64(float64)').call(21.0))"
     )
     for content in (twice, b"garbage", b"", twice[: len(twice) // 2], b"\x7fELF" + os.urandom(500)):
-        cache.own_folder().write(name, content)
+        kept.write(name, content)
         done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
         assert (done.returncode, done.stdout.strip()) == (0, "63.0"), done.stderr
-        assert cache.own_folder().read(name) != content
+        assert kept.read(name) != content
 
 
 @pytest.mark.long
@@ -157,7 +156,7 @@ def test_a_run_on_a_cache_of_entries_in_each_other_s_places_gives_the_same_numbe
         "--json",
     ]
     first = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    entries = sorted(path for path in cache.own_folder().path.iterdir())
+    entries = sorted(path for path in kept.folder().iterdir())
     contents = [entry.read_bytes() for entry in entries]
     for k, entry in enumerate(entries):
         entry.write_bytes(contents[k - 1])
@@ -176,4 +175,4 @@ def test_a_full_disk_costs_nothing_but_the_cache(directory, monkeypatch):
 
     monkeypatch.setattr(os, "replace", full)
     assert value(TWICE, 21.0) == 42.0
-    assert list(cache.own_folder().path.iterdir()) == []
+    assert list(kept.folder().iterdir()) == []

@@ -9,15 +9,10 @@ import sympy as sp
 
 from stiffmbs.compile import active_dampers, callbacks, gaps, law_intervals, table_values, written_values
 from stiffmbs.compile.inputs import ends, features, pieces, table_ranges, zeros
-from stiffmbs.compile.machine import compiler
-from stiffmbs.compile.machine.geometry import common_normal, ellipsoids
-from stiffmbs.compile.machine.native import evaluate, factors, rotation_vector
-from stiffmbs.compile.machine.native.beams import along, screws
 from stiffmbs.compile.symbolic import shared_parts, symbols, variation
 from stiffmbs.results.joint_angles import JointAngles
 from stiffmbs.solve import suspect
-from tests.decisions.common import BELOW, Reached, Record, executed, nothing, reach, reached
-from tests.interpreted import interpreted
+from tests.decisions.common import BELOW, Record, nothing, reach, reached
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
 
@@ -228,136 +223,6 @@ def largest_departure_from_a_tangent():
     return len(BELOW) - count_while(lambda x: is_rounding(x), BELOW[::-1])
 
 
-def inlined_instructions():
-    source = Record(namespace=dict, signatures=[], level=compiler.SHORT, text="")
-    with patch("stiffmbs.compile.machine.translate.unit.assembly", lambda *args: reach(args[-1])):
-        return reached(lambda: compiler._object_code(source, ""))
-
-
-def normal(part=nothing, grow=nothing):
-    """Find a common normal of solids, with functions for the solids and their cores."""
-    with interpreted(
-        common_normal, room=np.zeros, along=lambda *_: 1.0, take_unit_length=nothing, across=nothing, thinnest=lambda _: 1e-9,
-        ellipsoids=nothing, _part=part, _grow=grow,
-    ):  # fmt: skip
-        common_normal.find_normal(np.ones(3), np.ones(3))
-
-
-def calls_of(name):
-    """Return the number of calls of a function by an iteration that never ends."""
-    calls = []
-    with interpreted(
-        common_normal, room=lambda n: np.ones(n), along=lambda *_: 0.0, take_unit_length=nothing, across=nothing, made_definite=nothing,
-        curvature=nothing, solved=nothing, reach=lambda *_: 1e9, **{"support": nothing, "moved": nothing, name: lambda *_: calls.append(1)},
-    ):  # fmt: skip
-        common_normal._part(np.ones(54), np.ones(3), np.ones(3), -1e9, 0)
-    return len(calls)
-
-
-def halvings_of_a_step():
-    return calls_of("moved") / calls_of("support")
-
-
-def parts_of_a_normal():
-    """Return the tolerances and the numbers of last steps of each stage."""
-    found = []
-    normal(part=lambda *args: found.append(args[-2:]))
-    return found
-
-
-def stages_of_growth():
-    found = []
-    normal(grow=lambda *_: found.append(1))
-    return len(found)
-
-
-def thickness_of_a_core():
-    """Return the thickness that is removed from a sphere of radius 1 to form its core."""
-    pose, m = np.zeros(100), np.zeros(54)
-    with interpreted(ellipsoids, least=lambda _: 1.0):
-        pose[ellipsoids.SQUARES : ellipsoids.SQUARES + 3] = 1.0
-        pose[ellipsoids.TURN] = 1.0
-        ellipsoids.ellipsoids(pose, 0.0, 1.0, m)
-    return 1.0 - m[0]
-
-
-def relative_step():
-    with interpreted(along, law=lambda *_: np.ones(1)):
-        return along.step_size(0, 0, 0, 1, np.ones(1), None, np.ones(1), None)
-
-
-def terms_of(x):
-    """Return the number of terms of a series."""
-    sizes = []
-    with (
-        interpreted(screws, room=np.zeros, clear=nothing),
-        patch.object(screws, "abs", lambda value: sizes.append(1) or abs(value), create=True),
-    ):
-        screws.series(x, 0, 0, np.zeros(4))
-    return len(sizes)
-
-
-def largest_angle_of_a_quad():
-    def is_accepted(angle):
-        with interpreted(evaluate, quad_of=lambda *_: reach(True)):
-            try:
-                return evaluate.share_four(np.full(3, angle), np.zeros(4, int), None)
-            except Reached:
-                return True
-
-    return count_while(lambda angle: is_accepted(1e3 * angle), DOUBLES)
-
-
-def smallest_diagonal_pivot():
-    """Return the diagonal entry of a column, in quarter octaves of its largest, up to which it is the pivot."""
-
-    def is_kept(entry):
-        f = Record(
-            n=2, capacity=100, order=[0, 1], pivot=np.zeros(2, int), work=np.zeros(2), stack=np.array([0, 1, 0, 0, 0, 0]), ready=0,
-            a=np.array([entry, 1.0, 1.0, 0.0]), a_row=[0, 1, 0, 1], a_start=[0, 2, 4], l=np.zeros(9), u=np.zeros(9),
-            l_row=np.zeros(9, int), u_row=np.zeros(9, int), l_start=np.zeros(3, int), u_start=np.zeros(3, int),
-        )  # fmt: skip
-        with interpreted(factors, _reach=lambda *_: 0):
-            factors._factored_within(f)
-        return f.pivot[0] == 0
-
-    return count_while(is_kept, BELOW)
-
-
-def smallest_previous_pivot():
-    def is_accepted(entry):
-        f = Record(
-            n=2, order=[0, 1], pivot=[0, 1], work=np.zeros(2), a=np.array([entry, 1.0, 1.0, 0.0]), a_row=[0, 1, 0, 1], a_start=[0, 2, 4],
-            l=np.zeros(9), u=np.zeros(9), l_row=[0, 1, 1], u_row=[0, 0, 1], l_start=[0, 2, 3], u_start=[0, 1, 3],
-        )  # fmt: skip
-        with interpreted(factors):
-            return factors.refactor(f) == factors.DONE
-
-    return count_while(is_accepted, BELOW)
-
-
-def lightest_body(inertia=1.0, entry=1.0):
-    """Return the inertia of a body that an equation couples to one of unit inertia."""
-    f = Record(a_start=[0, 2], a=np.array([entry, 1.0]), a_row=[0, 1], work=np.array([1.0, inertia]))
-    factors._spread(f, 0)
-    return f.work[1]
-
-
-def spreads_of_inertia():
-    spread = []
-    with interpreted(factors, _spread=lambda *_: spread.append(1)):
-        factors.spread_inertia(Record(n=1, work=np.zeros(1)))
-    return len(spread)
-
-
-def farthest_rotation_by_series():
-    def is_near(away):
-        with interpreted(rotation_vector, _near_one=lambda *_: -1.0):
-            return rotation_vector.rotation_vector(1.0 - away, 0) == -1.0
-
-    return count_while(lambda away: not is_near(away), BELOW)
-
-
 def largest_open_gap():
     def is_silent(gap):
         system = Record(active=np.ones(1), equations=[("j", "x")])
@@ -405,7 +270,7 @@ def smallest_departure_from_half_a_turn():
     def is_negative(beyond):
         rows = Record(values=np.array([[-np.pi + beyond]]))
         angles = Record(
-            places={"j": [0]}, counters={}, followed=["j"], start={}, _changes=lambda _: (np.zeros((0, 1)), np.zeros((0, 1)))
+            places={"j": [0]}, counters={}, followed=["j"], start={}, _changes=lambda _: (np.zeros((0, 1)),) * 3
         )  # fmt: skip
         return JointAngles.continuous(angles, rows)["j"][0] < 0.0
 
@@ -470,31 +335,6 @@ DECISIONS = {
     "compile.law_intervals:FEW": largest_period_with_turns,
     "compile.law_intervals:CLOSE": overlap_of_a_breakpoint,
     "compile.law_intervals:NOTHING": largest_departure_from_a_tangent,
-    "compile.machine.compiler:_INLINED": inlined_instructions,
-    "compile.machine.geometry.common_normal:THINNER": stages_of_growth,
-    "compile.machine.geometry.common_normal:STAGES": lambda: len(parts_of_a_normal()) - 1,
-    "compile.machine.geometry.common_normal:MOST_STEPS": lambda: calls_of("support"),
-    "compile.machine.geometry.common_normal:MOST_HALVINGS": halvings_of_a_step,
-    "compile.machine.geometry.common_normal:POLISHES": lambda: parts_of_a_normal()[-1][1],
-    "compile.machine.geometry.common_normal:FLAT": lambda: parts_of_a_normal()[-1][0],
-    "compile.machine.geometry.common_normal:ROUGHLY": lambda: parts_of_a_normal()[0][0],
-    "compile.machine.geometry.ellipsoids:CORE": thickness_of_a_core,
-    "compile.machine.native.beams.along:STEP": relative_step,
-    "compile.machine.native.beams.screws:TERMS": lambda: terms_of(1e3),
-    "compile.machine.native.beams.screws:NEGLIGIBLE": lambda: count_while(lambda x: terms_of(x) > 1, BELOW),
-    "compile.machine.native.beams.section:MOST": lambda: executed("compile.machine.native.beams.section").NODES,
-    "compile.machine.native.evaluate:FARTHEST": largest_angle_of_a_quad,
-    "compile.machine.native.factors:KEEP_DIAGONAL": smallest_diagonal_pivot,
-    "compile.machine.native.factors:TOO_SMALL": smallest_previous_pivot,
-    "compile.machine.native.factors:LIGHT": lambda: count_while(
-        lambda inertia: lightest_body(inertia=inertia) == inertia, BELOW
-    ),
-    "compile.machine.native.factors:COUPLES": lambda: count_while(
-        lambda entry: lightest_body(inertia=1e-30, entry=entry) > 1e-30, BELOW
-    ),
-    "compile.machine.native.factors:SPREAD_OVER": spreads_of_inertia,
-    "compile.machine.native.rotation_vector:NEAR": farthest_rotation_by_series,
-    "compile.machine.native.rotation_vector:TERMS": lambda: rotation_vector._near_one(3.0, 0),
     "compile.state:LEFT_OPEN": largest_open_gap,
     "compile.symbolic.shared_parts:MOST_FACTORS": largest_written_power,
     "compile.symbolic.symbols:STEEP": largest_gentle_power,
@@ -505,29 +345,21 @@ DECISIONS = {
     "compile.written_values:BEYOND": largest_overshoot,
 }  # fmt: skip
 EXPECTED = {
-    "compile.active_dampers:ROUNDING": 40,
-    "compile.callbacks:DIFFERENCE": 6.05545445239334e-09, "compile.callbacks:LEAST_ARGUMENT": 6.05545445239334e-09,
-    "compile.gaps:MOST_MOVES": 60, "compile.gaps:CLOSED": 159, "compile.inputs.ends:MOST_DIVISIONS": 500,
-    "compile.inputs.ends:FARTHER_SIDE": 1e-06, "compile.inputs.ends:NEARER_SIDE": 1e-10, "compile.inputs.ends:GROWS": 6,
-    "compile.inputs.ends:LARGEST": 54, "compile.inputs.features:PIECES_OF_A_STEP": 0.07, "compile.inputs.features:ALIKE": 4,
-    "compile.inputs.features:INSTANTS": 8, "compile.inputs.pieces:OF_CHANGE": 0.003, "compile.inputs.pieces:LEAST_PART": 3.0000000000000004e-07,
-    "compile.inputs.pieces:ALWAYS_ALLOWED": 1e-10, "compile.inputs.pieces:SHORTEST_PIECE": 1e-11, "compile.inputs.pieces:MOST_PIECES": 26,
-    "compile.inputs.pieces:MANY_PIECES": 23, "compile.inputs.pieces:ROUNDING_OF_SAMPLES": 27, "compile.inputs.pieces:SAMPLE": 64,
-    "compile.inputs.pieces:QUANTILE": 10.0, "compile.inputs.pieces:URGENT": 24, "compile.inputs.table_ranges:FLAT": 155,
-    "compile.inputs.table_ranges:CONTINUOUS": 27,
-    "compile.inputs.zeros:FIRST_STRETCHES": 64, "compile.inputs.zeros:SHORTEST_STRETCH": 35, "compile.inputs.zeros:MOST_STRETCHES": 15,
-    "compile.law_intervals:FEW": 8, "compile.law_intervals:CLOSE": 0.001, "compile.law_intervals:NOTHING": 119,
-    "compile.machine.compiler:_INLINED": 40, "compile.machine.geometry.common_normal:THINNER": 13,
-    "compile.machine.geometry.common_normal:STAGES": 16, "compile.machine.geometry.common_normal:MOST_STEPS": 60,
-    "compile.machine.geometry.common_normal:MOST_HALVINGS": 30.0, "compile.machine.geometry.common_normal:POLISHES": 4,
-    "compile.machine.geometry.common_normal:FLAT": 1e-14, "compile.machine.geometry.common_normal:ROUGHLY": 1e-08,
-    "compile.machine.geometry.ellipsoids:CORE": 0.5, "compile.machine.native.beams.along:STEP": 0.001,
-    "compile.machine.native.beams.screws:TERMS": 17, "compile.machine.native.beams.screws:NEGLIGIBLE": 274,
-    "compile.machine.native.beams.section:MOST": 690, "compile.machine.native.evaluate:FARTHEST": 27,
-    "compile.machine.native.factors:KEEP_DIAGONAL": 13, "compile.machine.native.factors:TOO_SMALL": 40,
-    "compile.machine.native.factors:LIGHT": 80, "compile.machine.native.factors:COUPLES": 13, "compile.machine.native.factors:SPREAD_OVER": 4,
-    "compile.machine.native.rotation_vector:NEAR": 13, "compile.machine.native.rotation_vector:TERMS": 308.33391674417925,
-    "compile.state:LEFT_OPEN": 27, "compile.symbolic.shared_parts:MOST_FACTORS": 5, "compile.symbolic.symbols:STEEP": 8,
-    "compile.symbolic.variation:MOST_SUMMANDS": 100, "compile.symbolic.variation:ORDER_ONE": 8, "elements.turns:INITIAL_COUNT": 119,
-    "compile.table_values:UNDEFINED": 111, "compile.written_values:BEYOND": 27,
+    "compile.active_dampers:ROUNDING": 40, "compile.callbacks:DIFFERENCE": 6.05545445239334e-09,
+    "compile.callbacks:LEAST_ARGUMENT": 6.05545445239334e-09, "compile.gaps:MOST_MOVES": 60, "compile.gaps:CLOSED": 159,
+    "compile.inputs.ends:MOST_DIVISIONS": 500, "compile.inputs.ends:FARTHER_SIDE": 1e-06,
+    "compile.inputs.ends:NEARER_SIDE": 1e-10, "compile.inputs.ends:GROWS": 6, "compile.inputs.ends:LARGEST": 54,
+    "compile.inputs.features:PIECES_OF_A_STEP": 0.07, "compile.inputs.features:ALIKE": 4,
+    "compile.inputs.features:INSTANTS": 8, "compile.inputs.pieces:OF_CHANGE": 0.003,
+    "compile.inputs.pieces:LEAST_PART": 3.0000000000000004e-07, "compile.inputs.pieces:ALWAYS_ALLOWED": 1e-10,
+    "compile.inputs.pieces:SHORTEST_PIECE": 1e-11, "compile.inputs.pieces:MOST_PIECES": 26,
+    "compile.inputs.pieces:MANY_PIECES": 23, "compile.inputs.pieces:ROUNDING_OF_SAMPLES": 27,
+    "compile.inputs.pieces:SAMPLE": 64, "compile.inputs.pieces:QUANTILE": 10.0, "compile.inputs.pieces:URGENT": 24,
+    "compile.inputs.table_ranges:FLAT": 155, "compile.inputs.table_ranges:CONTINUOUS": 27,
+    "compile.inputs.zeros:FIRST_STRETCHES": 64, "compile.inputs.zeros:SHORTEST_STRETCH": 35,
+    "compile.inputs.zeros:MOST_STRETCHES": 15, "compile.law_intervals:FEW": 8, "compile.law_intervals:CLOSE": 0.001,
+    "compile.law_intervals:NOTHING": 119, "compile.state:LEFT_OPEN": 27, "compile.symbolic.shared_parts:MOST_FACTORS": 5,
+    "compile.symbolic.symbols:STEEP": 8, "compile.symbolic.variation:MOST_SUMMANDS": 100,
+    "compile.symbolic.variation:ORDER_ONE": 8, "elements.turns:INITIAL_COUNT": 119, "compile.table_values:UNDEFINED": 111,
+    "compile.written_values:BEYOND": 27,
 }  # fmt: skip

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -22,6 +21,7 @@ from stiffmbs.dynamics.native import block_systems, consistent
 from stiffmbs.dynamics.native import dynamics as native
 from stiffmbs.dynamics.native import projection as native_projection
 from stiffmbs.dynamics.native import stiff_projection as native_stiff_projection
+from stiffmbs.solve.ida.starting.native import start
 from tests.decisions.common import Record, nothing
 from tests.interpreted import interpreted
 from tests.parameters import EXAMPLES
@@ -222,17 +222,16 @@ def flattest_slope():
 
 def error_of_a_rate():
     """Return the rate at t = 0 of a state that is t^2."""
-    state = Record(q=np.zeros(1), u=np.zeros(0), unchanged=nullcontext)
 
-    def accelerate(t):
-        state.q = np.array([t * t])
-        return 0, None
+    def accelerate(s, m, t):
+        s.q[0] = t * t
+        return 0
 
-    system = Record(algebraic_coordinates=np.array([0]), n_pose=0, of_body=Record(moved=lambda q, move: q.copy()))
-    dynamics = Record(
-        system=system, state=state, accelerate=accelerate, position_rates=lambda q, u: np.zeros(1)
-    )  # fmt: skip
-    return algebraic_states.rates_of_algebraic(dynamics, 0.0, np.zeros(1), np.zeros(0), np.zeros(0))[0]
+    w = Record(rate=np.zeros(1), kept=np.zeros(1))
+    s = Record(q=np.zeros(1), u=np.zeros(0), a=np.zeros(0), lam=np.zeros(0), n_q=1, n_u=0, n_c=0)
+    with interpreted(start, consistent_accelerations=accelerate, take_unit_length=nothing):
+        start._find_algebraic_rates(w, s, Record(n_algebraic=1, algebraic=[0]), 0.0)
+    return w.rate[0]
 
 
 def changed_by(shift=0.0, turn=0.0, name="b", size=1.0):

@@ -9,13 +9,12 @@ import numpy as np
 
 from stiffmbs.analyses import errors as of_runs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.error_estimate import defects, estimate, linearised, transport, vibrations
+from stiffmbs.error_estimate import along_run, defects, estimate, linearised, transport, vibrations
 from stiffmbs.error_estimate.accuracy import Accuracy
 from stiffmbs.error_estimate.along_run import _Prepared
 from stiffmbs.error_estimate.evaluated import evaluated
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.settings import RunSettings
-from stiffmbs.results import channel_errors
 from stiffmbs.results.error_bars import ErrorBar
 from stiffmbs.solve.recorded_steps import Piece
 from stiffmbs.tuning import changed_values
@@ -36,7 +35,7 @@ def largest_displacement():
         return evaluated(*states)
 
     with patch.object(linearised, "evaluated", noted):
-        linearised.linearised(dynamics, at)
+        linearised.linearised(dynamics, at, 0.0)
     return moved[0]
 
 
@@ -49,7 +48,7 @@ def piece(h):
 
 def row_beside_an_event():
     """Return the row of 10,000 equal steps after an event at which the first state is linearised."""
-    prepared = _Prepared(piece(np.ones(10_000)), None, None, [], np.zeros(0), True)
+    prepared = _Prepared(piece(np.ones(10_000)), None, None, None, [], np.zeros(0), True)
     return prepared.within(np.zeros(1, dtype=int))[0]
 
 
@@ -79,7 +78,9 @@ def turning(rate):
 
 
 def is_resolved(rate):
-    return vibrations.are_resolved(turning(rate), np.arange(100.0), np.ones(100))
+    t = np.arange(100.0)
+    block = transport.Block(np.array([0, 99]), np.zeros(0), np.array([99.0]))
+    return vibrations.are_resolved(turning(rate), t, np.arange(100), [block]).all()
 
 
 def spectra():
@@ -104,10 +105,8 @@ def is_near(distance):
 
 
 def is_lost(error):
-    dynamics = Record(system=Record(n_u=1, size=1.0, per_velocity=lambda *_: np.ones(1)))
-    found = Record(errors=np.array([[error]]), t=np.zeros(1), recorded_q=np.zeros((1, 1)), recorded_u=np.zeros((1, 1)))
-    with patch.multiple(estimate, evaluated=lambda *_: None, nearly_singular=lambda *_: np.zeros(1, bool)):
-        return estimate._lost(dynamics, found) is not None
+    system = Record(n_u=1, size=1.0, per_velocity=lambda *_: np.ones(1))
+    return along_run._are_lost(system, np.array([[error]])).any()
 
 
 def noted(group, error):
@@ -164,9 +163,7 @@ DECISIONS = {
     "error_estimate.aim": lambda: next_rtol(100.0),
     "error_estimate.slope": lambda: next_rtol(100.0),
     "error_estimate.numbers_at_once": lambda: transport.at_once(100),
-    "results.channel_errors:LARGER": lambda: (
-        channel_errors.bars_by_difference(np.arange(3.0), {"a.x": np.zeros(3)}, {"a.x": np.ones(3)})["a.x"].over_time
-    ),
+    "error_estimate.second": lambda: of_runs._second(RunSettings(rtol=1e-6)),
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
 }  # fmt: skip
 EXPECTED = {
@@ -189,6 +186,6 @@ EXPECTED = {
     "error_estimate.aim": 8.549879733383488e-08,
     "error_estimate.slope": 8.549879733383488e-08,
     "error_estimate.numbers_at_once": 400,
-    "results.channel_errors:LARGER": 0.1111111111111111,
+    "error_estimate.second": 0.1,
     "analyses.errors:MOST_REPEATS": 3,
 }  # fmt: skip

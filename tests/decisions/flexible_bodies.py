@@ -67,19 +67,6 @@ def flattest_element():
     return count_while(accepts, BELOW)
 
 
-def limits_of_the_cache():
-    """Return the limits on the number and on the size of cached bodies."""
-    found = Record(second_order=Record(), of_material=nothing)
-    described = Record(
-        material=None, modes=1, residual_modes=False, model=nothing, interfaces_on=nothing, mass=None
-    )  # fmt: skip
-    folder = Record(read=lambda _: None, write=nothing, keep_newest=lambda *limits: reach(limits))
-    with patch.multiple(
-        reduced, _key=nothing, folder_of_bodies=lambda: folder, rigid_body=lambda _: [1.0], reduce=lambda *_: found
-    ):
-        return reached(lambda: reduced.reduced_body(described, None))
-
-
 def largest_difference_of_frequencies():
     """Return the difference of squares of frequencies, in quarter octaves of 1e-11, that counts as none."""
 
@@ -161,8 +148,6 @@ DECISIONS = {
     ),
     "flexible_bodies.matrix_files:NO_ROTATION": largest_rotational_entry,
     "flexible_bodies.mesh:FLAT": flattest_element,
-    "flexible_bodies.reduced:MOST": lambda: limits_of_the_cache()[0],
-    "flexible_bodies.reduced:MOST_BYTES": lambda: limits_of_the_cache()[1],
     "flexible_bodies.reduced:SAME_MASS": lambda: count_while(
         lambda more: not refused(lambda: reduced._check_mass(Record(mass=1.0, mesh=None), 1.0 + 0.001 * more)), DOUBLES
     ),
@@ -183,7 +168,7 @@ DECISIONS = {
 EXPECTED = {
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
     "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh:FLAT": 119,
-    "flexible_bodies.reduced:MOST": 100, "flexible_bodies.reduced:MOST_BYTES": 2000000000, "flexible_bodies.reduced:SAME_MASS": 23,
+    "flexible_bodies.reduced:SAME_MASS": 23,
     "flexible_bodies.reduction:SAME_FREQUENCY": 27, "flexible_bodies.reduction:DEPENDENT": 133, "flexible_bodies.reduction:ZERO": 14,
     "flexible_bodies.reduction:MORE_MODES": 20, "flexible_bodies.solid:LARGEST_PART": 91, "flexible_bodies.static_solver:DENSE": 18,
     "flexible_bodies.static_solver:BLOCK": 8, "flexible_bodies.static_solver:CONVERGED": 50, "flexible_bodies.static_solver:DEPENDENT": 96,

@@ -116,7 +116,7 @@ def read(elements=0, size=0):
     with (
         patch("stiffmbs.model.read_scene.read_scene", lambda *_: scene),
         patch.multiple(
-            scenes_read_before, _pickled=lambda _: bytes(size), _reader=str, keep=lambda *_: reach(True), _unpickled=nothing
+            scenes_read_before, _pickled=lambda _: bytes(size), _reader=str, _unpickled=nothing, entries=Record(digest=str, write=lambda *_: reach(True))
         ),
     ):  # fmt: skip
         try:

@@ -7,9 +7,9 @@ from unittest.mock import patch
 import numpy as np
 
 from stiffmbs.presolve import presolve
-from stiffmbs.presolve.modes_at_rest import _Mirror
 from stiffmbs.presolve.relations import Relations
 from stiffmbs.presolve.spinning_bodies import _alike
+from tests.decisions.common import Record, nothing
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
 
@@ -18,8 +18,13 @@ def relations(n=2):
 
 
 def solved_apart(count):
-    with patch.object(presolve, "mechanisms", lambda _: [None] * count):
-        return presolve.may_be_apart(None)
+    replaced = {
+        "mechanisms": lambda _: [None] * count,
+        "merge": lambda *_: Record(members={}, axes={}),
+        "_part": nothing,
+    }
+    with patch.multiple(presolve, **replaced):
+        return bool(presolve.parts_of(None, Record(equations=(), active=()), None, apart=True))
 
 
 def used(independence):
@@ -34,10 +39,9 @@ DECISIONS = {
     ),
     "presolve.independent": lambda: count_while(used, HALVES),
     "presolve.alike": lambda: count_while(lambda off: _alike(1.0, 1.0 + 1e-14 * off), DOUBLES),
-    "presolve.at_rest": lambda: count_while(lambda value: _Mirror._zero(None, 1e-12 * value, 1.0), DOUBLES),
     "presolve.most_apart": lambda: count_while(solved_apart, range(2, 100)),
 }
 EXPECTED = {
-    "presolve.negligible": 173, "presolve.independent": 72, "presolve.alike": 27, "presolve.at_rest": 40,
+    "presolve.negligible": 173, "presolve.independent": 72, "presolve.alike": 27,
     "presolve.most_apart": 7,
 }  # fmt: skip

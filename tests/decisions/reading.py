@@ -48,11 +48,20 @@ def largest_included_file():
     return count_while(lambda length: accepts(1e4 * length), DOUBLES)
 
 
-def limits_of_the_cache():
-    """Return the limits on the number and on the size of cached files."""
-    folder = Record(write=nothing, keep_newest=lambda *limits: reach(limits))
-    with patch.object(read_before, "folder_of_files", lambda: folder):
-        return reached(lambda: read_before.keep("name", b""))
+def largest_cached_file():
+    """Return the size of an entry of a file, in 1e5 bytes, up to which it is cached."""
+
+    def is_cached(size):
+        written = []
+        replaced = {
+            "json": Record(dumps=lambda _: range(round(1e5 * size))), "read_yaml": nothing,
+            "entries": Record(name_of=nothing, digest=str, read=lambda _: None, write=lambda *_: written.append(1)),
+        }  # fmt: skip
+        with patch.multiple(read_before, **replaced):
+            read_before.read_yaml_file("a", "", Record(resolve=str))
+        return bool(written)
+
+    return count_while(is_cached, DOUBLES)
 
 
 def deepest_content():
@@ -90,8 +99,7 @@ DECISIONS = {
     "reading.files.include:LARGEST": largest_included_file,
     "reading.files.quoted:MOST_QUOTED": lambda: len(quoted._shortened(1000 * "a")),
     "reading.files.quoted:MOST_LISTED": lambda: quoted.listed(100 * ["x"]).count("x"),
-    "reading.files.read_before:MOST_FILES": lambda: limits_of_the_cache()[0],
-    "reading.files.read_before:MOST_BYTES": lambda: limits_of_the_cache()[1],
+    "reading.files.read_before:LARGEST": largest_cached_file,
     "reading.files.yaml_text:MOST_NESTED": deepest_content,
     "reading.files.yaml_text:MOST_BY_ALIASES": most_aliases,
     "reading.files.yaml_text:WIDTH": widest_line,
@@ -111,7 +119,7 @@ DECISIONS = {
 EXPECTED = {
     "reading.did_you_mean:LEAST": 0.65, "reading.files.files_read:LARGEST": 500000000, "reading.files.include:MOST_FILES": 100,
     "reading.files.include:LARGEST": 44, "reading.files.quoted:MOST_QUOTED": 80, "reading.files.quoted:MOST_LISTED": 5,
-    "reading.files.read_before:MOST_FILES": 1000, "reading.files.read_before:MOST_BYTES": 50000000, "reading.files.yaml_text:MOST_NESTED": 41,
+    "reading.files.read_before:LARGEST": 36, "reading.files.yaml_text:MOST_NESTED": 41,
     "reading.files.yaml_text:MOST_BY_ALIASES": 27, "reading.files.yaml_text:WIDTH": 141, "reading.formula.dimension:SAME_EXPONENT": 27,
     "reading.formula.size:MOST_PARTS": 18, "reading.formula.size:DEEPEST": 61, "reading.units.quantity:TEXTS": 4096,
     "reading.units.quantity:LARGEST": 67, "reading.variation:MOST_VALUES": 40,

@@ -78,7 +78,9 @@ def largest_difference_of_turns():
     rows = Record(t=np.arange(2.0))
 
     def is_silent(apart):
-        angles = Record(followed=["j.angle"], _changes=lambda _: (np.zeros((1, 1)), np.full((1, 1), apart)))
+        angles = Record(
+            followed=["j.angle"], _changes=lambda _: (np.zeros((1, 1)), np.full((1, 1), apart), np.zeros((1, 1)))
+        )
         return not [*JointAngles.uncertain(angles, rows)]
 
     return count_while(lambda apart: is_silent(0.1 * apart), DOUBLES[:20])

@@ -189,7 +189,7 @@ def changes_of_an_interval():
 def effort(evaluations):
     """Return the evaluations that all reruns of a run may take."""
     of_run = Record(
-        settings=Record(tuning={"verification": tuning.numbers_of(parameters("verification"))}), evaluations=lambda: evaluations, dynamics=Record(system=Record(n_q=1, n_u=1, n_c=0))
+        settings=Record(tuning={"verification": tuning.numbers_of(parameters("verification"))}, accuracy=None), evaluations=lambda: evaluations, dynamics=Record(system=Record(n_q=1, n_u=1, n_c=0))
     )  # fmt: skip
     replaced = {
         "data_of": nothing, "with_elements": nothing, "prepare": lambda *_, **__: of_run,

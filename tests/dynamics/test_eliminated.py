@@ -88,6 +88,16 @@ def test_what_is_not_finite_leaves_no_trace(examples):
     assert_equal(*both_ways(dynamics), 1e-10)
 
 
+def test_a_pose_far_away_leaves_no_trace():
+    """Stages of rejected steps are no measure of pivots."""
+    dynamics = prepare(random_space_tree(np.random.default_rng(0), 8, springs=2), presolve=False).dynamics
+    found, q = np.empty(dynamics.system.n_u), dynamics.state.q.copy()
+    dynamics.state.q[:] = 1e14 * q
+    ATTEMPT.call(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
+    dynamics.state.q[:] = q
+    assert_equal(*both_ways(dynamics), 1e-11)
+
+
 def column(dynamics, name):
     """A number in the table of the blocks."""
     lists = dynamics.eliminated._lists

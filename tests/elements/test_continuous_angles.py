@@ -88,7 +88,9 @@ def test_a_request_counts_as_a_torsion_spring_does(settings, follows):
         assert np.allclose(solution["turned"], -solution["spring.tz"] / 1e-3, rtol=0, atol=1e-6)
         assert np.allclose(solution["turned"], 3000 / w * np.sin(w * solution.time), rtol=0, atol=apart)
         assert np.allclose(solution["sum"], 3 * solution["turned"], rtol=1e-12)
-        assert any("revolutions" in note and "'spring'" in note for note in solution.notes) is not follows
+        told = any("revolutions" in note and "'spring'" in note for note in solution.notes)
+        # at the end alone, the orientation may be near the counter by chance
+        assert not told if follows else told or any("the solution is lost" in note for note in solution.notes)
 
 
 def test_turns_are_counted_beside_a_pole():

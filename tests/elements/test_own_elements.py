@@ -349,3 +349,11 @@ def test_a_drive_refuses_a_coordinate_that_is_neither_an_angle_nor_a_displacemen
         InputError, match="found 'track' of the type track_of_tests, expected a joint with a coordinate"
     ):
         model.add("motor", Drive(joint="track", position="t"))
+
+
+def test_an_element_of_an_earlier_version_may_say_where_it_is_symmetric():
+    class Symmetric(space.Bumper):
+        kind = "symmetric_bumper"
+        symmetric_with = {"i": "point", "j": "point"}
+
+    assert Symmetric(i="a", j="ground", stiffness=1, gap=0.3).gap == 0.3

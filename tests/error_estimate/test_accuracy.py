@@ -26,6 +26,16 @@ def test_an_accuracy_that_is_not_reached_is_reported():
     assert any("was not reached: reached positions" in note for note in found.notes)
 
 
+def test_a_verified_run_has_the_accuracy_asked_for():
+    """The tolerance was that of the settings, whatever the accuracy."""
+    asked = {"positions": "1e-6 m"}
+    found = stiffmbs.verify(stiffmbs.read_scene(SCENE), solver="bdf", accuracy=asked)
+    alone = stiffmbs.run(stiffmbs.read_scene(SCENE), solver="bdf", accuracy=asked)
+    assert found.solver["steps"] == alone.solver["steps"] and found.verification
+    assert "reached positions" in found.estimate.sentence
+    assert np.abs(found["bob.x"] - np.cos(pendulum(found.time)[0])).max() < found.errors["bob.x"].over_time < 1e-5
+
+
 def test_accuracies_have_units_or_are_relative():
     forces, positions = wanted({"forces": "1 %", "positions": "0.1 mm"})
     assert (forces.error, forces.relative) == (0.01, True)

@@ -1,5 +1,7 @@
 """Estimated errors against the truth: closed forms, minimal equations, and steady or prescribed motions without errors."""
 
+import contextlib
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -7,6 +9,8 @@ from scipy.integrate import solve_ivp
 import stiffmbs
 from stiffmbs.analyses.load_scene import load_scene
 from tests.conftest import EXAMPLES
+from tests.solve.test_stiff_reactions import KINKS
+from tests.solve.test_stiff_reactions import pendulum as pushed
 from tests.stress.self_assessment import assess, drawn, table
 
 G = 9.81
@@ -182,18 +186,60 @@ def test_a_run_of_much_work_says_how_to_ask():
     assert not found.errors and "--errors" in found.estimate.sentence
 
 
-@pytest.mark.parametrize("solver", ["projected", "auto"])
-def test_explicit_steps_take_a_second_run_on_request(solver):
-    scene = stiffmbs.read_scene(PENDULUM.format(duration=8))
-    assert "second run" in stiffmbs.run(scene, solver=solver).estimate.sentence
-    found = stiffmbs.run(scene, solver=solver, errors=True)
-    assert 0.1 < ratio(found, "bob.angle", pendulum(found.time)[0]) < 10
+@pytest.mark.parametrize("rtol", [1e-3, 1e-5, 1e-8])
+@pytest.mark.parametrize(
+    "how", [{"solver": "dop853"}, {"solver": "dopri5"}, {"solver": "auto"}], ids=lambda how: how["solver"]
+)
+def test_explicit_steps_take_a_second_run(how, rtol):
+    """A ninth of the difference from a run at ten times the tolerance was 0.05 to 18 times the error."""
+    how = {"solver": "projected", "scheme": how["solver"]} if how["solver"] != "auto" else how
+    found = stiffmbs.run(stiffmbs.read_scene(PENDULUM.format(duration=8)), rtol=rtol, **how)
+    angle, rate = pendulum(found.time)
+    assert 1 / 2 < ratio(found, "bob.angle", angle) < 2
+    assert 1 / 2 < ratio(found, "bob.omega", rate) < 2
+
+
+@pytest.mark.parametrize(
+    "limit", [{"atol": 1e-6, "rtol": 1e-9}, {"max_step": 0.1, "rtol": 1e-4}], ids=["atol", "max_step"]
+)
+def test_second_runs_are_better_in_what_limits_the_steps(limit):
+    found = stiffmbs.run(stiffmbs.read_scene(PENDULUM.format(duration=8)), solver="projected", **limit)
+    assert 1 / 2 < ratio(found, "bob.angle", pendulum(found.time)[0]) < 2
+
+
+def test_steps_that_breakpoints_limit_need_a_smaller_tolerance():
+    """Both runs took the same 8 steps; their difference was a tenth of the error."""
+    found, truth = (stiffmbs.run(pushed(f"solver: projected, rtol: {rtol}", None, KINKS)) for rtol in (1e-3, 1e-11))
+    assert 1 / 2 < ratio(found, "first.angle", truth["first.angle"]) < 2
+
+
+def test_peaks_of_explicit_runs_are_those_between_outputs():
+    """A mass on a spring with three output times, which miss its amplitude of 0.1 m."""
+    scene = """
+        bodies: {b: {mass: 1, inertia: 1, position: [0, 0], velocity: [1, 0]}}
+        forces: {s: {type: force, i: b, force: [-100*b.x, 0]}}
+        run: {duration: 1, points: 3, solver: projected}
+        """
+    found = solved(scene)
+    beyond = 0.1 - found["b.x"].max()
+    assert 0.01 < beyond < found.errors["b.x"].greatest < 3 * beyond
+
+
+def test_long_explicit_runs_take_no_second_run():
+    found = stiffmbs.run(
+        stiffmbs.read_scene(PENDULUM.format(duration=8)), solver="projected", tuning={"error_estimate": {"work": 100}}
+    )
+    assert not found.errors and "--errors" in found.estimate.sentence
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_random_scenes(solver):
-    found = [assess(*drawn(seed, solver)) for seed in range(60)]
+    found = []
+    for seed in range(60):
+        with contextlib.suppress(stiffmbs.AssemblyError):  # some draw more equations than freedoms
+            found.append(assess(*drawn(seed, solver)))
+    assert len(found) > 55
     print(table(found))
     for group, least in (("positions", 0.85), ("forces", 0.75)):
         ratios = np.array([one.ratios()[group] for one in found if group in one.ratios()])

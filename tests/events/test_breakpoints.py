@@ -9,6 +9,7 @@ from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
 from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.features import breakpoint_times
 from stiffmbs.compile.inputs.of_time import _OF_ARRAYS, inputs_of
+from stiffmbs.compile.inputs.zeros import zeros
 from stiffmbs.reading.table import Table
 
 
@@ -175,3 +176,18 @@ def test_every_jump_of_a_drive_is_told():
     for turn in range(1, 6):
         assert f"at t = {turn} s a drive makes velocities jump" in notes
     assert "and 1 more such jumps" in notes
+
+
+def test_a_line_through_zero_at_the_start_is_not_bisected():
+    """There, bisection to the last digit would go down to the smallest number of all."""
+    asked = []
+
+    def line(t):
+        asked.append(t)
+        return 3.0 * t
+
+    def ranges(low, high):
+        return Enclosure((np.array([3.0 * low, 3.0 * high]), np.full((2, len(low)), 3.0)), 1)
+
+    assert zeros(line, ranges, 0.0, 2.0).tolist() == [0.0]
+    assert len(asked) < 10

@@ -136,7 +136,7 @@ def spun_up():
 
 def test_events_within_steps_count_too(monkeypatch):
     """IDA knows no event function of events that the search within its steps has found: a run of them did not end."""
-    monkeypatch.setattr(NativeIda, "roots", lambda ida: np.zeros(ida.n_event_functions, dtype=int))
+    monkeypatch.setattr(NativeIda, "roots", lambda ida: np.zeros(ida.watch.n_event_functions, dtype=int))
     found = solve(spun_up(), "bdf", duration=40.0)
     assert found.outcome is Outcome.STOPPED and "chatters: it has passed breakpoints" in found.message
 

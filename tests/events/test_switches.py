@@ -176,5 +176,5 @@ def test_an_event_beyond_the_noise_of_its_function_counts():
 
 
 def test_a_former_parameter_of_masking_is_told():
-    with pytest.raises(InputError, match="no event is left out by a number of steps"):
+    with pytest.raises(InputError, match="events are no longer left out after a number of steps"):
         solve(window(), "radau", tuning={"masking": {"few_steps": 1}})

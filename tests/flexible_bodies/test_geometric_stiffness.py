@@ -36,14 +36,19 @@ BODY = """
 
 def frequency(tension=lambda x: 0 * x, tip=0.0):
     """Return the lowest angular frequency of a clamped Bernoulli beam with a tension and a point mass at the end."""
+    return np.sqrt(lowest_eigenvalue(EI, tension, tip))
+
+
+def lowest_eigenvalue(bending_stiffness, tension, tip=0.0):
+    """Return the square of its lowest angular frequency, which is negative beyond buckling."""
     shapes = [Polynomial([0, 0, 1]) * Legendre.basis(k, domain=[0, LENGTH]).convert(kind=Polynomial) for k in range(10)]
     x, weights = np.polynomial.legendre.leggauss(30)
     x, weights = LENGTH * (x + 1) / 2, LENGTH * weights / 2
     w, slope, curvature = (np.array([shape.deriv(k)(x) for shape in shapes]) for k in (0, 1, 2))
     end = np.array([shape(LENGTH) for shape in shapes])
-    stiffness = (EI * weights * curvature) @ curvature.T + (weights * tension(x) * slope) @ slope.T
+    stiffness = (bending_stiffness * weights * curvature) @ curvature.T + (weights * tension(x) * slope) @ slope.T
     mass = (MASS / LENGTH * weights * w) @ w.T + tip * np.outer(end, end)
-    return np.sqrt(eigh(stiffness, mass, eigvals_only=True)[0])
+    return eigh(stiffness, mass, eigvals_only=True)[0]
 
 
 @pytest.fixture(scope="module")
@@ -219,6 +224,21 @@ def test_a_load_beyond_buckling_is_noted(folder):
     force = f"forces: {{P: {{type: force, i: bar.b, force: [{-5 * EULER}, 0, 0]}}}}\n"
     notes = run(scene(folder, CLAMP + force + RUN, run__duration="1 ms")).notes
     assert any("buckles, outside the second-order theory: use a body of type: beam" in note for note in notes)
+
+
+@pytest.mark.parametrize("presolve", ["true", "false"])
+def test_a_column_buckles_out_of_the_plane_of_its_loads(folder, presolve):
+    """A guide holds the end in the weaker direction; in the other one a tiny start grows at the rate of the beam."""
+    bending_stiffness = E * HEIGHT * WIDTH**3 / 12
+    load = 2 * np.pi**2 * bending_stiffness / (4 * LENGTH**2)
+    rate = np.sqrt(-lowest_eigenvalue(bending_stiffness, lambda x: -load + 0 * x))
+    guide = "  guide: {type: point_on_plane, i: bar.b, j: {body: ground, point: [0, 15 mm, 10 mm]}}\n"
+    rest = f"forces: {{P: {{type: force, i: bar.b, force: [{-load}, 0, 0]}}}}\n"
+    rest += "at_start: {push: {type: drive, coordinate: bar.modes1.y, position: 1e-11}}\n"
+    rest += f"run: {{duration: {20 / rate}, points: 41, rtol: 1e-8, solver: radau, presolve: {presolve}}}\n"
+    found = run(scene(folder, CLAMP + guide + rest))
+    deflection = np.abs(found["bar.b.y"] - 0.015)
+    assert np.log(deflection[-1] / deflection[-11]) / (5 / rate) == pytest.approx(rate, rel=2e-2)
 
 
 def test_the_note_on_a_mesh_with_one_interface_does_not_miss_a_mesh(folder):

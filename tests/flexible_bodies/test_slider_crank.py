@@ -8,7 +8,7 @@ import pytest
 from skfem import MeshHex, MeshHex2
 from skfem.io.meshio import to_meshio
 
-from stiffmbs import read_scene, run
+from stiffmbs import InputError, read_scene, run
 from stiffmbs.analyses.job import prepare
 from stiffmbs.flexible_bodies.reduced import reduced_body
 
@@ -132,3 +132,15 @@ def test_velocities_that_are_not_described_do_not_deform_a_body():
     expected, found = (prepare(read_scene(text, file=file)) for text in (file.read_text(), _changed({given: ""})))
     assert np.abs(expected.start.u).max() > RATE / 2
     np.testing.assert_allclose(found.start.u, expected.start.u, atol=1e-9 * RATE)
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        (("  motor:", "  rod.modes1_axes: {type: point_on_plane, i: slider, j: ground}\n  motor:"), "joints.rod.modes1_axes"),
+        (("  slider:\n", "  rod.modes1: {mass: 1, inertia: [1, 1, 1]}\n  slider:\n"), "bodies.rod.modes1"),
+    ],
+)  # fmt: skip
+def test_names_of_its_parts_are_taken(change, named):
+    with pytest.raises(InputError, match=f"{named}: found the name of a part of the flexible body rod"):
+        read_scene(_changed(dict([change])), file=EXAMPLE_SCENES["flexible_slider_crank"])

@@ -216,6 +216,7 @@ run: {duration: 0.02, points: 11, rtol: 1e-5, solver: radau}
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["tetra10", "tetra"])
 def test_modes_that_do_not_carry_a_load_and_elements_of_first_order_are_noted(tmp_path, kind):
     mesh_of_bar(kind, along=8, across=1).write(tmp_path / "bar.vtu")

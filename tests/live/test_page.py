@@ -230,7 +230,7 @@ def test_a_killed_server_leaves_the_text_and_another_on_its_port_receives_nothin
             "LIVE.editor.dispatch({changes: {from, to: from + 3, insert: '310'}}); })()"
         )
         tab.wait("!document.getElementById('banner').hidden")
-        assert "The text stays here" in tab.run("document.getElementById('banner').textContent")
+        assert "The text is still here" in tab.run("document.getElementById('banner').textContent")
         assert "310 N/m" in tab.run("LIVE.editor.state.doc.toString()")
         assert path.read_text(encoding="utf-8") == TEXT
         _, _, host, token, _ = url.split("/")

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 import stiffmbs
+from stiffmbs.cache import entries
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
 from stiffmbs.elements.own_elements import REGISTRY
 from stiffmbs.model import read_scene as reading
 from stiffmbs.model.files import scenes_read_before
-from stiffmbs.reading.files.read_before import folder_of_files
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = """
@@ -49,7 +49,7 @@ def reads(monkeypatch):
 
 
 def _kept():
-    return [entry for entry in folder_of_files().path.iterdir() if entry.name.startswith(scenes_read_before.SCENE)]
+    return [entry for entry in entries.folder().iterdir() if entry.name.startswith("scene-")]
 
 
 @pytest.mark.parametrize("example", ["cart_pendulum", "half_car", "car", "governor", "vehicles/leaf_sprung_car"])
@@ -185,15 +185,14 @@ def test_an_entry_whose_classes_are_gone_is_made_anew(scene, reads, monkeypatch)
 )  # fmt: skip
 def test_garbage_with_a_right_code_is_made_anew(scene, reads, garbage):
     stiffmbs.load_scene(scene)
-    folder = folder_of_files()
     for entry in _kept():
-        whole = folder.read(entry.name)
+        whole = entries.read(entry.name)
         head, _, content = whole.partition(b"\n")
         made = {
             "half": whole[: len(whole) // 2], "no scene": head + b"\n" + pickle.dumps([1]), "no head": content,
             "head alone": head, "other files": head.replace(b"{}", b'[["a", 1]]') + b"\n" + content,
         }  # fmt: skip
-        folder.write(entry.name, made.get(garbage, garbage))
+        entries.write(entry.name, made.get(garbage, garbage))
     assert stiffmbs.load_scene(scene).bodies["bar"].mass == 2
     assert len(reads) == 2
 
@@ -201,10 +200,9 @@ def test_garbage_with_a_right_code_is_made_anew(scene, reads, garbage):
 @pytest.mark.parametrize("garbage", [b"", b"[", b"\xff", b'{"bodies":'])
 def test_garbage_in_the_entry_of_a_text_is_read_anew(scene, garbage):
     stiffmbs.load_scene(scene)
-    folder = folder_of_files()
-    for entry in folder.path.iterdir():
+    for entry in entries.folder().iterdir():
         if entry.name.startswith("file-"):
-            folder.write(entry.name, folder.read(entry.name)[:40] + garbage)
+            entries.write(entry.name, entries.read(entry.name)[:40] + garbage)
         else:
             entry.unlink()
     assert stiffmbs.load_scene(scene).bodies["bar"].mass == 2

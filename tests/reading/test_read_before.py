@@ -1,14 +1,14 @@
 """YAML files whose content is kept from the run before: the same scene, and never that of another text."""
 
 import json
-import os
 
 import pytest
 
 import stiffmbs
+from stiffmbs.cache import entries
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
 from stiffmbs.reading.files import read_before
-from stiffmbs.reading.files.read_before import folder_of_files, read_yaml_file
+from stiffmbs.reading.files.read_before import read_yaml_file
 
 TEXT = "a: {b: [1, 2.5, 1e-3, true, null, 'x', .inf, -0.0], c: {}}\nd: &d [[], {e: f}]\ng: *d\n"
 
@@ -42,25 +42,7 @@ def test_a_changed_file_is_read_anew_and_takes_the_place_of_the_old_one(scene, r
     for k in (1, 2, 1):
         assert read_yaml_file(f"a: {k}", "scene", scene) == {"a": k}
     assert len(reads) == 3
-    assert len(list(folder_of_files().path.iterdir())) == 1
-
-
-@pytest.mark.parametrize(("files", "size"), [(4, 10_000), (100, 600)])
-def test_few_files_are_kept_the_latest_ones(scene, reads, monkeypatch, files, size):
-    """By their number or their size: a fifth file is one too many, as are 600 bytes."""
-    monkeypatch.setattr(read_before, "MOST_FILES", files)
-    monkeypatch.setattr(read_before, "MOST_BYTES", size)
-    scenes = [scene.with_name(f"{k}.yaml") for k in range(5)]
-    for k, file in enumerate(scenes):
-        read_yaml_file(f"a: {'x' * 60}", "scene", file)
-        for entry in folder_of_files().path.iterdir():
-            if k < 4 and entry.stat().st_mtime_ns > 1e18:
-                os.utime(entry, ns=(k, k))
-    assert len(list(folder_of_files().path.iterdir())) == 2
-    del reads[:]
-    for file in reversed(scenes[3:]):
-        read_yaml_file(f"a: {'x' * 60}", "scene", file)
-    assert not reads
+    assert len(list(entries.folder().iterdir())) == 1
 
 
 @pytest.mark.parametrize("text", ["1: a", "a: 2026-11-21", "a: !!set {b}", "a: !!binary aGk="])
@@ -72,7 +54,7 @@ def test_what_json_would_change_is_read_each_time(scene, reads, text):
 
 def test_an_entry_that_someone_else_wrote_is_not_believed(scene, reads):
     read_yaml_file("a: 1", "scene", scene)
-    (entry,) = folder_of_files().path.iterdir()
+    (entry,) = entries.folder().iterdir()
     stored = entry.read_bytes()
     entry.write_bytes(stored.replace(json.dumps({"a": 1}).encode(), json.dumps({"a": 2}).encode()))
     assert entry.read_bytes() != stored

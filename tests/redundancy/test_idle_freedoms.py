@@ -56,7 +56,8 @@ def test_dampers_alone_hold_nothing():
 def test_a_bushing_that_holds_the_turn_of_a_rod_on_two_balls_is_named(stiffness):
     model = slider_crank(0.7)
     model.add("sleeve", spatial.Bushing(i="rod", j="crank", stiffness=(1e8, 0, 0, stiffness, stiffness, stiffness)))
-    assert messages(model) == ["the joints let rod turn by itself between big_end and small_end; sleeve prevents it"]
+    (turn,) = [message for message in messages(model) if "by itself" in message]
+    assert turn == "the joints let rod turn by itself between big_end and small_end; sleeve prevents it"
 
 
 def hung(between=True):

@@ -229,7 +229,7 @@ def test_a_request_without_a_value_is_told():
 @pytest.mark.parametrize("name", ["bouncing_ball", "elastic_bearing", "half_car", "chain", "bar_pendulum"])
 def test_examples_have_no_note_of_balance_or_growth(name, solver):
     solution = stiffmbs.run(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"), solver=solver)
-    assert solution.notes == ()
+    assert [note for note in solution.notes if not note.startswith("the estimated error of")] == []
 
 
 def test_the_imbalance_is_that_of_all_instants_and_intervals():

@@ -218,6 +218,17 @@ def test_uncertain_turns_are_noted_unless_they_are_counted():
     np.testing.assert_allclose(counted["hinge.angle"], 1500 / frequency * np.sin(frequency * counted.time), atol=1e-2)
 
 
+def test_turns_are_uncertain_where_a_prediction_over_too_long_an_interval_agrees_by_chance():
+    """A torsional oscillation of 24 rad at 10 Hz with outputs at the ends: changes are known up to full turns."""
+    model = spatial.Model()
+    model.add("wheel", spatial.Body(mass=1, inertia=(0.3, 0.3, 0.5), omega=(0, 0, 1500)))
+    model.add("hinge", spatial.Revolute(i="wheel", j="ground"))
+    model.add("spring", spatial.TorsionSpring(i="wheel", j="ground", stiffness=2000.0))
+    for duration in np.linspace(0.5, 0.6, 12):
+        solution = stiffmbs.run(model, duration=duration, points=2)
+        assert any("the revolutions of hinge.angle are uncertain" in note for note in solution.notes), duration
+
+
 ARM = """
 dimensions: 3
 gravity: [0, 0, -9.81]

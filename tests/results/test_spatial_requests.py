@@ -5,6 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import InputError
+from stiffmbs.results.scales import scales
 from stiffmbs.results.solution import channel_ranges
 
 SCENE = """
@@ -204,6 +205,8 @@ def test_what_has_no_number_is_reported_as_none(tmp_path):
     scene = stiffmbs.read_scene(f"{{dimensions: 3, bodies: {bodies}, requests: {requests}, run: {{duration: 2}}}}")
     solution = stiffmbs.run(scene)
     ranges = channel_ranges(solution)
+    sizes = scales(solution.channels, 1.0, solution.requested)
+    assert sizes["root"] == sizes["over"] == 0 and sizes["half"] == 1 and sizes["under"] == 3
     assert np.isnan(ranges["root"]["max"])
     assert not np.isfinite(ranges["over"]["max"])
     assert ranges["late"]["max"] == pytest.approx(1.0)

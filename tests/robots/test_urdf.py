@@ -126,6 +126,7 @@ FAR = """<robot name="r"><link name="base"/><link name="arm"><inertial><origin x
 @pytest.mark.parametrize(
     ("place", "inertia"), [("1e160", "1"), ("-1e160", "1"), ("1e308", "1"), ("0", "1e308"), ("0", "1.7e308")]
 )
+@pytest.mark.filterwarnings("error")
 def test_numbers_beyond_all_bounds_are_refused(tmp_path, place, inertia):
     path = tmp_path / "far.urdf"
     path.write_text(FAR.format(place=place, inertia=inertia))

@@ -149,6 +149,14 @@ def test_a_run_stops_where_a_table_with_error_is_left(solver: str) -> None:
     assert timed.time[-1] == pytest.approx(0.2, abs=1e-9)
 
 
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_steps_end_soon_after_a_table_with_error_is_left(solver: str) -> None:
+    """They went on to the end of the run, which was then refused."""
+    seen: list[float] = []
+    run(spring(options=", beyond: error"), solver=solver, rtol=1e-6, duration=1e4, max_step=0.02, watch=seen.append)
+    assert max(seen) < 2e3
+
+
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_a_simulation_stops_before_a_table_with_error_is_left(solver: str) -> None:
     sim = simulation(spring(options=", beyond: error"), solver=solver)

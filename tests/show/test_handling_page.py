@@ -13,10 +13,10 @@ pytest.importorskip("jinja2")
 from stiffmbs.model.paths.lanes import STANDARDS
 from stiffmbs.show.handling import write_handling
 from stiffmbs.show.handling_figure import handling_figure
+from stiffmbs.studies.handling import study  # not its class Tested alone, which pytest would collect
 from stiffmbs.studies.handling.known import SEEN
 from stiffmbs.studies.handling.lane_changes import BEFORE, PART_1
 from stiffmbs.studies.handling.standards import TESTS
-from stiffmbs.studies.handling.study import Handling, Tested
 
 CHANNELS = ("time", "vehicle.x", "vehicle.y", "vehicle.ay", "vehicle.az", "vehicle.yaw_rate", "vehicle.speed", SEEN)
 RUN = {name: np.linspace(0.0, 200.0, 5) for name in CHANNELS}
@@ -33,24 +33,24 @@ def _found(angular: bool = True) -> Any:
         measured=(0.0, 0.0, 0.5),
         behind=lambda place: 1.2,
     )
-    return Handling("car", car, 0.1, {name: Tested(METRICS, [RUN]) for name in TESTS}, 1.8)
+    return study.Handling("car", car, 0.1, {name: study.Tested(METRICS, [RUN]) for name in TESTS}, 1.8)
 
 
 @pytest.mark.parametrize("test", TESTS)
 def test_axes_have_words_and_units(test):
-    (axes,) = handling_figure(_found(), test, Tested(METRICS, [RUN, RUN])).axes
+    (axes,) = handling_figure(_found(), test, study.Tested(METRICS, [RUN, RUN])).axes
     for label in (axes.get_xlabel(), axes.get_ylabel()):
         assert re.fullmatch(r"[a-z ]+ \((s|m|m/s|m/s²|rad|rad/s)\)", label), label
     assert len(axes.figure.legends) == 1
 
 
 def test_steering_by_a_rack_is_in_metres():
-    (axes,) = handling_figure(_found(angular=False), "constant_speed", Tested(METRICS, [RUN])).axes
+    (axes,) = handling_figure(_found(angular=False), "constant_speed", study.Tested(METRICS, [RUN])).axes
     assert axes.get_ylabel() == "steering (m)" and not axes.figure.legends
 
 
 def test_lane_changes_have_cones_and_the_path():
-    (axes,) = handling_figure(_found(), "lane_change", Tested(METRICS, [RUN])).axes
+    (axes,) = handling_figure(_found(), "lane_change", study.Tested(METRICS, [RUN])).axes
     lines = {line.get_label(): line.get_xydata() for line in axes.lines}
     lanes = STANDARDS[PART_1](1.8)
     assert {tuple(cone) for cone in lines["cones"]} == {

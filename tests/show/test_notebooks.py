@@ -25,6 +25,16 @@ def test_a_plot_is_shown_once(monkeypatch):
         sheet._ipython_display_()
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("cell", ["run.plot('bar.x')", "run.plot('bar.x');", "found = run.plot('bar.x'); found"])
+def test_a_cell_of_a_notebook_shows_one_picture(cell):
+    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
+    run = f"import stiffmbs; run = stiffmbs.run({str(EXAMPLES / 'bar_pendulum.yaml')!r}, duration=0.1, points=3)"
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(source) for source in (run, cell)])
+    nbclient.NotebookClient(notebook, timeout=300).execute()
+    assert sum("image/png" in output.get("data", ()) for output in notebook.cells[1].outputs) == 1
+
+
 def test_a_comparison_shows_its_table():
     found = stiffmbs.compare(
         EXAMPLES / "bar_pendulum.yaml", solvers=["bdf"], tolerances=[1e-4], repeats=1, duration=0.1

@@ -122,7 +122,7 @@ def test_bodies_that_turn_apart_are_seen_whatever_the_sign_of_their_quaternions(
 
 @pytest.mark.parametrize("width", [50, 80, 120])
 def test_names_of_elements_and_numbers_stay_whole_in_narrow_tables(width):
-    found = stiffmbs.run(swinging(TURN), **SETTINGS)
+    found = stiffmbs.run(swinging(TURN), **SETTINGS, errors=False)  # a bar shortens its number
     file = io.StringIO()
     Console(file=file, width=width).print(rich_table(*force_rows(found)))
     shown = file.getvalue()

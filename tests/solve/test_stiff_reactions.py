@@ -88,7 +88,7 @@ def test_interpolated_states_that_cannot_be_corrected_are_told():
 
 def test_states_between_output_times_are_not_told():
     """Radau left up to 51 states of the search for events open, which the note counted among 3 output times."""
-    run = "solver: radau, rtol: 1e-4, errors: false, tuning: {polishing: {most_corrections: 1}}"
+    run = "solver: radau, rtol: 1e-4, tuning: {polishing: {most_corrections: 1}}"
     notes = stiffmbs.run(pendulum(run, 1e14, STOP), points=3).notes
     assert [re.search("at (.*?) from", note).group(1) for note in notes if "interpolated" in note] == ["1 output time"]
 
@@ -193,9 +193,13 @@ def simulated(scene):
 
 
 def test_simulations_restart_without_a_change_of_stiff_forces():
-    """At jumps, and after the duration of the scene, the smallest move made reactions wrong by 1.4 times the largest."""
+    """At jumps, and after the duration of the scene, the smallest move made reactions wrong by 1.4 times the largest.
+
+    A force between bodies is as wrong as their accelerations, after a jump by a tolerance of velocities per step: 0.2 at 1e-4.
+    """
     exact = simulated(four_bar("solver: radau, rtol: 1e-10"))
-    assert error(simulated(four_bar("solver: bdf, rtol: 1e-4", 1e14)), exact) < 0.05
+    for rtol in (7e-5, 3e-5):
+        assert error(simulated(four_bar(f"solver: bdf, rtol: {rtol}", 1e14)), exact) < 0.05
 
 
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
@@ -214,7 +218,7 @@ def test_radau_closes_every_state_within_a_step(rigid_four_bar, stiffness, dampi
 
     Other reactions were wrong by 0.05: the projection onto the constraints had changed forces, and ended too early.
     """
-    found = stiffmbs.run(four_bar("solver: radau, rtol: 1e-4, errors: false", stiffness, damping))
+    found = stiffmbs.run(four_bar("solver: radau, rtol: 1e-4", stiffness, damping))
     assert error(found, rigid_four_bar) < 0.01
     assert not found.notes
 

@@ -185,7 +185,7 @@ def test_a_key_in_two_sections_that_it_does_not_belong_to_is_refused(read):
     ("old", "new", "said"),
     [
         ("PCX1 = 1.6", "PCX1 = 1.6x", "line 22: PCX1: found '1.6x', expected a number"),
-        ("PCX1 = 1.6", "PCX1 =", "line 22: found nothing behind '='"),
+        ("PCX1 = 1.6", "PCX1 =", "line 22: found no value after '='"),
         ("PCX1 = 1.6", "PKX1 = 1.6", "line 24: found PKX1 again, which line 22 has too"),
         ("PCX1 = 1.6", "", "found no PCX1, expected one"),
         ("PCX1 = 1.6", "PCX1 1.6", "line 22: found 'PCX1', expected a number"),
@@ -338,7 +338,7 @@ def test_a_key_without_a_value_that_no_formula_uses_is_noted_alone(tmp_path):
     assert found.coefficients == TyreProperties.from_file(EXAMPLES / "car.tir").coefficients
     assert any("AUTHOR" in note and "TYRESIZE" in note for note in found.notes())
     file.write_text(text.replace("PKX2 = 0.5", "PKX2 ="))
-    with pytest.raises(InputError, match=r"line 28: found nothing behind '=' of PKX2, expected a number"):
+    with pytest.raises(InputError, match=r"line 28: found no value after '=' of PKX2, expected a number"):
         TyreProperties.from_file(file)
 
 

@@ -89,7 +89,10 @@ class Contact(Numbered):
         found.without_effect("IMPACT", "NO_FRICTION")
         stiction = found.says("STICTION")
         if stiction not in ("", "ON", "OFF"):
-            raise found.fault(f"found STICTION = {stiction}, expected ON or OFF", "STICTION")
+            raise found.fault(
+                f"found STICTION = {stiction}, expected ON or OFF; a velocity is STICTION_TRANSITION_VELOCITY",
+                "STICTION",
+            )
         if stiction == "OFF":
             found.without_effect("STICTION", "MAX_STICTION_DEFORMATION")
 

@@ -53,7 +53,9 @@ def _of_line(values: Values, found: np.ndarray, levels: np.ndarray, rising: bool
     """Return the crossings of a straight line to the last digit, from values that rounding has moved."""
     low, high = found - RANGE_ROUNDING * size, found + RANGE_ROUNDING * size
     closed = ((values(low) < levels) == rising) & ((values(high) > levels) == rising) & (values(found) != levels)
-    return np.where(closed, _bisected(values, low, high, levels, np.full(len(found), rising)), found)
+    if closed.any():
+        found[closed] = _bisected(values, low[closed], high[closed], levels[closed], np.full(closed.sum(), rising))
+    return found
 
 
 def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels: np.ndarray) -> Iterator[np.ndarray]:

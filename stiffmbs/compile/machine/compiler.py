@@ -13,9 +13,9 @@ from pathlib import Path
 from threading import RLock
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from ...cache import entries
 from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
-from . import cache as store
 
 if TYPE_CHECKING:
     from llvmlite import binding as llvm
@@ -104,7 +104,7 @@ def compiled_source(source: str, name: str, signature: str, of: Description = _U
 
     unrolled = SERIES in source or FLEXIBLE in source
     settings = repr((unrolled, level))
-    entry = store.name_of(store.KERNEL, source, _language(), _called(GEOMETRY in source), signature, settings)
+    entry = entries.name_of("kernel", machine(), source, _language(), _called(GEOMETRY in source), signature, settings)
     return _loaded(entry, _Source(((name, signature),), namespace, of.words, source, unrolled, level))[name]
 
 
@@ -130,13 +130,25 @@ def compiled_routines(
     `changed` names the parameters in use that differ from the defaults (`stiffmbs.tuning.values_in`).
     """
     settings = repr((signatures, unrolled, level))
-    entry = store.name_of(store.ROUTINE, _language(), _native(module.partition(".")[0]), module, settings, changed)
+    entry = entries.name_of(
+        "routine", machine(), _language(), _native(module.partition(".")[0]), module, settings, changed
+    )
     words = f"the routines {module.rpartition('.')[2]}"
 
     def namespace() -> Mapping[str, object]:
         return vars(importlib.import_module(module))
 
     return _loaded(entry, _Source(signatures, namespace, words, unrolled=unrolled, level=level))
+
+
+@cache
+def machine() -> str:
+    """Return a digest of the processor and of the version of LLVM, on which machine code depends."""
+    import llvmlite
+    import llvmlite.binding as llvm
+
+    features = llvm.get_host_cpu_features().flatten()
+    return entries.digest(llvm.get_process_triple(), llvm.get_host_cpu_name(), features, llvmlite.__version__)
 
 
 @cache
@@ -156,13 +168,13 @@ def _native(package: str) -> str:
 
 def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
     with _ONE_AT_A_TIME:
-        code = _unpacked(entry, store.own_folder().read(entry))
+        code = _unpacked(entry, entries.read(entry))
         found = _linked(code, entry, source.signatures) if code else None
         if found is None:
             LOGGER.info("compiling %s", source.of)
             with uncollected():
                 code = _object_code(source, _symbol(entry, ""))
-            store.own_folder().write(entry, _header(entry, code) + code)
+            entries.write(entry, _header(entry, code) + code)
             found = _linked(code, entry, source.signatures)
     assert found is not None, entry
     return found

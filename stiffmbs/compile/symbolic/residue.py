@@ -1,4 +1,4 @@
-"""Value of a rational function modulo a prime, whose digits stay few whatever the powers."""
+"""Value of a rational function modulo a prime, whose digits stay few for any powers."""
 
 from __future__ import annotations
 

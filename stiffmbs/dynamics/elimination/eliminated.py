@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Iterator
 from itertools import accumulate, combinations
 from typing import NamedTuple
@@ -15,6 +14,7 @@ from ...compile.machine.layout import arrays_of, fill, packed
 from ...compile.machine.routines import together
 from ...compile.state import State
 from ...compile.system import System
+from ...sparse.minimum_degree import minimum_degree
 from ..native.layouts import ELIMINATED
 from ..native.parameters import ELIMINATION
 from ..saddle_point import ACCELERATIONS
@@ -71,15 +71,18 @@ class Eliminated:
             self._lists = of_pins or block_lists(joints, system, kept)
             force, gamma = (system.term("acceleration", name) for name in ("f", "gamma"))
             own = np.flatnonzero(solved[gamma.row])
+            scale = self._lists.get("pivot_scale", np.zeros(0))
+            self._largest_scale = np.zeros_like(scale)
             arrays = {
                 "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u + 3),
                 "q_before": np.zeros(system.n_q), "u_before": np.zeros(system.n_u),
                 "left": np.zeros(system.n_c), "sizes": np.zeros(system.n_c),
                 "j_source": jacobian.source[kept], "j_row": jacobian.row[kept], "j_column": jacobian.column[kept],
                 "gamma_source": gamma.source[own], "gamma_row": gamma.row[own],
-                "lists": packed(layout, self._lists),
+                "lists": packed(layout, self._lists), "pivot_scale": scale, "largest_scale": self._largest_scale,
             }  # fmt: skip
             numbers = {
+                "n_scales": len(scale),
                 "n_u": system.n_u,
                 "n_f": len(force.source),
                 "n_j": len(kept),
@@ -106,9 +109,8 @@ class Eliminated:
     def forget(self) -> None:
         """Reset the largest pivots, so that rounding in a run does not depend on earlier runs."""
         self._cells["most_kept"] = 0.0
-        scale = self._lists.get("pivot_scale") if self.serves else None
-        if isinstance(scale, np.ndarray):
-            scale[:] = 0.0
+        if self.serves:
+            self._largest_scale[:] = 0.0
 
 
 def _bodies(joint: np.ndarray, body: np.ndarray) -> dict[int, list[int]]:
@@ -138,11 +140,7 @@ def _are_trees(bodies_of: list[list[int]]) -> bool:
 
 
 def _balanced_order(bodies: dict[int, list[int]], count: int) -> list[int]:
-    """Return an order of the joints with little fill-in: minimum degree on joints that share a body.
-
-    Ties are resolved in favour of the smallest number of successive dependent pivots.  A chain is thus eliminated
-    from both ends, with two independent pivots at a time.
-    """
+    """Return an order of the joints with little fill-in: minimum degree on joints that share a body."""
     around: list[set[int]] = [set() for _ in range(count)]
     of_body: dict[int, set[int]] = {}
     for one, places in bodies.items():
@@ -151,24 +149,7 @@ def _balanced_order(bodies: dict[int, list[int]], count: int) -> list[int]:
     for meeting in of_body.values():
         for one in meeting:
             around[one] |= meeting - {one}
-    level = [0] * count
-    queue = [(len(others), 0, one) for one, others in enumerate(around)]
-    heapq.heapify(queue)
-    order: list[int] = []
-    gone: set[int] = set()
-    while queue:
-        degree, depth, one = heapq.heappop(queue)
-        if one in gone or (degree, depth) != (len(around[one]), level[one]):
-            continue
-        gone.add(one)
-        order.append(one)
-        for other in around[one]:
-            around[other] |= around[one]
-            around[other] -= {one, other}
-            level[other] = max(level[other], depth + 1)
-        for other in around[one]:
-            heapq.heappush(queue, (len(around[other]), level[other], other))
-    return order
+    return [one for one, _ in minimum_degree(around, range(count), balanced=True)]
 
 
 NOTHING = np.zeros(3)

@@ -1,4 +1,7 @@
-"""Memory layouts of the dynamics and of elimination."""
+"""Memory layouts of the dynamics and of elimination.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from stiffmbs.compile.machine.layout import CACHE_LINE, FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
 
@@ -31,13 +34,14 @@ JUDGED = (
 
 ELIMINATED = Layout({
     "state": INTS, "n_u": INT, "trees": INT, "by_pins": INT, "lists": INTS,
-    "ready": INT_CELL, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
+    "ready": INT_CELL, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL, "n_scales": INT, "pivot_scale": FLOATS, "largest_scale": FLOATS,
     "n_f": INT, "f_source": INDICES, "f_row": INDICES, "scale": FLOATS, "a": FLOATS,
     "attempt": INT_CELL, "factor": INT_CELL, "move": INT_CELL, "q_before": FLOATS, "u_before": FLOATS, "left": FLOATS, "sizes": FLOATS, "least": FLOAT_CELL, "log_mass": FLOAT_CELL,
     "n_j": INT, "j_source": INDICES, "j_row": INDICES, "j_column": INDICES, "n_gamma": INT, "gamma_source": INDICES, "gamma_row": INDICES,
 })  # fmt: skip
 """Elimination of J M^-1 J^T (`stiffmbs.dynamics.elimination.eliminated`).  `trees` is 1 if no joint closes a loop; `by_pins`
 tells the kind of the table `lists`.  `ready` is 1 if there are factors; `kept` and `most_kept` are the relative
-sizes of their pivots now and at most.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
+sizes of their pivots now and at most; then the scale of each pivot, its diagonal entry now or, if that is larger, at the
+end of a step of the run: an equation may vanish at a pose.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
 state; residuals of J u' = gamma, sizes of their terms, the least allowed residual, and log det M; entries of J and gamma in solved
 equations among the acceleration terms."""

@@ -25,7 +25,7 @@ def length(*parts: Expr, tiny: Expr = TINY) -> Expr:
 def magnitude(e: Symbolic, *parts: Expr) -> Expr:
     """Return the magnitude of a load and record its breakpoint at zero.
 
-    A vector has a kink where all components are zero. One that passes close by turns within a short time: a step that
+    A vector has a kink where all components are zero. One that passes close to zero changes its direction within a short time: a step that
     ends where a component is zero resolves both.
     """
     if len(parts) == 1:

@@ -18,7 +18,6 @@ class ForceAlongLine(Force, Generic[M]):
 
     kind = "line_force"
     reflected = {}
-    symmetric_with = {"i": "point", "j": "point"}
     spin_conditions = {"i": "point", "j": "point"}
 
     i: M = Field(description="marker of the first body, on which the force is reported")

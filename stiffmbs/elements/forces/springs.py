@@ -47,7 +47,6 @@ class LineSpring(Spring, Generic[M]):
 
     kind = "spring_damper"
     reflected = {}
-    symmetric_with = {"i": "point", "j": "point"}
     spin_conditions = {"i": "point", "j": "point"}
     forms = (
         {"stiffness": ..., "damping": ..., "free_length": ...},

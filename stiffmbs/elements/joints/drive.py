@@ -46,7 +46,6 @@ class Drive(Joint):
     """
 
     kind = "drive"
-    symmetric_with = {"i": "body", "j": "body"}
     reflected = {"prescribed_position": "joint", "prescribed_velocity": "joint"}
     equations = ("motion",)
     channels = ("effort",)

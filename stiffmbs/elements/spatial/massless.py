@@ -21,7 +21,8 @@ NO_MOMENT = 1e-12
 def massless_moment(least: float, places: Iterable[np.ndarray]) -> float:
     """Return a moment of inertia that is negligible next to the lightest mass at the mechanism's reach, kg m^2."""
     points = np.array([np.zeros(3), *places])
-    reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
+    with np.errstate(over="ignore"):  # numbers beyond all bounds are refused when the scene is read
+        reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     return MASSLESS * least * reach**2
 
 

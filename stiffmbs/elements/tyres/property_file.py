@@ -116,7 +116,7 @@ class PropertyFile:
         if entry is None:
             raise InputError(f"{self.source}: found no {key}, expected one" + (f" in [{home}]" if home else ""))
         if not entry.text:
-            raise InputError(f"{self.source}, line {entry.line}: found nothing behind '=' of {key}, expected a number")
+            raise InputError(f"{self.source}, line {entry.line}: found no value after '=' of {key}, expected a number")
         return finite_number(entry.text, f"{self.source}, line {entry.line}: {key}") * self.factor(dimension)
 
     def factor(self, dimension: str) -> float:

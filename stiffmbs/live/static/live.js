@@ -57,7 +57,7 @@ const LIVE = (() => {
   function lose() {
     if (lost) return;
     lost = true;
-    banner("The server of this page has ended, and the page sends nothing any more. The text stays here: download it, and run 'stiffmbs open' again for a new address.", true,
+    banner("The server of this page has ended, so the page is no longer connected. The text is still here: download it, and run 'stiffmbs open' again for a new address.", true,
       ["Download scene", () => download("scene.yaml", text())]);
     verdict("error", "no connection to the solver");
     const retry = setInterval(async () => {

@@ -17,18 +17,16 @@ from pathlib import Path
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
-from ...cache.entries import digest
+from ...cache import entries
+from ...cache.installed import installed_version
 from ...cache.source_files import digest_of, files_within
 from ...interrupts import uncollected
 from ...reading.files.files_read import digest_of_file, recorded
-from ...reading.files.read_before import folder_of_files, keep
 from ...reading.files.unchanged import Unchanged
 
 if TYPE_CHECKING:
     from ..scene import Scene
 
-SCENE = "scene"
-"""Prefix of the names of the entries."""
 MOST_ELEMENTS, LARGEST = 5000, 5_000_000
 """Largest number of bodies, joints and forces of a cached scene, and largest size of its entry, bytes."""
 OF_SCENES = frozenset(("stiffmbs", "ast", "builtins", "collections", "numpy", "pathlib"))
@@ -41,9 +39,9 @@ def read_scene_file(text: str, changes: Sequence[tuple[str, object]], source: st
     `text`: text of the file. `source`: name of the scene in messages.
     """
     with uncollected():
-        name = f"{SCENE}-{digest(str(file.resolve()), str(file), source, repr([tuple(pair) for pair in changes]))}"
+        name = entries.name_of("scene", str(file.resolve()), str(file), source, repr([tuple(pair) for pair in changes]))
         may_be_kept = all(type(value) is str for _, value in changes)
-        stored = folder_of_files().read(name) if may_be_kept else None
+        stored = entries.read(name) if may_be_kept else None
         found = _scene_in(stored, text) if stored is not None else None
         return found or _read(text, changes, source, file, name if may_be_kept else "")
 
@@ -57,7 +55,7 @@ def _read(text: str, changes: Sequence[tuple[str, Any]], source: str, file: Path
     if name and len(scene.bodies) + len(scene.joints) + len(scene.forces) <= MOST_ELEMENTS:
         content = _pickled(scene)
         if content is not None and len(content) <= LARGEST:
-            keep(name, json.dumps([digest(text), _reader(), others]).encode() + b"\n" + content)
+            entries.write(name, json.dumps([entries.digest(text), _reader(), others]).encode() + b"\n" + content)
             return _unpickled(content) or scene  # the same objects are shared as in a later process
     return scene
 
@@ -67,7 +65,7 @@ def _scene_in(stored: bytes, text: str) -> Scene | None:
     head, _, content = stored.partition(b"\n")
     try:
         of_text, reader, others = json.loads(head)
-        if of_text != digest(text) or reader != _reader():
+        if of_text != entries.digest(text) or reader != _reader():
             return None
         if any(digest_of_file(file) != found for file, found in others.items()):
             return None
@@ -95,7 +93,8 @@ def _reader() -> str:
     package = Path(__file__).parents[2]
     rooms = "reading", "flexible_bodies", "elements", "model"
     files = [package / "solver_names.py", *(file for room in rooms for file in files_within(package / room))]
-    return digest(sys.version, numpy.__version__, pydantic.VERSION, digest_of(files))
+    versions = sys.version, numpy.__version__, pydantic.VERSION, installed_version("ruamel.yaml")
+    return entries.digest(*versions, digest_of(files))
 
 
 def _pickled(scene: Scene) -> bytes | None:

@@ -1,53 +1,39 @@
-"""Cache folder of file contents that were read before, and the content of YAML files in it.
+"""Contents of YAML files that were read before.
 
-Each file has one entry, which is replaced when the file changes. The oldest entries are removed beyond the limits.
+Each file has one entry, which is replaced when the file changes.
 """
 
 from __future__ import annotations
 
 import json
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 
-from ...cache.entries import Folder, digest, tag_of
+from ...cache import entries
 from ...cache.installed import installed_version
 from .yaml_text import read_yaml
 
 FORMAT = "1"
 """Version of the entries; increase it when the reading of YAML changes."""
-MOST_FILES, MOST_BYTES = 1000, 50_000_000
-"""Limits on the number of entries and on their total size in bytes."""
-FILE = "file"
-"""Prefix of the names of the entries."""
-
-
-@cache
-def folder_of_files() -> Folder:
-    """Return the folder for this version of the package and of the YAML reader."""
-    from ... import __version__
-
-    return Folder("files", tag_of(FORMAT, __version__, installed_version("ruamel.yaml")))
-
-
-def keep(name: str, content: bytes) -> None:
-    """Write an entry, and remove the oldest entries beyond the limits."""
-    folder_of_files().write(name, content)
-    folder_of_files().keep_newest(MOST_FILES, MOST_BYTES)
+LARGEST = 50_000_000
+"""Largest size of an entry, bytes: aliases can expand a text."""
 
 
 def read_yaml_file(text: str, source: str, file: Path | None) -> object:
     """Read the text of a YAML file as `read_yaml`, or its content from the cache; without a file, nothing is cached."""
     if file is None:
         return read_yaml(text, source)
-    name, version = f"{FILE}-{digest(str(file.resolve()))}", digest(text)
-    stored = folder_of_files().read(name)
+    from ... import __version__
+
+    name = entries.name_of("file", FORMAT, __version__, installed_version("ruamel.yaml"), str(file.resolve()))
+    version = entries.digest(text)
+    stored = entries.read(name)
     if stored is not None and stored.startswith(version.encode()):
         with suppress(ValueError):  # an entry not written by this package
             return json.loads(stored[len(version) :])
     found = read_yaml(text, source)
-    if _is_plain(found) and len(content := json.dumps(found)) <= MOST_BYTES:  # aliases can expand a text
-        keep(name, f"{version}{content}".encode())
+    if _is_plain(found) and len(content := json.dumps(found)) <= LARGEST:
+        entries.write(name, f"{version}{content}".encode())
     return found
 
 

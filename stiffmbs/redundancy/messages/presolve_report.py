@@ -61,10 +61,7 @@ def _of_bodies(whole: System, subsystem: Subsystem) -> Iterator[str]:
 
 def _left_out(dynamics: Dynamics) -> Iterator[str]:
     system, coordinates = dynamics.system, dynamics.coordinates
-    if coordinates.at_rest:
-        names = listed(_names(system, coordinates.at_rest))
-        yield f"out-of-plane modes that no load excites left out: {names}"
-    still = [k for k in np.flatnonzero(coordinates.independent_of == FIXED).tolist() if k not in coordinates.at_rest]
+    still = np.flatnonzero(coordinates.independent_of == FIXED).tolist()
     if still:
         yield f"coordinates fixed by constant equations: {listed(list(dict.fromkeys(_names(system, still))))}"
     tied = np.flatnonzero((coordinates.independent_of != FIXED) & ~coordinates.independent).tolist()

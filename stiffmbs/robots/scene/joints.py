@@ -71,7 +71,7 @@ def _heavy(link: Link, masses: Masses) -> dict[str, object]:
         axes = np.linalg.eigh(tensor)[1]
         tensor = (axes * np.maximum(moments, 0.0)) @ axes.T
     if moments[-1] <= MOMENT_ROUNDING * masses.moment:
-        tensor = masses.moment * np.eye(3)
+        tensor = np.diag([masses.moment] * 3)
     elif lacks_inertia(tensor):
         tensor = filled(tensor, masses.moment)
     if breaks_triangle(tensor):

@@ -1,4 +1,7 @@
-"""Tables of variational equations."""
+"""Tables of variational equations.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from typing import Final
 

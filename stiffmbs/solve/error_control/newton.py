@@ -9,7 +9,6 @@ import numpy as np
 
 from ...compile.system import System, Term
 from ...dynamics.dynamics import Dynamics
-from ...model.settings import RunSettings
 from .native.parameters import NEWTON, POLISHING
 
 
@@ -58,11 +57,6 @@ def row_sums_of(dynamics: Dynamics) -> tuple[RowSums, RowSums]:
 def _row_sums(system: System) -> tuple[RowSums, RowSums]:
     f_q, f_u = system.term("tangent", "f_q"), system.term("tangent", "f_u")
     return row_sums(f_q, system.mass, system.mass_by_coordinate), row_sums(f_u, system.mass, system.mass)
-
-
-def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
-    """Return the part of the error tolerance that Newton's iteration may leave."""
-    return max(min(NEWTON.loosest, stiffness.allowed_residual), NEWTON.negligible, NEWTON.precision / settings.rtol)
 
 
 class RowSums(NamedTuple):

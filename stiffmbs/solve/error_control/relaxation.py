@@ -69,25 +69,6 @@ class Drift(NamedTuple):
         return kind(self.joint, velocity=velocity, drift=max(self.mean, self.at_end), reason=reason)
 
 
-def relax(dynamics: Dynamics, settings: RunSettings, t: float, factor: float = 1.0) -> None:
-    """Set the relaxations of all rows at the current state, times the factor of the integrator.
-
-    They are the diagonals of E_mu = eps C_q C_q^T and E_lam = eps J M^-1 J^T, with eps in proportion to the tolerance.
-    The drift in tolerances then does not depend on the sizes of lengths, angles, masses and forces.  M is the inertia of the heaviest body at an arm as
-    long as the mechanism: light bodies and small moments of inertia may carry its weight.
-    """
-    state, system = dynamics.state, dynamics.system
-    if not system.n_c:
-        return
-    state.evaluate("motion", t)
-    positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
-    C_q, J = state.values["motion"][positions.source], state.values["motion"][velocities.source]
-    of_positions = np.bincount(positions.row, C_q * C_q, minlength=system.n_c)
-    of_velocities = np.bincount(velocities.row, J * J * inverse_mass(dynamics)[velocities.column], minlength=system.n_c)
-    found = drift_of_positions(settings), drift_of_velocities(settings, system)
-    state.relax(factor * found[0] * of_positions, factor * found[1] * of_velocities)
-
-
 def drift_of_positions(settings: RunSettings) -> float:
     """Return E_mu of a row of C_q with a single entry 1."""
     return RELAXATION.of_positions * _factor(settings)

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...compile.written_values import writer
 from ...dynamics.dynamics import Dynamics
+from ...dynamics.friction_loads import REMEDY, ambiguous_loads_clause
 from ...errors import ChatteringError, SolverError
 from ...tuning import tuned
 from .discontinuity import JUMP, noise_of, sliding
@@ -65,7 +66,7 @@ class Chattering:
         element.
         """
         if self._any:
-            self.refuse(t, sliding(self._dynamics, t, q, u))
+            self.refuse(t, q, u, sliding(self._dynamics, t, q, u))
 
     def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
         """Check a state after `steps` steps of the run.
@@ -74,7 +75,7 @@ class Chattering:
         SolverError if the steps are too short to reach the end.
         """
         if self._any:
-            self.refuse(t, sliding(self._dynamics, t, q, u, self._reach))
+            self.refuse(t, q, u, sliding(self._dynamics, t, q, u, self._reach))
         since, before = self._mark or (t, steps)
         if steps - before < CHATTERING.steps_seen:
             self._mark = since, before
@@ -99,7 +100,9 @@ class Chattering:
             return
         first, middle, last = (self._events[k] for k in (0, CHATTERING.window, 2 * CHATTERING.window))
         if self._to_come(middle - first, last - middle) > CHATTERING.too_many:
-            self.refuse(t, sliding(self._dynamics, t, q, u))
+            self.refuse(t, q, u, sliding(self._dynamics, t, q, u))
+            if loads := _of_loads(self._dynamics, t, q, u):
+                raise ChatteringError(f"stopped at t = {t:.9g} s: {loads}")
             name = (
                 f"'{writer(self._dynamics.system, 'event_function', event_function)}'"
                 if event_function >= 0
@@ -125,16 +128,29 @@ class Chattering:
         growing = CHATTERING.least_power < power < CHATTERING.largest_power
         return self._count * math.exp(min(steady / self._count, 100.0)) if growing else steady
 
-    def refuse(self, t: float, event_functions: np.ndarray) -> None:
+    def refuse(self, t: float, q: np.ndarray, u: np.ndarray, event_functions: np.ndarray) -> None:
         """Raise a ChatteringError that names the first of some event functions, if there are any."""
         if len(event_functions):
-            raise ChatteringError(f"stopped at t = {t:.9g} s: {jump_sentence(self._dynamics, int(event_functions[0]))}")
+            sentence = _of_loads(self._dynamics, t, q, u) or jump_sentence(self._dynamics, int(event_functions[0]))
+            raise ChatteringError(f"stopped at t = {t:.9g} s: {sentence}")
+
+
+def _of_loads(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
+    """Return a sentence on friction with several solutions, between which a motion may change without end."""
+    clause = ambiguous_loads_clause(dynamics, t, q, u)
+    return f"{clause}, between which the motion changes without end; {REMEDY}" if clause else ""
 
 
 def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
     """Return a sentence on a chattering force."""
+    name = writer(dynamics.system, "event_function", event_function)
+    if name in dynamics.system.forces_by_reactions:
+        return (
+            f"'{name}' chatters: its load or speed changes sign, and the accelerations on both sides drive the motion back to "
+            f"that sign change, so that no solution exists beyond; {REMEDY}"
+        )
     return (
-        f"'{writer(dynamics.system, 'event_function', event_function)}' chatters: the force jumps, for example because its sign changes where "
+        f"'{name}' chatters: the force jumps, for example because its sign changes where "
         "the motion comes to rest, and the accelerations on both sides drive the motion back to the jump, so that no solution "
         "of this law exists beyond; expected a steep, continuous force there: joint_friction with its stiction_velocity, or tanh(v/0.001) in place of sign(v)"
     )
@@ -169,10 +185,12 @@ class HoveringEvents:
             noise = noise_of(self._dynamics, t, q, u, self._rtol)
             hovering = at_zero[farthest[at_zero] <= noise[at_zero]]
             if len(hovering):
-                self._chattering.refuse(t, sliding(self._dynamics, t, q, u))
+                self._chattering.refuse(t, q, u, sliding(self._dynamics, t, q, u))
                 self.band[hovering] = noise[hovering]
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Return a sentence on a force that drives the motion back from both sides of its jump; empty if there is none."""
         found = sliding(self._dynamics, t, q, u) if self.any else self.band
-        return jump_sentence(self._dynamics, int(found[0])) if len(found) else ""
+        return (
+            (_of_loads(self._dynamics, t, q, u) or jump_sentence(self._dynamics, int(found[0]))) if len(found) else ""
+        )

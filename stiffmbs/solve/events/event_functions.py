@@ -12,10 +12,11 @@ from ...compile.system import System
 from ...compile.terms import TERM_SETS
 from ...compile.written_values import writer
 from ...dynamics.dynamics import Dynamics
+from ...errors import SolverError
 from .chattering import CHATTERING
 from .departures import Departure, departures
 from .long_steps import WHOLE
-from .native.layouts import EVENT_SEARCH, STEP_BOUND
+from .native.layouts import ALWAYS, EVENT_SEARCH, STEP_BOUND
 
 NODES = len(WHOLE)
 """Number of interpolation nodes of a step."""
@@ -40,7 +41,7 @@ class EventSearch:
             system.n_event_functions,
             system.n_q + system.n_u,
         )
-        self.n, self.found, self._lands = n, np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
+        self.n, self.found = n, np.zeros(n, dtype=np.int64)
         self.n_event_functions = n_event_functions
         self.band, self.farthest = np.zeros(n_event_functions), np.zeros(n_event_functions)
         self.table = np.zeros(len(EVENT_SEARCH), dtype=np.int64)
@@ -58,7 +59,7 @@ class EventSearch:
         self._within = np.zeros((2, n))
         self._extent = {name: np.empty(n) for name in ("lowest", "highest", "outside", "left")}
         self._arrays = {
-            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "lands": self._lands, "kinked": intervals.kinks, "tables": intervals.tables, "n_with_intervals": intervals.zoned,
+            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(intervals.turns), "turn": intervals.turns, "radians": intervals.radians, "kinked": intervals.kinks, "tables": intervals.tables, "n_with_intervals": intervals.zoned,
             "n": n, "n_event_functions": n_event_functions, "band": self.band, "farthest": self.farthest,
             "first_breakpoint": intervals.first, "breakpoints": self._breakpoints, "overlap": self._overlap, "period": intervals.period, **{name: np.zeros(n) for name in work}, "interval_low": self._within[0], "interval_high": self._within[1], "found": self.found,
             "n_state": n_state, "n_lam": n_lam, "lam": np.zeros(n_lam), "by_accelerations": int(n_lam > 0 or len(system.algebraic_coordinates) > 0), "n_nodes": NODES, "node": WHOLE, "weight": weight,
@@ -71,7 +72,7 @@ class EventSearch:
         """End steps at the kinks of tables from now on."""
         if self.n:
             intervals = intervals_of(self._system)
-            self._lands[:] = intervals.kinks
+            self._cells["at_kinks"] = ALWAYS
             self._overlap[np.repeat(intervals.kinks, np.diff(intervals.first)) > 0] = 0.0
 
     def begin(self) -> None:
@@ -116,6 +117,11 @@ class EventSearch:
             return ()
         found = zip(*(values[self.n_event_functions :].tolist() for values in self._extent.values()), strict=True)
         return departures(self._system, found)
+
+    def refuse_departures(self, t: float) -> None:
+        """Raise a SolverError if the steps up to t have left a table with ``beyond: error``."""
+        if left := [each for each in self.departures() if each.table.beyond == "error"]:
+            raise SolverError(f"stopped at t = {t:.9g} s: the table '{left[0].label}' of '{left[0].element}' was left")
 
     def note(self) -> str:
         """Return a sentence on a periodic law with more periods than steps; empty if there is none."""

@@ -6,16 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.machine.compiler import SHORT
-from ...compile.machine.layout import addresses
-from ...compile.machine.routines import Routine
 from ...compile.state import LEFT_OPEN
 from ...dynamics.algebraic_states import failure
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...tuning import tuned
-from .native.parameters import INDISTINCT
 
 
 @dataclass(frozen=True)
@@ -33,23 +29,6 @@ class RestartParameters:
 
 RESTARTS = tuned("restarts", RestartParameters())
 
-GONE_PAST = Routine(
-    "stiffmbs.solve.events.native.sides",
-    "gone_past",
-    "float64(float64, float64, int64, float64*, float64*, int64*)",
-    level=SHORT,
-)
-
-
-def just_before(t: float) -> float:
-    """Return the first instant that counts as t."""
-    return t - INDISTINCT * abs(t)
-
-
-def just_after(t: float) -> float:
-    """Return the last instant that counts as t: IDA refuses to start towards one nearer than two roundings."""
-    return t + INDISTINCT * abs(t)
-
 
 def straight_on(t: float, step: float, rtol: float) -> float:
     """Return the time, s, of extrapolation after an event at t; at least the interval that rounding may hide."""
@@ -62,45 +41,12 @@ def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, projec
     `t`: s. `q`, `u` of shapes (n_q,), (n_u,). `project`: if True, q and u are first projected onto the constraints.
     Raises SolverError if the constraints cannot be satisfied or are dependent, or if accelerations are not determined.
     """
-    _take(dynamics, t, q, u, project)
-    return _at_hand(dynamics, t)
-
-
-def restarted_past(
-    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, ahead: float
-) -> tuple[InitialValues, float]:
-    """Return consistent values after an event, at its time or slightly later, and their time.
-
-    The projection may move the state back before the event, and another event function may change at the same time.
-    Where one changes within the extrapolated motion, the motion restarts after that change. `t`: s. `q`, `u` of shapes
-    (n_q,), (n_u,). `ahead`: time of extrapolation, s (`straight_on`); 0 for none.
-    """
-    _take(dynamics, t, q, u)
-    if ahead:
-        t += _gone_past(dynamics, t, ahead)
-    return _at_hand(dynamics, t), t
-
-
-def _gone_past(dynamics: Dynamics, t: float, ahead: float) -> float:
-    """Extrapolate the current state past changes of event functions; return the time by which it has moved, s."""
-    count = dynamics.system.n_event_functions
-    dynamics.state.load("event_function")
-    memory = np.empty(len(dynamics.state.q)), np.empty(count)  # alive while compiled code uses it
-    return float(GONE_PAST.short_call(t, ahead, count, *addresses(*memory, dynamics.table)))
-
-
-def _take(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> None:
-    """Set the state to given values, projected onto the constraints."""
     state = dynamics.state
     state.q[:], state.u[:] = q, u
     if project and dynamics.system.n_c:
         status = dynamics.assemble(t)
         _go_on(dynamics, status, t, "" if status >= 0 else _no_longer_redundant(dynamics, t, q))
         _go_on(dynamics, dynamics.correct_velocities(t), t)
-
-
-def _at_hand(dynamics: Dynamics, t: float) -> InitialValues:
-    state = dynamics.state
     state.restart_counters(t)
     status, acceleration = dynamics.accelerate(t)
     _go_on(dynamics, status, t)

@@ -71,6 +71,7 @@ class Integration:
         )
         self._long_steps.forget()
         self._watch.end_steps_at_kinks()
+        self._watch.follow_reactions(dynamics)
         self._watch.resolve(grid.end - grid.start)
         memory.renew(*addresses(self._watch.table, self.step_bound.table, self._long_steps.table))
         self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)

@@ -130,7 +130,7 @@ class StepMemory:
             "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
             "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
             "tolerance": CONSISTENCY.position_tolerance, "atol": self.atol,
-            "n_event_functions": events, "end_at_event": END_AT_EVENT.address if searched else 0, "signs": np.zeros(events),
+            "n_event_functions": events, "end_at_event": END_AT_EVENT.address if searched else 0,
             "lam": self.lam, "y": self.y, "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "n_times": n_times, "times": self.times,

@@ -89,7 +89,7 @@ class Driven:
 
     @cached_property
     def engine(self) -> NativeEngine:
-        """The engine."""
+        """Engine, made at its first use: its memory and its routines take time."""
         return self.make()
 
 

@@ -35,8 +35,6 @@ LOOK_AT_START, LOOK_WITHIN = together(
     look_at_start="int32(float64, float64, int64*)",
     look_within="int32(int64*)",
 )
-SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, float64*, int64*)")
-PLACES = Routine(MODULE, "event_functions_and_places", "int32(float64, int64, int64, float64*, int64*)")
 
 FUNCTIONS = {
     "array_of": "N_VGetArrayPointer", "solve": "IDASolve", "interpolate": "IDAGetDky", "time_of": "IDAGetCurrentTime",
@@ -48,12 +46,18 @@ FUNCTIONS = {
 class Formula(Protocol):
     """Integration formula with the interface of IDA: BDF by IDA itself, or Radau methods.
 
-    `repeat`: address of the function by which a one-step method repeats its last step; 0 for a multistep method. A
-    one-step method needs no small steps after a start, and its dense output satisfies the equations of stiff forces.
+    `repeat`, `resolves`: addresses of functions by which a one-step method repeats its last step, and tells whether the
+    error estimate of that step holds over jumps; 0 for a multistep method. A one-step method needs no small steps after a
+    start, and its dense output satisfies the equations of stiff forces.
     """
 
     @property
     def repeat(self) -> int:
+        """See above."""
+        ...
+
+    @property
+    def resolves(self) -> int:
         """See above."""
         ...
 
@@ -84,7 +88,7 @@ class BDF:
     `predicted_residual`: see `stiffmbs.solve.error_control.error_test.ErrorControl`.
     """
 
-    repeat = 0
+    repeat = resolves = 0
 
     def __init__(self, predicted_residual: bool = False) -> None:
         self._predicted_residual = predicted_residual
@@ -114,9 +118,6 @@ class BDF:
         connection.ask("IDASetLinearSolver", assembled.solver, assembled.matrix)
         connection.ask("IDASetJacFn", jacobian)
         connection.ask("IDASetMaxNumSteps", -1)  # IDASolve is called for one step at a time
-        if connection.n_event_functions:
-            connection.ask("IDARootInit", connection.n_event_functions, SWITCHES.address)
-            connection.ask("IDASetNoInactiveRootWarn")
         if self._predicted_residual:
             of_prediction = {
                 "output_correction": connection.output_correction.table,
@@ -139,7 +140,6 @@ class Connection:
     - `y`, `yp`, `output` of shape (n,): memory of the vectors of the solution, of its derivative, and of interpolated
       or queried values.
     - `cells`: results of the loop (`stiffmbs.solve.ida.native.layouts.NATIVE_IDA`).
-    - `signs` of shape (n_event_functions,): see `stiffmbs.solve.ida.native.ida_memory`.
     - `long_steps`: None for scenes without laws.
     - `words`, `table`: table for compiled code, and its address.
     - `state_table`, `equations_table`: tables of the state and of the equations.
@@ -170,8 +170,6 @@ class Connection:
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = formula.memory(session)
         self.watch = EventSearch(state)
-        self.n_event_functions = self.watch.n_event_functions
-        self.signs = np.zeros(self.n_event_functions)
         self.words = self._packed()
         self.table, self.cells = self.words.ctypes.data, self.words.view(NATIVE_IDA.cells)[0]
         formula.connect(self, session, self._assembled)
@@ -189,8 +187,7 @@ class Connection:
                 "state": self.state_table, "equations": self.equations_table,
                 **functions,
                 "matrix": self._assembled.values,
-                "n_event_functions": self.n_event_functions, "signs": self.signs, "band": self.watch.band,
-                "memory": self.memory, "repeat": self._formula.repeat, "y": self.y_vector, "yp": self.yp_vector,
+                "memory": self.memory, "repeat": self._formula.repeat, "resolves": self._formula.resolves, "y": self.y_vector, "yp": self.yp_vector,
                 "at_output": self.output_vector, "output": self.output,
                 "n_reported": len(self.reported), "reported": self.reported,
                 "step_bound": self.step_bound.table, "history": history, "samples": self._samples,
@@ -200,16 +197,6 @@ class Connection:
                 "error_norm": self.error_norm.table,
             },
         )  # fmt: skip
-
-    @property
-    def event_functions(self) -> int:
-        """Return the address of the event functions with IDA's signature (IDARootFn)."""
-        return SWITCHES.address
-
-    @property
-    def event_functions_and_places(self) -> int:
-        """Return the address of the event functions, and of the places among breakpoints of tables with a kink."""
-        return PLACES.address
 
     @property
     def _polished(self) -> bool:
@@ -253,7 +240,6 @@ class Connection:
         for cell, value in (("returned", t), ("internal", t), ("size", 0.0), ("tiny", 0), ("since_sample", 0)):
             self.cells[cell] = value
         self._samples[:] = np.nan
-        self.signs[:] = 0.0
         self.watch.begin()
         self.iteration.begin()
         self.history.begin(t)

@@ -130,6 +130,11 @@ class NativeIda(Connection):
         """Return True if `advance_past` applies: no steps are stored, and states within long steps can be corrected."""
         return self._polished and not len(self._trace)
 
+    @property
+    def usual_steps(self) -> int:
+        """Return the number of steps after which a call returns that `pause_after` does not shorten."""
+        return min(self._usual_batch, self._look)
+
     def look_after(self, steps: int) -> None:
         """Make the next call of `advance` or `steps` return after this number of steps at the latest."""
         self._look = max(steps, 1)
@@ -179,14 +184,10 @@ class NativeIda(Connection):
         self.history.begin(t)
         self.begun, self._flag = True, 0
 
-    def starts(
-        self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl
-    ) -> Starts | None:
-        """Return compiled starts; None if they do not apply."""
+    def starts(self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl) -> Starts:
+        """Return compiled starts."""
         from .starting.starts import Starts
 
-        if not Starts.serve(dynamics):
-            return None
         return Starts(dynamics, equations, self, self._statistics, settings, control)
 
     def advance(self, times: np.ndarray, stop: float, y_out: np.ndarray) -> tuple[int, Status]:
@@ -255,15 +256,11 @@ class NativeIda(Connection):
         return failure_sentence(self._flag)
 
     def roots(self) -> np.ndarray:
-        """Return, after `Status.ROOT`, nonzero values for the event functions that have changed their signs.
+        """Return, after `Status.ROOT`, 1 for the event functions that have changed their signs.
 
         All are zero if the step has passed an interval of a law (`stiffmbs.solve.events.native.within_step`).
         """
-        if self.cells["within"]:
-            return self.watch.found[: self.n_event_functions].astype(np.intc)
-        found = np.zeros(self.n_event_functions, dtype=np.intc)
-        self.ask("IDAGetRootInfo", address(found))
-        return found * self.signs.astype(np.intc)
+        return self.watch.found[: self.watch.n_event_functions].copy()
 
     def counted(self) -> dict[str, int]:
         """Return the counters since the first start (`stiffmbs.solve.ida.statistics.COUNTERS`)."""

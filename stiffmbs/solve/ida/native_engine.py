@@ -16,11 +16,10 @@ from ..error_control.error_test import ErrorControl
 from ..error_control.native.parameters import NEWTON, POLISHING
 from ..error_control.newton import Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
-from ..events.restart import just_after
 from ..linear_solvers.fixed_order import FixedOrder
 from ..radau.collocation import radau
 from ..recorded_steps import Piece, StepRecorder
-from ..trajectory import History
+from ..trajectory import History, just_after
 from .connection import BDF, Formula
 from .ida import AT_THE_END, NativeIda
 from .native.parameters import LOOP
@@ -77,7 +76,6 @@ class NativeEngine:
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
         self.ida.watch.follow_reactions(dynamics)
-        self._started = False
         self._order = StabilityLimitDetection(
             equations, settings, is_active=formula is None and settings.max_order is None
         )
@@ -138,25 +136,18 @@ class NativeEngine:
                 self.ida.keep_steps(False)
                 self.recorder = None
 
-    def begin_at(self, start: InitialValues, t: float) -> bool:
-        """Start by one compiled call, from the second start on; return False where it does not apply."""
-        if not self._started or self._starts is None:  # not worth their preparation for one start
-            self._started = True
-            return False
+    def begin_at(self, start: InitialValues, t: float) -> None:
+        """Start at consistent values."""
         self.ida.error_norm.filter_always(self._order.held)
-        if not self._starts.begin(start, t, self.ida.begun, self._order.order):
-            return False
+        self._starts.begin(start, t, self.ida.begun, self._order.order)
         self._take_up(self._starts, t)
-        return True
 
     def resume_after(self, gap: float) -> None:
         """Set the time from a stop to the restart after it, s."""
         self._gap = gap
 
     def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
-        """Restart after a state and events within `ahead`, s, by one compiled call; return None where it does not apply."""
-        if self._starts is None or self._event_restarts is None:
-            return None
+        """Restart after a state and events within `ahead`, s; return None, without a start, if that is impossible."""
         self.ida.error_norm.filter_always(self._order.held)
         found = self._event_restarts.begin((q, u), t, ahead, self.ida.begun, self._order.order)
         if found:
@@ -192,10 +183,12 @@ class NativeEngine:
     def _ease_newton(self) -> None:
         """Relax Newton's tolerance after many failures: rounding may prevent its convergence.
 
-        Calls of a few steps are counted together, as those of a simulation.
+        Calls of a few steps, as those of a simulation, are counted together up to the number of steps of a call in a run.
         """
         counted = self.ida.counted()
         steps = counted["steps"] - self._counted["steps"]
+        if steps < self.ida.usual_steps:
+            return
         failures = counted["convergence_failures"] - self._counted["convergence_failures"]
         if steps >= NEWTON.trusted:
             self._counted = counted
@@ -212,8 +205,8 @@ class NativeEngine:
         Ends early at an event or a failure. `Reached.passed` counts the stops at which it has restarted.
         """
         status, served, passed = Status.GOING, 0, 0
-        event_restarts = self._event_restarts if len(stops) > 1 else None
-        if event_restarts is None or not (event_restarts.may_pass and self.ida.may_pass):
+        event_restarts = self._event_restarts if len(stops) > 1 and self.ida.may_pass else None
+        if event_restarts is None or not event_restarts.may_pass:
             event_restarts, stops = None, stops[:1]
         times = times[: times.searchsorted(stops[-1], side="right")]
         while status is Status.GOING:
@@ -275,18 +268,18 @@ class NativeEngine:
 
         Returns False, with the state unchanged, if that needs a run.
         """
-        return self._event_restarts is not None and self._event_restarts.advance((q, u), t, end, self._order.order)
+        return self._event_restarts.advance((q, u), t, end, self._order.order)
 
     @cached_property
-    def _starts(self) -> Starts | None:
+    def _starts(self) -> Starts:
         return self._make_starts()
 
     @cached_property
-    def _event_restarts(self) -> EventRestarts | None:
+    def _event_restarts(self) -> EventRestarts:
         from .starting.after_event import EventRestarts
 
         least = NEWTON.precision / self._rtol
-        return EventRestarts(self._starts, self._dynamics, self._settings, least) if self._starts else None
+        return EventRestarts(self._starts, self._dynamics, self._settings, least)
 
     def present(self) -> np.ndarray:
         """Return a row of the same form for the current state."""

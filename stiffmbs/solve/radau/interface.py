@@ -27,11 +27,11 @@ _SIGNATURES = {
     "errors_of": ("IDAGetEstLocalErrors", "int32(int64, int64)"),
     "weights_of": ("IDAGetErrWeights", "int32(int64, int64)"),
     "order_of": ("IDAGetLastOrder", "int32(int64, int32*)"),
-    "roots_of": ("IDAGetRootInfo", "int32(int64, int32*)"),
     "counter_of": ("counter", "int32(int64*, int64*)"),
     "repeat": ("repeat", "int32(int64, float64, float64)"),
+    "resolves": ("resolves", "int32(int64)"),
 }
-"""Names of IDA's functions, which has none for `repeat` and one for each counter, and signatures of those in `stiffmbs.solve.radau.native.interface`."""
+"""Names of IDA's functions, which has none for `repeat` and `resolves`, and one for each counter, and signatures of those in `stiffmbs.solve.radau.native.interface`."""
 _ROUTINES = dict(
     zip(
         (name for name, _ in _SIGNATURES.values()),
@@ -43,7 +43,7 @@ _ROUTINES = dict(
         strict=True,
     )
 )
-REPEAT, COUNTER = _ROUTINES["repeat"], _ROUTINES["counter"]
+REPEAT, RESOLVES, COUNTER = (_ROUTINES[name] for name in ("repeat", "resolves", "counter"))
 
 
 class RadauFunctions(Libraries):

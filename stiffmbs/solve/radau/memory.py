@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 import numpy as np
 
-from ...compile.equations import Equations
+from ...compile.equations import ABSENT, Equations
 from ...compile.law_intervals import intervals_of
 from ...compile.machine.layout import fill, packed
 from ...compile.state import State
@@ -23,7 +23,7 @@ from ..linear_solvers.block_lu import BlockLU
 from ..linear_solvers.fixed_order import Assembled, FixedOrder
 from .collocation import MOST_BETWEEN, Collocation, radau
 from .condensed import condensed_efforts, indices
-from .interface import COUNTER, REPEAT, RadauFunctions
+from .interface import COUNTER, REPEAT, RESOLVES, RadauFunctions
 from .native.layouts import COLLOCATION, RADAU
 from .parameters import RadauParameters
 
@@ -96,7 +96,7 @@ class Radau:
         cost: ImplicitCost,
         parameters: RadauParameters,
     ) -> None:
-        self._equations, self._parameters = equations, parameters
+        self._equations, self._parameters, self._state = equations, parameters, state
         for term_set in ("effort", "effort_tangent"):
             state.load(term_set)
         self._pairs = in_pairs(matrix, equations.slots_with_rates)
@@ -115,6 +115,11 @@ class Radau:
     def repeat(self) -> int:
         """Return the address of the function that repeats the last step."""
         return REPEAT.address
+
+    @property
+    def resolves(self) -> int:
+        """Return the address of the function that tells whether the error estimate of the last step holds over jumps."""
+        return RESOLVES.address
 
     def libraries(self) -> Libraries:
         """Return the SUNDIALS functions, with those of IDA replaced."""
@@ -146,11 +151,8 @@ class Radau:
         number[imaginary] = np.arange(len(imaginary))
         algebraic = np.ones(n)
         algebraic[equations.pattern[0][imaginary]] = 0.0
-        events = functions = system.n_event_functions
-        compute = connection.event_functions
-        if intervals_of(system).kinks.any():
-            functions, compute = connection.watch.n, connection.event_functions_and_places
         efforts = condensed_efforts(equations)
+        n_terms = len(self._state.values[equations.formulation.matrix_set])
         n_efforts, n_all = efforts["n_efforts"], n + efforts["n_efforts"]
         values = {
             "state": connection.state_table, "equations": self._of_equations[0], "array_of": session.libraries.address("N_VGetArrayPointer"), "n": n, "algebraic": algebraic,
@@ -162,15 +164,15 @@ class Radau:
             "re_re": indices(pairs.re_re), "im_im": indices(pairs.im_im),
             "n_imaginary": len(imaginary), "imaginary_of": number.astype(np.int32),
             "im_re": indices(pairs.im_re), "re_im": indices(pairs.re_im),
+            "n_terms": n_terms, "terms": np.zeros(n_terms), "terms_aside": np.zeros(n_terms + efforts["n_levers"] + efforts["n_slopes"]),
             "entries": np.zeros(len(number)), **vectors, **at, "output_correction": connection.output_correction.table, "error_norm": connection.error_norm.table,
-            "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
+            **_angles(equations), "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
             "misfit": np.zeros(self._most * n_efforts), "r": np.zeros(self._most * n),
             **{name: np.zeros(n) for name in ("yp", "yp_stage", "error", "weight", "atol")},
             "corrections": np.zeros((self._most - 1 + MOST_BETWEEN) * n_all),
             **{name: np.zeros(n_all) for name in ("y", "y_stage", "y_past")},
             **{name: np.zeros(self._most * n_all) for name in ("z", "d", "past")},
-            "n_events": events, "n_functions": functions, "functions": compute if functions else 0, "ida": connection.words,
-            **{name: np.zeros(functions) for name in ("before", "after", "within")}, "fired": np.zeros(events, dtype=np.int64),
+            "has_kinks": int(system.n_event_functions > 0 or intervals_of(system).kinks.any()),
             **asdict(parameters_of(self._parameters)),
         }  # fmt: skip
         fill(self._words, RADAU, values)
@@ -187,6 +189,15 @@ class Radau:
         for each in self._kept[1]:
             if each.pivots is not None:
                 each.pivots["ready"] = 0
+
+
+def _angles(equations: Equations) -> dict[str, Any]:
+    """Return the unknowns that are angles of bodies in the plane, and their angular velocities."""
+    of_body, n_pose = equations.system.of_body, equations.system.n_pose
+    turning = np.arange(n_pose) % of_body.n_q >= (of_body.linear if of_body.dimensions == 2 else of_body.n_q)
+    angle, spin = (equations.at[name][:n_pose][turning[: len(equations.at[name])]] for name in ("q", "u"))
+    both = (angle != ABSENT) & (spin != ABSENT)
+    return {"n_angles": int(both.sum()), "angle": np.int64(angle[both]), "spin": np.int64(spin[both])}
 
 
 def _arrays(c: Collocation) -> dict[str, Any]:

@@ -1,17 +1,14 @@
-"""Cost of flexible bodies: ``python -m tests.bench.solvers.flexible_bodies [residual] [plane] [car]``.
+"""Cost of flexible bodies: ``python -m tests.bench.solvers.flexible_bodies [residual] [car]``.
 
 `residual`: time of one residual of a half car in space whose trailing arms are flexible, over that with rigid arms.
-`plane`: time of runs of that half car, and of the slider-crank of the examples, with and without modes out of their planes.
 `car`: time of a step steer of 10 s of `examples/car.yaml` with a flexible shell of 30 modes and a flexible anti-roll bar.
 """
 
 from __future__ import annotations
 
 import argparse
-import statistics
 import tempfile
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import meshio
@@ -21,10 +18,8 @@ from skfem.io.meshio import to_meshio
 
 from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.analyses.run import run
-from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.scene import Scene
-from stiffmbs.presolve.relations import independent_coordinates
 from stiffmbs.solve.formulations import FORMULATIONS
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -104,30 +99,6 @@ def residual(folder: Path) -> None:
     print(
         f"residual of a half car: rigid {1e6 * rigid:.1f} us, with two bodies of {MODES} modes {1e6 * flexible:.1f} us: {flexible / rigid:.1f} times"
     )
-
-
-def plane(folder: Path) -> None:
-    """Print the time of runs without and with the modes that no load excites, in alternation."""
-    box(folder / "arm.vtu", (0, 0.5, 10), (-0.05, 0.05, 2), (-0.03, 0.03, 2))
-    crank = EXAMPLES / "flexible" / "flexible_slider_crank.yaml"
-    for name, scene in (
-        ("half car", half_car(folder, FLEXIBLE)),
-        ("slider-crank", read_scene(crank.read_text(), file=crank)),
-    ):
-        job = prepare(scene, solver="radau")
-        solved, whole = job.dynamics, Dynamics(job.dynamics.system)
-        whole.coordinates = independent_coordinates(whole.system, job.dynamics.state, job.grid.start, {})
-        every = replace(job, dynamics=whole)
-        seconds: dict[int, list[float]] = {}
-        for _ in range(7):
-            for each in (job, every):
-                started = time.process_time()
-                each.integrate()
-                seconds.setdefault(each.dynamics.coordinates.count, []).append(time.process_time() - started)
-        figures = ", ".join(
-            f"{1e3 * statistics.median(times):.0f} ms with {count} coordinates" for count, times in seconds.items()
-        )
-        print(f"{name}, {len(solved.coordinates.at_rest)} modes left out: {figures}", flush=True)
 
 
 SHELL = """  chassis:
@@ -212,7 +183,7 @@ def car(folder: Path) -> None:
         print(f"step steer of 10 s, {name}: {how}, {solution.message}", flush=True)
 
 
-COMMANDS = {"residual": residual, "plane": plane, "car": car}
+COMMANDS = {"residual": residual, "car": car}
 
 
 def main(names: list[str]) -> None:

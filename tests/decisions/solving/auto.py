@@ -6,7 +6,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.solve import auto, auto_checks, auto_choice, auto_decisions, subsystems
+from stiffmbs.solve import auto, auto_checks, auto_choice, auto_decisions
 from stiffmbs.solve.cost import ImplicitCost
 from stiffmbs.solve.radau import radau
 from stiffmbs.solve.radau.radau import of_radau
@@ -60,27 +60,6 @@ def residual_by_which_radau_chooses():
     return costs[0].residual / ImplicitCost.of(mechanism(), 1.0).residual
 
 
-def slowest_mechanism_with_a_fast_one(implicit):
-    """Return the rate of a mechanism, in hundredths of 1/s, up to which it is solved apart from one of 10 1/s."""
-    system = Record(n_u=6, of_body=Record(n_u=3))
-    dynamics = Record(system=system)
-
-    def apart(rate):
-        replaced = {
-            "_with_laws": lambda system: np.zeros(2, dtype=bool),
-            "_rates": lambda *_: np.array([10.0, 0.01 * rate]),
-            "of_explicit_step": lambda dynamics: 10.0,
-        }
-        of_bdf = patch.object(subsystems.ImplicitCost, "of", lambda dynamics: Record(step=10.0))
-        with patch.multiple(subsystems, **replaced), of_bdf:
-            sets = subsystems.alike(
-                dynamics, None, (0.0, 1.0 if implicit else 10.0), implicit, [np.array([0]), np.array([1])]
-            )
-        return len(sets) == 2
-
-    return count_while(apart, range(1, 1000, 10))
-
-
 DECISIONS = {
     "auto.steps_per_radian": lambda: auto_decisions.steps_of_decay(parameters("auto"), np.e, 1.0, np.inf),
     "auto.trial_margin": lambda: count_while(
@@ -93,13 +72,10 @@ DECISIONS = {
     "solve.radau.radau:ITERATIONS": lambda: of_five_stages("step_residuals"),
     "solve.radau.radau:START_STEPS": lambda: of_five_stages("start_steps"),
     "solve.radau.radau:RESIDUAL": residual_by_which_radau_chooses,
-    "solve.subsystems:IMPLICIT_STEPS": lambda: slowest_mechanism_with_a_fast_one(True),
-    "solve.subsystems:EXPLICIT_STEPS": lambda: slowest_mechanism_with_a_fast_one(False),
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
     "auto.steps_per_radian": 0.35, "auto.trial_margin": 31, "auto.check_interval": 250, "auto.trial_loss": 50.0, "cost.restart_steps": 27,
     "solve.auto:MOST_MESSAGES": 3, "solve.radau.radau:ITERATIONS": 15, "solve.radau.radau:START_STEPS": 4, "solve.radau.radau:RESIDUAL": 4.0,
-    "solve.subsystems:IMPLICIT_STEPS": 75, "solve.subsystems:EXPLICIT_STEPS": 45,
 }  # fmt: skip
 """The decisions of the default parameters."""

@@ -9,11 +9,13 @@ import numpy as np
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OPERATIONS
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import bdf
-from stiffmbs.solve.error_control.newton import Stiffness, newton_tolerance
+from stiffmbs.solve.error_control.newton import Stiffness
 from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
 from stiffmbs.solve.ida.native import error_norm, iteration, output_correction
 from stiffmbs.solve.ida.native_engine import NativeEngine
+from stiffmbs.solve.ida.starting.native import start
+from stiffmbs.solve.ida.starting.starts import newton_bounds
 from stiffmbs.solve.trajectory import Grid
 from tests.decisions.common import Record, always, nothing
 from tests.interpreted import interpreted
@@ -69,7 +71,7 @@ def eased(newton, failures=1000, steps=1000):
     """Return the Newton tolerance after a call with a number of failures."""
     begun = [newton]
     counted = {"steps": steps, "convergence_failures": failures}
-    ida = Record(counted=lambda: counted, t=0.0, y=np.zeros(1), yp=np.zeros(1))
+    ida = Record(counted=lambda: counted, usual_steps=0, t=0.0, y=np.zeros(1), yp=np.zeros(1))
     engine = Record(
         ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _stiffness=None,
         begin=lambda t, y, yp, eased, stiffness: begun.append(eased),
@@ -79,7 +81,9 @@ def eased(newton, failures=1000, steps=1000):
 
 
 def tolerance(of_positions, rtol=1e-6):
-    return newton_tolerance(Stiffness(of_positions, 0.0), RunSettings(duration=1.0, rtol=rtol))
+    w = Record(**newton_bounds(rtol, None), of_positions=of_positions, of_velocities=0.0, newton=0.0)
+    start.allow_remainder(w)
+    return w.newton
 
 
 def balance_between_steps():
@@ -163,7 +167,7 @@ def first_check_of_drift(name, counts):
         made = []
         integrator = Record(
             dynamics=job, run=lambda *_, **__: [reached], equations=Record(states=lambda rows: (rows, rows)),
-            engine=Record(last_step=nothing, history=nothing, recorded=tuple, ida=Record(watch=Record(departures=nothing))), steps=lambda: steps,
+            engine=Record(last_step=nothing, history=nothing, recorded=tuple, ida=Record(watch=Record(departures=nothing, refuse_departures=nothing))), steps=lambda: steps,
             split=lambda y: (y, y), settings=None, statistics=dict, note=str, long_steps=nothing,
         )  # fmt: skip
         checks = {"refuse_drift": nothing, "refuse_beyond_sense": nothing, name: lambda *_: made.append(1)}
@@ -182,7 +186,7 @@ def steps_that_rounding_governs():
 
     reached = Record(y=np.zeros(1), failure="", t=0.0)
     with patch.multiple(bdf, governed_by_rounding=always, too_fine=lambda *_: "too fine"):
-        return count_while(lambda n: not bdf._failure(integrator(n), reached), range(100))
+        return count_while(lambda n: not bdf._failure(integrator(n), reached, Grid(0.0, 1.0, None)), range(100))
 
 
 def tolerance_of_a_counter():

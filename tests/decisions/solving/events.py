@@ -23,7 +23,7 @@ def distance_from_an_event():
     w = searched(longest=1e5, n_nodes=0)
     replaced = {
         "go_ahead": nothing, "take_reactions": nothing, "evaluate_some": lambda *_: np.zeros(1), "note_mean_rates": nothing,
-        "suspicious": always, "first_event_or_change": lambda *_: 0.5,
+        "suspicious": always, "first_event": lambda *_: 0.5,
     }  # fmt: skip
     with interpreted(ida_events, **replaced):
         ida_events._aim(Record(returned=0.0), w, Record(q=None), 1.0)

@@ -140,13 +140,17 @@ def searches_after_a_start():
     replaced = {"_go_ahead": nothing, "note_sides": lambda *_: calls.append(1) or 1}
     with interpreted(explicit_start, **replaced):
         for factor in DOUBLES[:8]:
-            x = stepping(shortest=1.0, t=factor / explicit_start.INDISTINCT, signs=np.zeros(1), k=np.zeros(2))
-            explicit_start._leave_zeros(x, None, None, x.k)
+            x = stepping(shortest=1.0, t=factor / explicit_start.INDISTINCT, k=np.zeros(2))
+            explicit_start._leave_zeros(x, searched(value_before=np.zeros(1)), None, None, x.k)
     return len(calls)
 
 
 def uncertain(kept, rate):
-    x = stepping(pivots_tell=1, eliminated=Record(kept=kept, most_kept=1.0), k=np.array([0.0, rate]))
+    x = stepping(
+        pivots_tell=1,
+        eliminated=Record(kept=kept, most_kept=1.0, n_scales=0, pivot_scale=(), largest_scale=()),
+        k=np.array([0.0, rate]),
+    )
     return attempt.uncertain_end(x, scheme(), 1.0, attempt.distance_of_end(x))
 
 

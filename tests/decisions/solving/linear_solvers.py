@@ -33,6 +33,11 @@ def steps_in_memory():
     return count
 
 
+def part_of_the_way():
+    with interpreted(ida_loop):
+        return ida_loop._toward(Record(returned=0.0, size=0.0), 1.0)
+
+
 def tiny_steps():
     c = Record(tiny=0, size=0.0, internal=1.0)
     return count_while(lambda _: not ida_loop._stalled(c), range(1000))
@@ -122,6 +127,7 @@ DECISIONS = {
     "loop.most_steps": steps_of_a_call,
     "loop.samples": steps_in_memory,
     "loop.steps_apart": steps_in_memory,
+    "loop.first_part": part_of_the_way,
     "loop.most_tiny": tiny_steps,
     "loop.most_passed": samples_of_a_call,
     "loop.most_items": steps_in_a_log,
@@ -133,7 +139,7 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
-    "loop.most_steps": 2048, "loop.samples": 64, "loop.steps_apart": 64, "loop.most_tiny": 99, "loop.most_passed": 64, "loop.most_items": 1000000,
+    "loop.most_steps": 2048, "loop.samples": 64, "loop.steps_apart": 64, "loop.first_part": 0.01, "loop.most_tiny": 99, "loop.most_passed": 64, "loop.most_items": 1000000,
     "pivots.largest": 40, "pivots.largest_residual": 1e-09, "pivots.refinable": 53, "pivots.changed": 12, "pivots.most_between_trials": 50,
 }  # fmt: skip
 """The decisions of the default parameters."""

@@ -173,13 +173,6 @@ def most_moved(within):
     return found[0]
 
 
-def outputs_corrected_one_by_one():
-    x, found = collocating(methods=[METHOD]), []
-    replaced = {"_find_corrections": lambda *_: found.append(1), "_closed_at": nothing, "copied": nothing}
-    with interpreted(between_steps, **replaced):
-        return count_while(lambda _: between_steps.dense_output(x, 0.0, 0.5, None) or not found, range(20))
-
-
 def remainder():
     """Return the part of the tolerance that Newton's iteration may leave where no force is stiff."""
     x = collocating(part=0.0)
@@ -215,7 +208,6 @@ DECISIONS = {
     "solve.radau.native.between_steps:ROUNDING": smallest_correction_between_steps,
     "solve.radau.native.between_steps:MOST_MOVED": lambda: most_moved(False),
     "solve.radau.native.between_steps:MOST_MOVED_WITHIN": lambda: most_moved(True),
-    "solve.radau.native.between_steps:FEW": outputs_corrected_one_by_one,
     "solve.radau.native.newton:MOST_ITERATIONS": lambda: newton.most_iterations(METHOD),
     "solve.radau.native.newton:DIVERGING": largest_contraction,
     "solve.radau.native.newton:SHORTER": suggested_after_a_slow_iteration,
@@ -230,7 +222,7 @@ EXPECTED = {
     "radau.tolerance": 0.01, "radau.least_factor": 0.125, "radau.largest_factor": 5, "radau.keep_matrix": 0.003125, "radau.keep_high": 51,
     "radau.stages_after": 3, "radau.gain": 79, "radau.solution_cost": 3.2, "radau.slowest": 1, "radau.converging": 25, "radau.after_failure": 0.5, "radau.remainder": 0.003,
     "solve.radau.collocation:MOST_BETWEEN": 4, "solve.radau.native.between_steps:ROUNDING": 27, "solve.radau.native.between_steps:MOST_MOVED": 0.5,
-    "solve.radau.native.between_steps:MOST_MOVED_WITHIN": 30, "solve.radau.native.between_steps:FEW": 2,
+    "solve.radau.native.between_steps:MOST_MOVED_WITHIN": 30,
     "solve.radau.native.newton:MOST_ITERATIONS": 7, "solve.radau.native.newton:DIVERGING": 40, "solve.radau.native.newton:SHORTER": 0.5214690759,
     "solve.radau.native.newton:MOST_LEFT": 0.5214690759, "solve.radau.native.newton:LATER": 5, "solve.radau.native.steps:ROUNDING": 1e-10,
     "solve.radau.native.steps:LEAST_ERROR": 0.01, "solve.radau.native.steps:MOST_DECAYS": 3,

@@ -113,7 +113,7 @@ def examined(values, rates=(1.0, -1.0)):
     found = list(zip(values, rates, strict=True))
     own = Record(
         _count=1, _values=lambda row: tuple(np.array([each]) for each in found[int(row[0])]), _touched=reached,
-        _between=nothing,
+        _turns=lambda *_: True, _between=nothing,
     )  # fmt: skip
     segment = Record(first=np.zeros(1), rows=np.ones((1, 1)))
     resting = []

@@ -46,7 +46,13 @@ def test_every_kind_is_drawn(dimensions, kind, form):
     json.dumps(drawing_json(drawing), allow_nan=False)
 
 
-@pytest.mark.parametrize("scene", EXAMPLE_SCENES)
+CARS = ("truck", "hatchback", "formula_student", "leaf_sprung_car", "motorcycle")
+"""Scenes of hundreds of bodies; `car` is one more of these."""
+
+
+@pytest.mark.parametrize(
+    "scene", [pytest.param(name, marks=pytest.mark.long if name in CARS else ()) for name in EXAMPLE_SCENES]
+)
 def test_examples_are_drawn_as_they_are_described(scene):
     """Each body, and each element with a place, is on the picture, within the size that symbols are scaled to."""
     data = stiffmbs.load_scene(EXAMPLE_SCENES[scene])

@@ -45,6 +45,7 @@ def test_a_vibration_below_the_tolerance_is_not_followed(stiffness, rtol, monkey
     np.testing.assert_allclose(mended["rod.angle"], creeping["rod.angle"], atol=100 * rtol)
 
 
+@pytest.mark.long
 def test_a_faint_vibration_is_damped_away_and_the_order_free_again(examples, monkeypatch):
     """Rounding decides when it is seen, so the median of tolerances that are nearly the same counts."""
     scene, tolerances = stiffmbs.load_scene(examples / "half_car.yaml"), np.linspace(0.9e-7, 1.1e-7, 21)

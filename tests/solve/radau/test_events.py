@@ -50,7 +50,7 @@ def test_events_within_rounding_of_the_end(before):
     assert solution["a.x"][-1] == pytest.approx(1.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("rtol", [1e-3, 1e-5])
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4, 3e-6])
 def test_an_interval_of_a_smooth_law_that_a_step_has_passed_is_resolved_without_a_restart(rtol):
     """The work of a narrow force, compared with that of explicit steps."""
     place = np.linspace(0.0, np.pi, 25)

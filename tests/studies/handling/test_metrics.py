@@ -354,7 +354,9 @@ def test_the_step_response_of_any_stable_car(seed):
         assert found.peak_time == pytest.approx(time[np.argmax(part)] - begun, abs=2e-3)
 
 
-@pytest.mark.parametrize("name", vibration.WEIGHTINGS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long if k else ()) for k, name in enumerate(vibration.WEIGHTINGS)]
+)
 def test_weightings_are_the_analogue_filters_of_iso_2631_in_the_time_domain(name):
     """A random vibration through the transfer functions of its annex A, integrated over time."""
     f3, f4, f5, f6 = {"Wk": (12.5, 12.5, 2.37, 3.35), "Wd": (2, 2, 0, 0), "Wc": (8, 8, 0, 0), "We": (1, 1, 0, 0), "Wj": (0, 0, 3.75, 5.32)}[name]  # fmt: skip

@@ -292,7 +292,7 @@ def _together(m, wheels, rows, still):
     moment = -(push[0] - push[1]) * across_axle[1] / 2
     return {
         "axle.track": 1e3 * np.linalg.norm(across_axle[1:]),
-        "axle.roll_centre_lateral": 1e3 * centre[0],
+        "axle.roll_centre_lateral": 1e3 * (centre[0] - middle[1]),
         "axle.roll_centre_height": 1e3 * (centre[1] - middle[2]),
         "axle.roll_rate": moment / deg(angle),
     }

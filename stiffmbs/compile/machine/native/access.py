@@ -1,4 +1,7 @@
-"""Pointers from addresses, kernel calls by address, and named views of pointer tables."""
+"""Pointers from addresses, kernel calls by address, and named views of pointer tables.
+
+Functions of compiled code in Python, for debugging: docs/project/compiled_code.md.
+"""
 
 from __future__ import annotations
 

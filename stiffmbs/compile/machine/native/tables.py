@@ -1,4 +1,7 @@
-"""Layouts of the tables for compiled code: state and kernels, equations of a formulation, factors of a matrix."""
+"""Layouts of the tables for compiled code: state and kernels, equations of a formulation, factors of a matrix.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from stiffmbs.compile.machine.layout import FLOATS, INDICES, INT, INT_CELL, INTS, OWN_FLOATS, OWN_INTS, Layout
 

@@ -270,8 +270,8 @@ def factor_by_blocks(r, b, values):
     for k in range(b.n_joints):
         p = joint_panel(b.joint, k)
         for i in range(p.size):
-            scale = b.pivot_scale[p.pivot + i]
-            b.pivot_scale[p.pivot + i] = max(scale, b.blocks[p.start + i * (p.stride + 1)])
+            diagonal = b.blocks[p.start + i * (p.stride + 1)]
+            b.pivot_scale[p.pivot + i] = max(r.largest_scale[p.pivot + i], diagonal)
     return _eliminate(r, b)
 
 

@@ -1,4 +1,7 @@
-"""Memory layouts of matrix and factors of an elimination."""
+"""Memory layouts of matrix and factors of an elimination.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +65,7 @@ entries come from full and diagonal blocks (`FullBlock`, `DiagonalBlock`); all o
 
 `blocks` holds the panel of each joint (`JointPanel`), then its right blocks divided by the pivots.  `right` holds the
 positions in x of the columns right of each joint, four at a time.  `place` is the position of each equation in x;
-`pivot_scale` holds the largest diagonal before the elimination in a run: an equation may vanish at a pose."""
+`pivot_scale` is that of `ELIMINATED`."""
 
 MOST_ROWS: Final = 6
 """Rows of a full block, and lines of a product of two quads, that fit into registers."""

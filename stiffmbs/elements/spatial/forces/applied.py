@@ -58,7 +58,6 @@ class AppliedForce(Applied):
     """
 
     kind = "force"
-    symmetric_with = {"i": "point", "j": "body", "frame": "body"}
     spin_conditions = {"i": "point", "j": "body"}
     forms = ({}, {"axes": "body"}, {"j": "b"})
     reflected = {"force": "vector"}
@@ -91,7 +90,6 @@ class AppliedTorque(Applied):
     """
 
     kind = "torque"
-    symmetric_with = {"i": "body", "j": "body", "frame": "body"}
     spin_conditions = {"i": "body", "j": "body"}
     forms = ({}, {"j": "b"})
     reflected = {"torque": "rotations"}

@@ -38,7 +38,6 @@ class Bushing(Connection):
     """
 
     kind = "bushing"
-    symmetric_with = {"i": "axes", "j": "axes"}
     forms = ({"stiffness": ..., "damping": ...}, {"stiffness": ..., "damping": ..., "axes": "ground"})
     reflected = {
         **REFLECTED, "law_x": "x", "law_y": "y", "law_z": "z",

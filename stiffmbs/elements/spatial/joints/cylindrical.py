@@ -20,7 +20,6 @@ class Cylindrical(SpatialJoint):
     """
 
     kind = "cylindrical"
-    symmetric_with = {"i": "z", "j": "z"}
     spin_conditions = {"i": "z", "j": "z"}
     conditions = ON_AXIS, ALIGN
     coordinates = ("displacement", "angle")

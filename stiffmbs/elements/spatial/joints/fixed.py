@@ -15,6 +15,5 @@ class Fixed(SpatialJoint):
     """
 
     kind = "fixed"
-    symmetric_with = {"i": "body", "j": "body"}
     conditions = COINCIDE, ORIENT
     elastic = "bushing"

@@ -17,7 +17,6 @@ class Orientation(SpatialJoint):
     """
 
     kind = "orientation"
-    symmetric_with = {"i": "body", "j": "body"}
     conditions = (ORIENT,)
     further_coordinates = ("displacement_x", "displacement_y", "displacement_z")
     elastic = "bushing"

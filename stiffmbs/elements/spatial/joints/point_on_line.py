@@ -17,7 +17,6 @@ class PointOnLine(SpatialJoint):
     """
 
     kind = "point_on_line"
-    symmetric_with = {"i": "point", "j": "z"}
     spin_conditions = {"i": "point"}
     conditions = (ON_AXIS,)
     coordinates = ("displacement",)

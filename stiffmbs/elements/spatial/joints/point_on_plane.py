@@ -17,7 +17,6 @@ class PointOnPlane(SpatialJoint):
     """
 
     kind = "point_on_plane"
-    symmetric_with = {"i": "point", "j": "z"}
     spin_conditions = {"i": "point"}
     conditions = (IN_PLANE,)
     further_coordinates = ("displacement_x", "displacement_y")

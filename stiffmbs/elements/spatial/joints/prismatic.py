@@ -22,7 +22,6 @@ class Prismatic(SpatialJoint):
     """
 
     kind = "prismatic"
-    symmetric_with = {"i": "along z", "j": "along z"}
     conditions = ON_AXIS, replace(ORIENT, initially=initially_askew)
     coordinates = ("displacement",)
     elastic = "bushing"

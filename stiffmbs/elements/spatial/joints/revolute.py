@@ -19,7 +19,6 @@ class Revolute(SpatialJoint):
     """
 
     kind = "revolute"
-    symmetric_with = {"i": "z", "j": "z"}
     spin_conditions = {"i": "z", "j": "z"}
     conditions = COINCIDE, ALIGN
     coordinates = ("angle",)

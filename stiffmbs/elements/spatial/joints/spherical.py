@@ -16,7 +16,6 @@ class Spherical(SpatialJoint):
     """
 
     kind = "spherical"
-    symmetric_with = {"i": "point", "j": "point"}
     spin_conditions = {"i": "point", "j": "point"}
     conditions = (COINCIDE,)
     elastic = "bushing"

@@ -77,7 +77,7 @@ def square(d: Draft, i: Site, _: Site) -> None:
 
 
 def rod(d: Draft, i: Site, j: Site) -> None:
-    """A rod."""
+    """A bar from one site to the other."""
     d.stretch(_front(i, d), _front(j, d), "joint", *profiles.bar(0.14 * d.u))
 
 

@@ -8,6 +8,7 @@ from math import floor, isfinite, sqrt, tau
 
 from stiffmbs.compile.machine.native.access import compiled, view_of
 from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.solve.events.native.from_zero import JUST_BEYOND
 from stiffmbs.solve.events.native.layouts import EVENT_SEARCH
 from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
 from stiffmbs.solve.events.native.step_bound import STRETCHED
@@ -52,13 +53,6 @@ def breakpoint_of(w, k, number):
 
 
 @compiled
-def place(w, k, value):
-    """Return 2 n in the interval n of function k, and 2 n + 1 on the breakpoint between the intervals n and n + 1."""
-    number = interval(w, k, value)
-    return 2 * number + (1 if value == breakpoint_of(w, k, number) else 0)
-
-
-@compiled
 def overlap(w, k, number):
     """Return the overlap of the adjacent intervals `number` and `number` + 1 of function k."""
     first, count = w.first_breakpoint[k], w.first_breakpoint[k + 1] - w.first_breakpoint[k]
@@ -74,6 +68,21 @@ def beyond(w, k, value, one, other, least):
     if here < low:
         return breakpoint_of(w, k, low - 1) - value > max(least, overlap(w, k, low - 1))
     return False
+
+
+@compiled
+def departed(w, k, value):
+    """Return True if function k has left its interval at the start of the step; one that was zero may return to zero."""
+    before = w.value_before[k]
+    if value == 0.0 and k < w.n_event_functions and w.band[k] == 0.0:
+        return abs(before) > JUST_BEYOND
+    return interval(w, k, value) != interval(w, k, before)
+
+
+@compiled
+def lands(w, k):
+    """Return True if the breakpoints of function k end steps: those of a table with a kink may."""
+    return w.at_kinks != 0 and w.kinked[k] != 0
 
 
 @compiled
@@ -141,7 +150,9 @@ def _bound(start, start_rate, end, end_rate, missed, side):
 def reaches(w, k, start, start_rate, end, end_rate, missed):
     """Return True if an event function may change sign, or another one leave the intervals at the ends of the step."""
     one, other = interval(w, k, w.value_before[k]), interval(w, k, w.value_after[k])
-    if abs(one - other) > 1 or (w.lands[k] and beyond(w, k, w.value_after[k], one, one, 0.0)):
+    if abs(one - other) > 1 or (lands(w, k) and beyond(w, k, w.value_after[k], one, one, 0.0)):
+        return True
+    if k < w.n_event_functions and departed(w, k, w.value_after[k]):
         return True
     low, high = (
         _bound(start, start_rate, end, end_rate, missed, -1),

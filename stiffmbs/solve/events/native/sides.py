@@ -147,9 +147,3 @@ def moved_past(s, m, t, most, count, q, values):
     ahead = min(ahead * SEARCH.longer * SEARCH.longer, most)  # closer, rounding may show the change too early
     _passed(s, m, t, ahead, q, count, values)
     return ahead
-
-
-def gone_past(t, most, count, q, values, dynamics):
-    """Call `moved_past` from Python."""
-    m = dynamics_view(dynamics)
-    return moved_past(state_view(m.state), m, t, most, count, q, values)

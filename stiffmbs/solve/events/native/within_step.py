@@ -20,8 +20,10 @@ from stiffmbs.solve.events.native.bounds import (
     LOOKED_AT,
     beyond,
     cubic,
+    departed,
     fastest_turn,
     interval,
+    lands,
     left_out,
     note_unresolved,
     noted_rates,
@@ -30,6 +32,7 @@ from stiffmbs.solve.events.native.bounds import (
     turned_arguments,
 )
 from stiffmbs.solve.events.native.parameters import BISECTIONS, SEARCH
+from stiffmbs.solve.events.native.values import switches
 
 INFINITE = float("inf")
 
@@ -122,17 +125,20 @@ def _extremum(start, start_rate, end, end_rate, which):
 
 @compiled
 def _visits(w, k, value, low, high):
-    """Return True if the value of a function at `high` is an event; it was in the initial interval up to `low`."""
+    """Return True if the value of a function at `high` is an event; it was in the initial interval up to `low`.
+
+    Rounding may change the sign of an event function for a moment; at the end of the step, any change counts.
+    """
     one, other = interval(w, k, w.value_before[k]), interval(w, k, w.value_after[k])
-    here = interval(w, k, value)
-    if here != one and not 0.0 <= w.left_high[k] <= high:
+    gone = departed(w, k, value)
+    if gone and not 0.0 <= w.left_high[k] <= high:
         w.left_low[k], w.left_high[k] = low, high  # the stored one may be after a return
     if k < w.n_event_functions:
-        return here != one and abs(value) > w.depth
-    if w.lands[k]:
+        return gone and (abs(value) > w.depth or high >= 1.0)
+    if lands(w, k):
         return beyond(w, k, value, one, one, w.depth)
     if abs(one - other) > 1:
-        return here != one
+        return gone
     return beyond(w, k, value, one, other, w.depth)
 
 
@@ -156,14 +162,9 @@ def _visits_extremum(w, s, begun, h, k, low, place, part):
 
 
 @compiled
-def _seen_at_end(w, k):
-    """Return True if an event function has changed sign at the end of the step; it may have changed earlier, too."""
-    return k < w.n_event_functions and interval(w, k, w.value_before[k]) != interval(w, k, w.value_after[k])
-
-
-@compiled
-def _first_within(w, s, begun, h, low, part):
+def _first_within(w, s, begun, h, low, end_of_part):
     """Return the place in the step of the first event of all functions within a part; 2 if there is none."""
+    part = end_of_part - low
     first = 2.0
     for k in range(w.n):
         if left_out(w, k):
@@ -179,14 +180,12 @@ def _first_within(w, s, begun, h, low, part):
                 place = _extremum(start, start_rate, end, end_rate, which)
                 if place < min(seen, 1.0) and _visits_extremum(w, s, begun, h, k, low, low + place * part, part):
                     seen = place
-        if (
-            seen > 1.0
-            and not (low + part > 1.0 - SEARCH.least_difference and _seen_at_end(w, k))
-            and _visits(w, k, end, low, low + part)
-        ):
+        if seen > 1.0 and _visits(w, k, end, low, end_of_part):
             seen = 1.0
         if seen <= 1.0:
             place = _change(w, s, begun, h, k)
+            if k >= w.n_event_functions or not departed(w, k, w.value_after[k]):  # the new law holds a little later
+                place = min(1.0, place + SEARCH.least_difference)
             if place < first:
                 first = place
                 for j in range(w.n):
@@ -196,13 +195,21 @@ def _first_within(w, s, begun, h, low, part):
 
 
 @compiled
+def _has_departed(w, s, begun, h, k, place):
+    """Return True if a function has left its initial interval at a place, with the reactions there."""
+    _load_at(w, s, place)
+    return departed(w, k, switches(w, s, begun + place * h)[k])
+
+
+@compiled
 def _change(w, s, begun, h, k):
     """Return the place at which a function leaves its initial interval."""
-    here = interval(w, k, w.value_before[k])
     low, high = w.left_low[k], w.left_high[k]
+    if w.by_accelerations and departed(w, k, w.value_after[k]) and not _has_departed(w, s, begun, h, k, high):
+        low, high = high, 1.0  # a polynomial through reactions overshoots where these have a kink
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        if interval(w, k, _values(w, s, begun, h, middle)[k]) != here:
+        if _has_departed(w, s, begun, h, k, middle):
             high = middle
         else:
             low = middle
@@ -220,18 +227,6 @@ def _turned_in_part(w, part):
         farthest = max(farthest, turned_argument(w, i, w.m2[k] - w.a[k]))
         farthest = max(farthest, abs(w.radians[i]) * part * max(abs(w.a_rate[k]), abs(w.b_rate[k])))
     return farthest
-
-
-@compiled
-def first_event_or_change(w, s, begun, h):
-    """Return the place of the first event within a step, or of the first sign change at its end; 2 if there is none."""
-    first = first_event(w, s, begun, h)
-    if first > 1.0:
-        for k in range(w.n_event_functions):
-            if not left_out(w, k) and _seen_at_end(w, k):
-                w.left_low[k], w.left_high[k] = 0.0, 1.0
-                first = min(first, _change(w, s, begun, h, k))
-    return first
 
 
 @compiled
@@ -265,7 +260,7 @@ def first_event(w, s, begun, h):
     while low < 1.0:
         end = min(low + part, 1.0)
         part = end - low
-        copied(w.b, _values(w, s, begun, h, end), w.n)
+        copied(w.b, w.value_after if end == 1.0 else _values(w, s, begun, h, end), w.n)
         noted_rates(
             w.b_rate, w.b, _values(w, s, begun, h, end - SEARCH.difference * part), -SEARCH.difference * part, w.n
         )
@@ -284,9 +279,9 @@ def first_event(w, s, begun, h):
             continue
         if turns > tau:
             note_unresolved(w, begun, w.a, w.b)
-        place = _first_within(w, s, begun, h, low, part)
+        place = _first_within(w, s, begun, h, low, end)
         if place <= 1.0:
-            return min(1.0, place + SEARCH.least_difference)
+            return place
         copied(w.a, w.b, w.n)
         copied(w.a_rate, w.b_rate, w.n)
         low = end

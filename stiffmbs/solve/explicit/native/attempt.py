@@ -54,10 +54,14 @@ def attempt(x, c, s, m, h):
 
 @compiled
 def distance_of_end(x):
-    """Return the relative distance from a singular pose at the last evaluated state; infinite where it is not small."""
+    """Return the relative distance from a singular pose at the end of a step, the last evaluated state.
+
+    It is infinite where it is not small. The scales of pivots are those of such ends: stages of rejected steps may be far away.
+    """
     if not (x.pivots_tell and x.eliminates):
         return float("inf")
     r = eliminated_view(x.eliminated)
+    copied(r.largest_scale, r.pivot_scale, r.n_scales)
     if r.kept > ENDS.close * r.most_kept:
         return float("inf")
     return (max(r.kept, 0.0) / r.most_kept) ** 0.5

@@ -2,13 +2,12 @@
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.calls import int32
-from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.dynamics.native.block_systems import to_accelerations
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import (
     LOOKED_AT,
+    departed,
     event_search_view,
     fastest_turn,
     longest_by_turns,
@@ -19,10 +18,11 @@ from stiffmbs.solve.events.native.bounds import (
     suspicious,
     turned_arguments,
 )
-from stiffmbs.solve.events.native.from_zero import JUST_BEYOND, begin_sides, leave_zero, leaves_zero, note_sides
+from stiffmbs.solve.events.native.from_zero import begin_sides, leave_zero, leaves_zero, note_sides
 from stiffmbs.solve.events.native.nearby import note_intervals
 from stiffmbs.solve.events.native.outside import note_outside
 from stiffmbs.solve.events.native.parameters import BISECTIONS, EPSILON, INDISTINCT, NEXT_STEP, SEARCH
+from stiffmbs.solve.events.native.values import switches, take_reactions
 from stiffmbs.solve.events.native.within_step import first_event, keep_row
 from stiffmbs.solve.explicit.native.attempt import arrive, attempt
 from stiffmbs.solve.explicit.native.error_estimate import trusted_error
@@ -37,43 +37,26 @@ RETRIED, NO_EVENT, TURNED_TOO_FAR = range(1, 4)
 
 
 @compiled
-def _load(x, s, y, t):
-    """Load a state for the kernels, with its algebraic states and the multipliers that event functions need."""
-    load_state(s, y)
-    m = dynamics_view(x.dynamics)
-    if m.n_algebraic > 0 or m.switches_by_reactions:
-        to_accelerations(s, m, t)
-
-
-@compiled
 def _values(x, s, y, t):
-    _load(x, s, y, t)
-    return evaluate(s, SWITCH, t)
-
-
-@compiled
-def _has_changed(x, values, k):
-    """Return True if an event function has changed its sign in the step; one that was zero may return to zero."""
-    sign, value = x.signs[k], values[k]
-    if sign == 0.0:
-        return False
-    return abs(sign) > JUST_BEYOND if value == 0.0 else (sign > 0.0) != (value > 0.0)
+    load_state(s, y)
+    return switches(event_search_view(x.watch), s, t)
 
 
 @compiled
 def _changed(x, values):
-    changed = False
+    """Return True if an event function has changed its sign in the step."""
+    w = event_search_view(x.watch)
+    changed = 0
     for k in range(x.n_event_functions):
-        if _has_changed(x, values, k):
-            changed = True
-    return changed
+        changed += w.value_before[k] != 0.0 and departed(w, k, values[k])
+    return changed > 0
 
 
 @compiled
-def _note_changed(x, values):
-    found = event_search_view(x.watch).found
+def _note_changed(x, w):
+    """Note the event functions that have changed their signs at the end of the step."""
     for k in range(x.n_event_functions):
-        found[k] = 1 if _has_changed(x, values, k) else 0
+        w.found[k] = 1 if w.value_before[k] != 0.0 and departed(w, k, w.value_after[k]) else 0
 
 
 @compiled
@@ -90,13 +73,14 @@ def _note_sides_at_start(x, s):
     """Find the initial signs of functions that are zero at the start of the step and nonzero at its end."""
     w = event_search_view(x.watch)
     count = x.n_event_functions
-    if not leaves_zero(x.signs, w.value_after, count):
+    if not leaves_zero(w.value_before, w.value_after, count):
         return
     load_state(s, x.y_before)
     begin_sides(w.m, w.m2, count)
     ahead = max(EPSILON * x.span, INDISTINCT * abs(x.t))
     while (
-        ahead <= NEXT_STEP.just_after * x.span and note_sides(x.signs, _values_ahead(x, s, ahead), w.m, w.m2, count) > 0
+        ahead <= NEXT_STEP.just_after * x.span
+        and note_sides(w.value_before, _values_ahead(x, s, ahead), w.m, w.m2, count) > 0
     ):
         ahead *= SEARCH.longer
 
@@ -114,8 +98,9 @@ def _note_rates(x, s, y, rates, t, ahead, value, rate):
 def _note_start(x, s, w, small):
     """Compute values and rates at the start of the step, unless known from the end of the previous step."""
     if not (w.ready and w.begun == x.t_before):
+        copied(w.a, w.value_before, x.n_event_functions)
         copied(w.value_before, _values(x, s, x.y_before, x.t_before), w.n)
-        leave_zero(w.value_before, x.signs, x.n_event_functions)
+        leave_zero(w.value_before, w.a, x.n_event_functions)
         _note_rates(x, s, x.y_before, x.k, x.t_before, small, w.value_before, w.rate_before)
         w.begun = x.t_before
         w.ready = 1
@@ -191,7 +176,8 @@ def _event_within(x, c, s, m, changed):
         return float(status)
     for node in range(w.n_nodes):
         interpolated(x, c, w.node[node], x.y_stage)
-        _load(x, s, x.y_stage, x.t_before + w.node[node] * h)
+        load_state(s, x.y_stage)
+        take_reactions(w, s, x.t_before + w.node[node] * h)
         keep_row(w, s, node)
     event = first_event(w, s, x.t_before, h)
     return event * h if INDISTINCT * abs(x.t) < event * h < h else 0.0
@@ -290,7 +276,7 @@ def _taken_to_event(x, c, s, m, h, beyond):
         return TURNED_TOO_FAR
     changed = _changed(x, w.value_after)
     if changed:
-        _note_changed(x, w.value_after)
+        _note_changed(x, w)
         status = _taken_to_change(x, c, s, m, h, beyond)
         if status != 0:
             return status
@@ -327,13 +313,13 @@ def _ended_at_event(x, c, s, m):
     w = event_search_view(x.watch)
     if status == NO_EVENT:
         _note_repeats(x, w, 0)
-        copied(x.signs, w.value_after, x.n_event_functions)
         note_outside(w, x.t)
         shift_ends(w)
         if w.n_turns > 0:
             x.h = min(x.h, longest_by_turns(w, w.rate_before, SEARCH.turned))
         w.begun = x.t
-        _load(x, s, x.y, x.t)
+        load_state(s, x.y)
+        take_reactions(w, s, x.t)
         return 0
     if status < 0:
         return status

@@ -26,9 +26,10 @@ def start_steps(x, c, s, m):
         evaluate(s, ACCELERATION, x.t)
         add_trailing_rates(s, m, 1.0, k)
     if x.n_event_functions > 0:
-        copied(x.signs, evaluate(s, SWITCH, x.t), x.n_event_functions)
-        if at_zero(x.signs, x.n_event_functions) > 0:
-            _leave_zeros(x, s, m, k)
+        w = event_search_view(x.watch)
+        copied(w.value_before, evaluate(s, SWITCH, x.t), w.n)
+        if at_zero(w.value_before, x.n_event_functions) > 0:
+            _leave_zeros(x, w, s, m, k)
     x.started = 1
 
 
@@ -43,25 +44,24 @@ def _go_ahead(x, s, k, ahead):
 
 
 @compiled
-def _leave_zeros(x, s, m, k):
+def _leave_zeros(x, w, s, m, k):
     """Compute rates slightly after the start if event functions are exactly zero there, where rounding decides the law.
 
     They are rejected if they lead back to the zero, as in sticking friction.
     """
-    w = event_search_view(x.watch)
-    count = x.n_event_functions
+    count, signs = x.n_event_functions, w.value_before
     later, ahead = shifted(x.k, x.n), max(x.shortest, INDISTINCT * abs(x.t))
     begin_sides(w.m, w.m2, count)
-    zeros = at_zero(x.signs, count)
+    zeros = at_zero(signs, count)
     undecided = zeros
     while undecided > 0 and 0.0 < ahead <= FIRST_STEP.farthest * x.shortest:
-        undecided = note_sides(x.signs, _go_ahead(x, s, k, ahead), w.m, w.m2, count)
+        undecided = note_sides(signs, _go_ahead(x, s, k, ahead), w.m, w.m2, count)
         ahead *= SEARCH.longer
     ahead /= SEARCH.longer
-    if at_zero(x.signs, count) == zeros:
+    if at_zero(signs, count) == zeros:
         return
     _go_ahead(x, s, k, ahead)
-    if rates(x, s, m, 1, x.t + ahead) == 0 and keep_sides(x.signs, _go_ahead(x, s, later, ahead), count):
+    if rates(x, s, m, 1, x.t + ahead) == 0 and keep_sides(signs, _go_ahead(x, s, later, ahead), count):
         copied(k, later, x.n)
 
 

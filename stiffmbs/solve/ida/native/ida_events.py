@@ -3,7 +3,7 @@
 from math import pi
 from typing import Final
 
-from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
+from stiffmbs.compile.machine.native.access import compiled, equations_view, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate_some, load
 from stiffmbs.compile.machine.native.memory import copied
@@ -11,8 +11,11 @@ from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.solve.events.native.bounds import (
     LOOKED_AT,
     breakpoint_of,
+    departed,
     event_search_view,
     interval,
+    lands,
+    left_out,
     longest_by_turns,
     note_farthest,
     note_unresolved,
@@ -25,23 +28,23 @@ from stiffmbs.solve.events.native.bounds import (
     watch_for,
 )
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
+from stiffmbs.solve.events.native.layouts import ALWAYS, IN_THIS_STEP
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
 from stiffmbs.solve.events.native.outside import note_outside
 from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
-from stiffmbs.solve.events.native.within_step import first_event, first_event_or_change, keep_row
+from stiffmbs.solve.events.native.values import switches, take_reactions
+from stiffmbs.solve.events.native.within_step import first_event, keep_row
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.layouts import EVENT, NO_EVENT, PASSED_INTERVAL
-from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight, switches, take_reactions
+from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
 
-UNSEEN = float("inf")
-"""Placeholder for no time at which event functions are known."""
 LARGEST_GROWTH: Final = 2.0
 """Largest ratio of successive steps of IDA (IDASetEtaMax, which is not called)."""
 
 
 @compiled
 def _note_sides(c, w, s, toward):
-    """Find the initial signs, for IDA's root search, of functions that are zero at the start."""
+    """Find the initial signs of functions that are zero at the start."""
     count = w.n_event_functions
     for k in range(count):
         w.a[k] = float(w.value_before[k] > 0.0) - float(w.value_before[k] < 0.0)
@@ -53,14 +56,11 @@ def _note_sides(c, w, s, toward):
         if note_sides(w.a, switches(w, s, c.returned + ahead), w.m, w.m2, count) == 0:
             break
         ahead *= SEARCH.longer
-    for k in range(count):
-        if w.value_before[k] == 0.0:
-            c.signs[k] = float(w.a[k] > 0.0) - float(w.a[k] < 0.0)
     leave_zero(w.value_before, w.a, count)
 
 
 def look_at_start(toward, stop, ida):
-    """Evaluate the event functions at a restart of IDA; next output time `toward`, next breakpoint `stop`."""
+    """Evaluate the event functions at a restart of IDA; times of the first step `toward` and of the next breakpoint `stop`."""
     c = native_ida_view(ida)
     w = event_search_view(c.watch)
     if not w.ready:
@@ -69,7 +69,6 @@ def look_at_start(toward, stop, ida):
         ahead = max(SEARCH.least_difference * (toward - c.returned), time_of_difference(w, 0.0, c.returned))
         s = state_view(c.state)
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
-        c.seen = UNSEEN
         keep_row(w, s, 0)
         copied(w.value_before, switches(w, s, c.returned), w.n)
         for k in range(w.n_event_functions):
@@ -190,7 +189,7 @@ def _aim(c, w, s, ahead):
         go_ahead(c, s, ahead * w.node[node])
         take_reactions(w, s, t + ahead * w.node[node])
         keep_row(w, s, node)
-    place = first_event_or_change(w, s, t, ahead)
+    place = first_event(w, s, t, ahead)
     for k in range(w.n):
         w.found[k] = 0
     least = max(NEXT_STEP.short_of * w.longest, 10.0 * INDISTINCT * abs(t))
@@ -208,6 +207,32 @@ def _evaluate_near(w, s, t):
 
 
 @compiled
+def _go_back(c, w, s, begun, h, place):
+    """Make a place within the last step IDA's returned state; note all event functions that have changed up to there.
+
+    Rounding may leave the interpolated state just before the event.
+    """
+    end, last = c.returned, min(1.0, place + SEARCH.finest)
+    apart = INDISTINCT * abs(end) / h
+    changed = 0
+    while True:
+        c.returned = min(begun + place * h, end)
+        call_int(c.interpolate, (c.memory, c.returned, int32(0), c.y))
+        call_int(c.interpolate, (c.memory, c.returned, int32(1), c.yp))
+        load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
+        values = switches(w, s, c.returned)
+        for k in range(w.n):
+            changed += w.found[k] and departed(w, k, values[k])
+        if changed > 0 or place >= last:
+            break
+        place = min(place + apart, last)
+        apart *= SEARCH.longer
+    for k in range(w.n_event_functions):
+        if departed(w, k, values[k]) and not left_out(w, k):
+            w.found[k] = 1
+
+
+@compiled
 def _passes_smoothly(w, h):
     """Return True if the event found is a passed interval of a law that is smooth where a repeated step may end."""
     others = 0
@@ -218,7 +243,8 @@ def _passes_smoothly(w, h):
             farthest = max(
                 abs(w.value_after[k] - w.value_before[k]), h * max(abs(w.rate_before[k]), abs(w.rate_after[k]))
             )
-            others += k < w.n_event_functions or w.lands[k] > 0 or smooth < SEARCH.difference * farthest
+            restarts = w.at_kinks == ALWAYS if lands(w, k) else smooth < SEARCH.difference * farthest
+            others += k < w.n_event_functions or restarts
     return others == 0
 
 
@@ -232,11 +258,8 @@ def look_within(ida):
         return int32(NO_EVENT)
     s = state_view(c.state)
     e = equations_view(c.equations)
-    if c.seen != c.returned:
-        load(s, e, array_of(c, c.y), array_of(c, c.yp))
-        switches(w, s, c.returned)
-    c.seen = UNSEEN
-    copied(w.value_after, floats(s.values[SWITCH]), w.n)
+    load(s, e, array_of(c, c.y), array_of(c, c.yp))
+    copied(w.value_after, switches(w, s, c.returned), w.n)
     nearby = note_near(w, h, w.row, s.q)
     if not nearby:
         note_mean_rates(w, h)
@@ -253,6 +276,8 @@ def look_within(ida):
     copied(w.m, _evaluate_near(w, s, place), w.n)
     note_farthest(w, w.m)
     load(s, e, array_of(c, c.y), array_of(c, c.yp))
+    if w.at_kinks != ALWAYS:
+        w.at_kinks = IN_THIS_STEP if c.repeat and not call_int(c.resolves, (c.memory,)) else 0
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):
             if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
@@ -260,13 +285,11 @@ def look_within(ida):
             load(s, e, c.output, array_of(c, c.yp))
             take_reactions(w, s, begun + w.node[node] * h)
             keep_row(w, s, node)
-        event = begun + h * first_event(w, s, begun, h)
-        if begun + INDISTINCT * abs(begun) < event < c.returned:
-            call_int(c.interpolate, (c.memory, event, int32(0), c.y))
-            call_int(c.interpolate, (c.memory, event, int32(1), c.yp))
-            c.returned = event
-            c.within = 1
-            return int32(PASSED_INTERVAL if _passes_smoothly(w, h) else EVENT)
+        place = first_event(w, s, begun, h)
+        passes = place <= 1.0 and _passes_smoothly(w, h)
+        if place <= (1.0 - 2.0 * SEARCH.difference if passes and c.repeat else 1.0):  # a repeated step ends in the law
+            _go_back(c, w, s, begun, h, place)
+            return int32(PASSED_INTERVAL if passes else EVENT)
         load(s, e, array_of(c, c.y), array_of(c, c.yp))
     _go_on(c, w, s)
     _look_ahead(c, w, s)

@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.native.access import address_of, compiled, equatio
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
-from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, interval, place, repeats
+from stiffmbs.solve.events.native.bounds import bounded_by_feature, departed, event_search_view, repeats
 from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
 from stiffmbs.solve.events.native.step_bound import (
     STRETCHED,
@@ -18,9 +18,9 @@ from stiffmbs.solve.events.native.step_bound import (
 )
 from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
-from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view, watched
+from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
-from stiffmbs.solve.ida.native.layouts import NO_EVENT, PASSED_INTERVAL, STEP_WIDTH
+from stiffmbs.solve.ida.native.layouts import EVENT, NO_EVENT, STEP_WIDTH
 from stiffmbs.solve.ida.native.output_correction import (
     corrected,
     corrected_at_event,
@@ -28,7 +28,6 @@ from stiffmbs.solve.ida.native.output_correction import (
     output_correction_view,
 )
 from stiffmbs.solve.ida.native.parameters import LOOP
-from stiffmbs.solve.ida.native.passage import switches
 
 STALLED: Final = -101
 """Flag for steps that have shrunk to the rounding of the time; none of ida.h."""
@@ -76,28 +75,6 @@ def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
     return int32(OK if _finite(a, e.n_slots) else RECOVERABLE)
 
 
-def event_functions(t, yy, yp, g, user_data):
-    """Compute the event functions of breakpoints of forces (IDARootFn)."""
-    c = native_ida_view(user_data)
-    s = state_view(c.state)
-    load(s, equations_view(c.equations), array_of(c, yy), array_of(c, yp))
-    values = switches(event_search_view(c.watch), s, t)
-    c.seen = t
-    watched(values, c.signs, c.band, g, c.n_event_functions)
-    return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)
-
-
-def event_functions_and_places(t, yy, yp, g, user_data):
-    """Compute the event functions, and the places of other functions among the breakpoints of tables with a kink."""
-    flag = event_functions(t, yy, yp, g, user_data)
-    c = native_ida_view(user_data)
-    w = event_search_view(c.watch)
-    values = floats(state_view(c.state).values[SWITCH])
-    for k in range(c.n_event_functions, w.n):
-        g[k] = float(place(w, k, values[k])) if w.kinked[k] else 0.0
-    return flag
-
-
 @compiled
 def _longest_to_see(c, bound, t):
     """Return the longest step from t that resolves inputs and periodic or just entered laws."""
@@ -136,10 +113,21 @@ def _see_inputs(c, stop):
 
 
 @compiled
-def _attempt(c, toward, stop):
+def _toward(c, stop):
+    """Return the time whose distance is a thousand times IDA's first step: a part of the way to the stop.
+
+    It does not depend on output times, so that these change no step. Later steps go towards the stop itself: IDA returns
+    a step that ends there as the stop only if it was to go so far.
+    """
+    way = LOOP.first_part * (stop - c.returned)
+    return c.returned + way if c.size == 0.0 and way > LOOP.most_tiny * EPSILON * abs(stop) else stop
+
+
+@compiled
+def _attempt(c, stop):
     """Take one step, and return IDA's flag."""
     _see_inputs(c, stop)
-    flag = call_int(c.solve, (c.memory, toward, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
+    flag = call_int(c.solve, (c.memory, _toward(c, stop), address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
     if flag == STOP_RETURN and c.returned < stop:
         flag = int32(OK)
     call_int(c.time_of, (c.memory, address_of(c.internal)))
@@ -154,27 +142,26 @@ def _seen(c, ida, flag):
 
 
 @compiled
-def stepped(c, ida, toward, stop):
+def stepped(c, ida, stop):
     """Take one step; note its end, order and size in the history, and return IDA's flag.
 
-    A one-step method that has passed an interval of a law repeats the step into that interval: no restart is needed.
+    A one-step method may repeat the step up to an event or a passed law.
     """
     before = c.internal
     begun = c.returned
-    c.within = 0
     if c.look_at_start:
-        call_int(c.look_at_start, (toward, stop, ida))
-    flag = _attempt(c, toward, stop)
+        call_int(c.look_at_start, (_toward(c, stop), stop, ida))
+    flag = _attempt(c, stop)
     seen = _seen(c, ida, flag)
     for _ in range(LOCATION.most_retaken):
-        if seen != PASSED_INTERVAL or not c.repeat:
+        event = c.returned
+        h = _repeated(c, begun, seen)
+        if h == 0.0:
             break
-        call_int(c.repeat, (c.memory, begun, (1.0 + SEARCH.difference) * (c.returned - begun)))
-        c.returned = begun
-        c.internal = begun
-        c.within = 0
-        flag = _attempt(c, toward, stop)
+        flag = _attempt(c, stop)
         seen = _seen(c, ida, flag)
+        if seen == NO_EVENT:
+            event_search_view(c.watch).target = event + (event - begun - h)
     if c.internal != before and flag >= 0:
         call_int(c.order_of, (c.memory, address_of(c.order)))
         row = shifted(c.history, STEP_WIDTH * c.recorded)
@@ -195,6 +182,32 @@ def stepped(c, ida, toward, stop):
 
 
 @compiled
+def _repeated(c, begun, seen):
+    """Make a one-step method repeat its step with another length; return that, or 0 if the step stays.
+
+    A step that has passed an interval of a law ends in it: no restart is needed. One whose error estimate is not valid
+    over a jump ends shortly before the event, and the next one as shortly after it.
+    """
+    if seen == NO_EVENT or not c.repeat or (seen == EVENT and call_int(c.resolves, (c.memory,))):
+        return 0.0
+    w = event_search_view(c.watch)
+    crossed = 0
+    for k in range(w.n_event_functions):
+        crossed += w.found[k] != 0 and departed(w, k, w.value_after[k])
+    if seen == EVENT and crossed == 0:  # a short visit, which the search has resolved
+        return 0.0
+    ahead = c.returned - begun
+    h = ahead / STRETCHED if seen == EVENT else (1.0 + SEARCH.difference) * ahead
+    shortest = LOOP.most_tiny**2 * EPSILON * abs(begun)
+    if not shortest < h < (1.0 - SEARCH.difference) * c.size:
+        return 0.0
+    call_int(c.repeat, (c.memory, begun, h))
+    c.returned = begun
+    c.internal = begun
+    return h
+
+
+@compiled
 def _before_event(c, begun):
     """Return a time just before the event at the returned state, at which all laws are those at the start of the step."""
     w = event_search_view(c.watch)
@@ -208,10 +221,7 @@ def _before_event(c, begun):
         values = evaluate(s, SWITCH, c.returned - ahead)
         changed = 0
         for k in range(w.n):
-            if c.within and w.found[k]:
-                changed += interval(w, k, values[k]) != interval(w, k, w.value_before[k])
-            elif k < c.n_event_functions and abs(w.value_before[k]) > w.band[k]:
-                changed += w.value_before[k] * values[k] < 0.0
+            changed += w.found[k] != 0 and departed(w, k, values[k])
     return c.returned - ahead
 
 
@@ -316,17 +326,13 @@ def _served(c, times, count, y_out):
 
 @compiled
 def advanced(c, ida, count, times, stop, most, y_out):
-    """Take at most `most` steps towards `stop`, and report at output times; return IDA's last flag.
-
-    The first step's size follows from the distance to the first output time, as in IDA's normal mode.
-    """
+    """Take at most `most` steps towards `stop`, and report at output times; return IDA's last flag."""
     c.stopping = stop
     flag = _served(c, times, count, y_out)
     for _ in range(min(most, LOOP.most_steps)):
         if flag != OK:
             break
-        toward = times[c.served] if c.served < count else stop
-        flag = stepped(c, ida, min(toward, stop), stop)
+        flag = stepped(c, ida, stop)
         if flag >= 0:
             outcome = _served(c, times, count, y_out)
             flag = outcome if outcome < 0 else flag
@@ -355,7 +361,7 @@ def steps(most, stop, t_out, y_out, ida):
     clear_call(c)
     flag = int32(OK)
     while flag == OK and c.served < min(most, LOOP.most_steps):
-        flag = stepped(c, ida, stop, stop)
+        flag = stepped(c, ida, stop)
         if flag >= 0:
             k = c.served
             t_out[k] = c.returned

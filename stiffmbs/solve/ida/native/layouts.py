@@ -1,4 +1,7 @@
-"""Memory layouts of IDA's callbacks, loop, starts and norms."""
+"""Memory layouts of IDA's callbacks, loop, starts and norms.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
@@ -7,25 +10,24 @@ NO_EVENT, EVENT, PASSED_INTERVAL = range(3)
 
 NATIVE_IDA = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT,
-    "n_event_functions": INT, "signs": FLOATS, "band": FLOATS,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
-    "stop_at": INT, "next_step_of": INT, "repeat": INT, "step_bound": INTS,
+    "stop_at": INT, "next_step_of": INT, "repeat": INT, "resolves": INT, "step_bound": INTS,
     "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
-    "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
+    "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "atol": FLOATS, "rtol": FLOAT_CELL,
     "long_steps": INTS, "error_norm": INTS,
-    "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL, "seen": FLOAT_CELL,
+    "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL,
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
 functions and objects, values of the matrix, and reported unknowns; function by which a one-step method
-repeats its last step with another length, 0 for a multistep method; absolute and relative tolerances.
+repeats its last step with another length, 0 for a multistep method; function that tells whether the error estimate of the
+step holds over jumps; absolute and relative tolerances.
 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
-size of the next attempt; last stop time; output times served, tiny steps in succession, 1 if the last event was found
-within the step; steps in the history, steps since the last sample, position of the next one; time of the
-event functions in the state.  Address of rows for time, order, y and y' of each step (0 for none), and rows written in
+size of the next attempt; last stop time; output times served, tiny steps in succession; steps in the history,
+steps since the last sample, position of the next one.  Address of rows for time, order, y and y' of each step (0 for none), and rows written in
 this call.  Places within a step that have a row too."""
 
 STEP = "end", "order", "size"
@@ -34,7 +36,7 @@ STEP_WIDTH = len(STEP)
 
 
 START = Layout({
-    "dynamics": INTS, "ida": INT, "error_norm": INTS, "n_watched": INT, "rate": FLOATS, "leader": INTS,
+    "dynamics": INTS, "ida": INT, "error_norm": INTS, "n_watched": INT, "rate": FLOATS, "kept": FLOATS, "leader": INTS,
     "n_q": INT, "q_of": INTS, "q_at": INTS, "n_u": INT, "u_of": INTS, "u_at": INTS,
     "relaxations": FLOATS, "n_position_entries": INT, "position_source": INTS, "position_row": INTS, "position_drift": FLOAT_CELL,
     "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "inverse_mass": FLOATS, "velocity_drift": FLOAT_CELL,
@@ -45,7 +47,7 @@ START = Layout({
     "n_counters": INT, "counter": INTS, "counted": INTS, "count": INTS, "counts": INTS,
     "set_newton": INT, "reinitialise": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
 })  # fmt: skip
-"""Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): independent coordinates and velocities, and their
+"""Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): memory for rates of coordinates, and for a state; independent coordinates and velocities, and their
 positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
 term set; counter functions, their arguments, space for one number, and their sums; functions of SUNDIALS.  A start changes only
 both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave."""

@@ -20,6 +20,9 @@ class LoopParameters:
     most_tiny: int = 100
     """Number of successive tiny steps at which the run stops: IDA would continue forever. A step below as many roundings
     of the time is tiny."""
+    first_part: float = 0.01
+    """Part of the way to the next stop of which IDA's first step is at most a thousandth: that to the next of 100 output
+    times, on which IDA's own choice depends."""
     most_passed: int = 64
     """Largest number of breakpoints, or of samples that change nothing that acts, in a call."""
     most_items: int = 1_000_000

@@ -5,37 +5,14 @@ interval of another law, the step is accepted without the forces in between.  A 
 whose stages may all be after such an interval.
 """
 
-from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, ints, shifted, state_view
+from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, shifted
 from stiffmbs.compile.machine.native.calls import call_int
-from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate, load
-from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.evaluate import add_products, evaluate, load
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.dynamics.native.consistent import consistent_accelerations
-from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import interval
 from stiffmbs.solve.events.native.parameters import NEXT_STEP, SEARCH
+from stiffmbs.solve.events.native.values import switches
 from stiffmbs.solve.ida.native.ida_memory import array_of
-
-
-@compiled
-def take_reactions(w, s, t):
-    """Compute the multipliers and algebraic states that event functions need from accelerations at the current state.
-
-    Those of the integrator have no error test, and contain the remainder of Newton's iteration, multipliers divided by
-    the step: restarts, which compute both, would meet an event again that the integrator has passed.
-    """
-    if w.by_accelerations:
-        m = dynamics_view(ints(w.dynamics))
-        copied(w.lam, s.lam, w.n_lam)
-        if consistent_accelerations(state_view(m.state), m, t) < 0:
-            copied(s.lam, w.lam, w.n_lam)
-
-
-@compiled
-def switches(w, s, t):
-    """Return the event functions at the current state."""
-    take_reactions(w, s, t)
-    return evaluate(s, SWITCH, t)
 
 
 @compiled

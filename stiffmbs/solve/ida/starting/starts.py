@@ -19,7 +19,7 @@ from ...error_control.newton import RowSums, Stiffness, row_sums_of
 from ...error_control.relaxation import drift_of_positions, drift_of_velocities, inverse_mass
 from ..connection import Connection
 from ..native.layouts import START
-from ..statistics import Statistics
+from ..statistics import Statistics, failure_sentence
 
 if TYPE_CHECKING:
     from ....dynamics.initial import InitialValues
@@ -51,35 +51,36 @@ class Starts:
             self._state.load(term_set)
         values: dict[str, Any] = {
             "dynamics": dynamics.table, "ida": connection.table, "error_norm": connection.error_norm.table, "n_watched": connection.watch.n,
-            "rate": np.zeros(system.n_q), "sums": np.zeros(system.n_u),
+            "rate": np.zeros(system.n_q), "kept": np.zeros(system.n_q + system.n_u + system.n_c), "sums": np.zeros(system.n_u),
             **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **statistics.arrays,
-            "soft": NEWTON.soft, "loosest": control.newton or NEWTON.loosest,
-            "tightest": control.newton or max(NEWTON.negligible, NEWTON.precision / settings.rtol), "growth": control.growth,
+            **newton_bounds(settings.rtol, control.newton), "growth": control.growth,
             **{name: connection.address(function) for name, function in FUNCTIONS.items()},
         }  # fmt: skip
         self._kept = values, connection
         self.table = packed(START, values)
         self._cells, self._at = self.table.view(START.cells)[0], self.table.ctypes.data
 
-    @staticmethod
-    def serve(dynamics: Dynamics) -> bool:
-        """Return True if compiled starts apply; rates of algebraic states depend on more than the state."""
-        return not len(dynamics.system.algebraic_coordinates)
+    def begin(self, start: InitialValues, t: float, counted: bool, highest_order: int) -> None:
+        """Start at consistent values.
 
-    def begin(self, start: InitialValues, t: float, counted: bool, highest_order: int) -> bool:
-        """Start at consistent values; False, without a start, if the stiffness is not finite or IDA reports an error.
-
-        `t`: s. `counted`: true if IDA's counters belong to this run.
+        `t`: s. `counted`: true if IDA's counters belong to this run. Raises ValueError if IDA reports an error.
         """
         state = self._state
         state.q[:], state.u[:], state.a[:], state.lam[:] = start.q, start.u, start.acceleration, start.lam
-        begun: bool = _START.short_call(t, counted, highest_order, self._at) == 0
-        return begun
+        flag = _START.short_call(t, counted, highest_order, self._at)
+        if flag < 0:
+            raise ValueError(failure_sentence(flag))
 
     def found(self) -> tuple[Stiffness, float]:
         """Return the stiffness at the last start, and the part of the tolerance that Newton's iteration may leave."""
         cells = self._cells
         return Stiffness(*(float(cells[name]) for name in OF_STIFFNESS)), float(cells["newton"])
+
+
+def newton_bounds(rtol: float, fixed: float | None) -> dict[str, float]:
+    """Return the product of Newton's tolerance and the stiffness, and its bounds: the fixed one of the integrator, if any."""
+    tightest = max(NEWTON.negligible, NEWTON.precision / rtol)
+    return {"soft": NEWTON.soft, "loosest": fixed or NEWTON.loosest, "tightest": fixed or tightest}
 
 
 def _places(equations: Equations) -> dict[str, Any]:

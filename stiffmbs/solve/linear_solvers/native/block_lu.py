@@ -43,13 +43,15 @@ block_view = view_of("BlockLU", BLOCK_LU)
 @compiled
 def _taken_out(s, k):
     """Update later blocks by the elimination of supernode k, shape by shape."""
+    # Right-looking elimination, A_ij -= L_ik U_kj for all later i and j.  The rows right of the diagonal hold -U
+    # (`multiplied`), so that every update is a sum of products.  One shape at a time: its loop has no branches.
     depth = s.size[k]
     at = s.update_end[SHAPES * k - 1] if k > 0 else 0
     for kind in range(2):
         a_stride = s.right_width[k] if kind == 0 else s.down_width[k]
         b_stride = s.down_width[k] if kind == 0 else s.right_width[k]
         for rows in range(4, 0, -1):
-            shape = SHAPES * k + 8 * kind + 8 - 2 * rows
+            shape = SHAPES * k + 8 * kind + 8 - 2 * rows  # of two quads in `block_updates.SHAPES`; one quad follows
             for place in range(at, s.update_end[shape]):
                 u = shifted(s.update, 4 * place)
                 a, b = panel(s, u[2]), panel(s, u[3])
@@ -72,7 +74,7 @@ def _factor_node(s, k, first):
     """Factor supernode k; its pivots are stored from unknown `first` on."""
     down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
     size, width, stride = s.size[k], s.node_start[k + 1] - s.node_start[k], s.down_width[k]
-    lower = shifted(right, size * s.right_width[k])
+    lower = shifted(right, size * s.right_width[k])  # L^-1 P is stored after the rows right of the diagonal
     if s.parts == 2:
         triangular_of_pairs(s, down, stride, lower, width, size, first)
         inverted_of_pairs(s, down, stride, width, size)
@@ -85,8 +87,9 @@ def _factor_node(s, k, first):
 @compiled
 def _eliminated(s, f):
     panels = floats(s.panels)
-    for p in range(s.n_lu):
+    for p in range(s.n_lu):  # fill-in, and lanes without an unknown
         panels[p] = 0.0
+    # The second column of a complex number repeats the first one: the slot of its entries is the number after the panels.
     for p in range(f.a_start[f.n]):
         panels[s.slot[p]] = f.a[p]
     first = 0
@@ -126,6 +129,8 @@ def setup(solver, matrix):
     s = block_view(table)  # the memory may have moved
     s.panels = table[LU] + (-table[LU]) % CACHE_LINE  # access to quads across lines is slow
     s.pivoted = 0
+    # The k-th refusal is followed by k factorisations with pivots, up to a limit, before blocks are tried again: a pose
+    # passes, but where blocks do not suit a scene, trials in vain would double the cost.
     if s.waits > 0:
         s.waits -= 1
     else:

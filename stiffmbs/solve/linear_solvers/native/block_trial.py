@@ -28,6 +28,9 @@ def _near_tried(s):
 @compiled
 def _sized(s, f):
     """Scale the trial solution: coordinates of 1, velocities of the rate, multipliers of comparable effect."""
+    # Errors of a factor show only in a solution of realistic proportions.  Those of a Newton correction are: velocities
+    # cj times coordinates, cj being the factor of dF/dy', which is on the diagonal of the coordinates' equations; and
+    # multipliers whose largest term in an equation equals the other terms of this equation.
     rate = 0.0
     for k in range(s.n_diagonal):
         rate = max(rate, abs(f.a[s.diagonal[k]]))
@@ -65,6 +68,8 @@ def trusted(s, f):
     """Return True if the factors leave a small residual; validated by a trial if pivots have changed."""
     if _near_tried(s):
         return True
+    # b = A x for a known x is solved.  A residual is allowed in each row in proportion to sum_j |a_ij x_j|: then the
+    # solution is that of a matrix whose entries differ relatively by as much (Oettli and Prager).
     _sized(s, f)
     _multiply(s, f, s.trial)
     for i in range(f.n):
@@ -82,6 +87,8 @@ def trusted(s, f):
 @compiled
 def _left_after_solution(s, f):
     """Subtract the solution for `product` from the trial; return the largest residual relative to the allowed one."""
+    # The residual is A times the error of the solution: b - A x would lose its digits by cancellation.  A second call
+    # solves for the residual that the first has left, which is a step of iterative refinement.
     solved(s, s.product)
     for j in range(f.n):
         s.trial[j] -= s.x[s.place[j]]
@@ -119,7 +126,7 @@ def _forward(s, k):
     lower = panel(s, s.start[2 * k + 1] + size * s.right_width[k])
     own = shifted(s.x, s.node_start[k])
     width = s.node_start[k + 1] - s.node_start[k]
-    for j in range(size):
+    for j in range(size):  # with the sign of -L^-1 P x until the end: `add_products` can only add
         s.scratch[j] = -own[j]
     for at in range(0, width, 4):
         set_quad(own, at, spread(0.0))
@@ -138,6 +145,7 @@ def _backward(s, k):
     size, stride, width = s.size[k], s.down_width[k], s.right_width[k]
     down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
     own = shifted(s.x, s.node_start[k])
+    # The later unknowns are gathered once: each line of the panel, which holds -U, is then one contiguous dot product.
     first = s.right_at[k]
     for place in range(first, s.right_at[k + 1]):
         set_quad(s.scratch, 4 * (place - first), quad(s.x, s.right_x[place]))
@@ -147,7 +155,7 @@ def _backward(s, k):
             total = plus_product(total, quad(right, i * width + at), quad(s.scratch, at))
         s.scratch[width + i] = own[i] + sum_of(total)
     known = shifted(s.scratch, width)
-    for at in range(0, s.node_start[k + 1] - s.node_start[k], 4):
+    for at in range(0, s.node_start[k + 1] - s.node_start[k], 4):  # U^-1 is triangular: columns before `at` are zero
         set_quad(own, at, spread(0.0))
         add_products(
             1, 1, shifted(own, at), 0, shifted(known, at), 1, shifted(down, at * stride + at), stride, size - at

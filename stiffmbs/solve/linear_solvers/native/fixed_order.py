@@ -3,6 +3,11 @@
 `stiffmbs.compile.machine.native.factors.factor` finds the order by threshold pivoting.  The elimination is stored as a
 list of updates, `lu[target] -= lu[left] * lu[right]`, for later factorisations.  They need no search and no short inner
 loops, whose ends a processor cannot predict.  A pivot that becomes too small causes a new order.
+
+References
+----------
+Gilbert and Peierls, Sparse partial pivoting in time proportional to arithmetic operations, SIAM J. Sci. Stat. Comput. 9
+(1988) 862-874: the elimination by columns that the list repeats.
 """
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, ints, shifted, view_of
@@ -43,6 +48,8 @@ def _list_memory(table, f):
 @compiled
 def _listed(s, f):
     """List the updates of the elimination for the pivots in `f`."""
+    # One array has L without its diagonal, U without its diagonal, and the diagonal.  The backward solution takes the
+    # columns of U from the last one on; they are stored in this order, so that it reads memory forwards.
     n = f.n
     n_lower = f.l_start[n] - n
     n_upper = f.u_start[n] - n
@@ -65,7 +72,7 @@ def _listed(s, f):
             s.mark[f.u_row[p]] = at
         s.mark[j] = diagonal + j
         s.update_start[j] = count
-        for p in range(f.u_start[j], last):
+        for p in range(f.u_start[j], last):  # rows of U in topological order, as `factor` found them
             k = f.u_row[p]
             left = f.l_start[k] - k
             for below in range(f.l_start[k] + 1, f.l_start[k + 1]):
@@ -95,7 +102,7 @@ def _eliminated(s, f):
         lu[p] = 0.0
     for p in range(f.a_start[n]):
         lu[s.slot[p]] += s.weight[p] * f.a[p]
-    largest = 0.0
+    largest = 0.0  # multiplier: rows cannot be exchanged, so its size bounds the growth of rounding errors
     for j in range(n):
         for m in range(3 * s.update_start[j], 3 * s.update_start[j + 1], 3):
             lu[update[m]] -= lu[update[m + 1]] * lu[update[m + 2]]
@@ -104,8 +111,9 @@ def _eliminated(s, f):
         for p in range(f.l_start[j] - j, f.l_start[j + 1] - j - 1):
             lu[p] *= inverse
             largest = max(largest, abs(lu[p]))
-        if not (largest < PIVOTS.largest and abs(inverse) < float("inf")):
+        if not (largest < PIVOTS.largest and abs(inverse) < float("inf")):  # also false for NaN
             return False
+    # A = L D U with unit triangles: a solution multiplies by the inverse pivots once, between both triangles.
     for p in range(n_lower, diagonal):
         lu[p] *= lu[diagonal + s.row[p]]
     return True

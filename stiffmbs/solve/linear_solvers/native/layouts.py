@@ -1,4 +1,7 @@
-"""Memory layouts of the linear solvers of IDA."""
+"""Memory layouts of the linear solvers of IDA.
+
+Letters of these tables in native functions: docs/project/notation.md.
+"""
 
 from stiffmbs.compile.machine.layout import FLOATS, INDICES, INT, INT_CELL, INTS, OWN_FLOATS, OWN_INDICES, Layout
 

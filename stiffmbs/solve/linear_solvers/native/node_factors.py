@@ -27,7 +27,7 @@ from stiffmbs.sparse.block_updates import ROWS
 def magnitude(line, k, parts):
     """Return the magnitude of number k of a line of numbers in parts: 1 for real, 2 for complex ones."""
     found = abs(line[parts * k])
-    if parts == 2:
+    if parts == 2:  # |re| + |im| chooses a pivot as well as the modulus (cabs1 of LINPACK)
         found += abs(line[parts * k + 1])
     return found
 
@@ -55,7 +55,7 @@ def pivoted(s, d, stride, t, width, size, k, parts):
     for r in range(k + 1, size):
         if magnitude(line, r, parts) > magnitude(line, largest, parts):
             largest = r
-    if largest != k:
+    if largest != k:  # lines are columns: an exchange of rows is one within each line
         for i in range(size):
             _exchange(shifted(d, i * stride), k, largest, parts)
         for i in range(k):
@@ -77,6 +77,9 @@ def _reduced(s, line, by, first, width):
 @compiled
 def triangular(s, d, stride, t, width, size, first):
     """Factor a supernode's columns as L U with row pivoting; `t` becomes L^-1 P, later rows are multiplied by U^-1."""
+    # A line holds a column, from the diagonal block down.  Step k divides column k by its pivot and subtracts multiples
+    # of it from the later columns, and from the columns of the unit matrix, which become L^-1 P.  The multipliers are
+    # kept in `scratch` from quad `own` on; `above` clears those of the rows up to the pivot's within this quad.
     in_natural_order(s, size)
     for k in range(size):
         line = pivoted(s, d, stride, t, width, size, k, 1)
@@ -95,7 +98,7 @@ def triangular(s, d, stride, t, width, size, first):
         for i in range(k):
             into = shifted(t, s.order[i] * width)
             _reduced(s, into, -into[k], own, width)
-        into = shifted(t, s.order[k] * width)
+        into = shifted(t, s.order[k] * width)  # not changed by earlier steps: its only entry is in the pivot's row
         for at in range(0, own, 4):
             set_quad(into, at, spread(0.0))
         set_quad(into, own, plus_product(quad(s.unit, within), spread(-1.0), quad(s.scratch, own)))
@@ -106,6 +109,7 @@ def triangular(s, d, stride, t, width, size, first):
 @compiled
 def inverted(s, d, stride, width, size):
     """Replace U, above the diagonal of a supernode's columns, by its inverse."""
+    # Column j of X = U^-1 from the columns before it: x_j = -X u_j / u_jj above the diagonal, 1 / u_jj on it.
     for j in range(size):
         line = shifted(d, j * stride)
         inverse = 1.0 / line[j]
@@ -113,7 +117,7 @@ def inverted(s, d, stride, width, size):
             s.scratch[i] = -inverse * line[i]
         for at in range(0, width, 4):
             set_quad(line, at, spread(0.0))
-        add = j + 3 - (j + 3) % 4
+        add = j + 3 - (j + 3) % 4  # the quads with a row before j
         for at in range(0, add, 4):
             add_products(1, 1, shifted(line, at), 0, s.scratch, 1, shifted(d, at), stride, j)
         line[j] = inverse
@@ -135,6 +139,7 @@ def rows_at_once(left):
 @compiled
 def multiplied(s, d, stride, u, width, size):
     """Multiply a supernode's rows right of its diagonal block by L^-1 P, `d`, and by -1."""
+    # In strips of two quads of columns, which are copied with the opposite sign: the product replaces its own factor.
     for column in range(0, width, 8):
         two = column + 4 < width
         for i in range(size):

@@ -22,6 +22,7 @@ from stiffmbs.solve.linear_solvers.native.node_factors import in_natural_order, 
 @compiled
 def _reduced(s, line, k, first, width):
     """Subtract the k-th number of a line times a pivot's multipliers."""
+    # (a + ib) z = a z + b (iz): two real factors, of the pairs and of the pairs turned by i.
     real = spread(-line[2 * k])
     imaginary = spread(-line[2 * k + 1])
     for at in range(first, width, 4):
@@ -35,7 +36,7 @@ def triangular_of_pairs(s, d, stride, t, width, size, first):
     in_natural_order(s, size)
     for k in range(size):
         line = pivoted(s, d, stride, t, width, size, k, 2)
-        pivot = magnitude(line, k, 2)
+        pivot = magnitude(line, k, 2)  # twice, as trials compare one pivot for each real unknown
         s.pivot[2 * (first + k)] = pivot
         s.pivot[2 * (first + k) + 1] = pivot
         squared = line[2 * k] * line[2 * k] + line[2 * k + 1] * line[2 * k + 1]
@@ -112,6 +113,7 @@ def backward_pairs(s, k, down, right):
     first = s.right_at[k]
     for place in range(first, s.right_at[k + 1]):
         at = 4 * (place - first)
+        # Real dot products of a line with (re, -im) and with (im, re) are the parts of its complex product with x.
         conjugate = product_of(quad(s.x, s.right_x[place]), quad_of(1.0, -1.0, 1.0, -1.0))
         set_quad(s.scratch, at, conjugate)
         set_quad(turned, at, times_i(conjugate))

@@ -2,7 +2,8 @@
 
 The interpolation errors of positions would make large forces. In a step that is long for the stiff forces, a state is
 therefore moved by Newton corrections with the factors of the step. Joints are then closed, and forces agree with the
-polynomial of the efforts. Many outputs of a step share a few such corrections, which are interpolated (Newton's form).
+polynomial of the efforts. The outputs of a step share a few such corrections, which are interpolated (Newton's form). No output
+changes others, or the steps that follow.
 """
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, ints, shifted, state_view
@@ -13,6 +14,7 @@ from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates
 from stiffmbs.solve.radau.native.newton import (
     add_efforts,
+    exchange_terms,
     factored,
     residual,
     size_in_tolerances,
@@ -25,8 +27,8 @@ ROUNDING = 1e-11
 MOST_MOVED, MOST_MOVED_WITHIN = 0.5, 30.0
 """Largest changes of the state at the end of a step, in tolerances, and of states within it, in those of the estimate."""
 AGREED, CLOSED, OPEN = range(3)
-FEW = 2
-"""Outputs of a step that are corrected one by one."""
+UNKNOWN, SUFFICE, TOO_FEW = range(3)
+"""Whether interpolated corrections suffice in a step."""
 
 
 @compiled
@@ -55,6 +57,8 @@ def closed(x, t, most):
     that Newton's iteration may leave; or OPEN if forces do not agree after the corrections, or if these exceed a number of
     tolerances.
     """
+    # Efforts are known to rtol of the largest.  Of the state, only what closes joints and balances stiff forces changes:
+    # the other equations are taken as satisfied, as the error of the step in them needs no correction.
     allowed = 0.0
     for k in range(x.n, x.n_all):
         allowed = max(allowed, abs(x.y_stage[k]))
@@ -74,7 +78,7 @@ def closed(x, t, most):
         if apart <= allowed and (count > 0 or x.n_closing == 0):
             enough = True
             break
-        rate = apart / before if count > 0 else 1.0
+        rate = apart / before if count > 0 else 1.0  # of convergence; its product with `apart` predicts the next misfit
         before = max(apart, 1e-300)
         for k in range(x.n_levers):
             x.b[x.lever_unknown[k]] += x.lever[k] * x.misfit[x.lever_effort[k]]
@@ -113,6 +117,7 @@ def close_end(x, c, t, h):
 @compiled
 def _corrected(x, c, place, count):
     """Compute the state in `x.y_stage`, with the first corrections; return their common factor at the place."""
+    # Newton's form with the nodes 0 and 1, where states are closed, and the places before this one.
     polynomial(x, place, x.n_all, x.y_stage)
     factor = place * (1.0 - place)
     for j in range(count):
@@ -132,22 +137,27 @@ def _most_moved_within(c):
 @compiled
 def _closed_at(x, c, t, place):
     """Close the state at a place; the matrix of the step may be too old for it. Return False if it stays open."""
-    for new in range(2):
-        _corrected(x, c, place, 0)
-        if new or x.n_closing > 0:
-            polynomial_rates(x, place, x.yp_stage)
-        if new and not factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True):
-            break
-        if closed(x, t, _most_moved_within(c)) != OPEN:
-            return True
     _corrected(x, c, place, 0)
-    return False
+    if x.n_closing > 0:
+        polynomial_rates(x, place, x.yp_stage)
+    if closed(x, t, _most_moved_within(c)) != OPEN:
+        return True
+    exchange_terms(x)
+    _corrected(x, c, place, 0)
+    polynomial_rates(x, place, x.yp_stage)
+    h = x.h_factored
+    succeeded = factored(x, c, x.h_past, t, x.y_stage, x.yp_stage, True) and closed(x, t, _most_moved_within(c)) != OPEN
+    exchange_terms(x)
+    factored(x, c, h, t, x.y_stage, x.yp_stage, False)
+    if not succeeded:
+        _corrected(x, c, place, 0)
+    return succeeded
 
 
 @compiled
 def _find_corrections(x, c):
     """Close the state at a few places of the step, until the corrections at earlier places make that unnecessary."""
-    x.suffice = 0
+    x.suffice = TOO_FEW
     for j in range(c.n_between):
         place = c.between[j]
         factor = _corrected(x, c, place, j)
@@ -159,10 +169,10 @@ def _find_corrections(x, c):
         outcome = closed(x, x.t - (1.0 - place) * x.h_past, _most_moved_within(c))
         if outcome == OPEN:
             return
-        for k in range(x.n_all):
+        for k in range(x.n_all):  # divided difference: earlier terms are in the state that was closed
             correction[k] = (x.y_stage[k] - correction[k]) / factor
         if outcome == AGREED and j + 1 >= c.stages:
-            x.suffice = 1
+            x.suffice = SUFFICE
             return
 
 
@@ -173,11 +183,10 @@ def dense_output(x, t, place, target):
         polynomial(x, place, x.n, target)
         return True
     c = collocation_view(ints(x.methods[x.method_past]))
-    x.outputs += 1
-    if x.outputs == FEW + 1:
+    if x.suffice == UNKNOWN:  # a polynomial of corrections costs less than a Newton iteration for each output
         _find_corrections(x, c)
     succeeded = True
-    if x.outputs > FEW and x.suffice:
+    if x.suffice == SUFFICE:
         _corrected(x, c, place, x.n_corrections)
     else:
         succeeded = _closed_at(x, c, t, place)

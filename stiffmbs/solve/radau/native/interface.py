@@ -4,15 +4,12 @@ from math import sqrt
 from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, floats, ints
-from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
+from stiffmbs.compile.machine.native.calls import call_address, int32
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.compile.machine.native.statuses import OK, RECOVERABLE, ROOT_RETURN, STOP_RETURN
-from stiffmbs.solve.error_control.native.parameters import EXCLUDED
-from stiffmbs.solve.events.native.parameters import BISECTIONS, INDISTINCT, SEARCH
-from stiffmbs.solve.events.native.step_bound import STRETCHED
-from stiffmbs.solve.explicit.native.parameters import LOCATION
+from stiffmbs.compile.machine.native.statuses import OK, RECOVERABLE, STOP_RETURN
+from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
 from stiffmbs.solve.radau.native.between_steps import dense_output
-from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates, radau_view
+from stiffmbs.solve.radau.native.memory import collocation_view, polynomial_rates, radau_view
 from stiffmbs.solve.radau.native.steps import SMALLEST, first_step, set_weights, step
 
 BAD_ORDER: Final = -25
@@ -25,103 +22,6 @@ def _data(x, vector):
     return floats(call_address(x.array_of, vector))
 
 
-@compiled
-def _event_functions(x, t, y, yp, target):
-    """Compute the event functions of a state, as IDA calls them."""
-    copied(x.b, y, x.n)
-    copied(x.x, yp, x.n)
-    return call_int(x.functions, (t, x.at_b, x.at_x, target, x.ida))
-
-
-@compiled
-def _changed(x, before, after):
-    """Return the number of event functions whose sign differs, or that have become zero."""
-    count = 0
-    for k in range(x.n_events):
-        count += before[k] != 0.0 and (after[k] == 0.0 or (before[k] > 0.0) != (after[k] > 0.0))
-    return count
-
-
-@compiled
-def _bent(x, before, after):
-    """Return the number of functions that have left an interval of a table with a kink, or a breakpoint and an interval."""
-    count = 0
-    for k in range(x.n_events, x.n_functions):
-        count += abs(after[k] - before[k]) > float(int(before[k]) % 2)
-    return count
-
-
-@compiled
-def _passed(x, before, after, kinks):
-    """Return the number of kinks passed, or of sign changes."""
-    return _bent(x, before, after) if kinks else _changed(x, before, after)
-
-
-@compiled
-def _root(x, begin, kinks):
-    """Return the place of a sign change or kink in the last step, just after it; the end if there is none."""
-    low = 0.0
-    high = 1.0
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        if middle <= low or middle >= high or (high - low) * x.h_past < INDISTINCT * abs(x.t):
-            break
-        polynomial(x, middle, x.n, x.y_stage)
-        _event_functions(x, begin + middle * x.h_past, x.y_stage, x.yp, x.within)
-        if _passed(x, x.before, x.within, kinks) > 0:
-            high = middle
-            copied(x.after, x.within, x.n_functions)
-        else:
-            low = middle
-    return high
-
-
-@compiled
-def _step_back(x, begin, h):
-    """Return to the beginning of the last step, with a shorter one to follow."""
-    copied(x.y, x.y_past, x.n_all)
-    x.t = begin
-    x.h = h
-    x.h_past = 0.0
-    x.h_accepted = 0.0
-    x.steps -= 1
-
-
-@compiled
-def _stepped(x):
-    """Take a step, up to shortly before an event, or just beyond a kink, if the law makes its error estimate invalid.
-
-    The tolerance of the estimate, of order s, is that of smooth solutions. A step over a jump or kink has to stay within
-    the part of the requested tolerance that the iteration may leave. Its estimate does not bound its error.
-    """
-    following = float("inf")
-    for retaken in range(LOCATION.most_retaken):
-        begin = x.t
-        flag = step(x)
-        if flag < 0 or x.n_functions == 0:
-            return flag
-        x.h = min(x.h, following)
-        _event_functions(x, x.t, x.y, x.yp, x.after)
-        relaxed = collocation_view(ints(x.methods[x.method_past])).relaxed
-        if x.error_size * relaxed <= x.newton:
-            return flag
-        if _changed(x, x.before, x.after) > 0:
-            ahead = _root(x, begin, False) * x.h_past
-            h = ahead / STRETCHED
-            following = 2.0 * (ahead - h)
-        elif _bent(x, x.before, x.after) > 0:
-            part = _root(x, begin, True) * (1.0 + SEARCH.difference)
-            if part <= SEARCH.finest or part >= 1.0:
-                return flag
-            h = part * x.h_past
-        else:
-            return flag
-        if retaken + 1 == LOCATION.most_retaken or not h > SMALLEST / SEARCH.finest * abs(begin):
-            return flag
-        _step_back(x, begin, h)
-    return flag
-
-
 def solve(memory, toward, returned, y, yp, task):
     """Take one step (IDASolve in the mode IDA_ONE_STEP)."""
     x = radau_view(ints(memory))
@@ -132,29 +32,12 @@ def solve(memory, toward, returned, y, yp, task):
         copied(_data(x, yp), x.yp, x.n)
         x.stops = 0
         return int32(STOP_RETURN)
-    if x.n_functions > 0 and x.h_past == 0.0:
-        _event_functions(x, x.t, x.y, x.yp, x.before)
-    begin = x.t
-    flag = _stepped(x)
+    flag = step(x)
     if flag < 0:
         return int32(flag)
     returned[0] = x.t
     copied(_data(x, y), x.y, x.n)
     copied(_data(x, yp), x.yp, x.n)
-    if x.n_functions > 0:
-        if _changed(x, x.before, x.after) > 0:
-            place = _root(x, begin, False)
-            if place < 1.0:
-                returned[0] = begin + place * x.h_past
-                polynomial(x, place, x.n, _data(x, y))
-                polynomial_rates(x, place, _data(x, yp))
-            for k in range(x.n_events):
-                sign = -1 if x.before[k] > 0.0 else 1
-                crossed = x.before[k] != 0.0 and (x.after[k] == 0.0 or (x.before[k] > 0.0) != (x.after[k] > 0.0))
-                x.fired[k] = sign if crossed else 0
-            copied(x.before, x.after, x.n_functions)
-            return int32(ROOT_RETURN)
-        copied(x.before, x.after, x.n_functions)
     if x.stops and x.t >= x.stop:
         x.stops = 0
         return int32(STOP_RETURN)
@@ -166,8 +49,24 @@ def repeat(memory, begin, h):
     x = radau_view(ints(memory))
     if begin < x.stop <= x.t:
         x.stops = 1
-    _step_back(x, begin, h)
+    copied(x.y, x.y_past, x.n_all)
+    x.t = begin
+    x.h = h
+    x.h_past = 0.0
+    x.h_accepted = 0.0
+    x.steps -= 1
     return int32(OK)
+
+
+def resolves(memory):
+    """Return 1 if the error estimate of the last step holds over jumps and kinks.
+
+    The tolerance of the estimate, of order s, is that of smooth solutions. A step over a jump or kink has to stay within
+    the part of the requested tolerance that the iteration may leave. Its estimate does not bound its error.
+    """
+    x = radau_view(ints(memory))
+    relaxed = collocation_view(ints(x.methods[x.method_past])).relaxed
+    return int32(1 if x.error_size * relaxed <= x.newton else 0)
 
 
 def interpolate(memory, t, order, target):
@@ -235,9 +134,12 @@ def set_longest_step(memory, h):
 
 
 def set_newton(memory, part):
-    """Set the part of the requested tolerance that Newton's iteration may leave (IDASetNonlinConvCoef)."""
+    """Set the part of the requested tolerance that Newton's iteration may leave (IDASetNonlinConvCoef).
+
+    A larger one than usual was relaxed after many failures. It counts at tolerances whose usual part is near rounding.
+    """
     x = radau_view(ints(memory))
-    x.part = min(part, x.remainder)
+    x.part = part if part > NEWTON.loosest <= x.remainder else min(part, x.remainder)
     return int32(OK)
 
 
@@ -343,12 +245,4 @@ def order_of(memory, result):
     """Store the order of the last step (IDAGetLastOrder)."""
     x = radau_view(ints(memory))
     result[0] = 2 * collocation_view(ints(x.methods[x.method_past])).stages - 1
-    return int32(OK)
-
-
-def roots_of(memory, result):
-    """Store the directions of the sign changes at the last root (IDAGetRootInfo)."""
-    x = radau_view(ints(memory))
-    for k in range(x.n_events):
-        result[k] = x.fired[k]
     return int32(OK)

@@ -10,7 +10,7 @@ radau_view = view_of("Radau", RADAU)
 @compiled
 def basis(c, node, place):
     """Return the Lagrange polynomial of a node at a place; the nodes are 0, c_1 to c_s."""
-    value = c.weights[node + 1] * place
+    value = c.weights[node + 1] * place  # the first weight and the factor `place` are of the node 0
     for k in range(c.stages):
         if k != node:
             value *= place - c.nodes[k]
@@ -20,7 +20,7 @@ def basis(c, node, place):
 @compiled
 def slope(c, node, place):
     """Return the derivative of `basis`."""
-    value = c.weights[node + 1] * place
+    value = c.weights[node + 1] * place  # value and rate of the product of the first factors (product rule)
     rate = c.weights[node + 1]
     for k in range(c.stages):
         if k != node:
@@ -40,6 +40,8 @@ def polynomial(x, place, count, target):
         z = shifted(x.past, j * x.n_all)
         for k in range(count):
             target[k] += factor * z[k]
+    # The error estimate at the end, as a polynomial that is zero at both ends (`Collocation.bubble`), by Horner's rule.
+    # Unknowns outside the error test have no estimate.
     correction = 0.0
     for j in range(c.stages + 2):
         correction = correction * place + c.bubble[c.stages + 1 - j]

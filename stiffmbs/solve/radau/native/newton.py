@@ -3,6 +3,11 @@
 The stages Z_i solve r(t + c_i h, y + Z_i, (1/h) sum_j D_ij Z_j) = 0 with the residual r(t, y, y') = M y' - f(t, y).
 With D = T Lambda T^-1, the corrections delta = T^-1 dZ solve one real system (gamma/h M - f_y) delta_1 = -(T^-1 r)_1 and
 complex ones with (alpha + i beta)/h.
+
+References
+----------
+Hairer and Wanner, Solving Ordinary Differential Equations II (2nd ed. 1996), ch. IV.8: transformation, starting values,
+end of the iteration.
 """
 
 from math import isfinite, sqrt
@@ -18,6 +23,7 @@ from stiffmbs.compile.machine.native.evaluate import (
     evaluate,
     load,
 )
+from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.solve.error_control.native.parameters import NEWTON
 from stiffmbs.solve.events.native.parameters import INDISTINCT
@@ -46,6 +52,8 @@ def residual(x, t, y, yp, target, misfit):
     add_products(e, evaluate(s, e.residual_set, t), y, yp, target)
     x.residuals += 1
     if x.acting > 0:
+        # With stored efforts the residual is r + lever (F(q, u) - F).  The elimination of their changes,
+        # dF = misfit + slope dy, takes the misfit times the lever of the matrix off again: a difference of levers is left.
         values = call_kernels(s, EFFORT, t)
         store_misfit(x, values, y, misfit)
         for k in range(x.n_levers):
@@ -114,6 +122,20 @@ def _set_up(x, number):
 
 
 @compiled
+def exchange_terms(x):
+    """Exchange the terms of the matrices, with levers and slopes of efforts, for those aside."""
+    aside = x.terms_aside
+    for k in range(x.n_terms):
+        x.terms[k], aside[k] = aside[k], x.terms[k]
+    aside = shifted(aside, x.n_terms)
+    for k in range(x.n_levers):
+        x.lever[k], aside[k] = aside[k], x.lever[k]
+    aside = shifted(aside, x.n_levers)
+    for k in range(x.n_slopes):
+        x.slope[k], aside[k] = aside[k], x.slope[k]
+
+
+@compiled
 def factored(x, c, h, t, y, yp, renewed):
     """Factor the matrices of a step of length h; their terms are those at (t, y, y') if `renewed`, or the last ones."""
     s = state_view(x.state)
@@ -121,20 +143,22 @@ def factored(x, c, h, t, y, yp, renewed):
     x.h_factored = 0.0
     if renewed:
         load(s, e, y, yp)
-        evaluate(s, e.matrix_set, t)
+        copied(x.terms, evaluate(s, e.matrix_set, t), x.n_terms)
         x.jacobians += 1
         if x.acting > 0:
             _store_slopes(x, s, t)
-    values = floats(s.values[e.matrix_set])
+    values = x.terms
     a = x.entries
     add_entries(e, values, c.gamma / h, a)
     into = floats(x.values[0])
     total = 0.0
     for k in range(x.n_slots):
         into[k] = a[k]
-        total += 0.0 * a[k]
+        total += 0.0 * a[k]  # NaN as soon as an entry is not finite
     if total != 0.0 or not _set_up(x, 0):
         return False
+    # A complex entry p + iq is the real block [[p, -q], [q, p]].  It starts as the real matrix; where y' enters, the
+    # factor gamma/h is replaced by (alpha + i beta)/h.
     for pair in range(c.pairs):
         into = floats(x.values[pair + 1])
         for k in range(x.n_slots):
@@ -156,7 +180,7 @@ def factored(x, c, h, t, y, yp, renewed):
             return False
     x.h_factored = h
     x.stages_factored = c.stages
-    output_correction_view(x.output_correction).current = c.gamma / h
+    output_correction_view(x.output_correction).current = c.gamma / h  # as cj of bdf: outputs share these factors
     return True
 
 
@@ -176,7 +200,7 @@ def extrapolated(x, c, h):
         return
     p = collocation_view(ints(x.methods[x.method_past]))
     for i in range(c.stages):
-        place = 1.0 + c.nodes[i] * h / x.h_past
+        place = 1.0 + c.nodes[i] * h / x.h_past  # the last step is from 0 to 1
         z = shifted(x.z, i * n)
         for k in range(n):
             z[k] = x.y_past[k] - x.y[k]
@@ -195,7 +219,7 @@ def stage_time(x, t):
 
 @compiled
 def _stage_residual(x, c, t, h, i, target):
-    """Compute the residual of a stage."""
+    """Compute r(t + c_i h, y + Z_i, (1/h) sum_j D_ij Z_j) and the misfit of the efforts of stage i."""
     z = shifted(x.z, i * x.n_all)
     for k in range(x.n_all):
         x.y_stage[k] = x.y[k] + z[k]
@@ -232,6 +256,7 @@ def _confirmed(x, c, t, h, size, allowed):
     for k in range(x.n):
         x.b[k] = -x.b[k]
     solved_real(x)
+    # The next correction is known, hence the rate q = following / size and the remainder following q / (1 - q).
     following = size_in_tolerances(x, x.x)
     return following * following <= allowed * (size - following)
 
@@ -266,6 +291,7 @@ def _corrected(x, c):
     n = x.n
     for k in range(c.stages * x.n_all):
         x.d[k] = 0.0
+    # T decouples the stages: one real and (s - 1)/2 complex systems of n unknowns in place of one of s n.
     _transformed(x, c, 0, x.b, 1)
     solved_real(x)
     _add_back(x, c, 0, x.x, 1)
@@ -314,11 +340,12 @@ def iterated(x, c, t, h):
             return NOT_FINITE_STAGE
         if count > 1:
             ratio = size / before if before > 0.0 else 0.0
-            x.contraction = ratio if count <= 3 else sqrt(ratio * ratio_before)
+            x.contraction = ratio if count <= 3 else sqrt(ratio * ratio_before)  # as in RADAU5
             ratio_before = ratio
         if count > 2:  # the first correction has the errors of extrapolated multipliers, which are in no norm
             if not x.contraction < DIVERGING:
                 return DIVERGED
+            # The remainder is q / (1 - q) times the last correction, with the rate q; `left` is that after `most` iterations.
             left = x.contraction / (1.0 - x.contraction) * size * x.contraction ** (most - 1 - count) / x.newton
             if left >= 1.0 and count < most:
                 x.suggested = SHORTER * min(MOST_LEFT, left) ** (-1.0 / (3.0 + most - count))

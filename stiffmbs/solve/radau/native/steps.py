@@ -7,12 +7,12 @@ from stiffmbs.compile.machine.native.access import compiled, equations_view, flo
 from stiffmbs.compile.machine.native.evaluate import add_rate_terms
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.error_control.native.parameters import EXCLUDED
-from stiffmbs.solve.events.native.parameters import INDISTINCT
+from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
 from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
-from stiffmbs.solve.radau.native.between_steps import CLOSED, MOST_MOVED, close_end, closed
+from stiffmbs.solve.radau.native.between_steps import CLOSED, MOST_MOVED, UNKNOWN, close_end, closed
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
@@ -145,6 +145,24 @@ def _wandering(x, c):
 
 
 @compiled
+def _turned_apart(x, c, h):
+    """Return the largest difference of the rate of an angle's polynomial from its angular velocity at a stage, times the step.
+
+    Both agree but for the error of the polynomial. Stages of an angle that joints and drives prescribe may differ by full
+    turns, or lie on another branch of the joints.
+    """
+    largest = 0.0
+    for i in range(c.stages):
+        for k in range(x.n_angles):
+            rate = 0.0
+            for j in range(c.stages):
+                rate += c.derivative[i * c.stages + j] * x.z[j * x.n_all + x.angle[k]]
+            turned = h * (x.y[x.spin[k]] + x.z[i * x.n_all + x.spin[k]])
+            largest = max(largest, abs(rate - turned))
+    return largest
+
+
+@compiled
 def _estimate_below(x, c, lower, t, h):
     """Return the size that the estimate of a method of fewer stages would have, in tolerances.
 
@@ -271,7 +289,7 @@ def _accept(x, c, t, h):
     x.t = t + h
     x.h_past = h
     x.method_past = x.method
-    x.outputs = 0
+    x.suffice = UNKNOWN
     x.steps += 1
 
 
@@ -279,7 +297,7 @@ def _accept(x, c, t, h):
 def _choose_unknowns(x):
     """Make the efforts of stiff forces unknowns if the step is long for these forces."""
     acting = x.n_efforts if x.h > output_correction_view(x.output_correction).long else 0
-    x.newton = x.remainder if acting > 0 else x.part
+    x.newton = max(x.remainder, x.part) if acting > 0 else x.part
     x.decaying = MOST_DECAYS if x.h_past == 0.0 else 0
     if acting > 0 and (x.acting == 0 or x.h_past == 0.0):
         x.acting = acting
@@ -339,7 +357,7 @@ def _after_failed_iteration(x, outcome, h):
     if not x.current:
         x.renewed = 1
         return h * x.suggested if outcome == SLOW else h
-    if x.n_functions > 0 and (outcome == DIVERGED or x.ahead):
+    if x.has_kinks and (outcome == DIVERGED or x.ahead):
         x.renewed = 1
         x.ahead = 1 - x.ahead
         if x.ahead:
@@ -366,6 +384,7 @@ def _error(x, c, h, untested):
     if untested and error < 1.0:
         error = max(error, _filtered(x, c, h))
     wandering = _wandering(x, c) if x.acting == 0 else 0.0  # efforts of decaying motions are removed or closed
+    wandering = max(wandering, _turned_apart(x, c, h) / SEARCH.turned)
     return max(error, wandering) if wandering > 1.0 else error
 
 

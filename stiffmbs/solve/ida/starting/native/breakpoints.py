@@ -1,6 +1,7 @@
 """Integration over breakpoints in one call: IDA restarts at each that requires only consistent values."""
 
 from math import sqrt
+from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, ints, state_view, view_of
 from stiffmbs.compile.machine.native.calls import call_int, int32
@@ -16,14 +17,16 @@ from stiffmbs.solve.ida.native.layouts import EVENT_RESTART
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
 from stiffmbs.solve.ida.starting.native.start import (
-    UNFINISHED,
     accelerated,
     begun,
     brought_back,
     keep_counters,
-    prepared,
+    prepare,
     start_view,
 )
+
+UNFINISHED: Final = -1
+"""Result of a restart that has no consistent values, or that is left to Python."""
 
 
 @compiled
@@ -81,8 +84,9 @@ def _restarted_at_breakpoint(w, b, c, t):
     restart_counters(w, s, t)
     if not _same_offsets(s, b, e):
         return UNFINISHED
-    if accelerated(s, m, t) < 0 or prepared(b, s, m, e, c, t) < 0:
+    if accelerated(s, m, t) < 0:
         return UNFINISHED
+    prepare(b, s, m, e, c, t)
     _limit(w, b, c)
     keep_counters(b)
     return begun(b, c, t)
@@ -197,8 +201,7 @@ def restarted_at_event(t, ahead, counted, highest_order, table):
     restart_counters(w, s, after)
     if accelerated(s, m, after) < 0 or _beyond_limits(w, s, after):
         return int32(UNFINISHED)
-    if prepared(b, s, m, equations_view(c.equations), c, after) < 0:
-        return int32(UNFINISHED)
+    prepare(b, s, m, equations_view(c.equations), c, after)
     if counted:
         keep_counters(b)
     if begun(b, c, after) < 0:
@@ -225,7 +228,7 @@ def advance_from(t, end, highest_order, table):
     for _ in range(LOOP.most_steps):
         if flag != OK:
             break
-        flag = stepped(c, ints(b.ida), end, end)
+        flag = stepped(c, ints(b.ida), end)
     if flag != STOP_RETURN:
         return int32(UNFINISHED)
     load(state_view(c.state), equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))

@@ -1,7 +1,6 @@
 """Start of IDA from consistent values in one call: unknowns, relaxations, Newton tolerance and IDA itself."""
 
 from math import isfinite
-from typing import Final
 
 from stiffmbs.compile.machine.native.access import (
     compiled,
@@ -16,8 +15,7 @@ from stiffmbs.compile.machine.native.access import (
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, TANGENT, evaluate
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.compile.machine.native.statuses import OK
+from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.dynamics.native.consistent import consistent_accelerations, to_constraints
 from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.views import dynamics_view
@@ -29,8 +27,6 @@ from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import START
 from stiffmbs.solve.ida.native.parameters import LOOP
 
-UNFINISHED: Final = -1
-"""Result of a start or restart that is left to Python."""
 NAN = float("nan")
 
 start_view = view_of("Start", START)
@@ -59,7 +55,12 @@ def _fill_unknowns(w, s, e, y, yp):
 
 @compiled
 def _relax(w, s, t):
-    """Apply `stiffmbs.solve.error_control.relaxation.relax` at the current state."""
+    """Set the relaxations of all rows at the current state.
+
+    They are the diagonals of E_mu = eps C_q C_q^T and E_lam = eps J M^-1 J^T, with eps in proportion to the tolerance.
+    The drift in tolerances then does not depend on the sizes of lengths, angles, masses and forces.  M is the inertia of
+    the heaviest body at an arm as long as the mechanism: light bodies and small moments of inertia may carry its weight.
+    """
     if s.n_c == 0:
         return
     values = evaluate(s, MOTION, t)
@@ -89,17 +90,23 @@ def _largest_row_sum(w, s, values, count, source, row, scale):
     largest = 0.0
     for k in range(s.n_u):
         if not isfinite(w.sums[k]):
-            return w.sums[k]
+            return w.sums[k]  # for a body of nearly zero mass
         largest = max(largest, w.sums[k])
     return largest
 
 
 @compiled
 def _look_at_stiffness(w, s, t):
-    """Store `stiffmbs.solve.error_control.newton.stiffness_at` and `newton_tolerance` at the current state."""
+    """Store `stiffmbs.solve.error_control.newton.stiffness_at` at the current state, and Newton's tolerance for it."""
     values = evaluate(s, TANGENT, t)
     w.of_positions = _largest_row_sum(w, s, values, w.n_f_q, w.f_q_source, w.f_q_row, w.f_q_scale)
     w.of_velocities = _largest_row_sum(w, s, values, w.n_f_u, w.f_u_source, w.f_u_row, w.f_u_scale)
+    allow_remainder(w)
+
+
+@compiled
+def allow_remainder(w):
+    """Set the part of the error tolerance that Newton's iteration may leave: that which causes no significant force."""
     fastest = max(w.of_positions, w.of_velocities * w.of_velocities)
     allowed = w.soft / fastest if fastest > 0.0 else w.loosest
     w.newton = max(min(w.loosest, allowed), w.tightest)
@@ -122,8 +129,6 @@ def begun(w, c, t):
     search.ready = 0
     for k in range(w.n_watched):
         search.found[k] = 0
-    for k in range(c.n_event_functions):
-        c.signs[k] = 0.0
     for k in range(LOOP.samples * (1 + c.n_reported)):
         c.samples[k] = NAN
     c.returned = t
@@ -135,8 +140,31 @@ def begun(w, c, t):
 
 
 @compiled
-def prepared(w, s, m, e, c, t):
-    """Prepare a start at the current consistent state, with its accelerations and multipliers; OK or a negative number.
+def _find_algebraic_rates(w, s, m, t):
+    """Find the rates of algebraic states by their values a little later; zero if they have none there."""
+    q, u, lam, interval = w.kept, shifted(w.kept, s.n_q), shifted(w.kept, s.n_q + s.n_u), CONSISTENCY.rate_interval
+    copied(q, s.q, s.n_q)
+    copied(u, s.u, s.n_u)
+    copied(lam, s.lam, s.n_c)
+    for k in range(s.n_q):
+        s.q[k] += interval * w.rate[k]
+    take_unit_length(s)
+    for k in range(s.n_u):
+        s.u[k] += interval * s.a[k]
+    found = consistent_accelerations(s, m, t + interval) >= 0
+    for k in range(m.n_algebraic):
+        found = found and isfinite(s.q[m.algebraic[k]])
+    for k in range(m.n_algebraic):
+        at = m.algebraic[k]
+        w.rate[at] = (s.q[at] - q[at]) / interval if found else 0.0
+    copied(s.q, q, s.n_q)
+    copied(s.u, u, s.n_u)
+    copied(s.lam, lam, s.n_c)
+
+
+@compiled
+def prepare(w, s, m, e, c, t):
+    """Prepare a start at the current consistent state, with its accelerations and multipliers.
 
     The acceleration terms, which hold the rates of coordinates after those of bodies, must be those of this state.
     """
@@ -146,12 +174,11 @@ def prepared(w, s, m, e, c, t):
         w.rate[k] = 0.0
     add_rates(s, s.u, 1.0, w.rate)
     add_trailing_rates(s, m, 1.0, w.rate)
+    if m.n_algebraic > 0:
+        _find_algebraic_rates(w, s, m, t)
     _relax(w, s, t)
     _look_at_stiffness(w, s, t)
-    if not isfinite(w.of_positions + w.of_velocities):
-        return UNFINISHED
     _fill_unknowns(w, s, e, array_of(c, c.y), array_of(c, c.yp))
-    return OK
 
 
 @compiled
@@ -161,24 +188,19 @@ def keep_counters(w):
 
 
 def start(t, counted, highest_order, table):
-    """Start IDA at the consistent values of the state; OK, or a negative number to leave the start to Python.
-
-    If `counted` is nonzero, IDA's counters are kept.
-    """
+    """Start IDA at the consistent values of the state; OK or a negative flag. Its counters are kept if `counted`."""
     w = start_view(table)
     m = dynamics_view(w.dynamics)
     s = state_view(m.state)
     c = native_ida_view(ints(w.ida))
     if m.n_trailing > 0:
         evaluate(s, ACCELERATION, t)
-    if prepared(w, s, m, equations_view(c.equations), c, t) < 0:
-        return int32(UNFINISHED)
+    prepare(w, s, m, equations_view(c.equations), c, t)
     if counted:
         keep_counters(w)
-    if begun(w, c, t) < 0:
-        return int32(UNFINISHED)
+    flag = begun(w, c, t)
     call_int(w.set_highest_order, (c.memory, int32(highest_order)))
-    return int32(OK)
+    return int32(flag)
 
 
 @compiled
