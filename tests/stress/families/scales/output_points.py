@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -24,7 +24,7 @@ LONG = {"rotor", "flexible_slider_crank", "robot_arm", "quarter_car", "car", "le
 """Examples with many steps or unknowns."""
 STIFF = {"leaf_spring", "rotor", "car"}
 """Examples that explicit steps do not reach the end of in a minute."""
-POINTS = 2, 3, 6, 11, 101, 1001, "steps"
+POINTS: tuple[int | Literal["steps"], ...] = 2, 3, 6, 11, 101, 1001, "steps"
 SOLVERS: dict[str, dict[str, Any]] = {
     "bdf": {"solver": "bdf"},
     "radau": {"solver": "radau"},
