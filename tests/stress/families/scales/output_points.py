@@ -63,11 +63,11 @@ def same_ends(scene: Path, how: dict[str, Any], rtol: float) -> Verdict:
         if solution.outcome is not Ending.DONE:
             return told(solution.message, ANY_STOP)
         found.append(solution)
-    (worst, channel), points = max(
+    (worst, channel), most = max(
         (apart(found[0], other, rtol), str(points)) for other, points in zip(found[1:], POINTS[1:], strict=True)
     )
     steps = "/".join(str(solution.solver["steps"]) for solution in found)
-    return measured(worst, ALLOWED, f"{channel} with {points} points; steps {steps}")
+    return measured(worst, ALLOWED, f"{channel} with {most} points; steps {steps}")
 
 
 CASES = tuple(
