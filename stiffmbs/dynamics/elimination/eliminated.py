@@ -82,7 +82,7 @@ class Eliminated:
                 "lists": packed(layout, self._lists), "pivot_scale": scale, "largest_scale": self._largest_scale,
             }  # fmt: skip
             numbers = {
-                "n_scales": len(scale),
+                "n_scales": len(self._largest_scale),
                 "n_u": system.n_u,
                 "n_f": len(force.source),
                 "n_j": len(kept),

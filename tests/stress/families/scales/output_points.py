@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -24,7 +24,7 @@ LONG = {"rotor", "flexible_slider_crank", "robot_arm", "quarter_car", "car", "le
 """Examples with many steps or unknowns."""
 STIFF = {"leaf_spring", "rotor", "car"}
 """Examples that explicit steps do not reach the end of in a minute."""
-POINTS = 2, 3, 6, 11, 101, 1001, "steps"
+POINTS: tuple[int | Literal["steps"], ...] = 2, 3, 6, 11, 101, 1001, "steps"
 SOLVERS: dict[str, dict[str, Any]] = {
     "bdf": {"solver": "bdf"},
     "radau": {"solver": "radau"},
@@ -63,11 +63,11 @@ def same_ends(scene: Path, how: dict[str, Any], rtol: float) -> Verdict:
         if solution.outcome is not Ending.DONE:
             return told(solution.message, ANY_STOP)
         found.append(solution)
-    (worst, channel), points = max(
+    (worst, channel), most = max(
         (apart(found[0], other, rtol), str(points)) for other, points in zip(found[1:], POINTS[1:], strict=True)
     )
     steps = "/".join(str(solution.solver["steps"]) for solution in found)
-    return measured(worst, ALLOWED, f"{channel} with {points} points; steps {steps}")
+    return measured(worst, ALLOWED, f"{channel} with {most} points; steps {steps}")
 
 
 CASES = tuple(
