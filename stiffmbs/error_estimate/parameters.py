@@ -11,7 +11,7 @@ from ..tuning import tuned
 class EstimateParameters:
     """Parameters of the estimate of the error of a run.
 
-    Source: ``python -m tests.stress self_assessment``.
+    Source: ``python -m tests.stress.self_assessment``.
     """
 
     work: float = 2e5

@@ -11,7 +11,7 @@ import numpy as np
 
 import stiffmbs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.dynamics import algebraic_states, damped_assembly, dynamics, stiff_projection, storage
+from stiffmbs.dynamics import algebraic_states, damped_assembly, dynamics, friction_loads, stiff_projection, storage
 from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.dynamics.elimination.eliminated import Eliminated
 from stiffmbs.dynamics.elimination.native import digits
@@ -22,12 +22,26 @@ from stiffmbs.dynamics.native import dynamics as native
 from stiffmbs.dynamics.native import projection as native_projection
 from stiffmbs.dynamics.native import stiff_projection as native_stiff_projection
 from stiffmbs.solve.ida.starting.native import start
-from tests.decisions.common import Record, nothing
+from tests.decisions.common import BELOW, Record, nothing
 from tests.interpreted import interpreted
 from tests.parameters import EXAMPLES
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
 OCTAVES = DOUBLES[::4]
+
+
+def another_solution(apart):
+    """Return the joints whose multipliers, of size 1, differ in another solution by some numbers."""
+    state = Record(q=np.zeros(1), u=np.zeros(1), lam=np.ones(2))
+
+    def accelerate(_):
+        state.lam[:] = 1.0 + np.array(apart)
+        return 0, None
+
+    terms = Record(column=np.array([0, 1]))
+    system = Record(forces_by_reactions=("f",), equations=[("a",), ("b",)], term=lambda *_: terms)
+    dynamics_of_two = Record(system=system, state=state, accelerate=accelerate)
+    return friction_loads.ambiguous_loads(dynamics_of_two, 0.0, np.zeros(1), np.zeros(1), np.ones(2))
 
 
 def stuck(gap):
@@ -358,6 +372,7 @@ DECISIONS = {
     "elimination.relative": lambda: count_while(lambda kept: digits_of(1e-3, kept, 1.0, trees=False)[0], HALVES),
     "elimination.residual": lambda: largest_residual(1e6, 1e-6),
     "elimination.least_residual": lambda: largest_residual(0.0, 1e-12),
+    "dynamics.friction_loads:ANOTHER": lambda: count_while(lambda apart: another_solution((apart, 0.0)), BELOW),
     "storage.largest_in_memory": largest_array,
     "storage.block": lambda: next(storage.blocks(10**9)).stop,
 }  # fmt: skip
@@ -373,4 +388,5 @@ EXPECTED = {
     "elimination.most_multiplications": 9, "elimination.even": 53, "elimination.kept": 40, "elimination.lost": 80,
     "elimination.small": 27, "elimination.together": 80, "elimination.relative": 27, "elimination.residual": 27,
     "elimination.least_residual": 33, "storage.largest_in_memory": 13, "storage.block": 100000,
+    "dynamics.friction_loads:ANOTHER": 40,
 }  # fmt: skip
