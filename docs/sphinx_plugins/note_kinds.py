@@ -6,15 +6,15 @@ import importlib
 import pkgutil
 import re
 from collections.abc import Iterator
-from typing import Any
-
-from docutils import nodes
-from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
+from typing import TYPE_CHECKING, Any
 
 import stiffmbs
 from stiffmbs.notes import NoteKind, Severity
 from stiffmbs.solve.reasons import Reason
+
+if TYPE_CHECKING:
+    from docutils import nodes
+    from sphinx.application import Sphinx
 
 _FIELD = re.compile(r"\{(\w+)(?::[^{}]*)?\}")
 """Field of a text, with a format for numbers."""
@@ -29,13 +29,6 @@ def note_kinds() -> dict[str, NoteKind]:
         for name, kind in vars(importlib.import_module(module)).items()
         if isinstance(kind, NoteKind)
     }
-
-
-class NoteKinds(SphinxDirective):
-    """All kinds of notes, a section for each severity."""
-
-    def run(self) -> list[nodes.Node]:
-        return self.parse_text_to_nodes("\n".join(page(note_kinds())), allow_section_headings=True)
 
 
 def page(kinds: dict[str, NoteKind]) -> Iterator[str]:
@@ -77,5 +70,13 @@ def row(*cells: str) -> Iterator[str]:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
+    from sphinx.util.docutils import SphinxDirective  # the tests read the tables without Sphinx
+
+    class NoteKinds(SphinxDirective):
+        """All kinds of notes, a section for each severity."""
+
+        def run(self) -> list[nodes.Node]:
+            return self.parse_text_to_nodes("\n".join(page(note_kinds())), allow_section_headings=True)
+
     app.add_directive("note_kinds", NoteKinds)
     return {"parallel_read_safe": True}
