@@ -111,9 +111,8 @@ class BDF:
         tables = connection.state_table, connection.equations_table
         iteration, residual, jacobian = connection.iteration, RESIDUAL.address, JACOBIAN.address
         connection.error_norm.take_place(
-            session, connection.memory, connection.y_vector, tables, assembled, iteration.table,
-            connection.watch.table, (connection.y, connection.yp),
-        )  # fmt: skip
+            session, connection.memory, connection.y_vector, tables, assembled, iteration.table
+        )
         connection.ask("IDAInit", residual, 0.0, connection.y_vector, connection.yp_vector)
         connection.ask("IDASetUserData", connection.table)
         connection.ask("IDASetLinearSolver", assembled.solver, assembled.matrix)

@@ -27,7 +27,7 @@ class ErrorNorm:
         self._change, self._filtered = np.zeros(n), np.zeros(n)
 
     def take_place(
-        self, session: Session, memory: int, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray, watch: np.ndarray, solution: tuple[np.ndarray, np.ndarray],
+        self, session: Session, memory: int, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray
     ) -> None:  # fmt: skip
         """Replace the norm of IDA's vectors, which are cloned from this one.
 
@@ -38,7 +38,7 @@ class ErrorNorm:
         functions = {
             "norm": "N_VWrmsNorm_Serial", "array_of": "N_VGetArrayPointer", "solve": "SUNLinSolSolve",
             "steps_of": "IDAGetNumSteps", "failures_of": "IDAGetNumErrTestFails", "order_of": "IDAGetLastOrder",
-            "set_growth": "IDASetEtaFixedStepBounds", "time_of": "IDAGetCurrentTime",
+            "set_growth": "IDASetEtaFixedStepBounds",
         }  # fmt: skip
         fill(
             self.table,
@@ -49,7 +49,6 @@ class ErrorNorm:
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "at_change": session.vector(self._change), "change": self._change,
                 "at_filtered": session.vector(self._filtered), "filtered": self._filtered,
-                "watch": watch, "y": solution[0], "yp": solution[1],
             },
         )  # fmt: skip
         take_norm(session, y_vector, NORM.address, self.table)

@@ -27,10 +27,8 @@ from stiffmbs.compile.machine.native.access import (
     view_of,
 )
 from stiffmbs.compile.machine.native.calls import call_address, call_float, call_int
-from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, load
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OK, OPERATIONS
 from stiffmbs.solve.error_control.native.parameters import A_STABLE_ORDER, EQUAL_STEPS, FILTER
-from stiffmbs.solve.events.native.bounds import departed, event_search_view, left_out
 from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import ERROR_NORM
 
@@ -86,39 +84,6 @@ def _let_grow(c):
         call_int(c.set_growth, (c.memory, 1.0, c.growth))
 
 
-@compiled
-def _passes_event(c):
-    """Return True if an event function leaves its interval in the attempted step."""
-    w = event_search_view(c.watch)
-    if w.n_event_functions == 0 or w.ready == 0 or w.by_accelerations != 0:
-        return False
-    call_int(c.time_of, (c.memory, address_of(c.t)))
-    if c.t != c.seen_at:
-        c.seen_at = c.t
-        s = state_view(c.state)
-        load(s, equations_view(c.equations), c.y, c.yp)
-        values = evaluate(s, SWITCH, c.t)
-        c.passes = 0
-        for k in range(w.n_event_functions):
-            c.passes += departed(w, k, values[k]) and not left_out(w, k)
-    return c.passes > 0
-
-
-@compiled
-def _over_event(c, estimate, weights):
-    """Return the largest difference of a step over an event, which IDA divides by the order + 1; 0 for other steps.
-
-    The forces beyond the event act in all of the step.  No unknown may follow them by more than its tolerance.
-    """
-    if not _passes_event(c):
-        return 0.0
-    d, weight = floats(call_address(c.array_of, estimate)), floats(call_address(c.array_of, weights))
-    largest = 0.0
-    for k in range(equations_view(c.equations).n):
-        largest = max(largest, abs(d[k]) * weight[k])
-    return (c.order + 1.0) * largest
-
-
 def error_norm(estimate, weights):
     """Return the WRMS norm (N_VWrmsNorm) of an estimate, filtered if the error test fails often."""
     c = error_norm_view(ints(ints(estimate[OPERATIONS])[NORM_TABLE]))
@@ -131,6 +96,5 @@ def error_norm(estimate, weights):
     if wanted and cj < float("inf") and _filtered(c, estimate):
         size = call_float(c.norm, (c.at_filtered, weights))
         if size < FILTER.no_estimate:
-            return c.repeats * max(size, _over_event(c, c.at_filtered, weights))
-    size = call_float(c.norm, (estimate, weights))
-    return c.repeats * (max(size, _over_event(c, estimate, weights)) if cj < float("inf") else size)
+            return c.repeats * size
+    return c.repeats * call_float(c.norm, (estimate, weights))

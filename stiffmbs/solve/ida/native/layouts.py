@@ -102,7 +102,6 @@ ERROR_NORM = Layout({
     "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL, "repeats": FLOAT_CELL,
     "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
-    "watch": INTS, "y": FLOATS, "yp": FLOATS, "time_of": INT, "t": FLOAT_CELL, "seen_at": FLOAT_CELL, "passes": INT_CELL,
 })  # fmt: skip
 """Norm of IDA's error estimates (`stiffmbs.solve.ida.native.error_norm`).
 
