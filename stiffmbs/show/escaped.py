@@ -85,4 +85,4 @@ def console(**options: Any) -> Console:
 
 def page_text(found: object) -> Any:
     """Return a value for a page: text is escaped, scripts and other values are unchanged."""
-    return escaped(found) if type(found) is str else found
+    return escaped(found) if isinstance(found, str) and not hasattr(found, "__html__") else found
