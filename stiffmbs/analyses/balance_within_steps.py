@@ -89,14 +89,17 @@ def _lobatto(nodes: int) -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * (x + 1.0), 1.0 / (nodes * (nodes - 1) * legendre.legval(x, polynomial) ** 2)
 
 
-def _inside(steps: np.ndarray) -> np.ndarray:
-    """Return the distance of the outer nodes from the ends of each step, in steps, shape (n, 1); above rounding of time."""
-    return np.maximum(INSIDE, 4.0 * np.spacing(np.abs(steps).max()) / np.diff(steps))
+def _inside(steps: np.ndarray, aside: float) -> np.ndarray:
+    """Return the distance of the outer nodes from the ends of each step, in steps, shape (n, 1).
+
+    A restart at a breakpoint begins twice `aside`, s, after the end of the last step.
+    """
+    return np.maximum(INSIDE, 4.0 * aside / np.diff(steps))
 
 
 def _at_nodes(job: Job, steps: np.ndarray, nodes: int) -> OutputRows | None:
     """Return the rows at the nodes of steps, from a repeated run; None if it ends earlier."""
-    inside = _inside(steps)
+    inside = _inside(steps, job.grid.aside)
     times = (steps[:, :1] + np.diff(steps) * (inside + (1.0 - 2.0 * inside) * _lobatto(nodes)[0])).ravel()
     if not (np.diff(times) > 0).all() or not times[0] > job.grid.start:
         return None
@@ -109,7 +112,7 @@ def _at_nodes(job: Job, steps: np.ndarray, nodes: int) -> OutputRows | None:
 
 def _weights_and_jumps(job: Job, steps: np.ndarray, rows: OutputRows, nodes: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the weights of the nodes of each step, s, and whether velocities jump between two steps."""
-    weights = np.diff(steps) * (1.0 - 2.0 * _inside(steps)) * _lobatto(nodes)[1]
+    weights = np.diff(steps) * (1.0 - 2.0 * _inside(steps, job.grid.aside)) * _lobatto(nodes)[1]
     u = rows.u.reshape(len(steps), nodes, -1)
     before, after = u[:-1, -1], u[1:, 0]
     system = job.dynamics.system

@@ -98,8 +98,9 @@ def _drives(job: Job) -> Iterator[Note]:
     system, grid = job.dynamics.system, job.grid
     opposed = partial(opposed_notes, system, job.data, job.start.q, grid)
     yield from job.dynamics.kept("opposed actuators", None, opposed)
-    if len(job.dynamics.input_features(grid.start, grid.end).breakpoints):
-        yield from tabled_drive_notes(system, job.data.joints)
+    yield from tabled_drive_notes(
+        system, job.data.joints, job.dynamics.input_features(grid.start, grid.end).breakpoints
+    )
 
 
 def _assembly(start: InitialValues) -> tuple[str]:

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from ..compile.inputs.of_time import given_to
+from ..compile.inputs.of_time import TABLE, Input, expressions_of, given_to
+from ..compile.inputs.table_ranges import TableRanges
 from ..compile.system import System
 from ..elements.element import Joint
 from ..elements.joints.drive import Drive
 from ..notes import Note, NoteKind
-from ..reading.formula.formula import Formula
 from ..reading.table import Table
 
 SMOOTH_CURVES = "use 'spline: true', or 'smoothing' with the accuracy of measured points"
+ROUNDING = 1e-9
+"""Difference of slopes relative to the largest one, and of an argument from a point relative to the range, that is rounding."""
 KINKED = NoteKind(
     "drive-by-lines",
     "{element}: the position by the table '{label}' follows straight lines, so velocities jump at the points: the effort of "
@@ -29,32 +32,42 @@ SHAPE_PRESERVING = NoteKind(
 )
 
 
-def tabled_drive_notes(system: System, joints: Mapping[str, Joint]) -> Iterator[Note]:
-    """Yield a note for each drive whose position is a table without continuous accelerations."""
-    of_inputs = given_to(system).tables
+def tabled_drive_notes(system: System, joints: Mapping[str, Joint], breakpoints: np.ndarray) -> Iterator[Note]:
+    """Yield a note for each drive whose position is a table without continuous accelerations at some breakpoints, s."""
+    given = given_to(system)
     for name, joint in joints.items():
-        if isinstance(joint, Drive):
-            for label, table in _tables(joint.prescribed_position, of_inputs):
-                if kind := _not_smooth(table):
-                    yield kind(name, label=label)
+        if isinstance(joint, Drive) and joint.prescribed_position is not None:
+            for tree, text, values, tables in expressions_of(joint, given):
+                law = Input(tree, text, values, {label: TableRanges(table) for label, table in tables.items()})
+                for label, table in tables.items():
+                    points = _points(table)
+                    if any(_passes(table, points, law.at(breakpoints, part)) for part in _arguments(tree, label)):
+                        kind = KINKED if table.lines else SHAPE_PRESERVING
+                        yield kind(name, label="position" if label == TABLE else label.removesuffix("(t)"))
 
 
-def _tables(law: object, of_inputs: Mapping[str, Table]) -> Iterator[tuple[str, Table]]:
-    """Yield the tables in a law of time, with their names, the name of the field or that of the input."""
-    match law:
-        case Table():
-            yield "position", law
-        case Formula():
-            yield from law.tables.items()
-            yield from ((name, of_inputs[name]) for name in law.states if name in of_inputs)
+def _arguments(tree: ast.expr, table: str) -> Iterator[ast.expr]:
+    """Yield the arguments with which an expression calls a table."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(ast.Name(name), [argument]) if name == table:
+                yield argument
 
 
-def _not_smooth(table: Table) -> NoteKind | None:
-    """Return how the accelerations of a table of positions are not continuous; None if they are, or it is straight."""
-    if table.interpolation in ("spline", "smoothing"):
-        return None
+def _points(table: Table) -> np.ndarray:
+    """Return the points at which the second derivative of a table, or its first one, is not continuous."""
     x, y = np.array(table.table).T
     slopes = np.diff(y) / np.diff(x)
-    if np.ptp(slopes) <= 1e-9 * np.abs(slopes).max():
-        return None
-    return KINKED if table.lines else SHAPE_PRESERVING
+    bends = np.abs(np.diff(slopes)) > ROUNDING * np.abs(slopes).max()
+    if table.interpolation in ("spline", "smoothing") or not bends.any():
+        return np.empty(0)
+    at_ends = table.repeats or table.beyond == "hold"
+    return x[np.concatenate([[at_ends], bends if table.lines else np.ones(len(bends), dtype=bool), [at_ends]])]
+
+
+def _passes(table: Table, points: np.ndarray, argument: np.ndarray) -> bool:
+    """Return True if the argument is at one of some points of a table."""
+    first, last = table.table[0][0], table.table[-1][0]
+    if table.repeats:
+        argument = first + np.mod(argument - first, last - first)
+    return bool((np.abs(argument[:, None] - points) <= ROUNDING * (last - first)).any())

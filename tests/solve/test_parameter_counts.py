@@ -15,8 +15,6 @@ from stiffmbs import tuning
 from tests.parameters import CASES, changed
 
 TABLE = [
-    ("error_filter.fades", "cam_follower", "error_test_failures", 885, 934, 869),
-    ("error_filter.fades_low", "cam_follower", "newton_failures", 78, 100, None),
     ("error_filter.troubled", "andrews", "steps", 1063, 1301, None),
     ("error_test.growth", "cart_pendulum", "steps", 150, 180, 383),
     ("error_test.margin", "half_car 1e-09", "steps", 3610, 3168, 2764),

@@ -36,6 +36,10 @@ LOOK_AT_START, LOOK_WITHIN = together(
     look_within="int32(int64*)",
 )
 
+PART_BEFORE_EVENT = Routine(
+    "stiffmbs.solve.ida.native.over_event", "part_before_event", "float64(int64, int64, int64*)", level=SHORT
+)
+
 FUNCTIONS = {
     "array_of": "N_VGetArrayPointer", "solve": "IDASolve", "interpolate": "IDAGetDky", "time_of": "IDAGetCurrentTime",
     "order_of": "IDAGetLastOrder", "step_of": "IDAGetLastStep", "stop_at": "IDASetStopTime", "next_step_of": "IDAGetCurrentStep",
@@ -111,8 +115,9 @@ class BDF:
         tables = connection.state_table, connection.equations_table
         iteration, residual, jacobian = connection.iteration, RESIDUAL.address, JACOBIAN.address
         connection.error_norm.take_place(
-            session, connection.memory, connection.y_vector, tables, assembled, iteration.table
-        )
+            session, connection.memory, connection.y_vector, tables, assembled, iteration.table, connection.table,
+            PART_BEFORE_EVENT.address if connection.watch.n_event_functions else 0,
+        )  # fmt: skip
         connection.ask("IDAInit", residual, 0.0, connection.y_vector, connection.yp_vector)
         connection.ask("IDASetUserData", connection.table)
         connection.ask("IDASetLinearSolver", assembled.solver, assembled.matrix)

@@ -23,22 +23,25 @@ class ErrorNorm:
     def __init__(self, n: int) -> None:
         self.table = np.zeros(len(ERROR_NORM), dtype=np.int64)
         self._cells = self.table.view(ERROR_NORM.cells)[0]
-        self._cells["repeats"] = 1.0
+        self.forget()
         self._change, self._filtered = np.zeros(n), np.zeros(n)
 
     def take_place(
-        self, session: Session, memory: int, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray
+        self, session: Session, memory: int, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray, ida: int, part_before_event: int
     ) -> None:  # fmt: skip
         """Replace the norm of IDA's vectors, which are cloned from this one.
 
         `memory`: IDA memory. `tables`: tables of the state and of the equations, for compiled code. `assembled`: iteration matrix of
         IDA and its solver. `iteration`: table of Newton's iteration (`stiffmbs.solve.ida.native.iteration`).
+        `ida`: address of the table of the loop. `part_before_event`: address of the function
+        `stiffmbs.solve.ida.native.over_event.part_before_event`; 0 without event functions.
         """
         libraries, (state, equations) = session.libraries, tables
         functions = {
             "norm": "N_VWrmsNorm_Serial", "array_of": "N_VGetArrayPointer", "solve": "SUNLinSolSolve",
             "steps_of": "IDAGetNumSteps", "failures_of": "IDAGetNumErrTestFails", "order_of": "IDAGetLastOrder",
-            "set_growth": "IDASetEtaFixedStepBounds",
+            "set_growth": "IDASetEtaFixedStepBounds", "set_largest_part": "IDASetEtaLow", "set_least_part": "IDASetEtaMinErrFail",
+            "time_of": "IDAGetCurrentTime",
         }  # fmt: skip
         fill(
             self.table,
@@ -49,6 +52,7 @@ class ErrorNorm:
                 "solver": assembled.solver, "matrix": assembled.matrix,
                 "at_change": session.vector(self._change), "change": self._change,
                 "at_filtered": session.vector(self._filtered), "filtered": self._filtered,
+                "ida": ida, "part_before_event": part_before_event,
             },
         )  # fmt: skip
         take_norm(session, y_vector, NORM.address, self.table)
@@ -65,7 +69,7 @@ class ErrorNorm:
         """Forget failures of an earlier run."""
         for cell in self._cells.dtype.names:
             self._cells[cell] = 0
-        self._cells["repeats"] = 1.0
+        self._cells["repeats"], self._cells["attempted"] = 1.0, np.nan
 
 
 CONVERGED = Routine(

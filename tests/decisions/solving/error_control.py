@@ -149,7 +149,7 @@ def largest_filtered_norm():
             return size if vector == "filtered" else 0.0
 
         c = Record(
-            iteration=Record(cj=1.0), looked=1.0, equal_until=0, always=1, steps=0, until=0, repeats=1.0, norm=norm, at_filtered="filtered",
+            iteration=Record(cj=1.0), looked=1.0, equal_until=0, always=1, steps=0, until=0, repeats=1.0, part_before_event=0, norm=norm, at_filtered="filtered",
         )  # fmt: skip
         return error_norm.error_norm({OPERATIONS: {NORM_TABLE: c}}, None) > 0.0
 

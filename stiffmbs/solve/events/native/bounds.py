@@ -111,9 +111,10 @@ def watch_for(w, k, band):
 
 @compiled
 def note_farthest(w, values):
-    """Update the largest value of each event function since the start."""
+    """Update the largest value of each event function from the start up to its event."""
     for k in range(w.n_event_functions):
-        w.farthest[k] = max(w.farthest[k], abs(values[k]))
+        if not departed(w, k, values[k]):
+            w.farthest[k] = max(w.farthest[k], abs(values[k]))
 
 
 @compiled

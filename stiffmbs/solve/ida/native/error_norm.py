@@ -17,6 +17,8 @@ L. F. Shampine, L. S. Baca, Error estimators for stiff differential equations, J
 E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, Springer 1996, ch. IV.8, eq. (8.19).
 """
 
+from typing import Final
+
 from stiffmbs.compile.machine.native.access import (
     address_of,
     compiled,
@@ -31,6 +33,12 @@ from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OK, OPERATIONS
 from stiffmbs.solve.error_control.native.parameters import A_STABLE_ORDER, EQUAL_STEPS, FILTER
 from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import ERROR_NORM
+
+FAILS: Final = 1e10
+"""Norm that fails the error test of any order; the same factor enlarges the norms of lower orders, which are compared."""
+
+MOST_REPEATED: Final = 2
+"""Number of such failures in a step; after a third one, IDA continues at order 1."""
 
 error_norm_view = view_of("ErrorNorm", ERROR_NORM)
 
@@ -84,9 +92,34 @@ def _let_grow(c):
         call_int(c.set_growth, (c.memory, 1.0, c.growth))
 
 
-def error_norm(estimate, weights):
+@compiled
+def _repeat_up_to(c, part):
+    """Make IDA reduce the step to this part after a failure of the error test; to its own choice if `part` is 1."""
+    call_int(c.set_largest_part, (c.memory, part))
+    call_int(c.set_least_part, (c.memory, part))
+
+
+@compiled
+def _see_event(c, estimate, weights):
+    """Make the error test fail if the attempted step has to be repeated up to an event."""
+    call_int(c.time_of, (c.memory, address_of(c.t)))
+    if c.t == c.attempted:
+        return
+    c.attempted = c.t
+    again = c.enlarged != 1.0
+    c.repeated = c.repeated + 1 if again else 0
+    part = call_float(c.part_before_event, (estimate, weights, c.ida)) if c.repeated < MOST_REPEATED else 1.0
+    if part < 1.0 or again:
+        _repeat_up_to(c, part)
+    c.enlarged = 1.0
+    if part < 1.0:
+        c.enlarged = FAILS / call_float(c.norm, (estimate, weights))
+        c.known_failures += 1
+
+
+@compiled
+def _norm(c, estimate, weights):
     """Return the WRMS norm (N_VWrmsNorm) of an estimate, filtered if the error test fails often."""
-    c = error_norm_view(ints(ints(estimate[OPERATIONS])[NORM_TABLE]))
     cj = iteration_view(c.iteration).cj
     if cj != c.looked:  # cj changes with every failure
         _look(c)
@@ -96,5 +129,14 @@ def error_norm(estimate, weights):
     if wanted and cj < float("inf") and _filtered(c, estimate):
         size = call_float(c.norm, (c.at_filtered, weights))
         if size < FILTER.no_estimate:
-            return c.repeats * size
-    return c.repeats * call_float(c.norm, (estimate, weights))
+            return size
+    return call_float(c.norm, (estimate, weights))
+
+
+def error_norm(estimate, weights):
+    """Return the norm of an estimate for IDA's error test and its choice of order and step."""
+    c = error_norm_view(ints(ints(estimate[OPERATIONS])[NORM_TABLE]))
+    if not c.part_before_event:
+        return c.repeats * _norm(c, estimate, weights)
+    _see_event(c, estimate, weights)
+    return c.repeats * c.enlarged * _norm(c, estimate, weights)

@@ -72,7 +72,7 @@ def look_at_start(toward, stop, ida):
         keep_row(w, s, 0)
         copied(w.value_before, switches(w, s, c.returned), w.n)
         for k in range(w.n_event_functions):
-            w.farthest[k] = 0.0
+            w.farthest[k] = abs(w.value_before[k])
             if abs(w.value_before[k]) > w.band[k] > 0.0:
                 watch_for(w, k, 0.0)
         go_straight(c, s, ahead)

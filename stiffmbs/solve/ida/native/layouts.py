@@ -18,7 +18,7 @@ NATIVE_IDA = Layout({
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "atol": FLOATS, "rtol": FLOAT_CELL,
     "long_steps": INTS, "error_norm": INTS,
-    "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL,
+    "attempted": FLOAT_CELL, "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL,
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
 functions and objects, values of the matrix, and reported unknowns; function by which a one-step method
@@ -26,7 +26,7 @@ repeats its last step with another length, 0 for a multistep method; function th
 step holds over jumps; absolute and relative tolerances.
 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
-size of the next attempt; last stop time; output times served, tiny steps in succession; steps in the history,
+size of the next attempt; last stop time; time at the end of the attempted step; output times served, tiny steps in succession; steps in the history,
 steps since the last sample, position of the next one.  Address of rows for time, order, y and y' of each step (0 for none), and rows written in
 this call.  Places within a step that have a row too."""
 
@@ -102,10 +102,12 @@ ERROR_NORM = Layout({
     "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL, "repeats": FLOAT_CELL,
     "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
+    "ida": INT, "part_before_event": INT, "time_of": INT, "set_largest_part": INT, "set_least_part": INT, "t": FLOAT_CELL, "attempted": FLOAT_CELL, "enlarged": FLOAT_CELL, "repeated": INT_CELL,
 })  # fmt: skip
 """Norm of IDA's error estimates (`stiffmbs.solve.ida.native.error_norm`).
 
 Cells: failures of the error test with a weight that decreases with each step; 1 to filter all estimates; cj at the last
 check of failures; steps and failures of the error test, and the same at the last check; step up to which estimates are
 filtered; order of the last step; number of periods of a law whose features are resolved, else 1; step up to which steps
-may not grow (0 for none), and least growth factor afterwards."""
+may not grow (0 for none), and least growth factor afterwards; current time, time at the end of the last attempted step,
+factor of the norms of that step, number of its repetitions."""
