@@ -14,10 +14,9 @@ from ..elements.element import Joint
 from ..elements.joints.drive import Drive
 from ..notes import Note, NoteKind
 from ..reading.table import Table
+from ..solve.events.departures import ROUNDING
 
 SMOOTH_CURVES = "use 'spline: true', or 'smoothing' with the accuracy of measured points"
-ROUNDING = 1e-9
-"""Difference of slopes relative to the largest one, and of an argument from a point relative to the range, that is rounding."""
 KINKED = NoteKind(
     "drive-by-lines",
     "{element}: the position by the table '{label}' follows straight lines, so velocities jump at the points: the effort of "
