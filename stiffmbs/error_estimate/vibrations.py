@@ -44,13 +44,6 @@ def are_resolved(space: Linearised, t: np.ndarray, nodes: np.ndarray, blocks: li
     return longest(steps, nearest, ESTIMATE.resolved * ESTIMATE.block) * ESTIMATE.block <= ESTIMATE.turn
 
 
-def _between(matrices: np.ndarray, t: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """Return matrices at other times, interpolated linearly between those at the times `t`."""
-    right = np.clip(np.searchsorted(t, times), 1, len(t) - 1)
-    part = ((times - t[right - 1]) / (t[right] - t[right - 1]))[:, None, None]
-    return np.asarray(matrices[right - 1] + part * (matrices[right] - matrices[right - 1]))
-
-
 def changes_little(space: Linearised, t: np.ndarray) -> bool:
     """Return True if the matrices at the times `t` may be interpolated between these."""
     if len(t) < 3:
@@ -67,25 +60,43 @@ def step_by_step(
 ) -> np.ndarray:
     """Return the errors at the ends of the steps of a piece, shape (rows, full), from that at its start.
 
-    Each step takes the stability function of the Radau method of three stages with the matrix A of its middle: e+ = D(Z)^-1
-    (N(Z) e + (1 - Z/10 + Z^2/60) h d), Z = h A. `defects`: of the steps that end at each row. `space`: tangent spaces at
-    the rows `nodes`.
+    Each step takes the stability function of the Radau method of three stages with the matrix M of its middle: a+ = D(Z)^-1
+    (N(Z) a + (1 - Z/10 + Z^2/60) h d), Z = h M. The coordinates a and M are those of the tangent space at the next node: a mean of
+    stiff matrices of two spaces is not stable. `defects`: of the steps that end at each row. `space`: tangent spaces at the rows
+    `nodes`.
     """
-    coordinates = np.linalg.solve(space.left @ space.basis, space.left)
-    rates, onto = space.rates @ coordinates, space.basis @ coordinates
-    at_node = dict(zip(nodes.tolist(), onto, strict=True))
     errors = np.zeros((len(t), len(start)))
     errors[0] = start
-    count = at_once(len(start))
-    for first in range(0, len(t) - 1, count):
-        ends = slice(first + 1, first + 1 + count)
-        h = np.diff(t[first : ends.stop])
-        matrices = _between(rates, t[nodes], t[ends] - 0.5 * h)
-        for n, step in enumerate(_steps(h[:, None, None] * matrices, h[:, None] * defects[ends]), ends.start):
-            errors[n] = step[:, :-1] @ errors[n - 1] + step[:, -1]
-            if n in at_node:
-                errors[n] = at_node[n] @ errors[n]
+    if not space.n:
+        return errors
+    coordinates, onto, before, after = _in_next_space(space)
+    a, next_node = coordinates[0] @ start, np.searchsorted(nodes, np.arange(len(t)))
+    count = at_once(space.n)
+    for first in range(1, len(t), count):
+        rows = np.arange(first, min(first + count, len(t)))
+        k, h = next_node[rows], t[rows] - t[rows - 1]
+        part = (t[rows] - 0.5 * h - t[nodes[k - 1]]) / (t[nodes[k]] - t[nodes[k - 1]])
+        matrices = before[k - 1] + part[:, None, None] * (after[k - 1] - before[k - 1])
+        sources = h[:, None] * np.einsum("kif,kf->ki", coordinates[k], defects[rows])
+        for n, node, step in zip(rows, k, _steps(h[:, None, None] * matrices, sources), strict=True):
+            if n == nodes[node - 1] + 1:
+                a = onto[node - 1] @ a
+            a = step[:, :-1] @ a + step[:, -1]
+            errors[n] = space.basis[node] @ a
     return errors
+
+
+def _in_next_space(space: Linearised) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return matrices of all nodes and of all pairs of successive nodes.
+
+    `coordinates` of shape (nodes, n, full): from variations to coordinates in the tangent space. `onto` of shape
+    (nodes - 1, n, n): from coordinates in one space to those in the next. `before`, `after`: matrices M at both nodes, in the
+    coordinates of the second.
+    """
+    coordinates = np.linalg.solve(space.left @ space.basis, space.left)
+    matrices = coordinates @ space.rates
+    onto = coordinates[1:] @ space.basis[:-1]
+    return coordinates, onto, onto @ matrices[:-1] @ np.linalg.inv(onto), matrices[1:]
 
 
 def _steps(z: np.ndarray, sources: np.ndarray) -> np.ndarray:

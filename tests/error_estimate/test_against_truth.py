@@ -279,3 +279,12 @@ def test_a_passage_of_a_singular_pose_is_not_lost():
     assert any("passes a singular pose" in note for note in found.notes) and not any(
         "lost" in note for note in found.notes
     )
+
+
+def test_stiff_beams_that_turn_are_not_lost():
+    """A mean of the matrices of two tangent spaces was not stable: the error of a leaf spring grew without bounds."""
+    scene = load_scene(EXAMPLES / "beams" / "leaf_spring.yaml")
+    found = stiffmbs.run(scene, solver="bdf", duration=3.5)
+    exact = stiffmbs.run(scene, solver="radau", rtol=1e-9, duration=3.5, errors=False)
+    for channel in ("frame.y", "leaf.node1.angle", "clamp.torque"):
+        assert 0.3 < ratio(found, channel, exact[channel]) < 3.0
