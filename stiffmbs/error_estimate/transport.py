@@ -87,7 +87,7 @@ def transported(blocks: list[Block], space: Linearised, place: np.ndarray, start
     if not n:
         return errors
     maps, sources = _solved(blocks, space, place)
-    first = place[0]
+    first = place[blocks[0].nodes[0]]
     a = np.linalg.solve(left[first] @ basis[first], left[first] @ start)
     errors[first] = basis[first] @ a
     for block, by_start, source in zip(blocks, maps, sources, strict=True):

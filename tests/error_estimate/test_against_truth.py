@@ -8,6 +8,8 @@ from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs.analyses.load_scene import load_scene
+from stiffmbs.error_estimate.linearised import Linearised
+from stiffmbs.error_estimate.transport import Block, transported
 from tests.conftest import EXAMPLES
 from tests.solve.test_stiff_reactions import KINKS
 from tests.solve.test_stiff_reactions import pendulum as pushed
@@ -288,3 +290,13 @@ def test_stiff_beams_that_turn_are_not_lost():
     exact = stiffmbs.run(scene, solver="radau", rtol=1e-9, duration=3.5, errors=False)
     for channel in ("frame.y", "leaf.node1.angle", "clamp.torque"):
         assert 0.3 < ratio(found, channel, exact[channel]) < 3.0
+
+
+def test_a_transport_may_begin_within_a_piece():
+    """The bases of two rows are not the same: coordinates of the start are those of the first row of its first block."""
+    rng = np.random.default_rng(1)
+    basis, rates, left = rng.normal(size=(5, 3, 2)), rng.normal(size=(5, 3, 2)), rng.normal(size=(5, 2, 3))
+    space, place, times = Linearised(basis, rates, left), np.arange(5), np.array([0.1, 0.2])
+    blocks = [Block(first + np.arange(3), rng.normal(size=(2, 3)), times) for first in (0, 2)]
+    whole = transported(blocks, space, place, basis[0] @ np.ones(2))
+    np.testing.assert_allclose(transported(blocks[1:], space, place, whole[2])[3:], whole[3:])
