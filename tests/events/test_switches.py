@@ -178,3 +178,19 @@ def test_an_event_beyond_the_noise_of_its_function_counts():
 def test_a_former_parameter_of_masking_is_told():
     with pytest.raises(InputError, match="events are no longer left out after a number of steps"):
         solve(window(), "radau", tuning={"masking": {"few_steps": 1}})
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_a_jump_of_an_event_function_is_no_noise(solver):
+    """A mass on a stiff pad drives over an edge, where the argument of max() jumps with the road: no later impact is lost."""
+    mass, stiffness = 100.0, 1e7
+    damping, weight = 0.1 * np.sqrt(stiffness * mass), 9.81 * mass
+    model = Model(gravity=(0, 0))
+    model.add("a", Body(mass=mass, inertia=1, position=(0, -weight / stiffness), velocity=(2, 0)))
+    road = "-0.01*branch(a.x - 0.7, 0, 0, 1)"
+    force = f"max(0, {stiffness}*({road} - a.y) - {damping}*a.vy) - {weight}"
+    model.add("f", AppliedForce(i="a", force=(0, force)))
+    for rtol in (1e-4, 1e-6):
+        solution = stiffmbs.run(model, solver=solver, rtol=rtol, duration=0.9, points=2, errors=False)
+        assert solution.solver["events"] == 24
+        assert solution["a.vy"][-1] == pytest.approx(-4.352275e-2, abs=60 * rtol)
