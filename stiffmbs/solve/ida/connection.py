@@ -170,7 +170,9 @@ class Connection:
         self._samples = np.full((LOOP.samples, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
         self.output_correction, self.step_bound = OutputCorrection(equations), StepBound()
-        self.iteration = Iteration(n, bool(equations.system.forces_by_reactions))
+        system = equations.system
+        self._has_kinks = bool(system.forces_by_reactions) or system.n_event_functions > 0
+        self.iteration = Iteration(n, self._has_kinks)
         self.error_norm = ErrorNorm(n)
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = formula.memory(session)
@@ -251,7 +253,7 @@ class Connection:
 
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
         """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""
-        needed = long_step < np.inf or bool(self._equations.system.forces_by_reactions)
+        needed = long_step < np.inf or self._has_kinks
         if needed and not (self._formula.repeat or self.output_correction.ready):
             self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
         self.output_correction.limit(long_step, part, balanced)

@@ -80,12 +80,12 @@ CONVERGED = Routine(
 class Iteration:
     """Newton solver of IDA with a convergence test that considers the age of the iteration matrix.
 
-    `n`: number of unknowns. `by_reactions`: if True, forces depend on reactions, by laws that may have a kink where a
-    reaction vanishes. `table`: table for compiled code (`stiffmbs.solve.ida.native.layouts.ITERATION`).
+    `n`: number of unknowns. `has_kinks`: True if forces may have kinks, where an event function or a reaction vanishes.
+    `table`: table for compiled code (`stiffmbs.solve.ida.native.layouts.ITERATION`).
     """
 
-    def __init__(self, n: int, by_reactions: bool) -> None:
-        self._n, self._by_reactions = n, by_reactions
+    def __init__(self, n: int, has_kinks: bool) -> None:
+        self._n, self._has_kinks = n, has_kinks
         self.table = np.zeros(len(ITERATION), dtype=np.int64)
         self._cells = self.table.view(ITERATION.cells)[0]
         self._cells["cj"] = np.inf
@@ -98,7 +98,7 @@ class Iteration:
             self.table,
             ITERATION,
             {
-                "n": self._n, "by_reactions": int(self._by_reactions), "memory": memory,
+                "n": self._n, "has_kinks": int(self._has_kinks), "memory": memory,
                 "array_of": libraries.address("N_VGetArrayPointer"), "cj_of": libraries.address("IDAGetCurrentCj"),
                 "iteration_of": libraries.address("SUNNonlinSolGetCurIter"), "time_of": libraries.address("IDAGetCurrentTime"),
                 **tables,

@@ -26,7 +26,7 @@ def iterating(**fields):
     """Return the record of an iteration with one unknown."""
     usual = {
         "n": 1, "array_of": lambda vector: vector, "iteration_of": nothing, "cj_of": nothing, "memory": 0, "done": 1, "cj": 1.0, "age": 0,
-        "first": 1.0, "by_cj": 0.0, "growth": 0.0, "span": 1.0, "since": 0, "slow": 0, "given_up": 0, "matrix_cj": 1.0, "by_reactions": 0,
+        "first": 1.0, "by_cj": 0.0, "growth": 0.0, "span": 1.0, "since": 0, "slow": 0, "given_up": 0, "matrix_cj": 1.0, "has_kinks": 0,
     }  # fmt: skip
     return Record(**{**usual, **fields})
 

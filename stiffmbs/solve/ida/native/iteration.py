@@ -9,7 +9,7 @@ Here the rate is predicted from its two causes.  First, the matrix changes with 
     |1 - 2 / (1 + r) (r - z) / (1 - z)| <= |r - 1| / (r + 1)    for Re z <= 0.
 Second, bodies rotate away from the pose of the matrix.  This part is assumed to grow with the time since then, at the
 last measured rate, also under earlier matrices.  Rates measured with a new matrix do not count.  If forces
-depend on reactions, the rate is measured after a failed iteration: friction has a kink where a reaction vanishes.  A
+may have kinks, the rate is measured after a failed iteration, and the matrices of the iterates are tried.  A
 matrix with a slow or insufficient convergence is replaced.
 
 For long steps, the tolerance follows from the stiffness of the scene (`stiffmbs.solve.error_control.newton`).  A
@@ -62,7 +62,7 @@ def _predicted(c):
         c.span = 0.0
     c.span += 1.0 / c.cj
     c.by_cj = abs(c.cj - c.matrix_cj) / (c.cj + c.matrix_cj)
-    bends = age == 0 and c.by_reactions == 1 and c.given_up == 1
+    bends = age == 0 and c.has_kinks == 1 and c.given_up == 1
     known = c.growth >= 0.0 and (c.since <= NEWTON.trusted or age == 0) and not bends
     return c.by_cj + c.growth * c.span if known else 1.0
 
@@ -104,13 +104,11 @@ def _later(c, size, enough):
 def _solved_otherwise(c, total, enough):
     """Return True if other matrices solve the equations: of the iterates, beyond a kink, or of shorter steps in a long one."""
     b = output_correction_view(c.output_correction)
-    if c.age > 0 or b.interpolate == 0 or not (c.by_reactions or b.long * c.cj < 1.0):
+    if c.age > 0 or b.interpolate == 0 or not (c.has_kinks or b.long * c.cj < 1.0):
         return False
     call_int(c.time_of, (c.memory, address_of(c.t)))
     corrections = floats(call_address(c.array_of, total))
-    if c.by_reactions and solved_across_kinks(
-        c.output_correction, c.state, c.equations, c.t, c.cj, corrections, enough
-    ):
+    if c.has_kinks and solved_across_kinks(c.output_correction, c.state, c.equations, c.t, c.cj, corrections, enough):
         return True
     return b.long * c.cj < 1.0 and solved(c.output_correction, c.state, c.equations, c.t, c.cj, corrections)
 

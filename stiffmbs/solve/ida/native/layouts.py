@@ -84,7 +84,7 @@ before moments, and their ends; rows of position constraints; system that closes
 the prediction of the current step; zeros."""
 
 ITERATION = Layout({
-    "n": INT, "by_reactions": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
+    "n": INT, "has_kinks": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
     "cj": FLOAT_CELL, "matrix_cj": FLOAT_CELL, "first": FLOAT_CELL, "by_cj": FLOAT_CELL, "growth": FLOAT_CELL, "span": FLOAT_CELL,
     "done": INT_CELL, "age": INT_CELL, "since": INT_CELL, "slow": INT_CELL, "given_up": INT_CELL,
     "output_correction": INTS, "state": INTS, "equations": INTS, "time_of": INT, "t": FLOAT_CELL,
