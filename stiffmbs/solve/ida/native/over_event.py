@@ -1,9 +1,9 @@
 """Steps of IDA that cross an event are repeated up to the event.
 
-The force beyond an event acts in all of a BDF step that crosses it, so the state at the event is wrong by its part of
-the corrector's deviation from the predictor, which knows the force before the event alone.  The error test of IDA
-divides that deviation by the order + 1.  If the part exceeds the tolerance of an unknown, IDA is told that the error
-test has failed, and to take that part of the step.
+The force beyond an event acts in all of a BDF step that crosses it.  The predictor knows the force before the event
+alone.  The deviation of the corrector from it, times the place of the event in the step, is the error of the state at
+the event.  The error test of IDA divides that deviation by the order + 1.  If the error exceeds the tolerance of an
+unknown, the norm makes the error test fail, and IDA takes a step up to just before the event.
 
 References
 ----------
