@@ -1,4 +1,4 @@
-"""Reactions of joints and force elements from the multipliers of the block system, and other element channels."""
+"""Names of the reactions and other channels of joints and forces; `symbolic/derive.py` has the equations."""
 
 from __future__ import annotations
 

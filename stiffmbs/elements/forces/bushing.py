@@ -25,8 +25,9 @@ class Bushing(WithinHalfATurn, Force):
     """Elastic force and torque between two markers.
 
     The deformation s = (x, y, angle) of marker i relative to marker j is measured along the axes of j. The angle counts
-    revolutions; it starts within half a turn, as at a joint in place of the bushing. The force is
-    preload - K s - C s' - law(s), conjugate to the three deformations. It acts on i at its point, and the opposite
+    revolutions; it starts within half a turn, as at a joint in place of the bushing. The force and the
+    torque on i are preload - K s - C s' - law(s), conjugate to the three deformations: a positive angle gives a negative
+    torque on i. The force acts on i at its point, and the opposite
     force acts on j at the same point of space, so linear and angular momentum are conserved.
 
     With ``axes: ground`` x and y are the ground axes, and the force acts at each body's own marker. Angular momentum is

@@ -1,4 +1,4 @@
-"""Norm of IDA's error estimates without the errors that strong damping removes within the step.
+"""Norm of IDA's error test: filtered for strong damping, shared among periods of a law, failing for steps over an event.
 
 A light body in a strong damper follows M u' = f(q) - c u, so u = f(q) / c after a time M / c.  Differences of u, which
 estimate the error, then do not represent the error in u, which follows that in q.  After a change of step or order, u
