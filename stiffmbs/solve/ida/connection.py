@@ -170,13 +170,12 @@ class Connection:
         self._samples = np.full((LOOP.samples, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
         self.output_correction, self.step_bound = OutputCorrection(equations), StepBound()
-        system = equations.system
-        self._has_kinks = bool(system.forces_by_reactions) or system.n_event_functions > 0
+        self.watch = EventSearch(state)
+        self._has_kinks = bool(equations.system.forces_by_reactions) or self.watch.n_event_functions > 0
         self.iteration = Iteration(n, self._has_kinks)
         self.error_norm = ErrorNorm(n)
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = formula.memory(session)
-        self.watch = EventSearch(state)
         self.words = self._packed()
         self.table, self.cells = self.words.ctypes.data, self.words.view(NATIVE_IDA.cells)[0]
         formula.connect(self, session, self._assembled)
