@@ -69,4 +69,8 @@ def _passes(table: Table, points: np.ndarray, argument: np.ndarray) -> bool:
     first, last = table.table[0][0], table.table[-1][0]
     if table.repeats:
         argument = first + np.mod(argument - first, last - first)
-    return bool((np.abs(argument[:, None] - points) <= ROUNDING * (last - first)).any())
+    if not len(points):
+        return False
+    after = np.minimum(np.maximum(np.searchsorted(points, argument), 1), len(points) - 1)
+    apart = np.minimum(np.abs(argument - points[after]), np.abs(argument - points[after - 1]))
+    return bool((apart <= ROUNDING * (last - first)).any())

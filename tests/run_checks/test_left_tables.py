@@ -10,6 +10,7 @@ from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.table_ranges import TableRanges
 from stiffmbs.compile.table_values import curve, parts_of
 from stiffmbs.elements.roads.rolling_filter import heights_of
+from stiffmbs.run_checks.tabled_drives import _passes, _points
 
 POINTS = ((-0.2, -100.0), (0.0, 0.0), (0.1, 30.0), (0.2, 100.0))
 BUMP = ((0.0, 0.0), (0.5, 1.0), (1.2, 0.7), (2.0, 0.0))
@@ -222,6 +223,32 @@ def test_points_of_a_table_that_the_run_does_not_pass_have_no_note() -> None:
     table = Table(table=[(-1.0, -0.5), (1.0, 0.5), (2.0, 0.0)], lines=True)
     assert not motion_notes(run(shaken(table), duration=0.9))
     assert motion_notes(run(shaken(table), duration=1.1))
+
+
+DRIVEN = """
+gravity: [0, 0]
+tables: {{measured: {{table: [[-1, -0.5], [1, 0.5], [2, 0]], lines: true}}}}
+bodies: {{b: {{mass: 1, inertia: 1}}}}
+joints:
+  rail: {{type: prismatic, i: b, j: ground}}
+  d: {{type: drive, joint: rail, position: "measured({argument}) + step(t, 0.3, 0, 0.6, 0.1)"}}
+run: {{duration: 0.9, points: 3}}
+"""
+
+
+@pytest.mark.parametrize(("argument", "passed"), [("t", False), ("2*t", True), ("0.5*t", False), ("1.5 - t", True)])
+def test_only_points_of_the_table_itself_have_a_note(argument: str, passed: bool) -> None:
+    """The step has breakpoints of its own."""
+    assert bool(motion_notes(run(read_scene(DRIVEN.format(argument=argument))))) is passed
+
+
+def test_points_of_a_long_table_are_compared_with_the_nearest_breakpoints() -> None:
+    """A measured motion of 200 000 samples has as many breakpoints: no matrix of all pairs."""
+    x = np.linspace(0.0, 10.0, 200_001)
+    table = Table(table=list(zip(x.tolist(), np.cumsum(np.sin(x * x)).tolist(), strict=True)), lines=True)
+    points = _points(table)
+    assert _passes(table, points, x[1:-1])
+    assert not _passes(table, points, 0.5 * (x[1:] + x[:-1]))
 
 
 @pytest.mark.parametrize("options", [{"lines": True}, {}, {"akima": True}])
