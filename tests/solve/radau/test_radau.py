@@ -183,7 +183,9 @@ def test_index_3_names_rounding_where_it_exceeds_the_tolerance(examples):
     scene = stiffmbs.load_scene(examples / "elastic_bearing.yaml")
     for start in (1e5, 1.06e5, 1.27e5, 1.33e5):
         found = stiffmbs.run(scene, solver="radau", formulation="I3", rtol=1e-9, start=start)
-        assert found.message == "completed" or "the tolerance is below the rounding of the equations" in found.message
+        assert (
+            found.message == "completed" or "below rounding" in found.message or "below the rounding" in found.message
+        )
 
 
 def test_a_spinning_top_in_space():

@@ -190,12 +190,6 @@ def _repeated(c, begun, seen):
     """
     if seen == NO_EVENT or not c.repeat or (seen == EVENT and call_int(c.resolves, (c.memory,))):
         return 0.0
-    w = event_search_view(c.watch)
-    crossed = 0
-    for k in range(w.n_event_functions):
-        crossed += w.found[k] != 0 and departed(w, k, w.value_after[k])
-    if seen == EVENT and crossed == 0:  # a short visit, which the search has resolved
-        return 0.0
     ahead = c.returned - begun
     h = ahead / STRETCHED if seen == EVENT else (1.0 + SEARCH.difference) * ahead
     shortest = LOOP.most_tiny**2 * EPSILON * abs(begun)

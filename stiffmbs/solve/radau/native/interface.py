@@ -62,11 +62,12 @@ def resolves(memory):
     """Return 1 if the error estimate of the last step holds over jumps and kinks.
 
     The tolerance of the estimate, of order s, is that of smooth solutions. A step over a jump or kink has to stay within
-    the part of the requested tolerance that the iteration may leave. Its estimate does not bound its error.
+    the part of the requested tolerance that the iteration may leave. Its estimate does not bound its error. Nor does one without
+    the motions that the step damps, such as an impact on a stiff pad.
     """
     x = radau_view(ints(memory))
     relaxed = collocation_view(ints(x.methods[x.method_past])).relaxed
-    return int32(1 if x.error_size * relaxed <= x.newton else 0)
+    return int32(1 if x.damped == 0 and x.error_size * relaxed <= x.newton else 0)
 
 
 def interpolate(memory, t, order, target):

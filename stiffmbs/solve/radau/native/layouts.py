@@ -24,7 +24,7 @@ RADAU = Layout({
     "y": FLOATS, "yp": FLOATS, "y_stage": FLOATS, "yp_stage": FLOATS, "z": FLOATS, "r": FLOATS, "d": FLOATS, "past": FLOATS, "y_past": FLOATS, "error": FLOATS, "weight": FLOATS,
     "atol": FLOATS, "rtol": FLOAT_CELL, "newton": FLOAT_CELL, "part": FLOAT_CELL, "longest": FLOAT_CELL, "first": FLOAT_CELL, "stop": FLOAT_CELL, "stops": INT_CELL,
     "t": FLOAT_CELL, "h": FLOAT_CELL, "h_past": FLOAT_CELL, "method": INT_CELL, "method_past": INT_CELL, "decaying": INT_CELL,
-    "h_factored": FLOAT_CELL, "stages_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "ahead": INT_CELL, "error_size": FLOAT_CELL, "left": FLOAT_CELL, "suggested": FLOAT_CELL,
+    "h_factored": FLOAT_CELL, "stages_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "ahead": INT_CELL, "error_size": FLOAT_CELL, "damped": INT_CELL, "left": FLOAT_CELL, "suggested": FLOAT_CELL,
     "corrections": FLOATS, "n_corrections": INT_CELL, "suffice": INT_CELL,
     "contraction": FLOAT_CELL, "last_error": FLOAT_CELL, "h_accepted": FLOAT_CELL, "since_change": INT_CELL, "iterations_taken": INT_CELL,
     "has_kinks": INT,
@@ -50,6 +50,6 @@ Rows without rates have the value 1 in `algebraic`; `n_closing` of these belong 
 Cells: tolerances, the requested relative one, part that Newton's iteration may leave; largest and first step, stop
 time; time, next step, last step, methods of both; step size, method and time of the factors, 1 if the matrix belongs to
 the beginning of the step, 1 to make it that of the predicted end.  Convergence rate of Newton's iteration, its last ratio, and what it left, in tolerances; error and size of the last
-accepted step; 1 before motions that decay within a first step are removed; steps since a change of the method.  Corrections between steps (`stiffmbs.solve.radau.native.between_steps`),
+accepted step, 1 if that error is without damped motions; 1 before motions that decay within a first step are removed; steps since a change of the method.  Corrections between steps (`stiffmbs.solve.radau.native.between_steps`),
 their number, and whether they suffice. 1 if laws have jumps or kinks.  Counters, then the parameters of
 `stiffmbs.solve.radau.parameters`."""

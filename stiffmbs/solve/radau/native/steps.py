@@ -85,19 +85,43 @@ def _size_of_estimate(x, c, size):
 
 
 @compiled
-def _filtered(x, c, h):
-    """Return the size of (gamma/h M - f_y)^-1 gamma/h M times the estimate, in its tolerances.
-
-    The estimate of a vibration has a phase, at which the tested velocities may be zero by chance.  This filter turns the
-    phase by arctan(h omega/gamma), and reduces a decaying motion.
-    """
+def _filter(x, c, h, values):
+    """Compute (gamma/h M - f_y)^-1 gamma/h M times a vector."""
     e = equations_view(x.equations)
     for k in range(x.n):
-        x.yp_stage[k] = c.gamma / h * x.error[k]
+        x.yp_stage[k] = c.gamma / h * values[k]
         x.b[k] = 0.0
     add_rate_terms(e, floats(state_view(x.state).values[e.residual_set]), x.yp_stage, x.b)
     solved_real(x)
+
+
+@compiled
+def _filtered(x, c, h):
+    """Return the size of the filtered estimate, in its tolerances.
+
+    The estimate of a vibration has a phase, at which the tested velocities may be zero by chance.  The filter turns the
+    phase by arctan(h omega/gamma), and reduces a decaying motion.
+    """
+    _filter(x, c, h, x.error)
     return _size_of_estimate(x, c, error_norm_view(x.error_norm).repeats * size_in_tolerances(x, x.x))
+
+
+@compiled
+def _vibrating(x, c, h):
+    """Return the size of the estimate in unknowns that vibrate fast for the step, in its tolerances.
+
+    Two filters turn the phase of a fast vibration by nearly half a turn, (1 - h lambda/gamma)^-2, so that its unknowns change
+    their signs. They only reduce a decaying motion. The error of a slow motion, which may exceed what is left of a fast one,
+    also passes a third filter.
+    """
+    _filter(x, c, h, x.error)
+    _filter(x, c, h, x.x)
+    copied(x.d, x.x, x.n)
+    _filter(x, c, h, x.d)
+    for k in range(x.n):
+        fast = x.d[k] - x.x[k]
+        x.d[k] = x.error[k] if x.error[k] * x.d[k] < 0.0 and abs(x.x[k]) < abs(fast) else 0.0
+    return size_in_tolerances(x, x.d) / c.relaxed
 
 
 @compiled
@@ -336,7 +360,7 @@ def _has_matrices(x, c, h):
     if x.ahead:
         last = shifted(x.z, (c.stages - 1) * x.n_all)
         for k in range(x.n):
-            x.y_stage[k] += last[k] if x.h_past > 0.0 else h * x.yp[k]
+            x.y_stage[k] += last[k]
     if not factored(x, c, h, x.t, x.y_stage, x.yp, x.renewed):
         x.renewed = 1
         return False
@@ -371,16 +395,19 @@ def _after_failed_iteration(x, outcome, h):
 def _error(x, c, h, untested):
     """Return the error of the step in tolerances.
 
-    After starts and rejected steps, a failed estimate is repeated with f at the corrected state. That of an untested step, which
-    may be long for a vibration that earlier ones have not tested, is filtered too.
+    After rejected steps, a failed estimate is repeated with f at the corrected state, without the motions that the step damps. In
+    a first step, as on a stiff pad after an impact, these may be vibrations, which do not decay: it resolves them. The estimate
+    of an untested step, which may be long for a vibration that earlier ones have not tested, is filtered too.
     """
     error = _estimate(x, c, x.t, h, x.y)
-    if error >= 1.0 and (untested or x.rejected):
+    x.damped = 0
+    if error >= 1.0 and (untested or x.rejected) and _vibrating(x, c, h) < 1.0:
         copied(x.y_stage, x.error, x.n)
         add_efforts(x, x.y_stage, x.misfit)
         for k in range(x.n_all):
             x.y_stage[k] += x.y[k]
         error = _estimate(x, c, x.t, h, x.y_stage)
+        x.damped = 1
     if untested and error < 1.0:
         error = max(error, _filtered(x, c, h))
     wandering = _wandering(x, c) if x.acting == 0 else 0.0  # efforts of decaying motions are removed or closed
@@ -447,7 +474,8 @@ def step(x):
         if not h > SMALLEST * abs(x.t):
             return ERROR_TEST_FAILED if x.rejected else NO_CONVERGENCE
         x.failures += 1
-        extrapolated(x, c, h)
+        if not x.ahead or x.h_past > 0.0:  # a first step goes on from the iterates that failed
+            extrapolated(x, c, h)
         if not _has_matrices(x, c, h):
             h *= x.after_failure
             continue
