@@ -161,6 +161,24 @@ def test_a_velocity_jump_is_measured_by_the_velocities_of_the_run(how):
     assert "a drive makes positions jump ('sled' by 0.1)" in notes("branch(t - 1, 0, 0, 0.1)")
 
 
+def test_a_drift_of_positions_at_a_kink_is_no_jump():
+    """A step around a fast drive's kink changes its position by more than the tolerance."""
+    scene = {
+        "gravity": [0, 0],
+        "bodies": {"arm": {"mass": 1, "inertia": 1}, "tip": {"mass": 1, "inertia": 1, "omega": -0.3}},
+        "joints": {
+            "shoulder": {"type": "revolute", "i": "arm", "j": "ground"},
+            "elbow": {"type": "revolute", "i": "tip", "j": "arm"},
+            "drive": {"type": "drive", "joint": "elbow", "position": "min(t, 1) + sin(7*t)"},
+        },
+    }
+    solution = stiffmbs.run(
+        stiffmbs.read_scene(json.dumps(scene)), formulation="index1", rtol=1e-8, duration=2, points=3
+    )
+    assert "velocities jump (arm.omega by 0.5" in str(solution.notes)
+    assert "positions jump" not in str(solution.notes)
+
+
 def test_no_missed_event_is_noted_where_none_is():
     """Long steps of a prescribed motion, a kink at an output time, and a sample within a step."""
     law = {"forces": {"f": {"type": "force", "i": "sled", "force": ["-1000*max(sled.x, 0)", 0]}}}

@@ -182,7 +182,7 @@ class HoveringEvents:
         at_zero = passed[self.band[passed] == 0.0]
         self.band[passed] = 0.0
         if len(at_zero):
-            noise = noise_of(self._dynamics, t, q, u, self._rtol)
+            noise = noise_of(self._dynamics, t, q, u, self._rtol, farthest)
             hovering = at_zero[farthest[at_zero] <= noise[at_zero]]
             if len(hovering):
                 self._chattering.refuse(t, q, u, sliding(self._dynamics, t, q, u))

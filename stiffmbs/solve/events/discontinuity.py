@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -63,15 +64,22 @@ class _Around:
         self._dynamics, self.t, self.q, self.u = dynamics, t, q, u
         self._direction = direction_of(dynamics)
         self._count = dynamics.system.n_event_functions
-        self._there = np.empty(len(q))
+        self._there, self._still = np.empty(len(q)), np.zeros(len(q))
         self._kept = np.ascontiguousarray(q, dtype=float), np.ascontiguousarray(u, dtype=float)
         self._at = addresses(*self._kept, *self._direction)
         self._table = dynamics.table.ctypes.data
 
-    def values(self, size: float) -> np.ndarray:
-        """Return the event functions after a move of a size."""
-        found = np.empty(self._count)
-        SWITCHES.short_call(self.t, size, *self._at, self._count, address(found), self._table)
+    def values(self, size: float, of_velocities: bool = False) -> np.ndarray:
+        """Return the event functions after a move of a size, of all coordinates or of the velocities alone."""
+        found, (q, u, along_q, along_u) = np.empty(self._count), self._at
+        along_q = address(self._still) if of_velocities else along_q
+        SWITCHES.short_call(self.t, size, q, u, along_q, along_u, self._count, address(found), self._table)
+        return found
+
+    def change(self, size: float, of_velocities: bool = False) -> np.ndarray:
+        """Return the median of three changes: a jump, where another function vanishes, is in one of them."""
+        values = [self.values(place * size, of_velocities) for place in (-2.0, -1.0, 1.0, 2.0)]
+        found: np.ndarray = np.median(np.abs(np.diff(values, axis=0)) * [[2.0], [1.0], [2.0]], axis=0)
         return found
 
     def side(self, size: float) -> _Side:
@@ -119,30 +127,32 @@ class _Around:
         return _Around(self._dynamics, self.t, q, u)
 
 
-def noise_of(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, rtol: float) -> np.ndarray:
+def noise_of(
+    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, rtol: float, farthest: np.ndarray
+) -> np.ndarray:
     """Return the changes of the event functions that the precision of a state explains, shape (n_event_functions,).
 
-    That is rounding, or for functions of reactions the tolerance: stiff forces amplify the errors of a state.
+    That is rounding. It is the tolerance for functions of reactions, since stiff forces amplify the errors of a state, and the
+    tolerance of velocities for functions with continuous rates: their forces have no jump, and the error test resolves a kink.
+    `farthest`, of that shape: values beyond which a function has left zero anyway.
     """
     state = dynamics.state
     with state.unchanged():
         around = _Around(dynamics, t, q, u)
-
-        def change(size: float) -> np.ndarray:
-            """Return the median of three changes: a jump, where another function vanishes, is in one of them."""
-            values = [around.values(place * size) for place in (-2.0, -1.0, 1.0, 2.0)]
-            found: np.ndarray = np.median(np.abs(np.diff(values, axis=0)) * [[2.0], [1.0], [2.0]], axis=0)
-            return found
-
-        noise = change(SEARCH.precision)
-        if not dynamics.system.switches_by_reactions:
-            return noise
-        rough, pressed = change(rtol), []
-        for lam in (state.lam.copy(), state.lam + 1.0):
-            state.lam[:] = lam
-            state.evaluate("event_function", t)
-            pressed.append(state.values["event_function"][: len(noise)].copy())
-    return np.where(pressed[0] != pressed[1], np.maximum(rough, noise), noise)
+        noise = around.change(SEARCH.precision)
+        if dynamics.system.switches_by_reactions:
+            rough, pressed = around.change(rtol), []
+            for lam in (state.lam.copy(), state.lam + 1.0):
+                state.lam[:] = lam
+                state.evaluate("event_function", t)
+                pressed.append(state.values["event_function"][: len(noise)].copy())
+            noise = np.where(pressed[0] != pressed[1], np.maximum(rough, noise), noise)
+        slow = around.change(rtol, of_velocities=True)
+        for k in np.flatnonzero((noise < farthest) & (farthest <= slow)):
+            at_zero = around.at_zero(JUMP.larger_move, k)
+            if not _rates_differ([at_zero.sides(size) for size in (JUMP.larger_move, SEARCH.precision)], k):
+                noise[k] = slow[k]
+    return noise
 
 
 def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> np.ndarray:
@@ -187,16 +197,19 @@ def _slides(around: _Around, reach: float, event_function: int) -> bool:
     The zero is a sliding surface only if the event function is continuous.  A discontinuous one, such as the load of a
     damper at a kink of its road, changes its sign at a surface of another event function.
     """
-    at_zero = around.at_zero(reach, event_function)
-    values, rates = [], []
+    at_zero, k, moves = around.at_zero(reach, event_function), event_function, []
     for size in (JUMP.larger_move, SEARCH.precision):
-        sides = at_zero.sides(size)
-        if not _driven_back(sides, np.array([event_function]))[0]:
+        moves.append(at_zero.sides(size))
+        if not _driven_back(moves[-1], np.array([k]))[0]:
             return False
-        values.append(abs(sides[0].values[event_function] - sides[1].values[event_function]))
-        rates.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
-    continuous = values[1] <= JUMP.jumps * values[0]
-    return bool(continuous and rates[1] > max(JUMP.jumps * rates[0], SEARCH.precision))
+    large, small = (abs(above.values[k] - below.values[k]) for above, below in moves)
+    return bool(small <= JUMP.jumps * large) and _rates_differ(moves, k)
+
+
+def _rates_differ(moves: Sequence[tuple[_Side, _Side]], event_function: int) -> bool:
+    """Return True if the rate of an event function jumps between the sides of a larger and of a smaller move."""
+    large, small = (abs(above.rates[event_function] - below.rates[event_function]) for above, below in moves)
+    return bool(small > max(JUMP.jumps * large, SEARCH.precision))
 
 
 def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:
@@ -269,15 +282,18 @@ class Jumps:
             )
 
     def _leads_on(self, t: float, q: np.ndarray) -> float:
-        """Return the largest change of a constraint at a time, with the positions before it; drift is no jump."""
+        """Return the largest jump of a constraint at a time, with the positions before it; drift is no jump.
+
+        The constraints of both sides are extrapolated to that time, which cancels their rates: 2 (C_1 - C_-1) - (C_2 - C_-2).
+        """
         state, around = self._dynamics.state, SEARCH.precision * max(abs(t), self._settings.duration)
-        sides = []
+        jump = np.zeros(len(state.vector("position", "C")))
         with state.unchanged():
             state.q[:] = q
-            for at in (t - around, t + around):
-                state.evaluate("position", at)
-                sides.append(state.vector("position", "C").copy())
-        return float(np.max(np.abs(sides[1] - sides[0]), initial=0.0))
+            for place, part in ((1.0, 2.0), (-1.0, -2.0), (2.0, -1.0), (-2.0, 1.0)):
+                state.evaluate("position", t + place * around)
+                jump += part * state.vector("position", "C")
+        return float(np.max(np.abs(jump), initial=0.0))
 
     def clear(self) -> None:
         """Forget the jumps before another run."""
