@@ -16,22 +16,25 @@ UNEQUAL = 1e-6
 
 
 def at_zero(x: np.ndarray, y: np.ndarray, limit: float = LINEAR) -> tuple[float, float]:
-    """Return y and dy/dx at a lateral acceleration x of 0 by a fit over abs(x) <= limit: a constant, and x, x^3 and x^5.
+    """Return y and dy/dx at a lateral acceleration x of 0 by a fit: a constant, and x, x|x|, x^3 and x^3|x|.
 
-    Turns to the left and to the right are alike, so that only odd powers belong to a car.
+    Turns to the left and to the right are alike, so that only odd functions belong to a car. The force of a brush tyre (Fiala)
+    contains a|a|. The fit is over abs(x) <= limit, and over half of the range of x: near their limits, tyres follow no polynomial.
 
     Raises
     ------
     InputError
         If fewer than five values lie within the limit.
     """
+    limit = min(limit, 0.5 * float(np.max(np.abs(x), initial=0.0)))
     inside = np.abs(x) <= limit
     if np.count_nonzero(inside) < 5:
         raise InputError(
             f"found {np.count_nonzero(inside)} lateral accelerations up to {limit:g} m/s^2 in steady turns, expected 5 or more"
         )
-    powers = (x[inside, None] / limit) ** np.array([0, 1, 3, 5])
-    value, slope = np.linalg.lstsq(powers, y[inside], rcond=None)[0][:2]
+    part = x[inside] / limit
+    terms = np.stack([np.ones_like(part), part, part * np.abs(part), part**3, part**3 * np.abs(part)], axis=1)
+    value, slope = np.linalg.lstsq(terms, y[inside], rcond=None)[0][:2]
     return float(value), float(slope / limit)
 
 

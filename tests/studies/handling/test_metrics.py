@@ -265,6 +265,15 @@ def test_a_slope_at_zero_does_not_depend_on_how_far_a_car_turned():
         assert metrics.at_zero(x, 7 * np.arctanh(x / 7) + 0.2) == pytest.approx((0.2, 1.0), abs=2e-3)
 
 
+@pytest.mark.parametrize("friction", [0.5, 1.0, 3.0])
+def test_a_slope_at_zero_of_a_brush_tyre_does_not_depend_on_its_friction(friction):
+    """Fiala: F = C a - C^2 a|a|/(3 mu N) + ...; a fit by odd powers alone had slopes up to 1.06."""
+    most = friction * 9.81
+    x = np.linspace(0.3, 0.95 * most, 400)
+    slip = 3.0 * most * (1.0 - np.cbrt(1.0 - x / most))
+    assert metrics.at_zero(x, slip) == pytest.approx((0.0, 1.0), abs=6e-3)
+
+
 def test_braking_at_constant_deceleration():
     time = np.arange(0, 4.9, 0.001)
     speed = np.maximum(27 - 6 * time, 0)
