@@ -15,7 +15,6 @@ import numpy as np
 
 from ..compile.callbacks import fault_of
 from ..compile.compile_model import compile_model
-from ..compile.inputs.features import begins_at_breakpoint
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
@@ -239,7 +238,8 @@ def prepare(
     LOGGER.info("assembling %s", found.data.name)
     before = FoundBefore(found.data, found.settings, found.start_from)
     grid = found.grid
-    if dynamics.system.has_inputs and begins_at_breakpoint(dynamics.system, grid.start, grid.end):
+    breakpoints = dynamics.input_features(grid.start, grid.end).at_ends
+    if np.any(breakpoints <= grid.start + 2.0 * grid.aside):
         grid = replace(grid, start=grid.start + grid.aside)
     with reported_faults(dynamics.system), in_use(found.settings.tuning):
         start = before.get("start", lambda: _start(found.data, dynamics, grid.start, found.start_from))

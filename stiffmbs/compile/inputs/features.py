@@ -137,12 +137,6 @@ def _parted(times: np.ndarray, start: float, end: float) -> tuple[np.ndarray, np
     return times[within], times[~within]
 
 
-def begins_at_breakpoint(system: System, start: float, end: float) -> bool:
-    """Return True if an input of a run from `start` to `end` has a breakpoint at the start, s."""
-    near = 2.0 * aside(start, end)
-    return bool(len(breakpoints_from(inputs_of(system), start, start + near)))
-
-
 def _together(
     bounds: Sequence[Bounds], breakpoints: np.ndarray, start: float, end: float
 ) -> tuple[np.ndarray, np.ndarray]:
