@@ -153,7 +153,7 @@ DECISIONS = {
     "studies.handling.car:MISPLACED": largest_misplacement,
     "studies.handling.car:Manoeuvre.output": lambda: car.Manoeuvre(1.0, 1.0).output,
     "studies.handling.lane_changes:BEFORE": start_of_lanes,
-    "studies.handling.metrics:LINEAR": lambda: metrics.at_zero(np.arange(-10.0, 11), np.arange(-10.0, 11) ** 7)[1],
+    "studies.handling.metrics:LINEAR": lambda: metrics.at_zero(np.arange(-20.0, 21), np.arange(-20.0, 21) ** 7)[1],
     "studies.handling.metrics:UNEQUAL": largest_difference_of_steps,
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.probe": lambda: steady_state_cornering.probe(Record(angular=False)).speed,
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.spun": lambda: steady_state_cornering.ramp(None, 1.0).spun,
@@ -187,7 +187,7 @@ DECISIONS = {
 EXPECTED = {
     "studies.handling.braking:BEFORE_BRAKING": 201.0, "studies.handling.car:MISPLACED": 27,
     "studies.handling.car:Manoeuvre.output": 0.01, "studies.handling.lane_changes:BEFORE": 30.0,
-    "studies.handling.metrics:LINEAR": 334.4055944055936, "studies.handling.metrics:UNEQUAL": 7,
+    "studies.handling.metrics:LINEAR": -1560.0, "studies.handling.metrics:UNEQUAL": 7,
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.probe": 5.0,
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.spun": 0.25,
     "studies.handling.steady_state_cornering:QuasiSteadyTurns.drop": 1,
