@@ -108,8 +108,9 @@ def _assembly(start: InitialValues) -> tuple[str]:
 
 
 def _start_forces(job: Job, rows: OutputRows) -> Iterator[Note]:
-    if job.start_from is None:
-        yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, rows)
+    before = job.start_from.elements if job.start_from else None
+    if job.start_from is None or before is not None:
+        yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, rows, before)
 
 
 def _solver(note: str) -> Iterator[Note]:
