@@ -14,8 +14,9 @@ from ..results.energy_balance_notes import PER_TOLERANCE, is_broken
 from ..solve import SOLVERS
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.missing_rows import reported
+from ..solve.sampling import samples
 from ..solve.settings import near_constraints, traits_of
-from ..solve.trajectory import Outcome, Trajectory
+from ..solve.trajectory import SAME_TIME, Outcome, Trajectory
 from .job import Job
 
 NODES = 5, 9
@@ -26,6 +27,8 @@ INSIDE: Final = 1e-6
 """Distance of the outer nodes from the ends of a step, in steps: there, rows belong to this step on both sides of a restart."""
 SHORTEST: Final = 1000.0
 """Length of the shortest examined step, in roundings of time: a restart begins with steps that do no work."""
+APART: Final = 4.0
+"""Distance of the outer nodes from a restart, in distances within which a time may count as that of the restart."""
 
 
 def balance_within_steps(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balance, OutputRows] | None:
@@ -72,7 +75,8 @@ def _steps(job: Job, trajectory: Trajectory, rows: OutputRows, nodes: int) -> np
         return np.empty((0, 2))
     edges = np.concatenate([[start], np.unique(inside), [end]])
     steps = np.stack([edges[:-1], edges[1:]], axis=1)
-    steps = steps[np.diff(edges) > SHORTEST * np.spacing(max(abs(start), abs(end)))]
+    shortest = max(SHORTEST * np.spacing(max(abs(start), abs(end))), 4.0 * APART * _aside(job))
+    steps = steps[np.diff(edges) > shortest]
     width = job.dynamics.system.n_q + 3 * job.dynamics.system.n_u + rows.values.shape[1]
     most = max(MOST_NUMBERS // (width * nodes), 1)
     return steps[:most]
@@ -89,17 +93,24 @@ def _lobatto(nodes: int) -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * (x + 1.0), 1.0 / (nodes * (nodes - 1) * legendre.legval(x, polynomial) ** 2)
 
 
-def _inside(steps: np.ndarray, aside: float) -> np.ndarray:
-    """Return the distance of the outer nodes from the ends of each step, in steps, shape (n, 1).
+def _aside(job: Job) -> float:
+    """Return the distance from a restart within which a time may count as that of the restart, s.
 
-    A restart at a breakpoint begins twice `aside`, s, after the end of the last step.
+    Steps begin next to a breakpoint, and a sample is at an output time next to it.
     """
-    return np.maximum(INSIDE, 4.0 * aside / np.diff(steps))
+    system = job.dynamics.system
+    periods = system.sampling[system.sampled, 0]
+    return max(job.grid.aside, SAME_TIME * float(np.max(periods, initial=0.0)))
+
+
+def _inside(job: Job, steps: np.ndarray) -> np.ndarray:
+    """Return the distance of the outer nodes from the ends of each step, in steps, shape (n, 1)."""
+    return np.maximum(INSIDE, APART * _aside(job) / np.diff(steps))
 
 
 def _at_nodes(job: Job, steps: np.ndarray, nodes: int) -> OutputRows | None:
     """Return the rows at the nodes of steps, from a repeated run; None if it ends earlier."""
-    inside = _inside(steps, job.grid.aside)
+    inside = _inside(job, steps)
     times = (steps[:, :1] + np.diff(steps) * (inside + (1.0 - 2.0 * inside) * _lobatto(nodes)[0])).ravel()
     if not (np.diff(times) > 0).all() or not times[0] > job.grid.start:
         return None
@@ -111,10 +122,24 @@ def _at_nodes(job: Job, steps: np.ndarray, nodes: int) -> OutputRows | None:
 
 
 def _weights_and_jumps(job: Job, steps: np.ndarray, rows: OutputRows, nodes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the weights of the nodes of each step, s, and whether velocities jump between two steps."""
-    weights = np.diff(steps) * (1.0 - 2.0 * _inside(steps, job.grid.aside)) * _lobatto(nodes)[1]
-    u = rows.u.reshape(len(steps), nodes, -1)
+    """Return the weights of the nodes of each step, s, and whether velocities jump between two steps.
+
+    They may jump by any amount at a restart by inputs. Other jumps are those of more than the tolerance.
+    """
+    weights = np.diff(steps) * (1.0 - 2.0 * _inside(job, steps)) * _lobatto(nodes)[1]
+    u, t = rows.u.reshape(len(steps), nodes, -1), rows.t.reshape(len(steps), nodes)
     before, after = u[:-1, -1], u[1:, 0]
     system = job.dynamics.system
     allowed = absolute_tolerances(system, job.settings)[system.n_q :] + job.settings.rtol * np.abs(before)
-    return weights, (np.abs(after - before) > PER_TOLERANCE * allowed).any(axis=1)
+    beyond = (np.abs(after - before) > PER_TOLERANCE * allowed).any(axis=1)
+    first, last = np.searchsorted(_restarts(job), (t[:-1, -1], t[1:, 0]))
+    return weights, beyond | (last > first)
+
+
+def _restarts(job: Job) -> np.ndarray:
+    """Return the times at which a run restarts by inputs and samples, s."""
+    system, grid = job.dynamics.system, job.grid
+    found = grid.stops
+    if system.has_inputs:
+        found = grid.with_stops(job.dynamics.input_features(grid.start, grid.end).all_breakpoints)
+    return np.union1d(found, [sample.t for sample in samples(system, grid)]) if system.sampled.any() else found

@@ -23,7 +23,7 @@ from ..redundancy.messages.presolve_report import StructureNotes
 from ..results.channels import series_of
 from ..results.energy_balance_notes import range_notes, undefined_values
 from ..run_checks.growth import motion_within_tolerance, senseless
-from ..run_checks.left_tables import departure_notes, left_tables
+from ..run_checks.left_tables import departure_notes, left_by_requests, left_tables
 from ..run_checks.motion import motion_notes
 from ..run_checks.uncertain_forces import uncertain_forces
 from ..solve.settings import settings_notes, traits_of
@@ -108,8 +108,9 @@ def _assembly(start: InitialValues) -> tuple[str]:
 
 
 def _start_forces(job: Job, rows: OutputRows) -> Iterator[Note]:
-    if job.start_from is None:
-        yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, rows)
+    before = job.start_from.elements if job.start_from else None
+    if job.start_from is None or before is not None:
+        yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, rows, before)
 
 
 def _solver(note: str) -> Iterator[Note]:
@@ -131,6 +132,10 @@ def _left_tables(job: Job, system: System, trajectory: Trajectory) -> Iterator[N
     yield from departure_notes(left_tables(system, trajectory, job.settings))
 
 
+def _left_by_requests(job: Job, system: System, rows: OutputRows, channels: dict[str, np.ndarray]) -> Iterator[Note]:
+    yield from departure_notes(left_by_requests(job.data, system, rows, channels))
+
+
 CHECKS = (
     Check("parts", notes_of, ("job.data",)),
     Check("tables", table_notes, ("job.data",), "system.has_laws"),
@@ -147,6 +152,7 @@ CHECKS = (
     Check("reruns", tuple, ("of_reruns",)),
     Check("ranges", _ranges, ("job", "system", "rows")),
     Check("left tables", _left_tables, ("job", "system", "trajectory"), "system.has_tables"),
+    Check("tables left by requests", _left_by_requests, ("job", "system", "rows", "channels"), "job.data.requests"),
     Check("flexible bodies", flexible_body_notes, ("system", "rows"), "system.has_coupled_inertia"),
     Check("impossible results", senseless, ("job.dynamics", "rows", "job.on_constraints", "broken")),
     Check("motion", motion_notes, ("job.dynamics", "rows", "job.settings.rtol", "again")),

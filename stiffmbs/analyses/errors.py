@@ -82,7 +82,9 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     from .run import finished
 
     part, steps = _second(job.settings), _steps(trajectory)
-    times, at = _with_steps(solution, trajectory)
+    system, grid = job.dynamics.system, job.grid
+    breakpoints = job.dynamics.input_features(grid.start, grid.end).breakpoints if system.has_inputs else np.empty(0)
+    times, at = _with_steps(solution, trajectory, breakpoints)
     for repeats in range(1, MOST_REPEATS + 1):
         settings = _with_errors(job.settings, part**repeats)
         try:
@@ -95,16 +97,20 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
             break
     if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")
-    found = bars_by_difference(times, at, solution.channels, other.channels, part**repeats)
-    return with_bars(replace(solution, errors=found), job.settings, job.dynamics.system.size)
+    found = bars_by_difference(times, at, solution.channels, other.channels, part**repeats, breakpoints + grid.aside)
+    return with_bars(replace(solution, errors=found), job.settings, system.size)
 
 
-def _with_steps(solution: Solution, trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray]:
-    """Return the output times with those of steps between them, where peaks may be, and the places of the output times."""
+def _with_steps(solution: Solution, trajectory: Trajectory, breakpoints: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the output times with others between them, where peaks may be, and the places of the output times.
+
+    The others are those of steps, and just after breakpoints.
+    """
     from ..error_estimate.parameters import ESTIMATE
 
-    outputs, steps = np.unique(solution.time), np.unique(trajectory.step_times)
+    outputs = np.unique(solution.time)
     least = ESTIMATE.difference * np.ptp(outputs)
+    steps = np.union1d(trajectory.step_times, breakpoints + 2.0 * least)
     steps = steps[:: 1 + len(steps) * len(solution.channels) // ESTIMATE.numbers_at_once]
     steps = steps[np.diff(steps, prepend=-np.inf) > least]
     after = np.searchsorted(outputs, steps)

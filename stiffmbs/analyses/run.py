@@ -23,7 +23,8 @@ from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import broken_balance, is_broken
 from ..results.provenance import provenance_of
 from ..results.solution import Solution
-from ..run_checks.left_tables import left_tables, refused_departure, stopped_at
+from ..run_checks.left_tables import left_by_requests, left_tables, refused_departure, stopped_at
+from ..solve.events.departures import Departure
 from ..solve.missing_rows import reported
 from ..solve.reasons import OF_STATUS, Reason
 from ..solve.suspect import suspect
@@ -212,18 +213,28 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and compute its output rows."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
-    if job.dynamics.system.has_tables:
-        trajectory = _within_tables(job, trajectory)
+    system = job.dynamics.system
+    if system.has_tables and (left := refused_departure(left_tables(system, trajectory, job.settings))):
+        trajectory = _up_to(left, job, trajectory)
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)
+    if job.data.requests and (left := _refused_request(job, rows)):
+        trajectory = _up_to(left, job, trajectory)
+        rows, left_out = reported(job.dynamics, trajectory, job.on_constraints, job.settings.rtol)
     return Computed(trajectory, rows, job, tuple(left_out))
 
 
-def _within_tables(job: Job, trajectory: Trajectory) -> Trajectory:
-    """Return a run up to where it leaves a table with ``beyond: error``, repeated with a row there."""
-    departure, grid = refused_departure(left_tables(job.dynamics.system, trajectory, job.settings)), job.grid
-    if departure is None:
-        return trajectory
-    end = departure.first
+def _refused_request(job: Job, rows: OutputRows) -> Departure | None:
+    """Return the first departure of a request from a table with ``beyond: error``, or None."""
+    outputs = job.data.outputs().values()
+    if not any(table.beyond == "error" for output in outputs for table in output.tables.values()):
+        return None
+    system = job.dynamics.system
+    return refused_departure(left_by_requests(job.data, system, rows, channels_of(job.data, system, rows)))
+
+
+def _up_to(departure: Departure, job: Job, trajectory: Trajectory) -> Trajectory:
+    """Return a run up to where it leaves a table, repeated with a row there."""
+    grid, end = job.grid, departure.first
     if end > grid.start:
         times = None if grid.times is None else np.append(grid.times[grid.times < end], end)
         trajectory = replace(job, grid=replace(grid, end=end, times=times)).integrate()

@@ -42,6 +42,12 @@ DRAWN_LOADED = NoteKind(
     "The vibration that follows comes from the drawn pose: correct markers and positions, or use 'start: settled', which "
     "starts from the equilibrium",
 )
+ADDED_LOADED = NoteKind(
+    "added-loaded",
+    _STARTS,
+    "The vibration that follows comes from the pose in which it was added: correct its markers, or add it in a stage of "
+    "'analysis: static'",
+)
 HELD_LOADED = NoteKind(
     "held-loaded", _STARTS, "Bodies are held in a drawn pose that does not fit: correct markers and positions"
 )
@@ -62,13 +68,19 @@ class Stretched(NamedTuple):
 
 
 def start_force_notes(
-    data: ModelData, dynamics: Dynamics, start: InitialValues, t: float, rows: OutputRows | None = None
+    data: ModelData,
+    dynamics: Dynamics,
+    start: InitialValues,
+    t: float,
+    rows: OutputRows | None = None,
+    before: frozenset[str] | None = None,
 ) -> Iterator[Note]:
     """Yield a note on the element with by far the largest force that comes from the drawn or assembled pose.
 
-    `rows`: output rows whose first is the start, if known. A start in an equilibrium or from a saved state has no such forces.
+    `rows`: output rows whose first is the start, if known. `before`: elements of the stage before, if there is one; only
+    added ones have such forces. A start in an equilibrium has none.
     """
-    if isinstance(data, Scene) and data.start != "described":
+    if before is None and isinstance(data, Scene) and data.start != "described":
         return
     if not any(map(_is_elastic, dynamics.system.groups)):
         return
@@ -78,11 +90,13 @@ def start_force_notes(
     if not len(rows.t):
         return
     system, heavy = dynamics.system, weight(dynamics.system)
-    for worst in _suspects(system, start, stretched(system, rows.values[0])):
+    added = [each for each in stretched(system, rows.values[0]) if each.name not in (before or ())]
+    for worst in _suspects(system, start, added):
         energy = _energy(system, rows, worst.name)
         if worst.force > OF_WEIGHT * heavy or heavy * worst.deflection(energy) < STIFF * system.size * worst.force:
             with dynamics.state.unchanged():
-                yield from _notes(dynamics, start, t, worst, energy)
+                loaded = DRAWN_LOADED if before is None else ADDED_LOADED
+                yield from _notes(dynamics, start, t, worst, energy, loaded)
             return
 
 
@@ -146,8 +160,13 @@ def _suspects(system: System, start: InitialValues, elements: list[Stretched]) -
     return sorted(found, key=lambda each: -each.force)
 
 
-def _notes(dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched, energy: float) -> Iterator[Note]:
-    """Yield the note on an element, unless forces of its size act in the equilibrium."""
+def _notes(
+    dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched, energy: float, loaded: NoteKind
+) -> Iterator[Note]:
+    """Yield the note on an element, unless forces of its size act in the equilibrium.
+
+    `loaded`: kind of the note if the equilibrium relieves the element.
+    """
     system, heavy = dynamics.system, weight(dynamics.system)
     settled = _in_equilibrium(dynamics, start, t)
     usual = OF_EQUILIBRIUM * max(each.force for each in settled) if settled else OF_WEIGHT * heavy
@@ -161,7 +180,7 @@ def _notes(dynamics: Dynamics, start: InitialValues, t: float, worst: Stretched,
         else f"{worst.force / heavy:.2g} times the weight of all bodies"
     )
     deflected = f", {_deflected(worst.deflection(energy), worst, system)}, with {energy:.3g} J" if energy > 0 else ""
-    kind = DRAWN_LOADED if worst.force > OF_EQUILIBRIUM * at_rest else HELD_LOADED
+    kind = loaded if worst.force > OF_EQUILIBRIUM * at_rest else HELD_LOADED
     opened = _by_assembly(dynamics, start, t, worst, energy)
     force = _written(worst.force, worst, system)
     yield kind(worst.name, force=force, deflected=deflected, compared=compared, opened=opened)

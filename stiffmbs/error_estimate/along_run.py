@@ -31,6 +31,7 @@ class StateErrors:
     - `left_out`: mask of nodes with other errors of forces than those nearby: at events, where errors of time are errors as
       large as jumps; at restarts, where stiff forces are not in balance; and where they could not be balanced.
     - `lost`: mask of nodes with errors too large for linear equations; if there is one, `q` and `u` are those of the integrator.
+    - `restarts`: times at which the integrator started again, s.
     """
 
     t: np.ndarray
@@ -41,6 +42,7 @@ class StateErrors:
     errors: np.ndarray
     left_out: np.ndarray
     lost: np.ndarray
+    restarts: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -107,13 +109,15 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     left_out = np.zeros(len(t) + 1, dtype=bool)
     left_out[starts[1:][fired] - 1] = True
     left_out[starts[1:]] = True
-    lost = _are_lost(dynamics.system, errors)
+    lost, restarts = _are_lost(dynamics.system, errors), t[starts[1:-1]]
     if lost.any():
-        return StateErrors(t[nodes], q[nodes], u[nodes], q[nodes], u[nodes], errors, left_out[nodes], lost)
+        return StateErrors(t[nodes], q[nodes], u[nodes], q[nodes], u[nodes], errors, left_out[nodes], lost, restarts)
     q_better, u_better, fails = (
         np.concatenate(parts) for parts in zip(*(_without_errors(dynamics, each) for each in found), strict=True)
     )
-    return StateErrors(t[nodes], q[nodes], u[nodes], q_better, u_better, errors, left_out[nodes] | fails, lost)
+    return StateErrors(
+        t[nodes], q[nodes], u[nodes], q_better, u_better, errors, left_out[nodes] | fails, lost, restarts
+    )
 
 
 def _are_lost(system: System, errors: np.ndarray) -> np.ndarray:

@@ -42,7 +42,7 @@ def channel_errors(
     kept[[0, -1]] = True
     return ChannelErrors(
         found.t[kept], {name: each[kept] for name, each in values.items()},
-        {name: each[kept] for name, each in errors.items()},
+        {name: each[kept] for name, each in errors.items()}, found.restarts,
     )  # fmt: skip
 
 

@@ -13,11 +13,12 @@ from .scales import ROUNDING, kind_of
 
 @dataclass(frozen=True)
 class ChannelErrors:
-    """Values and errors of all channels at the nodes of one mechanism, by name, shape (n,); `t`: s."""
+    """Values and errors of all channels at the nodes of one mechanism, by name, shape (n,); `t`, `restarts`: s."""
 
     t: np.ndarray
     values: dict[str, np.ndarray]
     errors: dict[str, np.ndarray]
+    restarts: np.ndarray
 
     def at(self, times: np.ndarray, channel: str) -> np.ndarray:
         """Return the errors of a channel at other times, by linear interpolation."""
@@ -49,18 +50,20 @@ def _peak(
     t = t[np.diff(t, prepend=-np.inf) > 0.0]
     fine, at = np.interp(t, own.t, sign * own.values[name]), np.searchsorted(t, times)
     fine[at] = values
-    sampled = between(t, fine, at)
+    sampled = between(t, fine, at, own.restarts)
     top = int(np.nanargmax(values))
     peak = max(abs(float(error[top])), ROUNDING * abs(float(values[top])))
     return peak + sampled, sampled
 
 
 def bars_by_difference(
-    times: np.ndarray, at: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray], part: float
-) -> dict[str, ErrorBar]:
+    times: np.ndarray, at: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray], part: float,
+    restarts: np.ndarray,
+) -> dict[str, ErrorBar]:  # fmt: skip
     """Return the error bars of the channels of a run, from those of a run with another tolerance, at more times.
 
     `at`: places of the times of the run among `times`. `part`: error of the other run in the error of this one, as expected.
+    `restarts`: times from which on channels may have jumped, s.
     """
     found = {}
     for name, values in channels.items():
@@ -72,7 +75,7 @@ def bars_by_difference(
             continue
         fine = others[name].copy()
         fine[at] = values
-        sampled = [between(times, sign * fine, at) for sign in (-1.0, 1.0)]
+        sampled = [between(times, sign * fine, at, restarts) for sign in (-1.0, 1.0)]
         least, greatest = (float(error[peak(values)]) for peak in (np.nanargmin, np.nanargmax))
         found[name] = ErrorBar(float(np.nanmax(error)), least + sampled[0], greatest + sampled[1], *sampled)
     return found

@@ -21,6 +21,7 @@ import numpy as np
 Fine = tuple[np.ndarray, np.ndarray, np.ndarray]
 SAFETY = 2.0
 """Factor on the difference, valid if a better run has at most half the error."""
+NO_RESTARTS = np.empty(0)
 FINER = 1.1
 """Factor on the excess at finer instants, as the finest show a little more."""
 
@@ -79,21 +80,36 @@ def _bar_of_maximum(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine
     return solver + sampled, sampled
 
 
-def between(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> float:
+def between(times: np.ndarray, values: np.ndarray, at: np.ndarray, restarts: np.ndarray = NO_RESTARTS) -> float:
     """Return the excess of a run at many instants over its values at the reported ones, with parabolas at its peaks.
 
-    All peaks between two instants count, as any of them may be the highest.
+    All peaks between two instants count, as any of them may be the highest. Where values may jump or have a kink, each side
+    is continued up to there by its own slope.
 
-    `times`, `values` of shape (n,). `at`: indices of the reported instants.
+    `times`, `values` of shape (n,). `at`: indices of the reported instants. `restarts`: times from which on values belong to
+    the motion after a jump or kink, s.
     """
     highest = float(np.nanmax(values[at]))
-    k = 1 + np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:]))
+    piece = np.searchsorted(restarts, times, side="right")
+    k = 1 + np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:]) & (piece[:-2] == piece[2:]))
     before, after = times[k - 1] - times[k], times[k + 1] - times[k]
     fall, rise = (values[k - 1] - values[k]) / before, (values[k + 1] - values[k]) / after
     bend = np.minimum((rise - fall) / (after - before), -np.finfo(float).tiny)  # a flat peak has no curvature
     slope = fall - bend * before
-    around = [values[np.clip(k + offset, 0, len(values) - 1)] for offset in (-2, -1, 1, 2)]
-    top = np.minimum(slope**2 / (-4 * bend), values[k] - np.nanmin(around, axis=0))  # limit at jumps
+    last = np.flatnonzero(np.diff(piece))
+    sides = [(last, -1, restarts[piece[last]]), (last + 1, 1, restarts[piece[last + 1] - 1])]
+    tops = [slope**2 / (-4 * bend), *(_continued(times, values, *side) for side in sides)]
+    k, top = np.concatenate([k, last, last + 1]), np.concatenate(tops)
+    around = [np.clip(k + offset, 0, len(values) - 1) for offset in (-2, -1, 1, 2)]
+    lowest = np.nanmin([np.where(piece[n] == piece[k], values[n], values[k]) for n in around], axis=0)
+    top = np.minimum(top, values[k] - lowest)  # limit at jumps
     shown = float(np.nanmax(values)) - highest
     reached = values[k] - highest
-    return max(FINER * shown, float(np.max(np.where(reached > 0, FINER, 1.0) * reached + SAFETY * top, initial=0.0)))
+    return max(FINER * shown, float(np.nanmax(np.where(reached > 0, FINER, 1.0) * reached + SAFETY * top, initial=0.0)))
+
+
+def _continued(times: np.ndarray, values: np.ndarray, k: np.ndarray, inner: int, end: np.ndarray) -> np.ndarray:
+    """Return the excess over the values at k of their continuation to an end, by the slope from their inner neighbours."""
+    n = np.clip(k + inner, 0, len(values) - 1)
+    slope = np.where(n == k, 0.0, (values[k] - values[n]) / np.where(n == k, 1.0, times[k] - times[n]))
+    return np.maximum(slope * (end - times[k]), 0.0)

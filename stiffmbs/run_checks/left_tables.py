@@ -1,14 +1,14 @@
 """Tables whose points a run has left: which, how far and for how long.
 
 The steps of integrators record the arguments of tables in force laws (`stiffmbs.solve.events.native.outside`). Arguments
-that depend on time alone are known without a run. Solvers that do not search their steps for events are judged at the
-output times.
+that depend on time alone are known without a run. Solvers that do not search their steps for events, and requests, are
+judged at the output times.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -19,11 +19,14 @@ from ..compile.state import State
 from ..compile.system import System
 from ..compile.table_values import curve, ends_of, spline_data
 from ..compile.written_values import table_arguments, tables_in
+from ..dynamics.dynamics import OutputRows
 from ..elements.states.amount import TABLE as INPUT_TABLE
 from ..errors import SolverError
+from ..model.model_data import ModelData
 from ..model.settings import RunSettings
 from ..notes import Note, NoteKind, of_users
 from ..reading.table import Table
+from ..results.channels import counters
 from ..solve.events.departures import Departure, merged
 from ..solve.reasons import Reason
 from ..solve.settings import traits_of
@@ -48,6 +51,25 @@ def left_tables(system: System, trajectory: Trajectory, settings: RunSettings) -
     recorded = not (traits.fixed_steps or traits.exact)
     of_state = trajectory.departures if recorded else _at_states(system, trajectory.t, trajectory.q, trajectory.u)
     return list(merged([*of_state, *_of_time(system, float(trajectory.t[0]), float(trajectory.t[-1]))]))
+
+
+def left_by_requests(
+    model: ModelData, system: System, rows: OutputRows, channels: Mapping[str, np.ndarray]
+) -> list[Departure]:
+    """Return the departures from tables of requests at the output times that have values."""
+    from ..results.requests import value_over_time
+
+    found: list[Departure] = []
+    counted = counters(model, system, rows.q)
+    for name, output in model.outputs().items():
+        for node in ast.walk(output.tree):
+            match node:
+                case ast.Call(ast.Name(label), [argument]) if label in output.tables:
+                    x = value_over_time(model, replace(output, tree=argument), rows.t, channels, counted)
+                    known = np.isfinite(x)
+                    if known.any():
+                        found += _departure(name, label, output.tables[label], rows.t[known], x[known])
+    return list(merged(found))
 
 
 def refused_departure(found: list[Departure]) -> Departure | None:

@@ -68,6 +68,28 @@ def test_a_mount_in_its_place_or_settled_has_no_note() -> None:
     assert not starts(run(lever(0.02), start_from=run(settled)).notes)
 
 
+STAGES = """
+gravity: [0, -9.81]
+START
+bodies: {b: {mass: 1, inertia: 0.01, position: [0.1, 0]}}
+joints: {f: {type: fixed, i: {body: b, point: [-0.1, 0]}, j: ground}}
+run: {duration: 0.01, points: 3}
+stages:
+- {run: {duration: 0.01}}
+- change: {joints: {f: null}, forces: {m: {type: bushing, i: {body: b, point: [-0.1, 0]}, j: {body: ground, point: [0, OFF]}, stiffness: [5e7, 5e7, 1e3], damping: [1e3, 1e3, 1]}}}
+- {run: {duration: 0.01}}
+"""
+
+
+@pytest.mark.parametrize("start", ["", "start: settled"])
+def test_a_mount_that_a_stage_adds_off_its_place_is_named(start: str) -> None:
+    """1e6 N by 20 mm; `check` had the note, the run none. The stage after it, which adds nothing, has none."""
+    (note,) = starts(run(read_scene(STAGES.replace("START", start).replace("OFF", "0.02"))).notes)
+    assert note.startswith("run 2: 'm' starts with 1e+06 N, deflected by 20 mm")
+    assert "analysis: static" in note
+    assert not starts(run(read_scene(STAGES.replace("START", start).replace("OFF", "0"))).notes)
+
+
 def test_a_mount_in_space() -> None:
     (note,) = starts(run(read_scene(IN_SPACE)).notes)
     assert "'mount' starts with 5e+05 N, deflected by 5 mm" in note

@@ -60,6 +60,32 @@ def test_a_damper_that_adds_energy_is_noted_with_its_range():
     assert "and 2 rad/s" in note
 
 
+PASSIVE = (
+    "20*v", "60*tanh(v/0.01)", "60 + 20*v", "20*v - v^3", "max(100*v, 20*v)", "20 mN*sign(v)*sqrt(abs(v)/(1 m/s))",
+)  # fmt: skip
+"""The force of a fitted cubic has the wrong sign at rates of no interest."""
+
+
+@pytest.mark.parametrize("law", PASSIVE)
+def test_formulas_of_the_rate_that_damp_have_no_note(law):
+    assert notes("spring_damper", damper_law=law) == []
+
+
+@pytest.mark.parametrize(
+    ("law", "rates"),
+    [
+        ("-2*v", "negative and positive"), ("-2*v + v^3", "negative and positive"), ("60 - 20*v", "negative and positive"),
+        ("min(20*v, -10*v)", "positive"), ("-2*max(v - 0.1, 0)", "positive"), ("-60*tanh(v/0.01)", "negative and positive"),
+    ],
+)  # fmt: skip
+def test_a_formula_of_the_rate_that_adds_energy_is_noted(law, rates):
+    """Only coefficients and tables were judged."""
+    (note,) = notes("spring_damper", damper_law=law)
+    assert note.startswith(f"f: its damper_law '{law}' has the wrong sign at {rates} rates")
+    assert notes("torsion_spring", damper_law=law)
+    assert notes("spring_damper", damper_law="-2*v", damping=3) == []
+
+
 @pytest.mark.parametrize(
     ("dimensions", "damping", "where"),
     [

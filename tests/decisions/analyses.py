@@ -199,7 +199,8 @@ def softest_mount():
 def within_steps(record):
     """Record the nodes of the quadratures of a balance that stays broken, or the steps that it examines."""
     rows = Record(t=np.array([0.0, 1.0]), values=np.zeros((1, 1)))
-    job = Record(dynamics=Record(system=Record(n_q=999, n_u=0, keeps_energy=False)), settings=None)
+    system = Record(n_q=999, n_u=0, keeps_energy=False, sampling=np.empty((0, 2)), sampled=np.empty(0, dtype=bool))
+    job = Record(dynamics=Record(system=system), settings=None, grid=Record(aside=0.0))
     trajectory = Record(step_times=np.linspace(0.0, 1.0, 10_001))
     if record == "steps":
         return len(balance_within_steps._steps(job, trajectory, rows, 5))

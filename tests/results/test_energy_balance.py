@@ -310,3 +310,39 @@ def test_the_balance_of_a_run_repeated_with_exact_constraints_is_that_of_its_ste
     found = stiffmbs.run(scene, rtol=1e-6, presolve=False)
     assert any("repeated with formulation SI2_exact" in note for note in found.notes)
     assert not any("energy balance" in note for note in found.notes)
+
+
+BY_SAMPLES = """
+gravity: [0, 0]
+bodies: {cart: {mass: 3, inertia: 1}, slider: {mass: 1, inertia: 1}}
+states: {u: {update: "sin(3*t)", period: 0.07}}
+joints:
+  rail: {type: prismatic, i: cart, j: ground}
+  guide: {type: prismatic, i: slider, j: cart}
+  drive: {type: drive, joint: guide, velocity: "u"}
+forces: {s: {type: force, i: cart, force: ["-300*cart.x - 5*cart.vx", 0]}}
+run: {duration: 1, points: 41}
+"""
+BY_A_KINK = """
+bodies: {b: {mass: 1, inertia: 1}}
+joints: {r: {type: prismatic, i: b, j: ground}, d: {type: drive, joint: r, position: "SPEED*min(t, 1)"}}
+run: {duration: 2, points: 201}
+"""
+WITH_STEPS = [{"solver": "bdf"}, {"solver": "radau"}, {"solver": "projected", "scheme": "dop853"}]
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-5])
+@pytest.mark.parametrize("solver", WITH_STEPS)
+def test_jumps_of_a_sampled_drive_are_no_work(solver: dict[str, str], rtol: float) -> None:
+    """The balance took states before a sample for those after it, and jumps of less than 100 tolerances for work."""
+    found = stiffmbs.run(stiffmbs.read_scene(BY_SAMPLES), rtol=rtol, errors=False, **solver)
+    assert found.success and not any("energy balance" in note for note in found.notes)
+    assert found.balance.imbalance < 0.01 * found.balance.scale
+
+
+@pytest.mark.parametrize("speed", [5e-5, 5e-7])
+@pytest.mark.parametrize("solver", WITH_STEPS)
+def test_a_jump_of_a_drive_of_any_size_is_no_work(solver: dict[str, str], speed: float) -> None:
+    found = stiffmbs.run(stiffmbs.read_scene(BY_A_KINK.replace("SPEED", str(speed))), errors=False, **solver)
+    assert not any("energy balance" in note for note in found.notes)
+    assert found.balance.scale == pytest.approx(0.5 * speed**2)

@@ -196,6 +196,32 @@ run: {duration: 10}
     assert not departures(held)
 
 
+REQUEST = """
+tables: {{m: {{table: [[0, 1], [1, 2], [2, 1]]{options}}}}}
+bodies: {{b: {{mass: 1, inertia: 1, velocity: [5, 0]}}}}
+joints: {{r: {{type: prismatic, i: b, j: ground}}}}
+requests: {{q: "2*m(b.x)"}}
+run: {{duration: 2, points: 41}}
+"""
+
+
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+def test_a_table_that_a_request_leaves_is_noted(solver: str) -> None:
+    """Only tables of forces, states and drives were; the request was the table's slope at its end times the distance."""
+    solution = run(read_scene(REQUEST.format(options="")), solver=solver)
+    (note,) = departures(solution)
+    assert note.startswith("q: the table 'm' was left for 1.6 s, first at t = 0.4 s: its argument reaches 10")
+    assert not departures(run(read_scene(REQUEST.format(options=", beyond: hold"))))
+
+
+def test_a_run_stops_where_a_request_leaves_a_table_with_error() -> None:
+    solution = run(read_scene(REQUEST.format(options=", beyond: error")), points=30)
+    assert not solution.success
+    assert "the table 'm' of 'q' was left (beyond: error): its argument passes its last point at 2" in solution.message
+    assert solution.time[-1] == pytest.approx(0.4, abs=1e-6)
+    assert solution["q"].min() > 1.9
+
+
 def test_an_input_array_that_ends_before_the_run_is_noted() -> None:
     scene = PULSE.format(options="").replace("tables:", "inputs: {f: 0}\ntables:").replace("pulse(t)", "f")
     given = {"f": ([0.0, 0.5, 1.0], [0.0, 1.0, 3.0])}

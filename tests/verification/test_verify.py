@@ -101,6 +101,17 @@ def test_a_peak_between_instants_counts_though_another_is_higher_at_all_of_them(
     assert missed <= between(t, values, reported) < 2.1 * (missed + 4 * 0.05**2)
 
 
+@pytest.mark.parametrize("sense", [-1, 1])
+def test_a_jump_between_instants_is_no_peak(sense):
+    """The side of a jump with the higher values is continued up to the jump by its slope, not by a parabola over it."""
+    t = np.union1d(np.linspace(0, 4, 41), 2 + sense * np.array([1e-6, 2e-6]))
+    values = np.where(sense * (t - 2) > 0, 1 - 0.1 * np.abs(t - 2), -1.0)
+    reported = np.flatnonzero(np.isin(t, np.linspace(0, 4, 41)))
+    restart = np.array([2.0 + 1e-9 * sense])
+    assert between(t, values, reported) > 0.4
+    assert 0.01 - 1e-9 <= between(t, values, reported, restart) < 0.012
+
+
 def test_the_reference_that_bars_are_held_against_is_that_of_the_equations_of_motion(cart_pendulum_reference):
     exact = stiffmbs.run(example("cart_pendulum"), solver="projected", scheme="dop853", rtol=1e-13, points=2001)
     np.testing.assert_allclose(exact["cart.x"], cart_pendulum_reference(exact.time)[0], atol=1e-12)
