@@ -238,7 +238,7 @@ def prepare(
     LOGGER.info("assembling %s", found.data.name)
     before = FoundBefore(found.data, found.settings, found.start_from)
     grid = found.grid
-    breakpoints = dynamics.input_features(grid.start, grid.end).at_ends
+    breakpoints = dynamics.input_features(grid.start, grid.end).at_ends if dynamics.system.has_inputs else np.empty(0)
     if np.any(breakpoints <= grid.start + 2.0 * grid.aside):
         grid = replace(grid, start=grid.start + grid.aside)
     with reported_faults(dynamics.system), in_use(found.settings.tuning):
