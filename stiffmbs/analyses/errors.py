@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import StiffmbsError
 from ..model.settings import LARGEST_RTOL, RunSettings
-from ..notes import NoteKind
+from ..notes import NoteKind, Severity
 from ..results.estimate import ErrorEstimate
 from ..solve.explicit import DOP853
 from ..solve.settings import changed, traits_of
@@ -24,6 +24,11 @@ NOT_REACHED = NoteKind(
     "accuracy-not-reached",
     "the requested accuracy was not reached: {found} at rtol {rtol:.2g}",
     "use a smaller rtol, or --verify",
+)
+EXACT = NoteKind(
+    "accuracy-exact",
+    "the requested accuracy is reached: {solver} follows the drives, exact up to rounding, without rtol",
+    severity=Severity.REMARK,
 )
 MOST_REPEATS = 2
 """Runs with another tolerance after the first one, in search of an accuracy, or of errors where steps do not change."""
@@ -145,6 +150,10 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> tuple[Job, Solution
     from ..error_estimate.accuracy import Accuracy
     from .run import solved
 
+    traits = traits_of(job.settings)
+    if traits.exact:
+        solution = solved(job, watch)
+        return job, replace(solution, notes=(*solution.notes, EXACT(solver=traits.name)))
     accuracy = Accuracy(job.settings.accuracy)
     rtol = accuracy.first_rtol(job.dynamics.system.size)
     for repeats in range(MOST_REPEATS + 1):
@@ -154,7 +163,8 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> tuple[Job, Solution
         if judged.reached or judged.next_rtol >= rtol or repeats == MOST_REPEATS or not solution.success:
             break
         rtol = judged.next_rtol
-    assert solution.estimate is not None
+    if solution.estimate is None:  # interrupted, or without results over time, as its message says
+        return job, solution
     if judged.reached:
         sentence = f"{solution.estimate.sentence}; {judged.sentence} at rtol {rtol:.2g}"
         return job, replace(solution, estimate=replace(solution.estimate, sentence=sentence))

@@ -8,6 +8,8 @@ from stiffmbs.errors import InputError
 from stiffmbs.model.accuracy import from_option, wanted
 from tests.error_estimate.test_against_truth import PENDULUM, pendulum
 
+from ..conftest import EXAMPLES
+
 SCENE = PENDULUM.format(duration=8)
 
 
@@ -24,6 +26,23 @@ def test_positions_are_as_accurate_as_asked(asked, solver):
 def test_an_accuracy_that_is_not_reached_is_reported():
     found = stiffmbs.run(stiffmbs.read_scene(SCENE), solver="bdf", accuracy={"positions": "1e-16 m"})
     assert any("was not reached: reached positions" in note for note in found.notes)
+
+
+def test_motions_of_drives_have_any_accuracy():
+    """The kinematic solver has no tolerance and no estimate of errors: an assertion failed."""
+    found = stiffmbs.run(EXAMPLES / "four_bar.yaml", accuracy={"forces": "1 %"})
+    (note,) = (note for note in found.notes if note.kind.startswith("accuracy"))
+    assert note.kind == "accuracy-exact" and not any("no effect" in note for note in found.notes)
+
+
+def test_an_interrupted_run_has_no_accuracy():
+    """An assertion on its estimate failed."""
+
+    def interrupt(t):
+        raise KeyboardInterrupt
+
+    found = stiffmbs.run(stiffmbs.read_scene(SCENE), watch=interrupt, accuracy={"positions": "1 mm"})
+    assert found.estimate is None and not any("accuracy" in note for note in found.notes)
 
 
 def test_a_verified_run_has_the_accuracy_asked_for():
