@@ -19,7 +19,7 @@ ABSOLUTE = {"positions": "position", "velocities": "velocity", "forces": "force"
 
 @dataclass(frozen=True)
 class Judged:
-    """Accuracy of a run: whether all is reached, a phrase on each group, and the tolerance to try next."""
+    """Accuracy of a run: whether all is reached, a phrase on each group, and the tolerance to try next if it is not."""
 
     reached: bool
     sentence: str
@@ -51,8 +51,9 @@ class Accuracy:
             shown = 100.0 * error if each.relative else error
             phrases.append(f"{each.group} {shown:.2g} {unit} (asked: {each.text})")
             excess = np.fmax(excess, error / each.error) if np.isfinite(error) else np.inf
-        following = self._following(rtol, float(excess))
-        return Judged(bool(excess <= 1.0), "reached " + ", ".join(phrases), following)
+        reached = bool(excess <= 1.0)
+        following = rtol if reached else self._following(rtol, float(excess))
+        return Judged(reached, "reached " + ", ".join(phrases), following)
 
     def _following(self, rtol: float, excess: float) -> float:
         """Return the tolerance at which the error is expected to be a part of that asked for."""

@@ -45,6 +45,15 @@ def test_an_interrupted_run_has_no_accuracy():
     assert found.estimate is None and not any("accuracy" in note for note in found.notes)
 
 
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_an_error_of_zero_is_any_accuracy(solver):
+    """The next tolerance was computed, by a division by the error: here a drive prescribes the motion."""
+    found = stiffmbs.run(EXAMPLES / "crank_slider.yaml", solver=solver, accuracy={"positions": "1 um"})
+    assert "reached positions 0 m" in found.estimate.sentence
+    exact = stiffmbs.run(EXAMPLES / "crank_slider.yaml", solver="kinematic", points=len(found.time))
+    assert np.abs(found["slider.x"] - exact["slider.x"]).max() < 1e-9
+
+
 def test_a_verified_run_has_the_accuracy_asked_for():
     """The tolerance was that of the settings, whatever the accuracy."""
     asked = {"positions": "1e-6 m"}
