@@ -1,5 +1,7 @@
 """Runs whose tolerance follows from the accuracy asked for."""
 
+from textwrap import dedent
+
 import numpy as np
 import pytest
 
@@ -52,6 +54,67 @@ def test_an_error_of_zero_is_any_accuracy(solver):
     assert "reached positions 0 m" in found.estimate.sentence
     exact = stiffmbs.run(EXAMPLES / "crank_slider.yaml", solver="kinematic", points=len(found.time))
     assert np.abs(found["slider.x"] - exact["slider.x"]).max() < 1e-9
+
+
+TUMBLING = "dimensions: 3\nbodies: {r: {mass: 1, inertia: [0.01, 0.02, 0.03], omega: [0, 4, 0.1]}}\nrun: {duration: 1}"
+DOUBLE = """
+gravity: [0, -9.81]
+bodies: {a: {mass: 1, inertia: 0.1, position: [1, 0]}, b: {mass: 1, inertia: 0.1, position: [3, 0]}}
+joints:
+  p: {type: revolute, i: {body: a, point: [-1, 0]}, j: ground}
+  q: {type: revolute, i: {body: b, point: [-1, 0]}, j: {body: a, point: [1, 0]}}
+"""
+SAMPLED = """
+bodies: {m: {mass: 1, inertia: 1}}
+states: {u: {update: 1, period: 0.1 s}}
+forces: {f: {type: force, i: m, force: [u, 0]}}
+run: {duration: 1}
+"""
+
+
+@pytest.mark.parametrize("asked", ["1 %", "1 N"])
+def test_a_scene_without_forces_has_any_accuracy_of_these(asked):
+    """Their error was 'nan %', and the note said that it was not reached."""
+    found = stiffmbs.run(stiffmbs.read_scene(TUMBLING), accuracy={"forces": asked, "velocities": "1 %"})
+    assert f"there are no forces to judge (asked: {asked})" in found.estimate.sentence
+    assert "reached velocities" in found.estimate.sentence and not any("accuracy" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    "scene, solver, why",
+    [
+        (SAMPLED, {"solver": "bdf"}, "sampled states"),
+        (TUMBLING, {"solver": "projected", "scheme": "rk4"}, "fixed steps"),
+    ],
+)
+def test_an_accuracy_without_an_estimate_is_not_judged(scene, solver, why):
+    """Three runs said 'nan', with a note on an rtol that nobody set."""
+    found = stiffmbs.run(stiffmbs.read_scene(scene), accuracy={"positions": "0.1 mm"}, **solver)
+    (note,) = (note for note in found.notes if "accuracy" in note or "rtol" in note)
+    assert note.startswith(f"the requested accuracy cannot be judged: errors are not estimated for {why}")
+
+
+def test_a_lost_solution_has_unknown_errors():
+    asked = {"positions": "10 %"}
+    found = stiffmbs.run(stiffmbs.read_scene(DOUBLE), solver="bdf", duration=30, accuracy=asked)
+    assert found.estimate.status == "lost"
+    (note,) = (note for note in found.notes if note.kind == "accuracy-not-reached")
+    assert "the errors of positions are unknown (asked: 10 %)" in note
+
+
+def test_stages_say_what_each_has_reached():
+    """Only the estimate over all stages was in the summary."""
+    stages = """
+        stages:
+        - {analysis: static}
+        - {run: {duration: 1, accuracy: {positions: 0.1 mm}}}
+        - {run: {duration: 1}}
+        - {run: {duration: 1, accuracy: {positions: 1 um}}}
+    """
+    scene = "gravity: [0, -9.81]\n" + SCENE[SCENE.index("bodies:") : SCENE.index("run:")] + dedent(stages)
+    sentence = stiffmbs.run(stiffmbs.read_scene(scene)).estimate.sentence
+    assert "run 2: reached positions" in sentence and "run 4: reached positions" in sentence
+    assert sentence.count("reached") == 2
 
 
 def test_a_verified_run_has_the_accuracy_asked_for():
