@@ -9,7 +9,7 @@ import numpy as np
 
 from ..errors import StiffmbsError
 from ..model.settings import LARGEST_RTOL, RunSettings
-from ..notes import NoteKind
+from ..notes import NoteKind, Severity
 from ..results.estimate import ErrorEstimate
 from ..solve.explicit import DOP853
 from ..solve.settings import changed, traits_of
@@ -17,6 +17,7 @@ from ..solve.trajectory import Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
 
 if TYPE_CHECKING:
+    from ..error_estimate.accuracy import Judged
     from ..results.solution import Solution
     from .job import Job
 
@@ -25,6 +26,12 @@ NOT_REACHED = NoteKind(
     "the requested accuracy was not reached: {found} at rtol {rtol:.2g}",
     "use a smaller rtol, or --verify",
 )
+EXACT = NoteKind(
+    "accuracy-exact",
+    "the requested accuracy is reached: {solver} follows the drives, exact up to rounding, without rtol",
+    severity=Severity.REMARK,
+)
+NOT_JUDGED = NoteKind("accuracy-not-judged", "the requested accuracy cannot be judged: errors are {why}")
 MOST_REPEATS = 2
 """Runs with another tolerance after the first one, in search of an accuracy, or of errors where steps do not change."""
 ASK = "--errors, or errors: true in run, estimates it"
@@ -50,14 +57,20 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
             from ..error_estimate.estimate import estimated
 
             return estimated(solution, job.data, job.dynamics, job.start, job.subsystems, trajectory, job.settings)
-        if traits.fixed_steps or job.dynamics.system.sampled.any():
-            why = "fixed steps" if traits.fixed_steps else "sampled states"
+        if why := _without_estimate(job):
             return _without(solution, f"not estimated for {why}; --verify compares with other runs")
         if _work(job, trajectory) <= job.grid.recorded:
             return _by_second_run(job, trajectory, solution)
     return _without(
         solution, f"not estimated: that takes some time for {_steps(trajectory)} steps of this model; {ASK}"
     )
+
+
+def _without_estimate(job: Job) -> str:
+    """Return what has no estimate of errors in a job, or an empty string."""
+    if traits_of(job.settings).fixed_steps:
+        return "fixed steps"
+    return "sampled states" if job.dynamics.system.sampled.any() else ""
 
 
 def _steps(trajectory: Trajectory) -> int:
@@ -146,26 +159,39 @@ def _with_errors(settings: RunSettings, part: float) -> RunSettings:
 def to_accuracy(job: Job, watch: ProgressCallback | None) -> tuple[Job, Solution]:
     """Solve a job with a tolerance, chosen by the estimate of the errors, at which it has the accuracy asked for.
 
-    Returns the job with that tolerance too. The run is repeated twice at most; the rtol of its settings has no effect.
+    Returns the job with that tolerance too. The run is repeated twice at most, without an estimate never; the rtol of its settings
+    has no effect.
     """
     from ..error_estimate.accuracy import Accuracy
     from .run import solved
 
-    accuracy = Accuracy(job.settings.accuracy)
+    accuracy, traits = Accuracy(job.settings.accuracy), traits_of(job.settings)
     rtol = accuracy.first_rtol(job.dynamics.system.size)
-    for repeats in range(MOST_REPEATS + 1):
-        job = job.varied({"rtol": rtol})
+    for repeats in range(0 if traits.exact or _without_estimate(job) else MOST_REPEATS, -1, -1):
+        job = job.varied({"rtol": rtol}) if "rtol" in traits.reads else job
         solution = solved(job, watch)
         judged = accuracy.judged(solution, rtol)
-        if judged.reached or judged.next_rtol >= rtol or repeats == MOST_REPEATS or not solution.success:
+        if judged.reached or judged.next_rtol >= rtol or not repeats or not solution.success:
             break
         rtol = judged.next_rtol
-    assert solution.estimate is not None
-    if judged.reached:
-        sentence = f"{solution.estimate.sentence}; {judged.sentence} at rtol {rtol:.2g}"
-        return job, replace(solution, estimate=replace(solution.estimate, sentence=sentence))
-    note = NOT_REACHED(found=judged.sentence, rtol=rtol)
-    return job, replace(solution, notes=(*solution.notes, note))
+    return job, _with_accuracy(solution, judged, job.settings)
+
+
+def _with_accuracy(solution: Solution, judged: Judged, settings: RunSettings) -> Solution:
+    """Return a solution with a sentence or a note on the accuracy asked for."""
+    estimate, traits = solution.estimate, traits_of(settings)
+    if traits.exact:
+        note = EXACT(solver=traits.name)
+    elif estimate is None:  # interrupted, or without results over time, as its message says
+        return solution
+    elif estimate.status == "none":
+        note = NOT_JUDGED(why=estimate.sentence)
+    elif judged.reached:
+        reached = f"{judged.sentence} at rtol {settings.rtol:.2g}"
+        return replace(solution, estimate=estimate.with_accuracy(reached))
+    else:
+        note = NOT_REACHED(found=judged.sentence, rtol=settings.rtol)
+    return replace(solution, notes=(*solution.notes, note))
 
 
 def _without(solution: Solution, sentence: str) -> Solution:

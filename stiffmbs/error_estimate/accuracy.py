@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +19,7 @@ ABSOLUTE = {"positions": "position", "velocities": "velocity", "forces": "force"
 
 @dataclass(frozen=True)
 class Judged:
-    """Accuracy of a run: whether all is reached, a phrase on each group, and the tolerance to try next."""
+    """Accuracy of a run: whether all is reached, a sentence on all groups, and the tolerance to try next if it is not."""
 
     reached: bool
     sentence: str
@@ -44,15 +44,12 @@ class Accuracy:
 
     def judged(self, solution: Solution, rtol: float) -> Judged:
         """Return the accuracy of a run with a tolerance."""
-        phrases, excess = [], 0.0
-        for each in self._wanted:
-            error = _error(solution, each)
-            unit = "%" if each.relative else UNITS[ABSOLUTE[each.group]]
-            shown = 100.0 * error if each.relative else error
-            phrases.append(f"{each.group} {shown:.2g} {unit} (asked: {each.text})")
-            excess = np.fmax(excess, error / each.error) if np.isfinite(error) else np.inf
-        following = self._following(rtol, float(excess))
-        return Judged(bool(excess <= 1.0), "reached " + ", ".join(phrases), following)
+        known = KnownErrors(solution)
+        errors = [_error(solution, known, each) for each in self._wanted]
+        excess = float(max(error / each.error for error, each in zip(errors, self._wanted, strict=True)))
+        reached = excess <= 1.0
+        following = rtol if reached else self._following(rtol, excess)
+        return Judged(reached, _sentence(errors, self._wanted), following)
 
     def _following(self, rtol: float, excess: float) -> float:
         """Return the tolerance at which the error is expected to be a part of that asked for."""
@@ -67,10 +64,26 @@ class Accuracy:
         return float(max(ESTIMATE.smallest_rtol, rtol * (ESTIMATE.aim / excess) ** (1.0 / slope)))
 
 
-def _error(solution: Solution, each: Wanted) -> float:
-    """Return the largest error of a group of channels; nan if it is unknown."""
-    known = KnownErrors(solution).relative(over_time, each.group)
-    if not each.relative:
-        kind = ABSOLUTE[each.group]
-        known = {name: solution.errors[name].over_time for name in known if kind_of(name) == kind}
-    return max(known.values(), default=float("nan"))
+def _error(solution: Solution, known: KnownErrors, each: Wanted) -> float:
+    """Return the largest error of a group of channels: infinite if none is known, -inf if none has a unique value other than zero."""
+    kind, relative = "" if each.relative else ABSOLUTE[each.group], known.relative(over_time, each.group)
+    of_group = [name for name, group in known.group.items() if group == each.group and kind in ("", kind_of(name))]
+    if not any(known.sizes[name] for name in of_group if name not in solution.not_unique):
+        return -np.inf
+    errors = relative if each.relative else {name: solution.errors[name].over_time for name in relative}
+    return max((errors[name] for name in of_group if name in errors), default=np.inf)
+
+
+def _sentence(errors: Sequence[float], all_wanted: Sequence[Wanted]) -> str:
+    """Return what was reached, followed by the groups without a number."""
+    reached, others = [], []
+    for error, each in zip(errors, all_wanted, strict=True):
+        asked = f"(asked: {each.text})"
+        if np.isfinite(error):
+            number, unit = (100.0 * error, "%") if each.relative else (error, UNITS[ABSOLUTE[each.group]])
+            reached.append(f"{each.group} {number:.2g} {unit} {asked}")
+        elif error > 0.0:
+            others.append(f"the errors of {each.group} are unknown {asked}")
+        else:
+            others.append(f"there are no {each.group} to judge {asked}")
+    return ", ".join([*(["reached " + ", ".join(reached)] if reached else []), *others])

@@ -31,9 +31,9 @@ def closed(
     part of it separates the directions that are stiff.
     """
     (q, u), open_ = displaced(dynamics, at, -errors), np.zeros(len(errors), dtype=bool)
-    if not space.n:
-        return q, u, open_
     known = np.flatnonzero(np.isfinite(slopes).all(axis=1))
+    if not space.n or not len(known):
+        return q, u, open_
     rows, space = np.arange(len(known)), space.at(known)
     iteration = _Iteration(dynamics, at.at(known), space, errors[known], slopes[known], CONSISTENCY.step_parts / step)
     iteration.take(rows, space)

@@ -67,7 +67,7 @@ def joined(name: str, solutions: Sequence[Solution]) -> Solution:
         },
         errors=_bars(solutions, channels) if all(s.errors for s in solutions if s.estimate) else {},
     )
-    return replace(found, estimate=_estimate(found, [s.estimate for s in solutions if s.estimate]))
+    return replace(found, estimate=_estimate(found, [s.estimate for s in solutions]))
 
 
 def _kept_rows(solutions: Sequence[Solution]) -> list[slice]:
@@ -121,17 +121,20 @@ def _bars(solutions: Sequence[Solution], channels: Sequence[str]) -> dict[str, E
     return found
 
 
-def _estimate(joined: Solution, estimates: Sequence[ErrorEstimate]) -> ErrorEstimate | None:
+def _estimate(joined: Solution, of_runs: Sequence[ErrorEstimate | None]) -> ErrorEstimate | None:
     """Return the estimate over all runs; each begins with the errors of the one before it, which it does not know."""
+    estimates = [each for each in of_runs if each]
     if not estimates:
         return None
     others = [each for each in estimates if each.status != "estimated"]
     if others:
         status = next((each.status for each in others if each.status == "lost"), others[0].status)
-        return ErrorEstimate(status, "; ".join(_notes([[each.sentence] for each in estimates])))
+        return ErrorEstimate(status, "; ".join(_notes([[each.sentence] if each else [] for each in of_runs])))
     resolved = ErrorEstimate("estimated", "", resolved=max(each.resolved for each in estimates))
     found = KnownErrors(replace(joined, estimate=resolved)).estimate()
-    return replace(found, sentence=f"{found.sentence}; of each run alone, without the errors of those before it")
+    found = replace(found, sentence=f"{found.sentence}; of each run alone, without the errors of those before it")
+    reached = _notes([[each.reached] if each and each.reached else [] for each in of_runs])
+    return found.with_accuracy("; ".join(reached))
 
 
 def _notes(of_runs: Sequence[Sequence[str]]) -> tuple[Note, ...]:

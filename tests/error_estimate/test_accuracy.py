@@ -1,5 +1,7 @@
 """Runs whose tolerance follows from the accuracy asked for."""
 
+from textwrap import dedent
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,8 @@ import stiffmbs
 from stiffmbs.errors import InputError
 from stiffmbs.model.accuracy import from_option, wanted
 from tests.error_estimate.test_against_truth import PENDULUM, pendulum
+
+from ..conftest import EXAMPLES
 
 SCENE = PENDULUM.format(duration=8)
 
@@ -24,6 +28,93 @@ def test_positions_are_as_accurate_as_asked(asked, solver):
 def test_an_accuracy_that_is_not_reached_is_reported():
     found = stiffmbs.run(stiffmbs.read_scene(SCENE), solver="bdf", accuracy={"positions": "1e-16 m"})
     assert any("was not reached: reached positions" in note for note in found.notes)
+
+
+def test_motions_of_drives_have_any_accuracy():
+    """The kinematic solver has no tolerance and no estimate of errors: an assertion failed."""
+    found = stiffmbs.run(EXAMPLES / "four_bar.yaml", accuracy={"forces": "1 %"})
+    (note,) = (note for note in found.notes if note.kind.startswith("accuracy"))
+    assert note.kind == "accuracy-exact" and not any("no effect" in note for note in found.notes)
+
+
+def test_an_interrupted_run_has_no_accuracy():
+    """An assertion on its estimate failed."""
+
+    def interrupt(t):
+        raise KeyboardInterrupt
+
+    found = stiffmbs.run(stiffmbs.read_scene(SCENE), watch=interrupt, accuracy={"positions": "1 mm"})
+    assert found.estimate is None and not any("accuracy" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_an_error_of_zero_is_any_accuracy(solver):
+    """The next tolerance was computed, by a division by the error: here a drive prescribes the motion."""
+    found = stiffmbs.run(EXAMPLES / "crank_slider.yaml", solver=solver, accuracy={"positions": "1 um"})
+    assert "reached positions 0 m" in found.estimate.sentence
+    exact = stiffmbs.run(EXAMPLES / "crank_slider.yaml", solver="kinematic", points=len(found.time))
+    assert np.abs(found["slider.x"] - exact["slider.x"]).max() < 1e-9
+
+
+TUMBLING = "dimensions: 3\nbodies: {r: {mass: 1, inertia: [0.01, 0.02, 0.03], omega: [0, 4, 0.1]}}\nrun: {duration: 1}"
+DOUBLE = """
+gravity: [0, -9.81]
+bodies: {a: {mass: 1, inertia: 0.1, position: [1, 0]}, b: {mass: 1, inertia: 0.1, position: [3, 0]}}
+joints:
+  p: {type: revolute, i: {body: a, point: [-1, 0]}, j: ground}
+  q: {type: revolute, i: {body: b, point: [-1, 0]}, j: {body: a, point: [1, 0]}}
+"""
+SAMPLED = """
+bodies: {m: {mass: 1, inertia: 1}}
+states: {u: {update: 1, period: 0.1 s}}
+forces: {f: {type: force, i: m, force: [u, 0]}}
+run: {duration: 1}
+"""
+
+
+@pytest.mark.parametrize("asked", ["1 %", "1 N"])
+def test_a_scene_without_forces_has_any_accuracy_of_these(asked):
+    """Their error was 'nan %', and the note said that it was not reached."""
+    found = stiffmbs.run(stiffmbs.read_scene(TUMBLING), accuracy={"forces": asked, "velocities": "1 %"})
+    assert f"there are no forces to judge (asked: {asked})" in found.estimate.sentence
+    assert "reached velocities" in found.estimate.sentence and not any("accuracy" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    "scene, solver, why",
+    [
+        (SAMPLED, {"solver": "bdf"}, "sampled states"),
+        (TUMBLING, {"solver": "projected", "scheme": "rk4"}, "fixed steps"),
+    ],
+)
+def test_an_accuracy_without_an_estimate_is_not_judged(scene, solver, why):
+    """Three runs said 'nan', with a note on an rtol that nobody set."""
+    found = stiffmbs.run(stiffmbs.read_scene(scene), accuracy={"positions": "0.1 mm"}, **solver)
+    (note,) = (note for note in found.notes if "accuracy" in note or "rtol" in note)
+    assert note.startswith(f"the requested accuracy cannot be judged: errors are not estimated for {why}")
+
+
+def test_a_lost_solution_has_unknown_errors():
+    asked = {"positions": "10 %"}
+    found = stiffmbs.run(stiffmbs.read_scene(DOUBLE), solver="bdf", duration=30, accuracy=asked)
+    assert found.estimate.status == "lost"
+    (note,) = (note for note in found.notes if note.kind == "accuracy-not-reached")
+    assert "the errors of positions are unknown (asked: 10 %)" in note
+
+
+def test_stages_say_what_each_has_reached():
+    """Only the estimate over all stages was in the summary."""
+    stages = """
+        stages:
+        - {analysis: static}
+        - {run: {duration: 1, accuracy: {positions: 0.1 mm}}}
+        - {run: {duration: 1}}
+        - {run: {duration: 1, accuracy: {positions: 1 um}}}
+    """
+    scene = "gravity: [0, -9.81]\n" + SCENE[SCENE.index("bodies:") : SCENE.index("run:")] + dedent(stages)
+    sentence = stiffmbs.run(stiffmbs.read_scene(scene)).estimate.sentence
+    assert "run 2: reached positions" in sentence and "run 4: reached positions" in sentence
+    assert sentence.count("reached") == 2
 
 
 def test_a_verified_run_has_the_accuracy_asked_for():
