@@ -148,6 +148,26 @@ def test_a_drive_that_a_stage_adds_selects_the_turn_of_its_joint_and_unwinds_no_
     np.testing.assert_allclose(space["s.tz"], plane["s.torque"], atol=1e-5)
 
 
+@pytest.mark.parametrize(
+    ("omega", "position", "wanted", "moved"),
+    [(0, "300 deg", 5 * TURN / 6, -TURN / 6), (20, "20.1 - 2*pi", 20.1 - TURN, 0.1)],
+)
+def test_a_drive_that_a_stage_adds_in_space_may_prescribe_another_turn(omega, position, wanted, moved):
+    text = """
+dimensions: 3
+bodies: {a: {mass: 1, inertia: [0.1, 0.1, 0.1], omega: [0, 0, OMEGA]}}
+joints: {p: {type: revolute, i: a, j: ground}}
+requests: {turned: az(a)}
+run: {duration: 1, points: 3}
+stages:
+  - {}
+  - {change: {joints: {y: {type: drive, joint: p, position: "LAW"}}}}
+"""
+    found = stiffmbs.run(read(text, omega=omega, law=position))
+    np.testing.assert_allclose(found["p.angle"][-3:], wanted, atol=1e-6)
+    np.testing.assert_allclose(found["turned"][-3:], omega + moved, atol=1e-5)
+
+
 def test_joints_and_a_coupler_of_one_stage_have_the_same_turns():
     text = STAGE.replace("  p: {type: revolute, i: a, j: ground}\n", "")
     pin = "r: {type: revolute, i: a, j: {body: ground, angle: 1}}"
