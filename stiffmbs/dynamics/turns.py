@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -56,13 +57,14 @@ def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], boo
     coordinate of a joint, and requests for it, take the same turn. A wanted drive selects it, in place of a known turn.
     """
     angles = list(counted_angles(dynamics.system))
-    q, known = dynamics.state.q, dict[str | None, float](dynamics.system.start_angles)
-    known |= {angle.channel: q[angle.place] for angle in angles if angle.channel and not wanted(angle.element)}
-    free = {angle.place: angle for angle in angles if wanted(angle.element)}
+    q = dynamics.state.q
+    free = {angle.place: angle for angle in angles if wanted(angle.element) or angle.element == angle.channel}
+    known: dict[Any, float] = {angle.channel: q[angle.place] for angle in angles if angle.channel and angle.place not in free}
+    known |= dynamics.system.start_angles
     q[[place for place, angle in free.items() if angle.constrained]] = INITIAL_COUNT
     prescribed = {angle.channel for angle in free.values() if angle.driven and angle.constrained}
     known = {channel: angle for channel, angle in known.items() if channel not in prescribed}
-    described = dict(dynamics.system.described_angles)
+    described: dict[Any, float] = dict(dynamics.system.described_angles)
     while True:
         decided = {place: known[angle.channel] for place, angle in free.items() if angle.channel in known}
         for place, turned in decided.items():
