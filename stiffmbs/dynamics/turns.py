@@ -59,7 +59,9 @@ def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], boo
     angles = list(counted_angles(dynamics.system))
     q = dynamics.state.q
     free = {angle.place: angle for angle in angles if wanted(angle.element) or angle.element == angle.channel}
-    known: dict[Any, float] = {angle.channel: q[angle.place] for angle in angles if angle.channel and angle.place not in free}
+    known: dict[Any, float] = {
+        angle.channel: q[angle.place] for angle in angles if angle.channel and angle.place not in free
+    }
     known |= dynamics.system.start_angles
     q[[place for place, angle in free.items() if angle.constrained]] = INITIAL_COUNT
     prescribed = {angle.channel for angle in free.values() if angle.driven and angle.constrained}
