@@ -7,7 +7,7 @@ bodies have them, in space those of joints, from which default offsets follow.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -17,9 +17,12 @@ from ..compile.system import System
 from ..elements.joints.drive import Drive
 from ..elements.joints.relation import OffsetConstraint
 from ..elements.turns import TURN, full_turns
+from ..model.current_pose import CurrentPose, read_by
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..notes import Note, NoteKind, Severity
+from ..reading.formula.formula import Formula
+from ..reading.joint_name import JointName
 from ..reading.marker import GROUND
 
 Data = TypeVar("Data", bound=ModelData)
@@ -41,7 +44,9 @@ def turns_of_drives(data: ModelData, system: System | None, t: float) -> dict[st
 
 
 def in_turns_of_new_drives(placed: Data, system: System, t: float) -> Data:
-    """Return a model at a restart in which new drives select the turns of planar joints; bodies keep theirs.
+    """Return a model at a restart in which new drives select the turns of planar joints.
+
+    Bodies keep theirs, and elements that acted before those in which they read the joints.
 
     `placed`: in the pose of a saved state. `system`: of that model, started from the state.
     """
@@ -52,13 +57,28 @@ def in_turns_of_new_drives(placed: Data, system: System, t: float) -> Data:
     if pose is None or not turns:
         return placed
     before = pose.turns_set_up(placed)
+    kept = {
+        read_by(reader, joint): before.get(joint, (0,))
+        for reader, joint in _read_before(placed, pose)
+        if joint in turns
+    }
     found = placed.model_copy()
     found._current_pose = replace(
         pose,
-        turns={**pose.turns, **{joint: (before.get(joint, (0,))[0] - n,) for joint, n in turns.items()}},
+        turns={**kept, **pose.turns, **{joint: (before.get(joint, (0,))[0] - n,) for joint, n in turns.items()}},
         angles={name: angle + TURN * turns.get(name.removesuffix(".angle"), 0) for name, angle in pose.angles.items()},
     )
     return found
+
+
+def _read_before(placed: ModelData, pose: CurrentPose) -> Iterator[tuple[str, str]]:
+    """Yield elements that acted before, and joints and bodies that they read; open offsets follow from the current turns instead."""
+    own = {**placed.joints, **placed.forces}
+    for name, element in placed.elements():
+        if (name in pose.acted or name not in own) and not _open_offset(own.get(name)):
+            yield from ((name, joint.joint) for _, joint in element.parts(JointName))
+            for _, formula in element.parts(Formula):
+                yield from ((name, owner) for owner, _ in formula.coordinates())
 
 
 def _turns_of_joints(drives: Mapping[str, str], system: System, t: float) -> dict[str, int]:

@@ -61,11 +61,6 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
         from ..adams.load import load_adams
 
         return load_adams(path, changes)
-    if suffix == COMMANDS:
-        raise InputError(
-            f"{source_name(path)}: found a command file, expected its dataset {Path(path).stem}{DATASET}, which is run with the "
-            "command file of the same name"
-        )
     if str(path) == STANDARD_INPUT:
         from ..model.read_scene import read_scene
 
@@ -77,6 +72,12 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
 
 def refuse_others(path: str | Path) -> None:
     """Raise an InputError for a file of another program that is not read; the message says what to do."""
-    words = OTHERS.get(Path(path).suffix.lower())
+    suffix = Path(path).suffix.lower()
+    if suffix == COMMANDS:
+        raise InputError(
+            f"{source_name(path)}: found a command file, expected its dataset {Path(path).stem}{DATASET}, which is run with the "
+            "command file of the same name"
+        )
+    words = OTHERS.get(suffix)
     if words:
         raise InputError(f"{source_name(path)}: found {words}")

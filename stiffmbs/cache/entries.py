@@ -109,7 +109,7 @@ def _code(secret: bytes, name: str, content: bytes) -> bytes:
 
 def digest(*parts: str) -> str:
     """Return a digest of some texts, which may contain arbitrary bytes of file names."""
-    return hashlib.sha256("\0".join(parts).encode(errors="surrogateescape")).hexdigest()[:40]
+    return hashlib.sha256("\0".join(parts).encode(errors="surrogatepass")).hexdigest()[:40]
 
 
 def _secret(directory: Path) -> bytes | None:

@@ -44,8 +44,8 @@ class Compilable(Protocol):
     @property
     def joints(self) -> Mapping[str, Joint]: ...
 
-    def joint_at_initial_pose(self, name: str) -> Joint:
-        """Return a joint with its undefined fields taken from the described poses."""
+    def joint_at_initial_pose(self, name: str, reader: str = "") -> Joint:
+        """Return a joint with its undefined fields taken from the described poses, as the element `reader` reads it."""
         ...
 
     def elements(self) -> Iterator[tuple[str, Element]]:
@@ -129,6 +129,7 @@ class ElementData:
     """Data that distinguish an element from others of its kind.
 
     - `places`: placement of markers.
+    - `name`: name of the element.
     - `bodies`: bodies by slot; the reaction is reported on the first.
     - `numbers`: kernel parameters in the order of use in the kind's equations.
     - `tables`: index in `numbers` of each table's offset, and the table's spline data.
@@ -137,6 +138,7 @@ class ElementData:
     """
 
     places: PlacedMarkers
+    name: str = ""
     bodies: list[str] = field(default_factory=list)
     numbers: list[Any] = field(default_factory=list)
     tables: list[tuple[int, np.ndarray]] = field(default_factory=list)
@@ -179,7 +181,7 @@ def sorted_out(
     name: str, element: Element, model: Compilable, places: PlacedMarkers | None = None
 ) -> tuple[Kind, ElementData]:
     """Return an element's kind and data; `places` caches the placement of markers."""
-    data = ElementData(places=PlacedMarkers(model) if places is None else places)
+    data = ElementData(PlacedMarkers(model) if places is None else places, name)
     own = element.own_states() if isinstance(element, Force) else ()
     data.states += [own_state(name, state) for state in own]
     fields = _fields(element, model, data)
@@ -232,7 +234,7 @@ def _shape(value: object, model: Compilable, data: ElementData) -> Shape:
         case MarkerReference():
             return data.marker_shape(value)
         case JointName():
-            joint = model.joint_at_initial_pose(value.joint)
+            joint = model.joint_at_initial_pose(value.joint, data.name)
             fields = _fields(joint, model, data)
             data.joints.append(value.joint)
             return ("joint", type(joint), fields, len(data.joints) - 1, value.coordinate_of(joint))

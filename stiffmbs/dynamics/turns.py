@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..compile.group import Group
 from ..compile.system import System
 from ..elements.element import Joint
+from ..elements.joints.drive import Drive
 from ..elements.turns import INITIAL_COUNT, TURN
 from .dynamics import Dynamics
 
@@ -20,12 +22,14 @@ class CountedAngle:
 
     `place`: index of its counter in q. `element`: name of the element. `channel`: the coordinate of a joint, such as
     ``hinge.angle``; None for other angles. `constrained`: true if the element's position equations contain the angle.
+    `driven`: true if the element is a drive.
     """
 
     place: int
     element: str
     channel: str | None
     constrained: bool
+    driven: bool
 
 
 def counted_angles(system: System) -> Iterator[CountedAngle]:
@@ -41,7 +45,8 @@ def counted_angles(system: System) -> Iterator[CountedAngle]:
         for name, index, places in zip(group.names, group.index, group.counters, strict=True):
             for of, place in zip(group.record.counted, places, strict=True):
                 channel = f"{joint_at[index[first + of[0]]]}.{of[1]}" if of else _own_angle(group, name)
-                yield CountedAngle(int(place), name, channel, group.record.n_holonomic > 0)
+                constrained, driven = group.record.n_holonomic > 0, issubclass(group.kind.element, Drive)
+                yield CountedAngle(int(place), name, channel, constrained, driven)
 
 
 def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], bool] = lambda name: True) -> None:
@@ -49,14 +54,19 @@ def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], boo
 
     A drive from 200 degrees finds its joint at -160 degrees, one turn short. Without unwrapping, assembly would search
     for the turn in other poses. Drives come first, then relations of several angles. All elements that read the same
-    coordinate of a joint, and requests for it, take the same turn.
+    coordinate of a joint, and requests for it, take the same turn. A wanted drive selects it, in place of a known turn.
     """
     angles = list(counted_angles(dynamics.system))
-    q, known = dynamics.state.q, dict[str | None, float](dynamics.system.start_angles)
-    known |= {angle.channel: q[angle.place] for angle in angles if angle.channel and not wanted(angle.element)}
-    free = {angle.place: angle for angle in angles if wanted(angle.element)}
+    q = dynamics.state.q
+    free = {angle.place: angle for angle in angles if wanted(angle.element) or angle.element == angle.channel}
+    known: dict[Any, float] = {
+        angle.channel: q[angle.place] for angle in angles if angle.channel and angle.place not in free
+    }
+    known |= dynamics.system.start_angles
     q[[place for place, angle in free.items() if angle.constrained]] = INITIAL_COUNT
-    described = dict(dynamics.system.described_angles)
+    prescribed = {angle.channel for angle in free.values() if angle.driven and angle.constrained}
+    known = {channel: angle for channel, angle in known.items() if channel not in prescribed}
+    described: dict[Any, float] = dict(dynamics.system.described_angles)
     while True:
         decided = {place: known[angle.channel] for place, angle in free.items() if angle.channel in known}
         for place, turned in decided.items():

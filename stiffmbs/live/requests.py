@@ -15,6 +15,7 @@ from ..comparison.compare import compare
 from ..comparison.table import text as comparison_text
 from ..errors import InputError
 from ..model.model_data import ModelData
+from ..reading.files.quoted import quoted
 from ..results.files import WRITERS, refuse_path, write
 from ..results.solution import Solution
 from ..show.modes import modes_text
@@ -149,3 +150,11 @@ ANSWERS: dict[str, Callable[[Request], dict[str, object]]] = {
     "export": _export,
 }
 """Answers by the field ``what`` of a request."""
+
+
+def answer_to(request: Request) -> dict[str, object]:
+    """Return the answer to a request. Raises InputError if there is none of that name; others as for `ANSWERS`."""
+    what = str(request.rest.get("what"))
+    if what not in ANSWERS:
+        raise InputError(f"what: found '{quoted(what)}', expected one of {', '.join(ANSWERS)}")
+    return ANSWERS[what](request)

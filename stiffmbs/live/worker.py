@@ -21,7 +21,7 @@ from ..errors import StiffmbsError
 from ..model.model_data import ModelData
 from ..reading.files.text_file import file_text
 from ..show.summary import json_line
-from .requests import ANSWERS, Request
+from .requests import Request, answer_to
 from .solver import LiveSolver, NeedsConsent, error_of, preview, timed
 
 BETWEEN = 0.2
@@ -116,7 +116,7 @@ class Worker:
                 tell({"time": t})
 
         try:
-            answer = ANSWERS[str(message.get("what"))](Request(message, self._solver, watch, tell))
+            answer = answer_to(Request(message, self._solver, watch, tell))
         except KeyboardInterrupt:
             answer = {"status": "interrupted", "message": "interrupted", "text": "interrupted"}
         except NeedsConsent as error:

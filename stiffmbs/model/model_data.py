@@ -192,10 +192,11 @@ class ModelData(NotebookMethods, Described):
         for name, element in (*self.joints.items(), *self.forces.items()):
             yield name, self.set_up(name, element)
 
-    def joint_at_initial_pose(self, name: str) -> Joint:
-        """Return a joint with its undefined fields taken from the described poses."""
-        joint: Joint = self.set_up(name, self.joints[name])
-        return joint
+    def joint_at_initial_pose(self, name: str, reader: str = "") -> Joint:
+        """Return a joint with its undefined fields taken from the described poses, as the element `reader` reads it."""
+        pose, joint = self._current_pose, self.joints[name]
+        found: Any = self.set_up(name, joint) if pose is None else pose.set_up_for(reader, name, joint, self)
+        return found  # type: ignore[no-any-return]
 
     def set_up(self, name: str, element: Any) -> Any:
         """Return an element with its undefined fields taken from the described poses, or from those of a restart."""

@@ -46,9 +46,9 @@ class ReducedModel:
         """All joints by name."""
         return self.model.joints
 
-    def joint_at_initial_pose(self, name: str) -> Joint:
+    def joint_at_initial_pose(self, name: str, reader: str = "") -> Joint:
         """Return a joint of the model."""
-        return self.model.joint_at_initial_pose(name)
+        return self.model.joint_at_initial_pose(name, reader)
 
     def state_outputs(self) -> Mapping[str, Formula]:
         """Return the outputs that formulas use by a name."""

@@ -106,6 +106,8 @@ def joint_angles(system: System) -> JointAngles | None:
         for name in group.names
     }
     places = {name: found for name, found in angles.items() if min(found) >= 0}
-    counters = {angle.channel: angle.place for angle in counted_angles(system) if angle.channel}
+    # an element may read another turn than that of the joint, which its drive selects and requests follow
+    counted = sorted(counted_angles(system), key=lambda angle: (angle.driven, angle.element == angle.channel))
+    counters = {angle.channel: angle.place for angle in counted if angle.channel}
     start = {**system.described_angles, **system.start_angles}
     return JointAngles(places, counters, start) if places else None

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import InputError, load_scene
 from stiffmbs.adams.commands.commands import read_commands
 from stiffmbs.adams.load import read_adams
+from stiffmbs.commands.main import main
 
 from .test_adams_command import PENDULUM
 
@@ -166,10 +168,12 @@ def test_commands_without_an_effect_on_the_motion_are_noted(commands, said):
     assert said in "; ".join(read_commands(commands).notes)
 
 
-def test_a_command_file_is_no_scene(tmp_path):
+@pytest.mark.parametrize("command", ["run", "check", "convert"])
+def test_a_command_file_is_no_scene(command, tmp_path):
     (tmp_path / "rig.acf").write_text("SIMULATE/STATICS\n")
-    with pytest.raises(InputError, match=r"found a command file, expected its dataset rig\.adm, which is run with"):
-        load_scene(tmp_path / "rig.acf")
+    result = CliRunner().invoke(main, [command, str(tmp_path / "rig.acf")])
+    assert result.exit_code == 2
+    assert "found a command file, expected its dataset rig.adm, which is run with" in result.output
 
 
 FALL = "SIMULATE/DYNAMICS, END=1, STEPS=10\n"

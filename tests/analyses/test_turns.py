@@ -148,6 +148,66 @@ def test_a_drive_that_a_stage_adds_selects_the_turn_of_its_joint_and_unwinds_no_
     np.testing.assert_allclose(space["s.tz"], plane["s.torque"], atol=1e-5)
 
 
+@pytest.mark.parametrize(
+    ("omega", "position", "wanted", "moved"),
+    [(0, "300 deg", 5 * TURN / 6, -TURN / 6), (20, "20.1 - 2*pi", 20.1 - TURN, 0.1)],
+)
+def test_a_drive_that_a_stage_adds_in_space_may_prescribe_another_turn(omega, position, wanted, moved):
+    text = """
+dimensions: 3
+bodies: {a: {mass: 1, inertia: [0.1, 0.1, 0.1], omega: [0, 0, OMEGA]}}
+joints: {p: {type: revolute, i: a, j: ground}}
+requests: {turned: az(a)}
+run: {duration: 1, points: 3}
+stages:
+  - {}
+  - {change: {joints: {y: {type: drive, joint: p, position: "LAW"}}}}
+"""
+    found = stiffmbs.run(read(text, omega=omega, law=position))
+    np.testing.assert_allclose(found["p.angle"][-3:], wanted, atol=1e-6)
+    np.testing.assert_allclose(found["turned"][-3:], omega + moved, atol=1e-5)
+
+
+READ_ANGLE = """
+bodies:
+  a: {mass: 1, inertia: 0.1, omega: 20}
+  b: {mass: 1, inertia: 0.2, position: [1, 0]}
+joints:
+  p: {type: revolute, i: a, j: ground}
+  q: {type: revolute, i: b, j: {body: ground, point: [1, 0]}}
+forces: {f: {type: torque, i: b, torque: "-p.angle"}}
+states: {lag: {rate: (p.angle - lag)/0.1, start: 0}}
+requests: {twice: 2*p.angle}
+run: {duration: 0.2, points: 5, rtol: 1e-8}
+stages:
+  - {run: {duration: 1}}
+  - {change: {joints: {y: {type: drive, joint: p, position: 100 deg}}}}
+  - {change: {forces: {n: {type: torque, i: b, torque: "0.1*p.angle"}}}}
+  - {change: {joints: {y: null}}}
+  - {change: {joints: {y: {type: drive, joint: p, position: -500 deg}}}}
+"""
+
+
+def test_what_read_an_angle_before_a_drive_keeps_its_turns_in_plane_and_space(tmp_path):
+    scene = stiffmbs.read_scene(READ_ANGLE)
+    drawn = math.radians(100)
+    for whole in (scene, spatial.in_space(scene)):
+        found = stiffmbs.run(whole)
+        torque, other = ("f.tz", "n.tz") if "f.tz" in found else ("f.torque", "n.torque")
+        after = found["p.angle"][5:]
+        np.testing.assert_allclose(after, np.repeat([drawn, drawn, drawn, math.radians(-500)], 5), atol=1e-6)
+        np.testing.assert_allclose(found["twice"][5:], 2 * after, atol=1e-5)
+        np.testing.assert_allclose(found[torque][5:20], -3 * TURN - drawn, atol=1e-5)
+        np.testing.assert_allclose(found[torque][20:], -3 * TURN - math.radians(220), atol=1e-5)
+        np.testing.assert_allclose(found[other][10:20], 0.1 * drawn, atol=1e-6)
+        assert 3 * TURN < found["lag"][19] < 3 * TURN + drawn
+        found.save(tmp_path / "all.npz")
+        state = stiffmbs.read_state(tmp_path / "all.npz", at=1.3)
+        again = stiffmbs.run(whole.stage_scenes[2], start_from=state)
+        np.testing.assert_allclose(again[torque], -3 * TURN - drawn, atol=1e-5)
+        np.testing.assert_allclose(again["p.angle"], drawn, atol=1e-6)
+
+
 def test_joints_and_a_coupler_of_one_stage_have_the_same_turns():
     text = STAGE.replace("  p: {type: revolute, i: a, j: ground}\n", "")
     pin = "r: {type: revolute, i: a, j: {body: ground, angle: 1}}"

@@ -132,6 +132,24 @@ def worker():
     assert not thread.is_alive()
 
 
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ({"what": "solve", "text": TEXT + "# \ud800"}, "unacceptable character #xd800"),
+        ({"what": "draw", "text": TEXT}, "what: found 'draw', expected one of solve, check"),
+        ({"what": ["solve"]}, "what: found '['solve']', expected one of solve"),
+    ],
+)
+def test_a_request_without_an_answer_gets_one_sentence(content, said):
+    answers = []
+    made = Worker(LiveSolver(EXAMPLES / "cart_pendulum.yaml"), answers.append)
+    threading.Thread(target=made.loop, daemon=True).start()
+    made.take({"number": 1, **content})
+    answer = answered(made, answers, 1)
+    made.take(None)
+    assert answer["status"] == "error" and said in answer["message"] and "please report" not in answer["message"]
+
+
 def test_the_newest_request_interrupts_a_long_run(worker):
     made, answers = worker
     made.take({"number": 1, "what": "solve", "text": LONG})

@@ -359,3 +359,23 @@ def test_a_scene_that_starts_in_equilibrium_does_so_in_space():
     first, second = (stiffmbs.run(scene, duration=0.3, points=3, rtol=1e-9) for scene in (planar, found))
     for channel in ("front.right.knuckle.y", "front.left.knuckle.y", "front.right.camber"):
         assert second[channel] == pytest.approx(first[channel], abs=1e-6)
+
+
+STAGES_WITHOUT_A_DURATION = """
+bodies: {a: {mass: 1, inertia: 0.1}}
+joints: {p: {type: revolute, i: {body: a, point: [0, 0.3]}, j: {body: ground, point: [0, 0.3]}}}
+gravity: [0, -9.81]
+forces: {f: {type: torque, i: a, torque: "sin(10*t)"}}
+run: {duration: 1, points: 11}
+stages:
+  - {analysis: static}
+  - {run: {duration: 0.5}}
+  - {end: 0.7 s}
+"""
+
+
+def test_stages_end_in_space_when_they_do_in_the_plane():
+    scene = stiffmbs.read_scene(STAGES_WITHOUT_A_DURATION)
+    plane, space = stiffmbs.run(scene), stiffmbs.run(spatial.in_space(scene))
+    np.testing.assert_allclose(space.time, plane.time, atol=1e-12)
+    np.testing.assert_allclose(space["p.angle"], plane["p.angle"], atol=1e-5)

@@ -11,7 +11,7 @@ from ...elements.element import Element
 from ...elements.shape import Shape
 from ...errors import InputError, prefixed
 from ...reading.marker import GROUND, MarkerReference, Placement
-from ..files.stages import merge_patch
+from ..files.stages import Stage, merge_patch
 from ..model import PlanarData
 from ..model_data import ModelData
 from ..scene import Scene
@@ -59,10 +59,17 @@ def _stages(data: Scene, first: Written, angles: Angles) -> list[Written]:
         found = _one_scene(scene, replace(angles, data=scene))
         found = {name: part for name, part in found.items() if part and name not in OF_STAGES}
         own = {name: part for name, part in stage.model_dump(exclude_defaults=True).items() if name != "change"}
-        run = scene.run.model_dump(exclude_unset=True)
-        stages.append({**own, "change": merge_patch(before, found), "run": run})
+        stages.append({**own, "change": merge_patch(before, found), "run": _run_of(stage, scene)})
         before = found
     return [{name: part for name, part in stage.items() if part} for stage in stages]
+
+
+def _run_of(stage: Stage, scene: Scene) -> Written:
+    """Return the settings of a stage, also those of the scene; without its duration if the stage ends otherwise."""
+    settings = scene.run.model_dump(exclude_unset=True)
+    if "duration" not in stage.run and (stage.end is not None or not stage.over_time):
+        settings.pop("duration", None)
+    return settings
 
 
 def _one_scene(data: PlanarData, angles: Angles) -> Written:
