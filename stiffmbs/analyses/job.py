@@ -238,8 +238,7 @@ def prepare(
     LOGGER.info("assembling %s", found.data.name)
     before = FoundBefore(found.data, found.settings, found.start_from)
     grid = found.grid
-    breakpoints = dynamics.input_features(grid.start, grid.end).at_ends if dynamics.system.has_inputs else np.empty(0)
-    if np.any(breakpoints <= grid.start + 2.0 * grid.aside):
+    if dynamics.system.has_inputs and _begins_at_breakpoint(dynamics, grid):
         grid = replace(grid, start=grid.start + grid.aside)
     with reported_faults(dynamics.system), in_use(found.settings.tuning):
         start = before.get("start", lambda: _start(found.data, dynamics, grid.start, found.start_from))
@@ -254,6 +253,12 @@ def prepare(
     dynamics.system.known_terms.clear()
     parts = found.data, found.settings, grid, found.redundancy, dynamics, start, subsystems
     return Job(*parts, found.turns, found.start_from)
+
+
+def _begins_at_breakpoint(dynamics: Dynamics, grid: Grid) -> bool:
+    """Return True if an input has a breakpoint at the start of a run."""
+    at_ends = dynamics.input_features(grid.start, grid.end).at_ends
+    return bool(np.any(at_ends <= grid.start + 2.0 * grid.aside))
 
 
 def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
