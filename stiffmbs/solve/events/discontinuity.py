@@ -148,7 +148,7 @@ def noise_of(
                 pressed.append(state.values["event_function"][: len(noise)].copy())
             noise = np.where(pressed[0] != pressed[1], np.maximum(rough, noise), noise)
         slow = around.change(rtol, of_velocities=True)
-        for k in np.flatnonzero((noise < farthest) & (farthest <= slow)):
+        for k in np.flatnonzero((noise < farthest) & (farthest <= slow)).tolist():
             at_zero = around.at_zero(JUMP.larger_move, k)
             if not _rates_differ([at_zero.sides(size) for size in (JUMP.larger_move, SEARCH.precision)], k):
                 noise[k] = slow[k]

@@ -83,8 +83,8 @@ class Chain:
         ]
         self.moving = rng.uniform(-1, 1, self.count) * (rng.uniform() < 0.5)
         kinks = [t for each in (*self.signal, *self.force) if each for t in each.kinks]
-        kinks = np.unique([t for t in kinks if 0.0 < t < self.end])
-        self.kinks = kinks[np.diff(kinks, append=np.inf) > 1e-12]  # 0.45 and 0.45 less one rounding are one kink
+        times = np.unique([t for t in kinks if 0.0 < t < self.end])
+        self.kinks = times[np.diff(times, append=np.inf) > 1e-12]  # 0.45 and 0.45 less one rounding are one kink
 
     def _instants(self, rng: np.random.Generator) -> list[float]:
         """Return a few times: at the start, at outputs, of tenths and between; one may follow another closely."""
