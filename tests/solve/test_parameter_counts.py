@@ -50,7 +50,7 @@ TABLE = [
     ("radau.converging", "half_car radau", "steps", 126, 184, None),
     ("radau.gain", "cart_pendulum radau", "jacobians", 22, 15, None),
     ("radau.keep_high", "half_car radau", "steps", None, 184, 206),
-    ("radau.keep_matrix", "half_car radau", "jacobians", 33, 22, 11),
+    ("radau.keep_matrix", "half_car radau", "jacobians", 40, 28, 14),
     ("radau.largest_factor", "half_car radau", "factorizations", None, 172, 152),
     ("radau.least_factor", "bouncing_ball radau", "residuals", None, 710, 681),
     ("radau.slowest", "cart_pendulum radau 0.001", "residuals", 262, 292, None),

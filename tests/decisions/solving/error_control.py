@@ -237,7 +237,7 @@ DECISIONS = {
 EXPECTED = {
     "newton.loosest": 0.03, "newton.soft": 0.001, "newton.negligible": 1e-06, "newton.precision": 0.001, "newton.unknown": 20,
     "newton.diverging": 900, "newton.slowest": 100, "newton.trusted": 20, "newton.least": 0.05, "newton.last": 32, "newton.long_steps": 50,
-    "newton.many_failures": 201, "newton.eased": 0.0001, "newton.easiest": 0.33, "polishing.amplified": 2, "polishing.unbalanced": 3e-07,
+    "newton.many_failures": 201, "newton.eased": 0.0001, "newton.easiest": 0.33, "polishing.amplified": 0.5477225575051661, "polishing.unbalanced": 3e-07,
     "polishing.most_corrections": 8, "polishing.slowest": 29, "polishing.rounded_off": 54, "polishing.at_events": 1e9, "error_filter.fades_low": 0.3660323413, "error_filter.fades": 0.64,
     "error_filter.troubled": 8, "error_filter.lasts": 1001, "error_filter.no_estimate": 40, "relaxation.of_positions": 1e-09,
     "relaxation.of_velocities": 1e-12, "relaxation.check_interval": 20, "divergence.followed_steps": 20, "explicit_steps.enough_steps": 21,

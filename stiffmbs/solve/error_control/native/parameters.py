@@ -57,7 +57,7 @@ class PolishingParameters:
     Source: the stiff benchmarks and ``docs/error_control.md``.
     """
 
-    amplified: float = 400.0
+    amplified: float = 30.0
     """Ratio of forces by an error between steps to forces by its rates in a step, above which states are corrected."""
     unbalanced: float = 0.3
     """Allowed imbalance of the forces on a body between steps, relative to the largest force and to rtol."""
