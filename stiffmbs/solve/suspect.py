@@ -11,7 +11,7 @@ from ..compile.state import LEFT_OPEN
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
-from ..dynamics.friction_loads import ambiguous_loads_clause
+from ..dynamics.friction_loads import REMEDY, ambiguous_loads_clause
 from .events.native.parameters import EPSILON, SEARCH
 
 TERM_SETS = ("motion", "acceleration")
@@ -35,7 +35,7 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     if clause := _open(dynamics, t):
         return clause
     loads = ambiguous_loads_clause(dynamics, t, q, u)
-    return f"; {loads}" if loads else _hardest(dynamics, t)
+    return f"; {loads}; {REMEDY}" if loads else _hardest(dynamics, t)
 
 
 def _ahead() -> Iterator[float]:
