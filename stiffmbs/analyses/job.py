@@ -240,6 +240,7 @@ def prepare(
     grid = found.grid
     if dynamics.system.has_inputs and _begins_at_breakpoint(dynamics, grid):
         grid = replace(grid, start=grid.start + grid.aside)
+        dynamics.forget_inputs()  # those from the new start, as after a change of numbers
     with reported_faults(dynamics.system), in_use(found.settings.tuning):
         start = before.get("start", lambda: _start(found.data, dynamics, grid.start, found.start_from))
         if before.name:
