@@ -1,31 +1,27 @@
 """Steps of Radau methods with error control; predictive control of Gustafsson."""
 
-from math import isfinite, sqrt
+from math import isfinite
 from typing import Final
 
-from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view
-from stiffmbs.compile.machine.native.evaluate import add_rate_terms
+from stiffmbs.compile.machine.native.access import compiled, ints, shifted
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.error_control.native.parameters import EXCLUDED
-from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
+from stiffmbs.solve.events.native.parameters import INDISTINCT
 from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
-from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.between_steps import CLOSED, MOST_MOVED, UNKNOWN, close_end, closed
-from stiffmbs.solve.radau.native.memory import basis, collocation_view
+from stiffmbs.solve.radau.native.estimate import LEAST_ESTIMATE, error_of_step, estimate_below
+from stiffmbs.solve.radau.native.memory import collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
     DIVERGED,
     SLOW,
-    add_efforts,
     extrapolated,
     factored,
     iterated,
     most_iterations,
-    residual,
     size_in_tolerances,
-    solved_real,
     stage_time,
     store_efforts,
 )
@@ -35,8 +31,6 @@ NO_CONVERGENCE: Final = -4
 """Flags of IDA: IDA_ERR_FAIL, IDA_CONV_FAIL."""
 SMALLEST = 4 * INDISTINCT
 """Least step, relative to the time."""
-ROUNDING = 1e-10
-"""Least estimated error."""
 LEAST_ERROR = 1e-2
 """Least error in the predictive control."""
 MOST_DECAYS = 4
@@ -50,157 +44,6 @@ def set_weights(x):
         atol = x.atol[k]
         part = x.h if atol < 0.0 and x.h > 0.0 else 1.0
         x.weight[k] = part / (x.rtol * abs(x.y[k]) + abs(atol)) if atol < EXCLUDED else 0.0
-
-
-@compiled
-def _solved_defect(x, t, y):
-    """Compute (gamma/h M - f_y)^-1 (f(t, y) - M y') for y' in `x.yp_stage`; return its size in tolerances."""
-    residual(x, t, y, x.yp_stage, x.b, x.misfit)
-    for k in range(x.n):
-        x.b[k] = -x.b[k]
-    solved_real(x)
-    repeats = error_norm_view(x.error_norm).repeats  # periods of a law among which the tolerance is shared
-    return repeats * size_in_tolerances(x, x.x)
-
-
-@compiled
-def _estimate(x, c, t, h, y):
-    """Compute the error (gamma/h M - f_y)^-1 (f(t, y) + M sum d_i Z_i / h); return its size in tolerances."""
-    for k in range(x.n):
-        x.yp_stage[k] = 0.0
-    for i in range(c.stages):
-        factor = -c.error[i] / h
-        z = shifted(x.z, i * x.n_all)
-        for k in range(x.n):
-            x.yp_stage[k] += factor * z[k]
-    size = _solved_defect(x, t, y)
-    copied(x.error, x.x, x.n)
-    return max(ROUNDING, _size_of_estimate(x, c, size))
-
-
-@compiled
-def _size_of_estimate(x, c, size):
-    """Return the size of the estimate in `x.x` in its tolerances; `size` is that in the requested ones."""
-    return max(size / c.relaxed, _unresolved(x, c) if size > 1.0 else 0.0)
-
-
-@compiled
-def _filter(x, c, h, values):
-    """Compute (gamma/h M - f_y)^-1 gamma/h M times a vector."""
-    e = equations_view(x.equations)
-    for k in range(x.n):
-        x.yp_stage[k] = c.gamma / h * values[k]
-        x.b[k] = 0.0
-    add_rate_terms(e, floats(state_view(x.state).values[e.residual_set]), x.yp_stage, x.b)
-    solved_real(x)
-
-
-@compiled
-def _filtered(x, c, h):
-    """Return the size of the filtered estimate, in its tolerances.
-
-    The estimate of a vibration has a phase, at which the tested velocities may be zero by chance.  The filter turns the
-    phase by arctan(h omega/gamma), and reduces a decaying motion.
-    """
-    _filter(x, c, h, x.error)
-    return _size_of_estimate(x, c, error_norm_view(x.error_norm).repeats * size_in_tolerances(x, x.x))
-
-
-@compiled
-def _vibrating(x, c, h):
-    """Return the size of the estimate in unknowns that vibrate fast for the step, in its tolerances.
-
-    Two filters turn the phase of a fast vibration by nearly half a turn, (1 - h lambda/gamma)^-2, so that its unknowns change
-    their signs. They only reduce a decaying motion. The error of a slow motion, which may exceed what is left of a fast one,
-    also passes a third filter.
-    """
-    _filter(x, c, h, x.error)
-    _filter(x, c, h, x.x)
-    copied(x.d, x.x, x.n)
-    _filter(x, c, h, x.d)
-    for k in range(x.n):
-        fast = x.d[k] - x.x[k]
-        x.d[k] = x.error[k] if x.error[k] * x.d[k] < 0.0 and abs(x.x[k]) < abs(fast) else 0.0
-    return size_in_tolerances(x, x.d) / c.relaxed
-
-
-@compiled
-def _unresolved_degree(x, c, k):
-    """Return the coefficient of degree s of the polynomial of an unknown, in powers, if it does not converge; else 0.
-
-    Of its coefficients of degrees s, s - 1 and s - 2 in Chebyshev polynomials, the first is then not small.
-    """
-    highest = 0.0
-    second = 0.0
-    third = 0.0
-    for j in range(c.stages):
-        difference = c.weights[j + 1] * x.z[j * x.n_all + k]
-        highest += difference
-        second += c.nodes[j] * difference
-        third += c.nodes[j] * (c.nodes[j] - 1.0) * difference
-    return highest if abs(highest) > x.converging * max(4.0 * abs(second), 16.0 * abs(third)) else 0.0
-
-
-@compiled
-def _unresolved(x, c):
-    """Return the size of the estimate in `x.x` in unknowns whose polynomial does not converge, in tolerances.
-
-    The step is long for a vibration, which the method damps.
-    """
-    total = 0.0
-    for k in range(x.n):
-        if _unresolved_degree(x, c, k) != 0.0:
-            part = x.x[k] * x.weight[k]
-            total += part * part
-    return sqrt(total / x.n_tested)
-
-
-@compiled
-def _wandering(x, c):
-    """Return the size of the last Chebyshev terms of polynomials that do not converge, in tolerances of the estimate.
-
-    Where drives prescribe the motion, the end of a step has no error, but its stages may lie on another branch of the joints.
-    """
-    total = 0.0
-    for k in range(x.n):
-        part = _unresolved_degree(x, c, k) * x.weight[k]
-        total += part * part
-    return sqrt(total / x.n_tested) / (2.0 ** (2 * c.stages - 1) * max(1.0, c.relaxed))
-
-
-@compiled
-def _turned_apart(x, c, h):
-    """Return the largest difference of the rate of an angle's polynomial from its angular velocity at a stage, times the step.
-
-    Both agree but for the error of the polynomial. Stages of an angle that joints and drives prescribe may differ by full
-    turns, or lie on another branch of the joints.
-    """
-    largest = 0.0
-    for i in range(c.stages):
-        for k in range(x.n_angles):
-            rate = 0.0
-            for j in range(c.stages):
-                rate += c.derivative[i * c.stages + j] * x.z[j * x.n_all + x.angle[k]]
-            turned = h * (x.y[x.spin[k]] + x.z[i * x.n_all + x.spin[k]])
-            largest = max(largest, abs(rate - turned))
-    return largest
-
-
-@compiled
-def _estimate_below(x, c, lower, t, h):
-    """Return the size that the estimate of a method of fewer stages would have, in tolerances.
-
-    Its stages are taken from the polynomial of the accepted step. In (gamma/h M - f_y)^-1, gamma is that of the step.
-    """
-    for k in range(x.n):
-        x.yp_stage[k] = 0.0
-    for i in range(lower.stages):
-        for j in range(c.stages):
-            factor = -lower.error[i] / h * basis(c, j, lower.nodes[i])
-            z = shifted(x.past, j * x.n_all)
-            for k in range(x.n):
-                x.yp_stage[k] += factor * z[k]
-    return _solved_defect(x, t, x.y_past) * c.gamma / lower.gamma
 
 
 @compiled
@@ -226,7 +69,7 @@ def _bounded(x, factor):
 @compiled
 def _cost_rate(x, c, h, error, longest):
     """Return the cost per time of steps of a method that has an error estimate in tolerances in a step of length h."""
-    following = min(h * _bounded(x, CONTROL.safety * max(error, ROUNDING) ** (-1.0 / (c.stages + 1.0))), longest)
+    following = min(h * _bounded(x, CONTROL.safety * max(error, LEAST_ESTIMATE) ** (-1.0 / (c.stages + 1.0))), longest)
     return (c.setup_cost + x.iterations_taken * c.iteration_cost) / following
 
 
@@ -243,7 +86,7 @@ def _choose_method(x, c, longest):
     number = x.method
     lower = collocation_view(ints(x.below[number]))
     error = x.error_size * c.relaxed
-    below = max(_estimate_below(x, c, lower, x.t - x.h_past, x.h_past), 1e-300)
+    below = max(estimate_below(x, c, lower, x.t - x.h_past, x.h_past), 1e-300)
     cost = _cost_rate(x, c, x.h_past, x.error_size, longest)
     if number > 0 and _cost_rate(x, lower, x.h_past, below / lower.relaxed, longest) < x.gain * cost:
         x.method = number - 1
@@ -392,30 +235,6 @@ def _after_failed_iteration(x, outcome, h):
 
 
 @compiled
-def _error(x, c, h, untested):
-    """Return the error of the step in tolerances.
-
-    After rejected steps, a failed estimate is repeated with f at the corrected state, without the motions that the step damps. In
-    a first step, as on a stiff pad after an impact, these may be vibrations, which do not decay: it resolves them. The estimate
-    of an untested step, which may be long for a vibration that earlier ones have not tested, is filtered too.
-    """
-    error = _estimate(x, c, x.t, h, x.y)
-    x.damped = 0
-    if error >= 1.0 and (untested or x.rejected) and _vibrating(x, c, h) < 1.0:
-        copied(x.y_stage, x.error, x.n)
-        add_efforts(x, x.y_stage, x.misfit)
-        for k in range(x.n_all):
-            x.y_stage[k] += x.y[k]
-        error = _estimate(x, c, x.t, h, x.y_stage)
-        x.damped = 1
-    if untested and error < 1.0:
-        error = max(error, _filtered(x, c, h))
-    wandering = _wandering(x, c) if x.acting == 0 else 0.0  # efforts of decaying motions are removed or closed
-    wandering = max(wandering, _turned_apart(x, c, h) / SEARCH.turned)
-    return max(error, wandering) if wandering > 1.0 else error
-
-
-@compiled
 def _growth(x, c, error):
     """Return the ratio of the next step to this one by its error."""
     most = most_iterations(c)
@@ -483,7 +302,7 @@ def step(x):
         if outcome != CONVERGED:
             h = _after_failed_iteration(x, outcome, h)
             continue
-        error = _error(x, c, h, untested)
+        error = error_of_step(x, c, h, untested)
         if not isfinite(error):
             h *= x.after_failure
             continue
