@@ -91,18 +91,19 @@ run: {duration: 0.01}
         assert solution["m.torque" if "m.torque" in solution else "m.tz"][0] == pytest.approx(-10)
 
 
-STAGE = """
+TURNING = """
 bodies:
   a: {mass: 1, inertia: 0.1, omega: 20}
   b: {mass: 1, inertia: 0.2, position: [1, 0]}
 joints:
   p: {type: revolute, i: a, j: ground}
   q: {type: revolute, i: b, j: {body: ground, point: [1, 0]}}
-run: {points: 6, rtol: 1e-8}
+"""
+STAGE = f"""{TURNING}run: {{points: 6, rtol: 1e-8}}
 stages:
-  - {run: {duration: 1}}
-  - {change: {ADDED}, run: {duration: 0.2}}
-  - {run: {duration: 0.2}}
+  - {{run: {{duration: 1}}}}
+  - {{change: {{ADDED}}, run: {{duration: 0.2}}}}
+  - {{run: {{duration: 0.2}}}}
 """
 BEYOND = 20 - 3 * TURN  # angle of a within half a turn, after 1 s
 ADDED = {
@@ -168,23 +169,16 @@ stages:
     np.testing.assert_allclose(found["turned"][-3:], omega + moved, atol=1e-5)
 
 
-READ_ANGLE = """
-bodies:
-  a: {mass: 1, inertia: 0.1, omega: 20}
-  b: {mass: 1, inertia: 0.2, position: [1, 0]}
-joints:
-  p: {type: revolute, i: a, j: ground}
-  q: {type: revolute, i: b, j: {body: ground, point: [1, 0]}}
-forces: {f: {type: torque, i: b, torque: "-p.angle"}}
-states: {lag: {rate: (p.angle - lag)/0.1, start: 0}}
-requests: {twice: 2*p.angle}
-run: {duration: 0.2, points: 5, rtol: 1e-8}
+READ_ANGLE = f"""{TURNING}forces: {{f: {{type: torque, i: b, torque: "-p.angle"}}}}
+states: {{lag: {{rate: (p.angle - lag)/0.1, start: 0}}}}
+requests: {{twice: 2*p.angle}}
+run: {{duration: 0.2, points: 5, rtol: 1e-8}}
 stages:
-  - {run: {duration: 1}}
-  - {change: {joints: {y: {type: drive, joint: p, position: 100 deg}}}}
-  - {change: {forces: {n: {type: torque, i: b, torque: "0.1*p.angle"}}}}
-  - {change: {joints: {y: null}}}
-  - {change: {joints: {y: {type: drive, joint: p, position: -500 deg}}}}
+  - {{run: {{duration: 1}}}}
+  - {{change: {{joints: {{y: {{type: drive, joint: p, position: 100 deg}}}}}}}}
+  - {{change: {{forces: {{n: {{type: torque, i: b, torque: "0.1*p.angle"}}}}}}}}
+  - {{change: {{joints: {{y: null}}}}}}
+  - {{change: {{joints: {{y: {{type: drive, joint: p, position: -500 deg}}}}}}}}
 """
 
 
