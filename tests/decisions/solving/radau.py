@@ -9,7 +9,7 @@ import numpy as np
 from stiffmbs.solve.cost import ImplicitCost
 from stiffmbs.solve.radau import collocation
 from stiffmbs.solve.radau import memory as radau_memory
-from stiffmbs.solve.radau.native import between_steps, estimate, interface, newton, steps
+from stiffmbs.solve.radau.native import between_steps, error_estimate, interface, newton, steps
 from tests.decisions.common import Record, always, nothing, parameters
 from tests.interpreted import interpreted
 from tests.solve.test_parameter_thresholds import HALVES, count_while
@@ -120,7 +120,7 @@ def slowest_coefficients():
         first = (1.0 - m) / 0.8
         x = collocating(z=np.array([first, 0.0, 1.0 - first]), x=np.ones(1))
         c = Record(stages=3, weights=[0.0, 1.0, 1.0, 1.0], nodes=[0.2, 0.5, 1.0])
-        return estimate._unresolved(x, c) == 0.0
+        return error_estimate._unresolved(x, c) == 0.0
 
     return count_while(converges, range(1, 400))
 
@@ -137,8 +137,8 @@ def costs_of(name):
 
 def least_error():
     x = collocating()
-    with interpreted(estimate, _solved_defect=lambda *_: 0.0):
-        return estimate._estimate(x, METHOD, 0.0, 1.0, None)
+    with interpreted(error_estimate, _solved_defect=lambda *_: 0.0):
+        return error_estimate._estimate(x, METHOD, 0.0, 1.0, None)
 
 
 def smallest_correction_between_steps():
@@ -213,7 +213,7 @@ DECISIONS = {
     "solve.radau.native.newton:SHORTER": suggested_after_a_slow_iteration,
     "solve.radau.native.newton:MOST_LEFT": suggested_after_a_slow_iteration,
     "solve.radau.native.newton:LATER": allowed_later,
-    "solve.radau.native.estimate:LEAST_ESTIMATE": least_error,
+    "solve.radau.native.error_estimate:LEAST_ESTIMATE": least_error,
     "solve.radau.native.steps:LEAST_ERROR": last_error,
     "solve.radau.native.steps:MOST_DECAYS": starts_without_decay,
 }  # fmt: skip
@@ -224,7 +224,7 @@ EXPECTED = {
     "solve.radau.collocation:MOST_BETWEEN": 4, "solve.radau.native.between_steps:ROUNDING": 27, "solve.radau.native.between_steps:MOST_MOVED": 0.5,
     "solve.radau.native.between_steps:MOST_MOVED_WITHIN": 30,
     "solve.radau.native.newton:MOST_ITERATIONS": 7, "solve.radau.native.newton:DIVERGING": 40, "solve.radau.native.newton:SHORTER": 0.5214690759,
-    "solve.radau.native.newton:MOST_LEFT": 0.5214690759, "solve.radau.native.newton:LATER": 5, "solve.radau.native.estimate:LEAST_ESTIMATE": 1e-10,
+    "solve.radau.native.newton:MOST_LEFT": 0.5214690759, "solve.radau.native.newton:LATER": 5, "solve.radau.native.error_estimate:LEAST_ESTIMATE": 1e-10,
     "solve.radau.native.steps:LEAST_ERROR": 0.01, "solve.radau.native.steps:MOST_DECAYS": 3,
 }  # fmt: skip
 """The decisions of the default parameters."""

@@ -11,7 +11,7 @@ from stiffmbs.solve.events.native.step_bound import STRETCHED
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.between_steps import CLOSED, MOST_MOVED, UNKNOWN, close_end, closed
-from stiffmbs.solve.radau.native.estimate import LEAST_ESTIMATE, error_of_step, estimate_below
+from stiffmbs.solve.radau.native.error_estimate import LEAST_ESTIMATE, error_of_step, estimate_below
 from stiffmbs.solve.radau.native.memory import collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
