@@ -86,25 +86,28 @@ def least_clearance(lanes: Sequence[Lane], known: Known, run: Run) -> float:
     return found
 
 
-def highest_entry_speed(known: Known, test: ObstacleAvoidance, solve: Callable[[Manoeuvre], Run]) -> Metrics:
+def highest_entry_speed(
+    known: Known, test: ObstacleAvoidance, metrics: Metrics, solve: Callable[[Manoeuvre], Run]
+) -> Metrics:
     """Return the highest entry speed at which no cone is hit, by bisection to the resolution of the test.
 
-    It is the speed at the end of the first lane. All lower speeds are assumed to pass, too. A run that stops early does
-    not pass. Raises InputError if the slowest speed does not pass, or the fastest one does.
+    It is the speed at the end of the first lane. All lower speeds are assumed to pass, too. `metrics`: those at the speed of the
+    test, which divides the interval first. A run that stops early does not pass. Raises InputError if the slowest speed does not
+    pass, or the fastest one does.
     """
-    found: dict[float, Metrics] = {}
+    found = {test.speed: metrics}
 
     def passes(speed: float) -> bool:
         """Return True if no cone is hit with a speed before the course, m/s."""
         one = replace(test, speed=speed)
         try:
-            runs = [solve(each) for each in in_lanes(PART_2)(known, one)]
+            if speed not in found:
+                found[speed] = of_lanes(PART_2)(known, one, [solve(each) for each in in_lanes(PART_2)(known, one)])
         except SolverError:
             return False
-        found[speed] = of_lanes(PART_2)(known, one, runs)
         return found[speed][PASSED][0] == 1
 
-    speed = highest(passes, test.slowest, test.fastest, test.resolution)
+    speed = highest(passes, test.slowest, test.fastest, test.resolution, test.speed)
     if np.isnan(speed):
         least = found[test.slowest][CLEARANCE][0] if test.slowest in found else np.nan
         reason = f"the least distance to a cone is {least:.3g} m" if np.isfinite(least) else "the run stops early"
@@ -117,16 +120,17 @@ def highest_entry_speed(known: Known, test: ObstacleAvoidance, solve: Callable[[
     return {"highest entry speed without a cone hit": found[speed][ENTRY]}
 
 
-def highest(passes: Callable[[float], bool], low: float, high: float, resolution: float) -> float:
+def highest(passes: Callable[[float], bool], low: float, high: float, resolution: float, first: float) -> float:
     """Return the highest value that passes, at most a resolution below the first that does not, by bisection.
 
-    NaN if `low` does not pass, infinity if `high` does.
+    `first`: where the interval is divided first, if it is inside. NaN if `low` does not pass, infinity if `high` does.
     """
     if not passes(low):
         return float("nan")
     if passes(high):
         return float("inf")
+    middle = first if low < first < high else (low + high) / 2
     while high - low > resolution:
-        middle = (low + high) / 2
         low, high = (middle, high) if passes(middle) else (low, middle)
+        middle = (low + high) / 2
     return low

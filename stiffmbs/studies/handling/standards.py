@@ -41,8 +41,8 @@ class HandlingTest(Generic[Test]):
     metrics: Callable[[Known, Test, list[Run]], Metrics]
     shown: tuple[str, str]  # channels on both axes of the test's figure
     ramped: bool = False  # True if it needs the slow ramp at its own speed
-    # returns further metrics from `Known`, the parameters and a function that solves one manoeuvre after another
-    search: Callable[[Known, Test, Callable[[Manoeuvre], Run]], Metrics] | None = None
+    # returns further metrics from `Known`, the parameters, those metrics and a function that solves one manoeuvre after another
+    search: Callable[[Known, Test, Metrics, Callable[[Manoeuvre], Run]], Metrics] | None = None
 
 
 TESTS: dict[str, HandlingTest[Any]] = {

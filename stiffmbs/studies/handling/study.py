@@ -187,7 +187,7 @@ def _solved(scene: Scene, car: Car, known: Known, tests: Mapping[str, Any], pool
             metrics = test.metrics(of_test, parameters, runs)
             found[name] = replace(found[name], metrics=metrics, runs=runs or [of_test.ramp])
             if test.search:
-                searched = test.search(of_test, parameters, solve)
+                searched = test.search(of_test, parameters, metrics, solve)
                 found[name] = replace(found[name], metrics=metrics | searched)
         except StiffmbsError as error:
             found[name] = replace(found[name], message=str(error))

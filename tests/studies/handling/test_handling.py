@@ -370,10 +370,10 @@ def test_the_highest_speed_is_found_to_its_resolution():
             tried.append(speed)
             return speed <= limit
 
-        assert limit - 0.25 < highest(passes, 8, 22, 0.25) <= limit
+        assert limit - 0.25 < highest(passes, 8, 22, 0.25, 15) <= limit
         assert len(tried) == 2 + np.ceil(np.log2(14 / 0.25))
-    assert np.isnan(highest(lambda speed: False, 8, 22, 0.25))
-    assert highest(lambda speed: True, 8, 22, 0.25) == np.inf
+    assert np.isnan(highest(lambda speed: False, 8, 22, 0.25, 15))
+    assert highest(lambda speed: True, 8, 22, 0.25, 15) == np.inf
 
 
 def test_a_sine_with_dwell_has_the_frequency_and_dwell_of_its_parameters():

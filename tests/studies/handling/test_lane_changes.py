@@ -8,7 +8,7 @@ import pytest
 import stiffmbs
 from stiffmbs.model.paths.lanes import STANDARDS, USED, Lane, path_through
 from stiffmbs.studies.handling.known import SEEN, Known
-from stiffmbs.studies.handling.lane_changes import PART_2, highest_entry_speed, in_lanes, least_clearance
+from stiffmbs.studies.handling.lane_changes import PART_2, highest_entry_speed, in_lanes, least_clearance, of_lanes
 from stiffmbs.studies.handling.parameters import ObstacleAvoidance
 
 CAR = SimpleNamespace(
@@ -109,12 +109,25 @@ def driving(limit):
     return solve
 
 
+def searched(test, limit):
+    """Return the metrics of a search after those of the test's own run."""
+    solve = driving(limit)
+    own = of_lanes(PART_2)(KNOWN, test, [solve(each) for each in in_lanes(PART_2)(KNOWN, test)])
+    return highest_entry_speed(KNOWN, test, own, solve)
+
+
 def test_the_highest_entry_speed_is_that_at_the_end_of_the_first_lane():
     test = ObstacleAvoidance(slowest=10.0, fastest=20.0, resolution=0.1)
-    found = highest_entry_speed(KNOWN, test, driving(15.3))["highest entry speed without a cone hit"]
+    found = searched(test, 15.3)["highest entry speed without a cone hit"]
     assert 15.1 - 0.1 < found[0] <= 15.1
     (one,) = in_lanes(PART_2)(KNOWN, test)
     assert one.driver["releases"] * test.speed == pytest.approx(32.0), "2 m within the first lane"
+
+
+def test_a_search_finds_no_lower_speed_than_that_of_a_passed_test():
+    """The metrics of one test contradicted each other: 13.81 m/s passed, and the highest speed was 13.68 m/s."""
+    test = ObstacleAvoidance(speed=13.9, slowest=10.0, fastest=20.0, resolution=2.0)
+    assert searched(test, 14.0)["highest entry speed without a cone hit"][0] == pytest.approx(13.7)
 
 
 @pytest.mark.parametrize(
@@ -128,7 +141,7 @@ def test_a_search_without_a_result_says_so(limit, said):
     """The value was nan, and the message was empty."""
     test = ObstacleAvoidance(slowest=10.0, fastest=20.0)
     with pytest.raises(stiffmbs.InputError, match=said):
-        highest_entry_speed(KNOWN, test, driving(limit))
+        searched(test, limit)
 
 
 @pytest.mark.parametrize("speed", [5.0, 8.0, 14.0, 22.0, 30.0])
