@@ -15,7 +15,7 @@ from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
-from ..events.chattering import Chattering
+from ..events.chattering import Chattering, HoveringEvents
 from ..events.discontinuity import Jumps
 from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
 from ..events.restart import restarted
@@ -74,6 +74,7 @@ class AdaptiveRun:
         self._stable_step = StableStep(scheme, dynamics)
         self._jumps = Jumps(dynamics, settings)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
+        self._hovering = HoveringEvents(dynamics, self._chattering, settings.rtol)
         self._rounding = Rounding(dynamics, settings.rtol, grid.start, grid.end)
         self._begun = 0  # steps before the current segment
 
@@ -156,9 +157,12 @@ class AdaptiveRun:
                 self._store_rows()
                 return status
         if status == AT_EVENT and work.t < self._grid.end:
-            event_function = self._restart()
+            fired = work.fired()
+            self._hovering.note(work.t, work.q.copy(), work.u.copy(), fired, work.watch.farthest)
+            work.watch.watch_for(self._hovering.band)
+            self._restart()
             self._events += 1
-            self._chattering.note_event(work.t, self._start.q, self._start.u, event_function)
+            self._chattering.note_event(work.t, self._start.q, self._start.u, fired[0] if fired else -1)
         return status
 
     def _leave_to_rounding(self) -> None:
@@ -187,12 +191,12 @@ class AdaptiveRun:
         self._dynamics.state.q[:], self._dynamics.state.u[:] = self._start.q, self._start.u
         self._jumps.note(breakpoint, *before)
 
-    def _restart(self) -> int:
-        """Restart from consistent values at the current time; return the event function of an event there, or -1."""
+    def _restart(self) -> None:
+        """Restart from consistent values at the current time."""
         work = self.work
         self._start = restarted(self._dynamics, work.t, work.q, work.u, self._settings.projection)
         refuse_beyond_limits(self._dynamics, work.t, self._start.q, self._start.u)
-        return work.begin(self._start)
+        work.begin(self._start)
 
     def _store_rows(self) -> None:
         work, status = self.work, PAUSED

@@ -45,6 +45,7 @@ class Integration:
 
     - `capacity`: largest number of steps, and of rows, of one call.
     - `step_times`: ends of the steps of each call.
+    - `watch`: event functions, and what the search for events has found.
     - `t`: current time, s. `q`, `u`: current positions and velocities.
     - `h`: length of the next step, s. `stable`: longest step that stability allows, s; 0 if not computed.
     - `eliminates`: True if accelerations are computed by elimination where its pivots are accurate, False if by LU
@@ -65,15 +66,15 @@ class Integration:
         self.capacity, self._n_q, self._dynamics = memory.capacity, n_q, dynamics
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been collected
-        self.step_bound, self._watch = StepBound(), EventSearch(dynamics.state)
+        self.step_bound, self.watch = StepBound(), EventSearch(dynamics.state)
         self._long_steps = dynamics.kept(
             "long_steps", len(memory.y), lambda: LongStepLog(dynamics.system, len(memory.y))
         )
         self._long_steps.forget()
-        self._watch.end_steps_at_kinks()
-        self._watch.follow_reactions(dynamics)
-        self._watch.resolve(grid.end - grid.start)
-        memory.renew(*addresses(self._watch.table, self.step_bound.table, self._long_steps.table))
+        self.watch.end_steps_at_kinks()
+        self.watch.follow_reactions(dynamics)
+        self.watch.resolve(grid.end - grid.start)
+        memory.renew(*addresses(self.watch.table, self.step_bound.table, self._long_steps.table))
         self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)
         self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
         memory.atol[:] = self.atol
@@ -87,17 +88,19 @@ class Integration:
         cells["h"], cells["repeats"] = settings.step, 1.0
         self.begin(start)
 
-    def begin(self, start: InitialValues) -> int:
-        """Restart from consistent values at the current time; return the event function of an event there, or -1."""
+    def begin(self, start: InitialValues) -> None:
+        """Restart from consistent values at the current time."""
         memory, cells = self._memory, self._cells
         self.q[:], self.u[:] = start.q, start.u
         memory.end_rates[self._n_q :] = start.acceleration
         memory.lam[:] = start.lam
         cells["started"], cells["last_error"], cells["at_event"] = 0, 0.0, 0
         cells["uncertain"], cells["distance"], cells["distance_of_end"] = 0, np.inf, np.inf
-        met = self._watch.found[: self._watch.n_event_functions].tolist()
-        self._watch.begin()
-        return met.index(1) if 1 in met else -1
+        self.watch.begin()
+
+    def fired(self) -> list[int]:
+        """Return the event functions of the event that ended the last step."""
+        return self.watch.found[: self.watch.n_event_functions].nonzero()[0].tolist()
 
     def count(self, name: str) -> int:
         """Return a counter: ``steps``, ``rejected``, ``accelerations`` or ``stiff_steps`` (limited by stability)."""
@@ -105,11 +108,11 @@ class Integration:
 
     def unresolved(self) -> str:
         """Return a sentence on force laws that repeat within a step, or an empty string."""
-        return self._watch.note()
+        return self.watch.note()
 
     def departures(self) -> tuple[Departure, ...]:
         """Return the tables whose points the steps have left."""
-        return self._watch.departures()
+        return self.watch.departures()
 
     def long_steps(self) -> tuple[LongSteps, ...]:
         """Return the recorded steps that are much longer than their predecessors."""

@@ -110,6 +110,15 @@ def watch_for(w, k, band):
 
 
 @compiled
+def begin_bands(w):
+    """Begin with the values of the event functions at a start; end the bands of those that have left them."""
+    for k in range(w.n_event_functions):
+        w.farthest[k] = abs(w.value_before[k])
+        if w.farthest[k] > w.band[k] > 0.0:
+            watch_for(w, k, 0.0)
+
+
+@compiled
 def note_farthest(w, values):
     """Update the largest value of each event function from the start up to its event."""
     for k in range(w.n_event_functions):

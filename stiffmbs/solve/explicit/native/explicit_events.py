@@ -11,6 +11,7 @@ from stiffmbs.solve.events.native.bounds import (
     event_search_view,
     fastest_turn,
     longest_by_turns,
+    note_farthest,
     note_unresolved,
     noted_rates,
     repeats,
@@ -132,6 +133,7 @@ def _look_within(x, c, s):
         straight = rest * rest * (1.0 + 2.0 * theta) * x.y_before[i] + theta * theta * (3.0 - 2.0 * theta) * x.y[i]
         x.difference[i] = straight + theta * rest * h * (rest * begins[i] - theta * ends[i])
     copied(w.m, _values(x, s, x.difference, x.t_before + theta * h), w.n)
+    note_farthest(w, w.m)
 
 
 @compiled
@@ -314,6 +316,7 @@ def _ended_at_event(x, c, s, m):
     if status == NO_EVENT:
         _note_repeats(x, w, 0)
         note_outside(w, x.t)
+        note_farthest(w, w.value_after)
         shift_ends(w)
         if w.n_turns > 0:
             x.h = min(x.h, longest_by_turns(w, w.rate_before, SEARCH.turned))

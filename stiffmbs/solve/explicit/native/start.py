@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.solve.events.native.bounds import event_search_view
+from stiffmbs.solve.events.native.bounds import begin_bands, event_search_view
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, keep_sides, note_sides
 from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
 from stiffmbs.solve.explicit.native.parameters import FIRST_STEP
@@ -28,6 +28,7 @@ def start_steps(x, c, s, m):
     if x.n_event_functions > 0:
         w = event_search_view(x.watch)
         copied(w.value_before, evaluate(s, SWITCH, x.t), w.n)
+        begin_bands(w)
         if at_zero(w.value_before, x.n_event_functions) > 0:
             _leave_zeros(x, w, s, m, k)
     x.started = 1

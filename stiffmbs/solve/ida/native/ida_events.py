@@ -10,6 +10,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.solve.events.native.bounds import (
     LOOKED_AT,
+    begin_bands,
     breakpoint_of,
     departed,
     event_search_view,
@@ -25,7 +26,6 @@ from stiffmbs.solve.events.native.bounds import (
     suspicious,
     time_of_difference,
     turned_arguments,
-    watch_for,
 )
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
 from stiffmbs.solve.events.native.layouts import ALWAYS, IN_THIS_STEP
@@ -71,10 +71,7 @@ def look_at_start(toward, stop, ida):
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
         keep_row(w, s, 0)
         copied(w.value_before, switches(w, s, c.returned), w.n)
-        for k in range(w.n_event_functions):
-            w.farthest[k] = abs(w.value_before[k])
-            if abs(w.value_before[k]) > w.band[k] > 0.0:
-                watch_for(w, k, 0.0)
+        begin_bands(w)
         go_straight(c, s, ahead)
         noted_rates(w.rate_before, w.value_before, switches(w, s, c.returned + ahead), ahead, w.n)
         if at_zero(w.value_before, w.n_event_functions) > 0:
