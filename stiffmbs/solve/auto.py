@@ -26,6 +26,7 @@ from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
 from .explicit.projected import TRAITS
 from .radau import radau
+from .reasons import Reason
 from .segments import Segment, joined
 from .solver import Traits
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory
@@ -78,14 +79,19 @@ class _AutoRun:
         self._messages: list[str] = []
 
     def run(self, start: InitialValues) -> Trajectory:
-        """Integrate all segments and join them; rerun with the implicit integrator alone if explicit steps fail.
+        """Integrate all segments and join them; rerun with the implicit integrator alone if steps fail.
 
-        They fail at singular poses, near which no integrator can start but which an integrator can pass.
+        Explicit steps fail at singular poses, near which no integrator can start but which an integrator can pass.
+        Steps of `radau` fail where constraints are nearly dependent; `bdf` passes most of these.
         """
         try:
             self._alternate(start)
         except _ExplicitFailure as failure:
-            self._rerun_implicit(start, str(failure))
+            self._implicit.confirm()
+            self._rerun_implicit(start, f"explicit integration {failure}")
+        last = self._segments[-1].trajectory
+        if last.solver == "radau" and Reason.NO_STEP.ended(last.message):
+            self._rerun_with_bdf(start, last)
         return self._joined()
 
     def _alternate(self, start: InitialValues) -> None:
@@ -135,12 +141,19 @@ class _AutoRun:
         )
         return _Left(reached.t, *integrator.on_constraints(reached))
 
-    def _rerun_implicit(self, start: InitialValues, message: str) -> None:
-        """Integrate the whole run with the implicit integrator, because explicit steps have failed."""
-        self._implicit.confirm()
+    def _rerun_with_bdf(self, start: InitialValues, stopped: Trajectory) -> None:
+        """Integrate the whole run with `bdf`, because no step of `radau` succeeds; keep the run that goes further."""
+        kept = self._segments, self._messages
+        self._implicit.change("bdf")
+        self._rerun_implicit(start, f"no step of radau succeeds at t = {stopped.t[-1]:.4g} s")
+        if self._segments[-1].trajectory.t[-1] < stopped.t[-1]:
+            self._segments, self._messages = kept
+
+    def _rerun_implicit(self, start: InitialValues, cause: str) -> None:
+        """Integrate the whole run with the implicit integrator."""
         trajectory = bdf.integrated(self._implicit.integrator, start, self._grid, self._watch)
         self._segments = [Segment(replace(trajectory, solver=self._implicit.name), self._implicit.traits())]
-        self._messages = [f"{self._implicit.name}, because explicit integration {message}"]
+        self._messages = [f"{self._implicit.name}, because {cause}"]
 
     def _switch(self, switch: Switch) -> None:
         """Continue with the implicit integrator."""

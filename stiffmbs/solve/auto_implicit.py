@@ -57,6 +57,11 @@ class Implicit:
         if not self._final:
             self._become(self.name or "bdf", True)
 
+    def change(self, name: str) -> None:
+        """Change to another integrator, without steps at first."""
+        self._become(name, True)
+        self.__dict__.pop("integrator", None)
+
     def _become(self, name: str, final: bool) -> None:
         self.name, self._final = name, final
         self.cost, self.growth, self.start = self._estimated(name or "bdf", final)

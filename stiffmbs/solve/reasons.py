@@ -50,9 +50,18 @@ class Reason(Enum):
     def __init__(self, what: str, remedy: str) -> None:
         self.what, self.remedy = what, remedy
 
+    @property
+    def kind(self) -> str:
+        """Kind of the notes of this reason."""
+        return self.name.lower().replace("_", "-")
+
     def of(self, message: str, element: str = "") -> Note:
         """Return the message of a run that ended for this reason."""
-        return Note(message, self.name.lower().replace("_", "-"), element, self.remedy, Severity.STOP)
+        return Note(message, self.kind, element, self.remedy, Severity.STOP)
+
+    def ended(self, message: str) -> bool:
+        """Return True if a run with this message ended for this reason."""
+        return isinstance(message, Note) and message.kind == self.kind
 
 
 OF_STATUS = {
