@@ -8,6 +8,7 @@ import yaml
 
 import stiffmbs
 from stiffmbs.analyses.run import prepare
+from stiffmbs.compile.machine.native.statuses import NOT_FINITE
 from stiffmbs.dynamics.friction_loads import ambiguous_loads
 
 SOLVERS = "bdf", "radau", "projected"
@@ -99,3 +100,14 @@ def test_a_stop_where_loads_have_no_further_solution_names_the_friction(solver, 
 def test_a_third_of_the_friction_has_no_note(solver):
     solution = stiffmbs.run(turned(1 / 3), solver=solver, rtol=1e-6, errors=False)
     assert solution.message == "completed"
+
+
+def test_an_overflow_is_no_start_of_the_next_iteration():
+    """Rejected explicit steps leave huge loads; all later accelerations failed, also those at the start."""
+    job = prepare(turned())
+    dynamics, start = job.dynamics, job.start
+    dynamics.state.q[:], dynamics.state.u[:], dynamics.state.lam[:] = start.q, start.u, 1e307
+    assert dynamics.accelerate(0.0)[0] == NOT_FINITE
+    status, acceleration = dynamics.accelerate(0.0)
+    assert status == 0
+    assert acceleration == pytest.approx(start.acceleration, rel=1e-9)

@@ -163,6 +163,9 @@ def to_accelerations(s, m, t):
         values = evaluate(s, ACCELERATION, t)
         status = _solved(s, m.accelerations, m.acceleration_factors, values)
         if status < 0:
+            if status == NOT_FINITE:  # no start of the next iteration, at another state
+                for k in range(s.n_c):
+                    s.lam[k] = 0.0
             return _algebraic_back(s, m, NO_BALANCE if iterated and status == SINGULAR else status)
         before = moved
         moved = _algebraic_moved(s, m, e, f)
