@@ -1,5 +1,6 @@
 """Files that a scene names: a study's store, what a process keeps, and the cache of scenes all follow from their content."""
 
+import importlib
 import os
 import re
 import shutil
@@ -7,6 +8,7 @@ import subprocess
 import sys
 import textwrap
 
+import numpy as np
 import pytest
 
 from stiffmbs import InputError, sweep
@@ -83,6 +85,26 @@ def test_code_that_was_edited_after_it_was_loaded_is_told_from_its_file():
 
     assert digests_of_code([law(1.0)]) == digests_of_code([law(1.0)])
     assert digests_of_code([law(1.0)]) != digests_of_code([law(2.0)])
+
+
+def test_types_of_numbers_in_code_have_a_digest():
+    """The type numpy.bool in a table of a function was a traceback."""
+
+    types = {np.bool_: 1.0, np.float64: 2.0}
+
+    def law(x):
+        return x * types[type(x)]
+
+    assert digests_of_code([law])
+
+
+def test_packages_of_an_extended_environment_are_not_the_users_code(tmp_path, monkeypatch):
+    folder = tmp_path / "other" / "lib" / "site-packages"
+    folder.mkdir(parents=True)
+    (folder / "installed_elsewhere.py").write_text("def law(x):\n    return x\n")
+    monkeypatch.syspath_prepend(folder)
+    law = importlib.import_module("installed_elsewhere").law
+    assert digests_of_code([lambda x: law(x)]).keys() == digests_of_code([lambda x: x]).keys()
 
 
 def test_a_file_that_cases_name_is_part_of_the_store(tmp_path):

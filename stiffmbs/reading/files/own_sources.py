@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from ...model.scene import Scene
 
 PACKAGE = __name__.partition(".")[0]
+PACKAGES = frozenset({"site-packages", "dist-packages"})
+"""Folders of installed packages, also of another environment that this one extends."""
 CODE = "code of "
 """Prefix of a file name for the digest of its loaded code."""
 PLAIN = (int, float, complex, str, bytes, bool, type(None))
@@ -114,7 +116,8 @@ class _Walk:
         file = getattr(sys.modules.get(name), "__file__", None)
         if not file or top == PACKAGE:
             return False
-        return not any(Path(file).is_relative_to(place) for place in _installed())
+        path = Path(file)
+        return PACKAGES.isdisjoint(path.parts) and not any(path.is_relative_to(place) for place in _installed())
 
 
 @functools.cache
@@ -165,6 +168,6 @@ def _plain(found: Any) -> str:
         return repr(sorted(_plain(part) for part in found))
     if isinstance(found, dict):
         return repr([(_plain(key), _plain(value)) for key, value in found.items()])
-    if hasattr(found, "tobytes") and hasattr(found, "dtype"):
+    if hasattr(found, "tobytes") and hasattr(found, "dtype") and not isinstance(found, type):
         return repr((str(found.dtype), found.shape, hashlib.sha256(found.tobytes()).hexdigest()))
     return repr(found.__name__) if isinstance(found, BuiltinFunctionType) else ""
