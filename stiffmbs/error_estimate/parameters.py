@@ -15,7 +15,9 @@ class EstimateParameters:
     """
 
     work: float = 2e5
-    """Steps (of radau: points of steps) times unknowns up to which every run estimates its error, 0.2 s or a little more."""
+    """Steps (of radau: points of steps) times unknowns up to which every run estimates its error, 0.2 s or a little more.
+
+    A restart counts as `stiffmbs.solve.recorded_steps.RESTART` of them."""
     difference: float = 1e-7
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""
     beside: float = 1e-3

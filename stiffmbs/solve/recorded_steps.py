@@ -8,6 +8,9 @@ import numpy as np
 
 from ..compile.equations import Equations
 
+RESTART = 1000
+"""Rows times unknowns whose estimate of errors takes as much time as that of a restart, whatever its unknowns."""
+
 
 @dataclass(frozen=True)
 class Piece:
@@ -40,9 +43,9 @@ class _Open:
 
 @dataclass
 class StepRecorder:
-    """Steps of one run. `most`: largest number of rows times unknowns; beyond it nothing is kept and `full` is True.
+    """Steps of one run. `most`: largest number of rows times unknowns, and of restarts times `RESTART`.
 
-    `points`: rows per step.
+    Beyond it nothing is kept and `full` is True. `points`: rows per step.
     """
 
     most: float
@@ -55,17 +58,22 @@ class StepRecorder:
         """Start a piece with the row of a start."""
         if not self.full:
             self._pieces.append(_Open([row[None]]))
+            self._count(RESTART)
 
     def extend(self, rows: np.ndarray, fired: tuple[int, ...]) -> None:
         """Append the rows of steps, after which event functions fired."""
-        self._numbers += rows.size // 2
-        if self._numbers > self.most:
-            self.full = True
-            self._pieces.clear()
-        elif self._pieces:
+        self._count(rows.size // 2)
+        if self._pieces:
             if len(rows):
                 self._pieces[-1].rows.append(rows)
             self._pieces[-1].fired = fired
+
+    def _count(self, numbers: int) -> None:
+        """Add to the work of the estimate; keep nothing if it exceeds the largest one."""
+        self._numbers += numbers
+        if self._numbers > self.most:
+            self.full = True
+            self._pieces.clear()
 
     def pieces(self, equations: Equations) -> tuple[Piece, ...]:
         """Return the pieces of nonzero length, in all coordinates of the system."""

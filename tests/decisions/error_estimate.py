@@ -16,7 +16,7 @@ from stiffmbs.error_estimate.evaluated import evaluated
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.results.error_bars import ErrorBar
-from stiffmbs.solve.recorded_steps import Piece
+from stiffmbs.solve.recorded_steps import Piece, StepRecorder
 from stiffmbs.tuning import changed_values
 from tests.decisions.common import Record
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
@@ -142,6 +142,15 @@ def next_rtol(excess, rtol=1e-4):
     return Accuracy({"forces": "1 %"})._following(rtol, excess)
 
 
+def restarts_that_are_kept():
+    """Return the number of restarts after which the recorded steps are too much work."""
+    recorder, restarts = StepRecorder(1e5), 0
+    while not recorder.full:
+        recorder.begin(np.zeros(4))
+        restarts += 1
+    return restarts
+
+
 DECISIONS = {
     "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded,
     "error_estimate.difference": largest_displacement,
@@ -164,6 +173,7 @@ DECISIONS = {
     "error_estimate.slope": lambda: next_rtol(100.0),
     "error_estimate.numbers_at_once": lambda: transport.at_once(100),
     "error_estimate.second": lambda: of_runs._second(RunSettings(rtol=1e-6)),
+    "solve.recorded_steps:RESTART": restarts_that_are_kept,
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
 }  # fmt: skip
 EXPECTED = {
@@ -187,5 +197,6 @@ EXPECTED = {
     "error_estimate.slope": 8.549879733383488e-08,
     "error_estimate.numbers_at_once": 400,
     "error_estimate.second": 0.1,
+    "solve.recorded_steps:RESTART": 101,
     "analyses.errors:MOST_REPEATS": 3,
 }  # fmt: skip
