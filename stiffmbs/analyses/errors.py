@@ -78,11 +78,11 @@ def _steps(trajectory: Trajectory) -> int:
 
 
 def _work(job: Job, trajectory: Trajectory) -> float:
-    """Return the work of a second run: steps times unknowns; infinite if recorded steps have been too many."""
+    """Return the work of a second run, evaluations of the equations times unknowns; infinite if recorded steps have been too many."""
     system = job.dynamics.system
     if trajectory.statistics.get("jacobians") and "projected" not in trajectory.solver:
         return np.inf
-    return _steps(trajectory) * (system.n_q + system.n_u + system.n_c)
+    return _steps(trajectory) * DOP853.stages * (system.n_q + system.n_u + system.n_c)
 
 
 def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:

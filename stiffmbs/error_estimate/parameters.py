@@ -14,10 +14,11 @@ class EstimateParameters:
     Source: ``python -m tests.stress.self_assessment``.
     """
 
-    work: float = 2e5
-    """Steps (of radau: points of steps) times unknowns up to which every run estimates its error, 0.2 s or a little more.
+    work: float = 2.5e6
+    """Evaluations of the equations times unknowns up to which every run estimates its error, a second or a little more.
 
-    A restart counts as `stiffmbs.solve.recorded_steps.RESTART` of them."""
+    Each step (of radau: point of a step) is linearised by two of them for each degree of freedom. A restart counts as
+    `stiffmbs.solve.recorded_steps.RESTART`."""
     difference: float = 1e-7
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""
     beside: float = 1e-3

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..compile.equations import Equations
 
-RESTART = 1000
-"""Rows times unknowns whose estimate of errors takes as much time as that of a restart, whatever its unknowns."""
+RESTART = 5000
+"""Work of the estimate of errors at a restart: evaluations of the equations times unknowns."""
 
 
 @dataclass(frozen=True)
@@ -43,16 +43,19 @@ class _Open:
 
 @dataclass
 class StepRecorder:
-    """Steps of one run. `most`: largest number of rows times unknowns, and of restarts times `RESTART`.
+    """Steps of one run.
 
-    Beyond it nothing is kept and `full` is True. `points`: rows per step.
+    - `most`: largest work of the estimate of errors; beyond it nothing is kept and `full` is True.
+    - `points`: rows per step.
+    - `of_a_row`: work of the estimate for a row.
     """
 
     most: float
     points: int = 1
+    of_a_row: int = 1
     full: bool = False
     _pieces: list[_Open] = field(default_factory=list)
-    _numbers: int = 0
+    _work: int = 0
 
     def begin(self, row: np.ndarray) -> None:
         """Start a piece with the row of a start."""
@@ -62,16 +65,16 @@ class StepRecorder:
 
     def extend(self, rows: np.ndarray, fired: tuple[int, ...]) -> None:
         """Append the rows of steps, after which event functions fired."""
-        self._count(rows.size // 2)
+        self._count(len(rows) * self.of_a_row)
         if self._pieces:
             if len(rows):
                 self._pieces[-1].rows.append(rows)
             self._pieces[-1].fired = fired
 
-    def _count(self, numbers: int) -> None:
+    def _count(self, work: int) -> None:
         """Add to the work of the estimate; keep nothing if it exceeds the largest one."""
-        self._numbers += numbers
-        if self._numbers > self.most:
+        self._work += work
+        if self._work > self.most:
             self.full = True
             self._pieces.clear()
 

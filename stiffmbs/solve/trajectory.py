@@ -85,8 +85,8 @@ class Grid:
 
     Solvers restart at `stops`, as at input breakpoints: a step ends just before a breakpoint, where every formula has
     its earlier side, and the next one begins just after it. Output at a breakpoint is the state just before it, output at
-    the start of a run that just after it. `recorded`: steps times unknowns up to which implicit solvers record their
-    steps for an estimate of the errors.
+    the start of a run that just after it. `recorded`: work of an estimate of the errors up to which implicit
+    solvers record their steps for it, evaluations of the equations times unknowns.
     """
 
     start: float

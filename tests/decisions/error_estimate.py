@@ -144,7 +144,7 @@ def next_rtol(excess, rtol=1e-4):
 
 def restarts_that_are_kept():
     """Return the number of restarts after which the recorded steps are too much work."""
-    recorder, restarts = StepRecorder(1e5), 0
+    recorder, restarts = StepRecorder(5e5), 0
     while not recorder.full:
         recorder.begin(np.zeros(4))
         restarts += 1
@@ -177,7 +177,7 @@ DECISIONS = {
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
 }  # fmt: skip
 EXPECTED = {
-    "error_estimate.work": 200000.0,
+    "error_estimate.work": 2500000.0,
     "error_estimate.difference": 1e-07,
     "error_estimate.beside": 10, "error_estimate.points": 6,
     "error_estimate.uneven": 14,

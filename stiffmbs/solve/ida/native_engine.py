@@ -105,14 +105,17 @@ class NativeEngine:
         self._record_start(t)
 
     def record_steps(self, most: float) -> None:
-        """Record the steps of the next run, at most `most` steps times unknowns, for an estimate of its errors."""
+        """Record the steps of the next run for an estimate of its errors, up to a work of `most`."""
         places = AT_THE_END
         if self._by_radau:
             from ..radau.memory import CHOSEN_FROM
 
             places = radau(max(CHOSEN_FROM)).nodes[:-1]
         self.ida.keep_steps(True, places)
-        self.recorder = StepRecorder(most, 1 + len(places))
+        system = self._equations.system
+        free = max(system.n_u - int(system.active.sum()), 0)
+        evaluations = 1 + 2 * free + system.n_q - system.n_pose  # linearised equations are differences
+        self.recorder = StepRecorder(most, 1 + len(places), evaluations * (system.n_q + system.n_u))
 
     def recorded(self) -> tuple[Piece, ...]:
         """Return the recorded steps, none if there were too many, and stop recording."""
