@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from .error_bars import UNKNOWN, ErrorBar, between
 from .scales import ROUNDING, kind_of
+
+AT_ONCE = 1_000_000
+"""Numbers in the values of several channels that are examined together, 8 MB."""
 
 
 @dataclass(frozen=True)
@@ -27,33 +31,52 @@ class ChannelErrors:
 
 def bars(times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors]) -> dict[str, ErrorBar]:
     """Return the error bars of the channels of a run from the errors along its mechanisms, one after the other in `parts`."""
+    shown = {name: values for name, values in channels.items() if not name.startswith("constraint.")}
+    sampled = _between_outputs(times, shown, parts)
     found = {}
-    for name, values in channels.items():
-        if name.startswith("constraint."):
-            continue
+    for name, values in shown.items():
         error = np.sum([part.at(times, name) for part in parts], axis=0)
         over_time = float(np.nanmax(np.abs(error), initial=0.0))
-        ends = [_peak(sign * values, error, times, parts, name, sign) for sign in (-1.0, 1.0)]
-        (least, sampled_least), (greatest, sampled_greatest) = ends
-        found[name] = ErrorBar(over_time, least, greatest, sampled_least, sampled_greatest)
+        if name not in sampled:
+            found[name] = ErrorBar(over_time, *4 * [np.nan])
+            continue
+        ends = int(np.nanargmin(values)), int(np.nanargmax(values))
+        own = [max(abs(float(error[end])), ROUNDING * abs(float(values[end]))) for end in ends]
+        least, greatest = sampled[name]
+        found[name] = ErrorBar(over_time, own[0] + least, own[1] + greatest, least, greatest)
     return found
 
 
-def _peak(
-    values: np.ndarray, error: np.ndarray, times: np.ndarray, parts: Sequence[ChannelErrors], name: str, sign: float
-) -> tuple[float, float]:
-    """Return the error bar of the greatest value, and the part of it between output times."""
-    if np.isnan(values).all():
-        return np.nan, np.nan
-    own = max(parts, key=lambda part: np.ptp(part.values[name]))  # the mechanism of the channel
-    t = np.sort(np.concatenate([times, own.t]))
-    t = t[np.diff(t, prepend=-np.inf) > 0.0]
-    fine, at = np.interp(t, own.t, sign * own.values[name]), np.searchsorted(t, times)
-    fine[at] = values
-    sampled = between(t, fine, at, own.restarts)
-    top = int(np.nanargmax(values))
-    peak = max(abs(float(error[top])), ROUNDING * abs(float(values[top])))
-    return peak + sampled, sampled
+def _between_outputs(
+    times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors]
+) -> dict[str, tuple[float, float]]:
+    """Return by how much each channel falls below its least value, and exceeds its greatest one, between output times."""
+    own: list[list[str]] = [[] for _ in parts]  # the channels of each mechanism
+    for name, values in channels.items():
+        if not np.isnan(values).all():
+            own[max(range(len(parts)), key=lambda k, name=name: np.ptp(parts[k].values[name]))].append(name)  # type: ignore[misc]
+    found: dict[str, tuple[float, float]] = {}
+    for part, names in zip(parts, own, strict=True):
+        t = np.sort(np.concatenate([times, part.t]))
+        t = t[np.diff(t, prepend=-np.inf) > 0.0]
+        at = np.searchsorted(t, times)
+        rows = ((np.interp(t, part.t, part.values[name]), channels[name]) for name in names)
+        found |= dict(zip(names, _both_ends(t, rows, at, part.restarts), strict=True))
+    return found
+
+
+def _both_ends(
+    t: np.ndarray, rows: Iterable[tuple[np.ndarray, np.ndarray]], at: np.ndarray, restarts: np.ndarray
+) -> Iterator[tuple[float, float]]:
+    """Return the excesses of `between` for the least and the greatest value of channels.
+
+    `rows`: values at the times `t`, and those at the times of the outputs, `t[at]`.
+    """
+    remaining = iter(rows)
+    while some := list(islice(remaining, at_once(len(t)))):
+        fine = np.array([values for values, _ in some])
+        fine[:, at] = [values for _, values in some]
+        yield from zip(between(t, -fine, at, restarts).tolist(), between(t, fine, at, restarts).tolist(), strict=True)
 
 
 def bars_by_difference(
@@ -65,20 +88,24 @@ def bars_by_difference(
     `at`: places of the times of the run among `times`. `part`: error of the other run in the error of this one, as expected.
     `restarts`: times from which on channels may have jumped, s.
     """
-    found = {}
-    for name, values in channels.items():
-        if name.startswith("constraint."):
-            continue
-        error = np.abs(difference(name, values, others[name][at])) / abs(1.0 - part)
-        if np.isnan(error).all():
-            found[name] = UNKNOWN
-            continue
-        fine = others[name].copy()
-        fine[at] = values
-        sampled = [between(times, sign * fine, at, restarts) for sign in (-1.0, 1.0)]
+    errors = {
+        name: np.abs(difference(name, values, others[name][at])) / abs(1.0 - part)
+        for name, values in channels.items()
+        if not name.startswith("constraint.")
+    }
+    found = dict.fromkeys(errors, UNKNOWN)
+    known = [name for name, error in errors.items() if not np.isnan(error).all()]
+    ends = _both_ends(times, ((others[name], channels[name]) for name in known), at, restarts)
+    for name, sampled in zip(known, ends, strict=True):
+        error, values = errors[name], channels[name]
         least, greatest = (float(error[peak(values)]) for peak in (np.nanargmin, np.nanargmax))
         found[name] = ErrorBar(float(np.nanmax(error)), least + sampled[0], greatest + sampled[1], *sampled)
     return found
+
+
+def at_once(numbers: int) -> int:
+    """Return how many channels of some numbers are examined together."""
+    return max(1, AT_ONCE // numbers)
 
 
 def difference(name: str, values: np.ndarray, others: np.ndarray) -> np.ndarray:

@@ -76,40 +76,49 @@ def _bar_of_maximum(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine
     if others and not reaching:
         return np.nan, np.nan
     solver = SAFETY * max([0.0, *(abs(values[at] - float(np.nanmax(o))) for o in reaching)])
-    sampled = between(*fine) if fine else 0.0
+    sampled = float(between(*fine)) if fine else 0.0
     return solver + sampled, sampled
 
 
-def between(times: np.ndarray, values: np.ndarray, at: np.ndarray, restarts: np.ndarray = NO_RESTARTS) -> float:
+def between(times: np.ndarray, values: np.ndarray, at: np.ndarray, restarts: np.ndarray = NO_RESTARTS) -> np.ndarray:
     """Return the excess of a run at many instants over its values at the reported ones, with parabolas at its peaks.
 
     All peaks between two instants count, as any of them may be the highest. Where values may jump or have a kink, each side
     is continued up to there by its own slope.
 
-    `times`, `values` of shape (n,). `at`: indices of the reported instants. `restarts`: times from which on values belong to
-    the motion after a jump or kink, s.
+    `times` of shape (n,), `values` of shape (n,) or (channels, n); the result is a number or of shape (channels,). `at`:
+    indices of the reported instants. `restarts`: times from which on values belong to the motion after a jump or kink, s.
     """
-    highest = float(np.nanmax(values[at]))
+    if values.ndim == 1:
+        return between(times, values[None], at, restarts)[0]
+    highest, count = np.nanmax(values[:, at], axis=1), len(values)
     piece = np.searchsorted(restarts, times, side="right")
-    k = 1 + np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:]) & (piece[:-2] == piece[2:]))
+    ahead = values[:, 1:] >= values[:, :-1]
+    peaks = ahead[:, :-1] & (values[:, 1:-1] >= values[:, 2:]) & (piece[:-2] == piece[2:])
+    row, k = np.nonzero(peaks)
+    k += 1
+    here = values[row, k]
     before, after = times[k - 1] - times[k], times[k + 1] - times[k]
-    fall, rise = (values[k - 1] - values[k]) / before, (values[k + 1] - values[k]) / after
+    fall, rise = (values[row, k - 1] - here) / before, (values[row, k + 1] - here) / after
     bend = np.minimum((rise - fall) / (after - before), -np.finfo(float).tiny)  # a flat peak has no curvature
     slope = fall - bend * before
     last = np.flatnonzero(np.diff(piece))
     sides = [(last, -1, restarts[piece[last]]), (last + 1, 1, restarts[piece[last + 1] - 1])]
-    tops = [slope**2 / (-4 * bend), *(_continued(times, values, *side) for side in sides)]
-    k, top = np.concatenate([k, last, last + 1]), np.concatenate(tops)
-    around = [np.clip(k + offset, 0, len(values) - 1) for offset in (-2, -1, 1, 2)]
-    lowest = np.nanmin([np.where(piece[n] == piece[k], values[n], values[k]) for n in around], axis=0)
-    top = np.minimum(top, values[k] - lowest)  # limit at jumps
-    shown = float(np.nanmax(values)) - highest
-    reached = values[k] - highest
-    return max(FINER * shown, float(np.nanmax(np.where(reached > 0, FINER, 1.0) * reached + SAFETY * top, initial=0.0)))
+    tops = [slope**2 / (-4 * bend), *(_continued(times, values, *side).ravel() for side in sides)]
+    row = np.concatenate([row, *2 * [np.repeat(np.arange(count), len(last))]])
+    k, top = np.concatenate([k, np.tile(last, count), np.tile(last + 1, count)]), np.concatenate(tops)
+    here = values[row, k]
+    around = [np.clip(k + offset, 0, len(times) - 1) for offset in (-2, -1, 1, 2)]
+    lowest = np.nanmin([np.where(piece[n] == piece[k], values[row, n], here) for n in around], axis=0)
+    top = np.minimum(top, here - lowest)  # limit at jumps
+    reached = here - highest[row]
+    found = np.maximum(FINER * (np.nanmax(values, axis=1) - highest), 0.0)
+    np.fmax.at(found, row, np.where(reached > 0, FINER, 1.0) * reached + SAFETY * top)
+    return found
 
 
 def _continued(times: np.ndarray, values: np.ndarray, k: np.ndarray, inner: int, end: np.ndarray) -> np.ndarray:
     """Return the excess over the values at k of their continuation to an end, by the slope from their inner neighbours."""
-    n = np.clip(k + inner, 0, len(values) - 1)
-    slope = np.where(n == k, 0.0, (values[k] - values[n]) / np.where(n == k, 1.0, times[k] - times[n]))
+    n = np.clip(k + inner, 0, len(times) - 1)
+    slope = np.where(n == k, 0.0, (values[:, k] - values[:, n]) / np.where(n == k, 1.0, times[k] - times[n]))
     return np.maximum(slope * (end - times[k]), 0.0)

@@ -9,6 +9,7 @@ import numpy as np
 from stiffmbs.errors import InputError
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.results import (
+    channel_errors,
     digits,
     energy_balance,
     energy_balance_notes,
@@ -132,6 +133,7 @@ def most_reliable_digits():
 
 
 DECISIONS = {
+    "results.channel_errors:AT_ONCE": lambda: channel_errors.at_once(100),
     "results.digits:MOST_DIGITS": most_reliable_digits,
     "results.energy_balance:MOST_INSTANTS": instants_of_a_balance,
     "results.energy_balance_notes:BROKEN": largest_energy_without_a_check,
@@ -154,6 +156,7 @@ DECISIONS = {
     ),
 }  # fmt: skip
 EXPECTED = {
+    "results.channel_errors:AT_ONCE": 10_000,
     "results.digits:MOST_DIGITS": 12,
     "results.energy_balance:MOST_INSTANTS": 90, "results.energy_balance_notes:BROKEN": 27, "results.energy_balance_notes:PER_TOLERANCE": 0.1,
     "results.energy_balance_notes:OF_TOLERANCE": 1e-5,
