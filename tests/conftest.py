@@ -9,6 +9,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as in the command; waiting
 import gc
 import sys
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +18,16 @@ from hypothesis import HealthCheck, settings
 from scipy.integrate import solve_ivp
 
 from stiffmbs.commands.starting import scene_files
+from stiffmbs.error_estimate.parameters import ESTIMATE
 from stiffmbs.interrupts import NEW_OBJECTS
+from stiffmbs.tuning import parameters_of
 
-EXAMPLES = Path(__file__).parent.parent / "examples"
+TESTS = Path(__file__).parent
+EXAMPLES = TESTS.parent / "examples"
+WITHOUT_ESTIMATES = frozenset(
+    ("adams", "beams", "elements", "events", "flexible_bodies", "presolve", "run_checks", "solve", "tyres")
+)
+"""Folders of tests whose runs have no estimate of errors unless they ask for it."""
 EXAMPLE_SCENES = scene_files()
 """All example scenes by name, those in folders by theme too."""
 G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
@@ -60,6 +68,18 @@ def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> 
 def pytest_sessionfinish() -> None:
     """Nor is it worth the time to look through all of them at the end."""
     gc.freeze()
+
+
+@pytest.fixture(autouse=True)
+def estimates_where_they_are_asked_for(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Estimates of errors take a third of the time of all tests: tests of solvers and elements have them with `errors=True`."""
+    if request.path.relative_to(TESTS).parts[0] not in WITHOUT_ESTIMATES:
+        yield
+        return
+    defaults, usual = parameters_of(ESTIMATE), ESTIMATE.work
+    object.__setattr__(defaults, "work", 0.0)
+    yield
+    object.__setattr__(defaults, "work", usual)
 
 
 @pytest.fixture(scope="session")
