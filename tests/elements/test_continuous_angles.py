@@ -84,7 +84,7 @@ def test_a_request_counts_as_a_torsion_spring_does(settings, follows):
     model.request("sum", "az(wheel) + 2*az(wheel, ground)")
     w, apart = np.sqrt(1e-3), 0.3 if follows else np.pi + OF_COUNTER
     for points in (2, 11, 1001):
-        solution = stiffmbs.run(model, duration=1.0, points=points, **settings)
+        solution = stiffmbs.run(model, duration=1.0, points=points, errors=True, **settings)
         assert np.allclose(solution["turned"], -solution["spring.tz"] / 1e-3, rtol=0, atol=1e-6)
         assert np.allclose(solution["turned"], 3000 / w * np.sin(w * solution.time), rtol=0, atol=apart)
         assert np.allclose(solution["sum"], 3 * solution["turned"], rtol=1e-12)
