@@ -13,7 +13,7 @@ from ..notes import NoteKind, Severity
 from ..results.estimate import ErrorEstimate
 from ..solve.explicit import DOP853
 from ..solve.settings import changed, traits_of
-from ..solve.trajectory import Outcome, ProgressCallback, Trajectory
+from ..solve.trajectory import Outcome, ProgressCallback, Recording, Trajectory
 from ..tuning import in_use
 
 if TYPE_CHECKING:
@@ -44,7 +44,8 @@ def recording(job: Job) -> Job:
     asked = True if job.settings.accuracy else job.settings.errors
     with in_use(job.settings.tuning):
         most = {True: np.inf, None: ESTIMATE.work, False: 0.0}[asked]
-    return replace(job, grid=replace(job.grid, recorded=most))
+        recorded = Recording(most, ESTIMATE.restart)
+    return replace(job, grid=replace(job.grid, recorded=recorded))
 
 
 def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
@@ -59,7 +60,7 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
             return estimated(solution, job.data, job.dynamics, job.start, job.subsystems, trajectory, job.settings)
         if why := _without_estimate(job):
             return _without(solution, f"not estimated for {why}; --verify compares with other runs")
-        if _work(job, trajectory) <= job.grid.recorded:
+        if _work(job, trajectory) <= job.grid.recorded.most:
             return _by_second_run(job, trajectory, solution)
     return _without(
         solution, f"not estimated: that takes some time for {_steps(trajectory)} steps of this model; {ASK}"
@@ -91,6 +92,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     Where breakpoints limit the steps, both runs may take the same ones; the tolerance is then smaller still.
     """
     from ..error_estimate.estimate import with_bars
+    from ..error_estimate.parameters import ESTIMATE
     from ..results.channel_errors import bars_by_difference
     from .run import finished
 
@@ -101,7 +103,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     for repeats in range(1, MOST_REPEATS + 1):
         settings = _with_errors(job.settings, part**repeats)
         try:
-            other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=0.0, times=times)))
+            other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=Recording(), times=times)))
         except StiffmbsError as error:
             return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} failed: {error}; use --verify")
         if part > 1.0 or _steps(other.trajectory) > steps * part ** (-0.5 / DOP853.order):
@@ -110,7 +112,9 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
             break
     if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")
-    found = bars_by_difference(times, at, solution.channels, other.channels, part**repeats, breakpoints + grid.aside)
+    found = bars_by_difference(
+        times, at, solution.channels, other.channels, part**repeats, breakpoints + grid.aside, ESTIMATE.numbers_at_once
+    )
     return with_bars(replace(solution, errors=found), job.settings, system.size)
 
 

@@ -207,7 +207,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
         provenance=provenance_of(job.data, job.settings, state=job.start_from),
         turns=turns_of(job.dynamics.system, rows.q),
     )
-    return assessed(job, trajectory, solution) if job.grid.recorded else solution
+    return assessed(job, trajectory, solution) if job.grid.recorded.most else solution
 
 
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:

@@ -66,7 +66,9 @@ def estimated(
         sentence = f"not estimated: {error}; --verify compares with other runs"
         return replace(solution, estimate=ErrorEstimate("none", sentence))
     return with_bars(
-        replace(solution, errors=bars(solution.time, solution.channels, of_channels)), settings, dynamics.system.size
+        replace(solution, errors=bars(solution.time, solution.channels, of_channels, ESTIMATE.numbers_at_once)),
+        settings,
+        dynamics.system.size,
     )
 
 

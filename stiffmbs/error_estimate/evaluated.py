@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -35,13 +35,9 @@ class Evaluated:
 
     def at(self, chosen: np.ndarray | slice) -> Evaluated:
         """Return some of the states."""
-        return replace(self.without_rows(chosen), rows=self.rows.at(chosen))
-
-    def without_rows(self, chosen: np.ndarray | slice) -> Evaluated:
-        """Return some of the states, without their output rows."""
         return Evaluated(
             self.t[chosen], self.q[chosen], self.u[chosen], self.acceleration[chosen], self.q_rates[chosen],
-            self.rows.at(slice(0)),
+            self.rows.at(chosen),
         )  # fmt: skip
 
 

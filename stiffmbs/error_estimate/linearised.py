@@ -98,7 +98,7 @@ def _differences(dynamics: Dynamics, at: Evaluated, moves: np.ndarray) -> tuple[
     count, n, full = moves.shape
     if not n:
         return np.zeros((count, full, n)), np.zeros((count, full, n))
-    origins = at.without_rows(np.repeat(np.arange(count), n))
+    origins = at.at(np.repeat(np.arange(count), n))
     there = evaluated(dynamics, origins.t, *displaced(dynamics, origins, part * moves.reshape(count * n, full)))
     changes = state_changes(system, origins, there), rate_changes(system, origins, there)
     basis, rates = (each.reshape(count, n, full).transpose(0, 2, 1) / part for each in changes)

@@ -17,8 +17,9 @@ class EstimateParameters:
     work: float = 2.5e6
     """Evaluations of the equations times unknowns up to which every run estimates its error, a second or a little more.
 
-    Each step (of radau: point of a step) is linearised by two of them for each degree of freedom. A restart counts as
-    `stiffmbs.solve.recorded_steps.RESTART`."""
+    Each step (of radau: point of a step) is linearised by two of them for each degree of freedom."""
+    restart: float = 5e3
+    """Work at a restart in the same unit, some 2 ms, whatever the unknowns."""
     difference: float = 1e-7
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""
     beside: float = 1e-3

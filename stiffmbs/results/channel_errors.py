@@ -11,9 +11,6 @@ import numpy as np
 from .error_bars import UNKNOWN, ErrorBar, between
 from .scales import ROUNDING, kind_of
 
-AT_ONCE = 1_000_000
-"""Numbers in the values of several channels that are examined together, 8 MB."""
-
 
 @dataclass(frozen=True)
 class ChannelErrors:
@@ -29,10 +26,15 @@ class ChannelErrors:
         return np.interp(times, self.t, self.errors[channel])
 
 
-def bars(times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors]) -> dict[str, ErrorBar]:
-    """Return the error bars of the channels of a run from the errors along its mechanisms, one after the other in `parts`."""
+def bars(
+    times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors], numbers_at_once: int
+) -> dict[str, ErrorBar]:
+    """Return the error bars of the channels of a run from the errors along its mechanisms, one after the other in `parts`.
+
+    `numbers_at_once`: numbers in the values of the channels that are examined together.
+    """
     shown = {name: values for name, values in channels.items() if not name.startswith("constraint.")}
-    sampled = _between_outputs(times, shown, parts)
+    sampled = _between_outputs(times, shown, parts, numbers_at_once)
     found = {}
     for name, values in shown.items():
         error = np.sum([part.at(times, name) for part in parts], axis=0)
@@ -48,32 +50,37 @@ def bars(times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[Cha
 
 
 def _between_outputs(
-    times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors]
+    times: np.ndarray, channels: dict[str, np.ndarray], parts: Sequence[ChannelErrors], numbers_at_once: int
 ) -> dict[str, tuple[float, float]]:
     """Return by how much each channel falls below its least value, and exceeds its greatest one, between output times."""
     own: list[list[str]] = [[] for _ in parts]  # the channels of each mechanism
     for name, values in channels.items():
         if not np.isnan(values).all():
-            own[max(range(len(parts)), key=lambda k, name=name: np.ptp(parts[k].values[name]))].append(name)  # type: ignore[misc]
+            sizes = [float(np.ptp(part.values[name])) for part in parts]
+            own[sizes.index(max(sizes))].append(name)
     found: dict[str, tuple[float, float]] = {}
     for part, names in zip(parts, own, strict=True):
         t = np.sort(np.concatenate([times, part.t]))
         t = t[np.diff(t, prepend=-np.inf) > 0.0]
         at = np.searchsorted(t, times)
         rows = ((np.interp(t, part.t, part.values[name]), channels[name]) for name in names)
-        found |= dict(zip(names, _both_ends(t, rows, at, part.restarts), strict=True))
+        found |= dict(zip(names, _both_ends(t, rows, at, part.restarts, numbers_at_once), strict=True))
     return found
 
 
 def _both_ends(
-    t: np.ndarray, rows: Iterable[tuple[np.ndarray, np.ndarray]], at: np.ndarray, restarts: np.ndarray
+    t: np.ndarray,
+    rows: Iterable[tuple[np.ndarray, np.ndarray]],
+    at: np.ndarray,
+    restarts: np.ndarray,
+    numbers_at_once: int,
 ) -> Iterator[tuple[float, float]]:
     """Return the excesses of `between` for the least and the greatest value of channels.
 
     `rows`: values at the times `t`, and those at the times of the outputs, `t[at]`.
     """
     remaining = iter(rows)
-    while some := list(islice(remaining, at_once(len(t)))):
+    while some := list(islice(remaining, max(1, numbers_at_once // len(t)))):
         fine = np.array([values for values, _ in some])
         fine[:, at] = [values for _, values in some]
         yield from zip(between(t, -fine, at, restarts).tolist(), between(t, fine, at, restarts).tolist(), strict=True)
@@ -81,12 +88,12 @@ def _both_ends(
 
 def bars_by_difference(
     times: np.ndarray, at: np.ndarray, channels: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray], part: float,
-    restarts: np.ndarray,
+    restarts: np.ndarray, numbers_at_once: int,
 ) -> dict[str, ErrorBar]:  # fmt: skip
     """Return the error bars of the channels of a run, from those of a run with another tolerance, at more times.
 
     `at`: places of the times of the run among `times`. `part`: error of the other run in the error of this one, as expected.
-    `restarts`: times from which on channels may have jumped, s.
+    `restarts`: times from which on channels may have jumped, s. `numbers_at_once`: as of `bars`.
     """
     errors = {
         name: np.abs(difference(name, values, others[name][at])) / abs(1.0 - part)
@@ -95,17 +102,12 @@ def bars_by_difference(
     }
     found = dict.fromkeys(errors, UNKNOWN)
     known = [name for name, error in errors.items() if not np.isnan(error).all()]
-    ends = _both_ends(times, ((others[name], channels[name]) for name in known), at, restarts)
+    ends = _both_ends(times, ((others[name], channels[name]) for name in known), at, restarts, numbers_at_once)
     for name, sampled in zip(known, ends, strict=True):
         error, values = errors[name], channels[name]
         least, greatest = (float(error[peak(values)]) for peak in (np.nanargmin, np.nanargmax))
         found[name] = ErrorBar(float(np.nanmax(error)), least + sampled[0], greatest + sampled[1], *sampled)
     return found
-
-
-def at_once(numbers: int) -> int:
-    """Return how many channels of some numbers are examined together."""
-    return max(1, AT_ONCE // numbers)
 
 
 def difference(name: str, values: np.ndarray, others: np.ndarray) -> np.ndarray:

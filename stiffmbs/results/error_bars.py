@@ -76,7 +76,7 @@ def _bar_of_maximum(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine
     if others and not reaching:
         return np.nan, np.nan
     solver = SAFETY * max([0.0, *(abs(values[at] - float(np.nanmax(o))) for o in reaching)])
-    sampled = float(between(*fine)) if fine else 0.0
+    sampled = float(between(fine[0], fine[1][None], fine[2])[0]) if fine else 0.0
     return solver + sampled, sampled
 
 
@@ -86,11 +86,9 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray, restarts: np.
     All peaks between two instants count, as any of them may be the highest. Where values may jump or have a kink, each side
     is continued up to there by its own slope.
 
-    `times` of shape (n,), `values` of shape (n,) or (channels, n); the result is a number or of shape (channels,). `at`:
-    indices of the reported instants. `restarts`: times from which on values belong to the motion after a jump or kink, s.
+    `times` of shape (n,), `values` of shape (channels, n); the result is of shape (channels,). `at`: indices of the reported
+    instants. `restarts`: times from which on values belong to the motion after a jump or kink, s.
     """
-    if values.ndim == 1:
-        return between(times, values[None], at, restarts)[0]
     highest, count = np.nanmax(values[:, at], axis=1), len(values)
     piece = np.searchsorted(restarts, times, side="right")
     ahead = values[:, 1:] >= values[:, :-1]

@@ -90,7 +90,8 @@ class _AutoRun:
             self._implicit.confirm()
             self._rerun_implicit(start, f"explicit integration {failure}")
         last = self._segments[-1].trajectory
-        if last.solver == "radau" and Reason.NO_STEP.ended(last.message):
+        no_step = Reason.NO_STEP.ended(last.message) and not has_fault(self._dynamics.system)
+        if last.solver == "radau" and no_step:
             self._rerun_with_bdf(start, last)
         return self._joined()
 

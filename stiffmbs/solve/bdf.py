@@ -77,7 +77,7 @@ def integrated(
     """
     rows = Rows.of(integrator.dynamics.system, grid)
     rows.append(grid.start, start.q, start.u)
-    if grid.recorded:
+    if grid.recorded.most:
         integrator.engine.record_steps(grid.recorded)
     with Ending() as ending:
         for reached in integrator.run(start, grid, passing=not is_logged()):

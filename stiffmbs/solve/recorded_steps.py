@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..compile.equations import Equations
 
-RESTART = 5000
-"""Work of the estimate of errors at a restart: evaluations of the equations times unknowns."""
+if TYPE_CHECKING:
+    from .trajectory import Recording
 
 
 @dataclass(frozen=True)
@@ -45,23 +46,23 @@ class _Open:
 class StepRecorder:
     """Steps of one run.
 
-    - `most`: largest work of the estimate of errors; beyond it nothing is kept and `full` is True.
+    - `bounds`: largest work of the estimate of errors, beyond which nothing is kept and `full` is True, and that of a restart.
     - `points`: rows per step.
     - `of_a_row`: work of the estimate for a row.
     """
 
-    most: float
+    bounds: Recording
     points: int = 1
     of_a_row: int = 1
     full: bool = False
     _pieces: list[_Open] = field(default_factory=list)
-    _work: int = 0
+    _work: float = 0.0
 
     def begin(self, row: np.ndarray) -> None:
         """Start a piece with the row of a start."""
         if not self.full:
             self._pieces.append(_Open([row[None]]))
-            self._count(RESTART)
+            self._count(self.bounds.restart)
 
     def extend(self, rows: np.ndarray, fired: tuple[int, ...]) -> None:
         """Append the rows of steps, after which event functions fired."""
@@ -71,10 +72,10 @@ class StepRecorder:
                 self._pieces[-1].rows.append(rows)
             self._pieces[-1].fired = fired
 
-    def _count(self, work: int) -> None:
+    def _count(self, work: float) -> None:
         """Add to the work of the estimate; keep nothing if it exceeds the largest one."""
         self._work += work
-        if self._work > self.most:
+        if self._work > self.bounds.most:
             self.full = True
             self._pieces.clear()
 

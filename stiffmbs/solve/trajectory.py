@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -79,6 +79,13 @@ class History:
     order: np.ndarray
 
 
+class Recording(NamedTuple):
+    """Bounds of the steps that are recorded: the largest work of the estimate of errors, and that of a restart."""
+
+    most: float = 0.0
+    restart: float = 0.0
+
+
 @dataclass(frozen=True)
 class Grid:
     """Ends of the run, and output times (ends included) or None for the solver's own steps.
@@ -86,14 +93,14 @@ class Grid:
     Solvers restart at `stops`, as at input breakpoints: a step ends just before a breakpoint, where every formula has
     its earlier side, and the next one begins just after it. Output at a breakpoint is the state just before it, output at
     the start of a run that just after it. `recorded`: work of an estimate of the errors up to which implicit
-    solvers record their steps for it, evaluations of the equations times unknowns.
+    solvers record their steps for it.
     """
 
     start: float
     end: float
     times: np.ndarray | None
     stops: np.ndarray = field(default_factory=lambda: np.empty(0))
-    recorded: float = 0.0
+    recorded: Recording = Recording()
 
     @property
     def aside(self) -> float:

@@ -144,7 +144,8 @@ def next_rtol(excess, rtol=1e-4):
 
 def restarts_that_are_kept():
     """Return the number of restarts after which the recorded steps are too much work."""
-    recorder, restarts = StepRecorder(5e5), 0
+    job = of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values()))
+    recorder, restarts = StepRecorder(job.grid.recorded._replace(most=5e5)), 0
     while not recorder.full:
         recorder.begin(np.zeros(4))
         restarts += 1
@@ -152,7 +153,7 @@ def restarts_that_are_kept():
 
 
 DECISIONS = {
-    "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded,
+    "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.most,
     "error_estimate.difference": largest_displacement,
     "error_estimate.beside": row_beside_an_event,
     "error_estimate.points": lambda: windows(np.ones(20))[0][0],
@@ -173,7 +174,7 @@ DECISIONS = {
     "error_estimate.slope": lambda: next_rtol(100.0),
     "error_estimate.numbers_at_once": lambda: transport.at_once(100),
     "error_estimate.second": lambda: of_runs._second(RunSettings(rtol=1e-6)),
-    "solve.recorded_steps:RESTART": restarts_that_are_kept,
+    "error_estimate.restart": restarts_that_are_kept,
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
 }  # fmt: skip
 EXPECTED = {
@@ -197,6 +198,6 @@ EXPECTED = {
     "error_estimate.slope": 8.549879733383488e-08,
     "error_estimate.numbers_at_once": 400,
     "error_estimate.second": 0.1,
-    "solve.recorded_steps:RESTART": 101,
+    "error_estimate.restart": 101,
     "analyses.errors:MOST_REPEATS": 3,
 }  # fmt: skip

@@ -9,7 +9,6 @@ import numpy as np
 from stiffmbs.errors import InputError
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.results import (
-    channel_errors,
     digits,
     energy_balance,
     energy_balance_notes,
@@ -133,7 +132,6 @@ def most_reliable_digits():
 
 
 DECISIONS = {
-    "results.channel_errors:AT_ONCE": lambda: channel_errors.at_once(100),
     "results.digits:MOST_DIGITS": most_reliable_digits,
     "results.energy_balance:MOST_INSTANTS": instants_of_a_balance,
     "results.energy_balance_notes:BROKEN": largest_energy_without_a_check,
@@ -141,7 +139,7 @@ DECISIONS = {
     "results.energy_balance_notes:OF_TOLERANCE": lambda: ignored_energy(1.0, 0.0),
     "results.energy_balance_notes:OF_POTENTIAL": lambda: ignored_energy(0.0, 1.0),
     "results.error_bars:SAFETY": lambda: error_bars.error_bar(np.zeros(2), [np.ones(2)], None, 0.0).over_time,
-    "results.error_bars:FINER": lambda: error_bars.between(np.arange(3.0), np.array([0.0, 1.0, 0.0]), np.array([0, 2])),
+    "results.error_bars:FINER": lambda: error_bars.between(np.arange(3.0), np.array([[0.0, 1.0, 0.0]]), np.array([0, 2]))[0],
     "results.flexible_motion:AT_ONCE": parts_of_stresses,
     "results.joined:SAME_VALUE": largest_step_between_joined_runs,
     "results.joint_angles:UNCERTAIN_TURN": largest_difference_of_turns,
@@ -156,7 +154,6 @@ DECISIONS = {
     ),
 }  # fmt: skip
 EXPECTED = {
-    "results.channel_errors:AT_ONCE": 10_000,
     "results.digits:MOST_DIGITS": 12,
     "results.energy_balance:MOST_INSTANTS": 90, "results.energy_balance_notes:BROKEN": 27, "results.energy_balance_notes:PER_TOLERANCE": 0.1,
     "results.energy_balance_notes:OF_TOLERANCE": 1e-5,

@@ -122,7 +122,7 @@ class _Walk:
 
 @functools.cache
 def _installed() -> tuple[Path, ...]:
-    return tuple({Path(sysconfig.get_paths()[name]) for name in ("stdlib", "platstdlib", "purelib", "platlib")})
+    return tuple({Path(sysconfig.get_paths()[name]) for name in ("stdlib", "platstdlib")})
 
 
 def _module_of(found: object) -> str:

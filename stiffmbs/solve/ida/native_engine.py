@@ -19,7 +19,7 @@ from ..error_control.stability_limit import StabilityLimitDetection
 from ..linear_solvers.fixed_order import FixedOrder
 from ..radau.collocation import radau
 from ..recorded_steps import Piece, StepRecorder
-from ..trajectory import History, just_after
+from ..trajectory import History, Recording, just_after
 from .connection import BDF, Formula
 from .ida import AT_THE_END, NativeIda
 from .native.parameters import LOOP
@@ -104,8 +104,8 @@ class NativeEngine:
         self.ida.begin(t, y, yp, highest_order=self._order.order)
         self._record_start(t)
 
-    def record_steps(self, most: float) -> None:
-        """Record the steps of the next run for an estimate of its errors, up to a work of `most`."""
+    def record_steps(self, bounds: Recording) -> None:
+        """Record the steps of the next run for an estimate of its errors, up to some work."""
         places = AT_THE_END
         if self._by_radau:
             from ..radau.memory import CHOSEN_FROM
@@ -115,7 +115,7 @@ class NativeEngine:
         system = self._equations.system
         free = max(system.n_u - int(system.active.sum()), 0)
         evaluations = 1 + 2 * free + system.n_q - system.n_pose  # linearised equations are differences
-        self.recorder = StepRecorder(most, 1 + len(places), evaluations * (system.n_q + system.n_u))
+        self.recorder = StepRecorder(bounds, 1 + len(places), evaluations * (system.n_q + system.n_u))
 
     def recorded(self) -> tuple[Piece, ...]:
         """Return the recorded steps, none if there were too many, and stop recording."""

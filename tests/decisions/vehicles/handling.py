@@ -129,7 +129,7 @@ def slowest_start():
         success, time = True, (0.0,)
 
     def accepts(percents):
-        with patch.object(study, "run", lambda _: Slower({"vehicle.speed": [1 - percents / 100 + 1e-9]})):
+        with patch.object(study, "run", lambda _, errors: Slower({"vehicle.speed": [1 - percents / 100 + 1e-9]})):
             return not refused(lambda: study.solved(scene))
 
     return count_while(accepts, range(20))
