@@ -19,7 +19,7 @@ import numpy as np
 from ..cache import entries
 from ..cache.installed import installed_version
 from ..cache.source_files import versions_within
-from ..compile.machine.compiler import machine
+from ..compile.machine.object_code import machine
 from ..model.files.scenes_read_before import ScenePickler
 from ..model.model_data import ModelData
 from ..model.scene import Scene

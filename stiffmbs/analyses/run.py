@@ -10,10 +10,13 @@ from typing import Unpack
 import numpy as np
 
 from ..compile.callbacks import fault_of
+from ..compile.machine import drafts
+from ..compile.machine.routines import fully_compiled
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
 from ..elements.requests.order import units
 from ..errors import AssemblyError
+from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..notes import Note, Severity
@@ -28,12 +31,13 @@ from ..solve.events.departures import Departure
 from ..solve.missing_rows import reported
 from ..solve.reasons import OF_STATUS, Reason
 from ..solve.suspect import suspect
-from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
+from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory, unwatched
 from ..tuning import in_use
 from .checks import Integrated, notes_on
 from .errors import assessed, recording, to_accuracy
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
+from .long_runs import Predicted, TakesLongError
 from .rerun import Computed, on_exact_constraints, rerun_after_missed_events
 from .start_from import StartFrom
 
@@ -87,7 +91,24 @@ def run(
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
         data = with_inputs(data, inputs, settings_of(data, settings, changes))
+    try:
+        return _prepared_and_solved(data, settings, watch, start_from, changes)
+    except TakesLongError:
+        with fully_compiled():
+            return _prepared_and_solved(data, settings, watch, start_from, changes)
+
+
+def _prepared_and_solved(
+    data: ModelData,
+    settings: RunSettings | None,
+    watch: ProgressCallback | None,
+    start_from: StartFrom | None,
+    changes: Settings,
+) -> Solution:
+    """Prepare a job and solve it; raise TakesLongError if it takes long on drafts of compiled code."""
     job = prepare(data, settings, start_from, **changes)
+    if drafts.are_used():
+        watch = Predicted(job.grid.end, watch or unwatched)
     if job.settings.errors is not False or job.settings.accuracy:
         job = recording(job)
     return to_accuracy(job, watch)[1] if job.settings.accuracy else solved(job, watch)

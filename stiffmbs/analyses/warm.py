@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from ..compile.compile_model import kinds_of
 from ..compile.kind import Kind
-from ..compile.machine.routines import Routine
+from ..compile.machine.routines import Routine, fully_compiled
 from ..compile.record import compile_usual
 from ..elements.body import Body
 from ..elements.element import Joint
@@ -22,6 +22,7 @@ from ..presolve.spinning_bodies import AXES
 from ..processes import process_pool
 
 
+@fully_compiled()
 def warm() -> None:
     """Compile all kinds of elements in their usual forms, bearings of spinning bodies, and the routines of all solvers.
 

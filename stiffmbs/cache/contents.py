@@ -10,13 +10,14 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Literal, NamedTuple, get_args
 
-Kind = Literal["record", "kernel", "routine", "file", "scene", "start", "body"]
-"""Derived kinds of elements, their machine code, that of solvers, contents of YAML files, scenes, starts of runs, and reduced
-flexible bodies."""
+Kind = Literal["record", "kernel", "routine", "draft", "file", "scene", "start", "body"]
+"""Derived kinds of elements, their machine code, that of solvers, code to be compiled at its full level, contents of YAML files,
+scenes, starts of runs, and reduced flexible bodies."""
 KINDS: tuple[Kind, ...] = get_args(Kind)
 OTHER = "other"
-ENTRIES, SECRET, TENDED = "entries", "secret", "tended"
-"""Names in a cache directory: folder of the entries, the user's secret, and a file whose time is that of the last eviction."""
+ENTRIES, SECRET, TENDED, FINISHING = "entries", "secret", "tended", "finishing"
+"""Names in a cache directory: folder of the entries, the user's secret, a file whose time is that of the last eviction, and one
+that the process that finishes drafts locks."""
 PART = ".part-"
 """Prefix of the name of a file that is being written."""
 MOST_BYTES = 2_000_000_000
@@ -65,7 +66,7 @@ def clear(root: Path) -> Stored:
     """
     folders = [(root, _OLDEST), *_folders(root)]
     found = [file for folder, entries in folders for file in _files(folder, entries)]
-    for path in (*(Path(file.path) for file in found), root / TENDED, root / SECRET):
+    for path in (*(Path(file.path) for file in found), root / TENDED, root / FINISHING, root / SECRET):
         if not path.is_dir():
             path.unlink(missing_ok=True)
     _remove_empty(folder for folder, _ in folders[1:])

@@ -103,6 +103,18 @@ def write(name: str, content: bytes) -> None:
             _put(place / name, _code(secret, name, content) + content)
 
 
+def remove(name: str) -> None:
+    """Remove an entry, if it exists and the directory is writable."""
+    with suppress(OSError):
+        (folder() / name).unlink()
+
+
+def is_writable(directory: Path) -> bool:
+    """Return True if entries can be stored in a cache directory, which need not exist yet."""
+    there = next((place for place in (directory / ENTRIES, directory, *directory.parents) if place.exists()), directory)
+    return directory != NOWHERE and there.is_dir() and os.access(there, os.W_OK)
+
+
 def _code(secret: bytes, name: str, content: bytes) -> bytes:
     return hmac.digest(secret, name.encode() + b"\0" + content, "sha256")
 

@@ -11,6 +11,7 @@ WORDS = {
     "record": "derived kinds",
     "kernel": "kernels",
     "routine": "routines",
+    "draft": "drafts of kernels and routines",
     "file": "contents of YAML files",
     "scene": "scenes read before",
     "start": "starts of runs",

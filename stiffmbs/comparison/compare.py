@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Unpack
 
 from ..analyses.job import Runnable, data_of
+from ..compile.machine.routines import fully_compiled
 from ..errors import InputError
 from ..model.settings import RunSettings, Settings, takes_settings
 from .at_error import AtError, Row, decades, times_at
@@ -76,6 +77,7 @@ class Comparison:
 
 
 @takes_settings
+@fully_compiled()
 def compare(
     model: Runnable,
     solvers: Sequence[str] = USUAL,

@@ -9,6 +9,7 @@ from typing import Unpack
 
 from ..analyses.job import Runnable, data_of
 from ..analyses.load_scene import load_scene
+from ..compile.machine.routines import fully_compiled
 from ..errors import AssemblyError, InputError, SolverError
 from ..model.read_scene import read_scene
 from ..model.settings import RunSettings, Settings, takes_settings
@@ -41,6 +42,7 @@ Family = Callable[[float], Runnable]
 
 
 @takes_settings
+@fully_compiled()
 def compare_over(
     model: str | Path | Family,
     parameter: str,

@@ -20,6 +20,7 @@ from .bodies import BODY_KINDS, BodyKind
 from .group import Group
 from .kind import Compilable, ElementData, Kind, sorted_out
 from .machine.layout import at_a_line
+from .machine.routines import renew
 from .record import KindRecord, record_of
 from .system import System
 
@@ -43,6 +44,7 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
     """
     if isinstance(model, ModelBuilder):
         return compile_model(model.data())
+    renew()
     bodies = tuple(model.bodies)
     of_body = BODY_KINDS[model.dimensions]
     numbers, states, size = body_numbers(model.bodies.values()), model.state_values(), model.size()

@@ -25,7 +25,10 @@ from ..errors import InputError
 from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
-from .machine.compiler import CALLS_WITH_LOOPS, FULL, SHORT, Compiled, Description, compiled_source
+from .machine.compiler import CALLS_WITH_LOOPS, Description, compiled_source
+from .machine.linking import Compiled
+from .machine.object_code import FULL, SHORT
+from .machine.routines import fully_compiled
 from .terms import KERNEL_SIGNATURE, TERM_SETS
 
 if TYPE_CHECKING:
@@ -143,6 +146,7 @@ def kernel_of(kind: Kind, term_set: str, place: str = "") -> Compiled | None:
     )
 
 
+@fully_compiled()
 def compile_usual(kind: Kind) -> None:
     """Compile and cache all kernels of a kind that solvers commonly use."""
     for term_set in TERM_SETS:

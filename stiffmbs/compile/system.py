@@ -16,8 +16,8 @@ import numpy as np
 from ..reading.formula.formula import Formula
 from .bodies import BodyKind
 from .group import Group
-from .machine.compiler import Compiled
 from .machine.layout import held_once
+from .machine.linking import Compiled
 from .reactions import reported_terms
 from .record import kernel_of, source_of
 from .terms import TERM_AXES, TERM_SETS, TURNED

@@ -12,8 +12,8 @@ import numpy as np
 from ..compile.coordinates import Coordinates, all_independent
 from ..compile.inputs.ends import InputEnd, first_input_end
 from ..compile.inputs.features import NO_FEATURES, InputFeatures, aside, input_features
-from ..compile.machine.compiler import SHORT
 from ..compile.machine.layout import address, addresses, packed
+from ..compile.machine.object_code import SHORT
 from ..compile.machine.routines import together
 from ..compile.state import State
 from ..compile.system import System

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compile.formulation import Block, Formulation, Product
-from ..compile.machine.compiler import SHORT
 from ..compile.machine.layout import address, addresses
+from ..compile.machine.object_code import SHORT
 from ..compile.machine.routines import together
 from .dynamics import Dynamics
 from .native.parameters import CONSISTENCY

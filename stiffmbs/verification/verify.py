@@ -31,6 +31,7 @@ from ..analyses.job import Job, Runnable, data_of, prepare, with_elements
 from ..analyses.run import run as simulated
 from ..analyses.run import solved
 from ..analyses.start_from import StartFrom
+from ..compile.machine.routines import fully_compiled
 from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.error_bars import UNKNOWN, error_bar
@@ -47,6 +48,7 @@ from .solve_again import Again, levels_of, other_integrators, shorter_step, solv
 
 
 @takes_settings
+@fully_compiled()
 def verify(
     model: Runnable,
     settings: RunSettings | None = None,

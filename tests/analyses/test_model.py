@@ -37,7 +37,7 @@ def test_numbers_are_no_part_of_what_is_compiled(monkeypatch):
     record._record_of.cache_clear()
     machine.compiled_source.cache_clear()
     monkeypatch.setattr(record, "_derived", lambda kind: pytest.fail("derived again"))
-    monkeypatch.setattr(machine, "_object_code", lambda *_: pytest.fail("compiled again"))
+    monkeypatch.setattr(machine, "object_code", lambda *_: pytest.fail("compiled again"))
     model = cart_pendulum()
     model.bodies["cart"] = Body(mass=7, inertia=2)
     model.forces["spring"] = SpringDamper(i="cart", j="bar", stiffness=1.0, damping=3)

@@ -47,6 +47,7 @@ def bench(names: tuple[str, ...], as_json: bool, quick: bool, peers: bool, solve
 
 def _measure(names: tuple[str, ...], as_json: bool, quick: bool, peers: bool, solvers: bool, plot: Path | None) -> None:
     from stiffmbs.comparison.machine import machine_sentence
+    from stiffmbs.compile.machine.routines import fully_compiled
 
     from .report import as_json as object_of
     from .report import table
@@ -57,7 +58,8 @@ def _measure(names: tuple[str, ...], as_json: bool, quick: bool, peers: bool, so
     if not as_json:
         click.echo(machine_sentence())
     for benchmark in chosen:
-        rows = benchmark.glanced() if quick else benchmark.measured()
+        with fully_compiled():
+            rows = benchmark.glanced() if quick else benchmark.measured()
         if as_json:
             click.echo(json.dumps(object_of(benchmark.name, rows)))
         else:

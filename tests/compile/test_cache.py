@@ -70,7 +70,7 @@ def test_compiled_code_is_read_back(directory, monkeypatch):
     machine.compiled_source.cache_clear()
     assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
     machine.compiled_source.cache_clear()
-    monkeypatch.setattr(machine, "_object_code", lambda *_: pytest.fail("compiled again"))
+    monkeypatch.setattr(machine, "object_code", lambda *_: pytest.fail("compiled again"))
     assert machine.compiled_source(SOURCE, "twice", "float64(float64)").call(21.0) == 42.0
     assert len(list(kept.folder().iterdir())) == 1
 

@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 
 from stiffmbs.compile.compile_model import compile_model
-from stiffmbs.compile.machine import compiler
+from stiffmbs.compile.machine import compiler, object_code
 from stiffmbs.compile.record import source_of
 from stiffmbs.compile.symbolic.derive import _vanishes
 from stiffmbs.compile.terms import KERNEL_SIGNATURE
@@ -36,7 +36,7 @@ def test_results_do_not_depend_on_the_level_of_optimisation(system):
     others, turn = np.zeros(40), rng.normal(size=200)
     for term_set in ("motion", "tangent", "output"):
         values = []
-        for level in (compiler.FULL, compiler.SHORT):
+        for level in (object_code.FULL, object_code.SHORT, object_code.DRAFT):
             kernel = compiler.compiled_source(source_of(group.kind, term_set), "kernel", KERNEL_SIGNATURE, level=level)
             found = np.zeros(system.n_values(term_set))
             arrays = (q, turn, u, others, others, others, system.places[term_set][g], found)
@@ -44,6 +44,7 @@ def test_results_do_not_depend_on_the_level_of_optimisation(system):
             values.append(found)
         assert np.count_nonzero(values[0]) > 6
         np.testing.assert_array_equal(values[0], values[1])
+        np.testing.assert_array_equal(values[0], values[2])
 
 
 def test_forces_have_one_kernel_for_motion_and_acceleration(system):

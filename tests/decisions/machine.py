@@ -16,9 +16,9 @@ from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
 
 def inlined_instructions():
-    source = Record(namespace=dict, signatures=[], level=compiler.SHORT, text="")
+    source = Record(namespace=dict, signatures=[], of="", text="")
     with patch("stiffmbs.compile.machine.translate.unit.assembly", lambda *args: reach(args[-1])):
-        return reached(lambda: compiler._object_code(source, ""))
+        return reached(lambda: compiler._assembly("", source))
 
 
 def normal(part=nothing, grow=nothing):
@@ -146,7 +146,7 @@ def farthest_rotation_by_series():
 
 
 DECISIONS = {
-    "compile.machine.compiler:_INLINED": inlined_instructions,
+    "compile.machine.object_code:INLINED": inlined_instructions,
     "compile.machine.geometry.common_normal:THINNER": stages_of_growth,
     "compile.machine.geometry.common_normal:STAGES": lambda: len(parts_of_a_normal()) - 1,
     "compile.machine.geometry.common_normal:MOST_STEPS": lambda: calls_of("support"),
@@ -173,7 +173,7 @@ DECISIONS = {
     "compile.machine.native.rotation_vector:TERMS": lambda: rotation_vector._near_one(3.0, 0),
 }  # fmt: skip
 EXPECTED = {
-    "compile.machine.compiler:_INLINED": 40, "compile.machine.geometry.common_normal:THINNER": 13,
+    "compile.machine.object_code:INLINED": 40, "compile.machine.geometry.common_normal:THINNER": 13,
     "compile.machine.geometry.common_normal:STAGES": 16, "compile.machine.geometry.common_normal:MOST_STEPS": 60,
     "compile.machine.geometry.common_normal:MOST_HALVINGS": 30.0, "compile.machine.geometry.common_normal:POLISHES": 4,
     "compile.machine.geometry.common_normal:FLAT": 1e-14, "compile.machine.geometry.common_normal:ROUGHLY": 1e-08,

@@ -10,8 +10,9 @@ import numpy as np
 
 from ...errors import InputError
 from ..kind import Kind, with_place
-from ..machine.compiler import Compiled, Description, compiled_source
+from ..machine.compiler import Description, compiled_source
 from ..machine.layout import packed
+from ..machine.linking import Compiled
 from ..machine.native.tables import DIRECTION
 from ..machine.routines import Routine
 from ..record import loops_along, source_of

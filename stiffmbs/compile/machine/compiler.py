@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
-import ctypes
 import importlib
 import logging
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from threading import RLock
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import Any
 
 from ...cache import entries
 from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
-
-if TYPE_CHECKING:
-    from llvmlite import binding as llvm
+from . import drafts
+from .linking import Compiled, Signatures, c_types, linked, symbol
+from .object_code import DRAFT, FULL, INLINED, machine, object_code
 
 LOGGER = logging.getLogger(__name__)
-_CTYPES: dict[str, type | None] = {
-    "int32": ctypes.c_int32,
-    "int64": ctypes.c_int64,
-    "float64": ctypes.c_double,
-    "void": None,
-}
 _ONE_AT_A_TIME = RLock()
 """Lock so that one thread compiles a routine and the others load it."""
 GEOMETRY = f"{__package__}.geometry"
@@ -37,14 +29,6 @@ FLEXIBLE = ".native.flexible."
 """Name in generated sources with short loops over the modes of a flexible body, whose number is a literal."""
 CALLS_WITH_LOOPS = (SERIES, GEOMETRY)
 """Parts of generated sources whose functions have loops; all others are straight code."""
-FULL: Final = 3
-SHORT: Final = 1
-"""LLVM's levels of code generation: with its usual passes of optimisation, or with those of `_SHORT` alone."""
-_SHORT = ("always_inliner", "dead_arg_elimination", "sroa", "simplify_cfg", "instruction_combine")
-"""Passes for straight code, and for routines that spend their time in kernels; none transforms loops or vectorises."""
-_INLINED = 40
-"""Instructions of functions that these passes inline: about as many as LLVM's usual ones do."""
-_SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
 
 
 @dataclass(frozen=True)
@@ -52,22 +36,6 @@ class Description:
     """Text for the log that compares equal to any other, so that cached functions ignore it."""
 
     words: str = field(default="", compare=False)
-
-
-class Compiled(NamedTuple):
-    """Compiled function: its address for other compiled code, and two ways to call it from Python.
-
-    Pointers are passed as addresses (``array.ctypes.data``). `call` releases the interpreter lock; `short_call` keeps
-    it, because acquiring the lock again may take longer than a call of a few microseconds.
-    """
-
-    address: int
-    call: Callable[..., Any]
-    short_call: Callable[..., Any]
-
-
-Signatures = tuple[tuple[str, str], ...]
-"""Function names and their C signatures."""
 
 
 @dataclass(frozen=True)
@@ -142,19 +110,10 @@ def compiled_routines(
 
 
 @cache
-def machine() -> str:
-    """Return a digest of the processor and of the version of LLVM, on which machine code depends."""
-    import llvmlite
-    import llvmlite.binding as llvm
-
-    features = llvm.get_host_cpu_features().flatten()
-    return entries.digest(llvm.get_process_triple(), llvm.get_host_cpu_name(), features, llvmlite.__version__)
-
-
-@cache
 def _language() -> str:
     """Return a digest of the translator and of the settings of the compiler."""
-    return digest_of([*python_files(Path(__file__).parent / "translate"), Path(__file__)])
+    here = Path(__file__).parent
+    return digest_of([*python_files(here / "translate"), Path(__file__), here / "object_code.py"])
 
 
 @cache
@@ -167,112 +126,45 @@ def _native(package: str) -> str:
 
 
 def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
+    """Return the functions of an entry from the cache, as compiled before or as a draft; else compile them."""
     with _ONE_AT_A_TIME:
-        code = _unpacked(entry, entries.read(entry))
-        found = _linked(code, entry, source.signatures) if code else None
+        stored = entries.read(entry)
+        found = linked(stored, entry, source.signatures, is_draft=False) if stored else None
+        if found is None and drafts.are_allowed():
+            found = _draft(entry, source)
         if found is None:
-            LOGGER.info("compiling %s", source.of)
             with uncollected():
-                code = _object_code(source, _symbol(entry, ""))
-            entries.write(entry, _header(entry, code) + code)
-            found = _linked(code, entry, source.signatures)
+                made = drafts.draft_in(drafts.name_of(entry))
+                code = made.finished() if made else object_code(_assembly(entry, source), source.level, source.unrolled)
+            entries.write(entry, code)
+            if made:
+                entries.remove(drafts.name_of(entry))
+            found = linked(code, entry, source.signatures, is_draft=False)
     assert found is not None, entry
     return found
 
 
-def _unpacked(entry: str, stored: bytes | None) -> bytes | None:
-    """Return the code of an entry; None if it is damaged, because LLVM aborts the process on invalid object code."""
-    head, end, code = (stored or b"").partition(b"\n")
-    return code if head + end == _header(entry, code) else None
+def _draft(entry: str, source: _Source) -> dict[str, Compiled] | None:
+    """Return the functions of the draft of an entry, which is made if the cache has none."""
+    name = drafts.name_of(entry)
+    draft = drafts.draft_in(name)
+    if draft is None:
+        with uncollected():
+            text = _assembly(entry, source)
+            code = object_code(text.replace(symbol(entry, ""), symbol(name, "")), DRAFT, source.unrolled)
+        draft = drafts.Draft(entry, machine(), source.level, source.unrolled, code, text)
+        entries.write(name, draft.packed())
+    drafts.use(name)
+    return linked(draft.code, name, source.signatures, is_draft=True)
 
 
-def _header(entry: str, code: bytes) -> bytes:
-    return f"{entry} {len(code)}\n".encode()
-
-
-def _symbol(entry: str, name: str) -> str:
-    """Return the name of a function in object code, unique in this process."""
-    return f"stiffmbs_{entry}_{name}"
-
-
-def _new_target(level: int) -> llvm.TargetMachine:
-    import llvmlite.binding as llvm
-
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-    return llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(),
-        features=llvm.get_host_cpu_features().flatten(),
-        opt=level,
-        codemodel="jitdefault",
-        jit=True,
-    )
-
-
-_emitter = cache(_new_target)
-
-
-@cache
-def _engine() -> llvm.ExecutionEngine:
-    """Return the engine that holds all compiled code of this process (it owns its target machine)."""
-    import llvmlite.binding as llvm
-
-    target = _new_target(FULL)
-    module = llvm.parse_assembly("")
-    module.triple = llvm.get_process_triple()
-    return llvm.create_mcjit_compiler(module, target)
-
-
-def _object_code(source: _Source, prefix: str) -> bytes:
-    """Return object code with a C function for each name, with the given prefix."""
-    import llvmlite.binding as llvm
-
+def _assembly(entry: str, source: _Source) -> str:
+    """Return LLVM assembly with a C function for each name of a source."""
     from .translate.unit import Entry, assembly
 
+    LOGGER.info("compiling %s", source.of)
     namespace = source.namespace()
-    entries = [Entry(namespace[name], prefix + name, *_c_types(signature)) for name, signature in source.signatures]
-    inlined = 0 if source.level == FULL else _INLINED
-    module = llvm.parse_assembly(assembly(entries, source.text, inlined))
-    module.triple = llvm.get_process_triple()
-    options = llvm.create_pipeline_tuning_options(speed_level=source.level)
-    options.loop_unrolling = source.unrolled
-    emitter = _emitter(source.level)
-    builder = llvm.create_pass_builder(emitter, options)
-    if source.level == FULL:
-        passes = builder.getModulePassManager()
-    else:
-        passes = llvm.create_new_module_pass_manager()
-        for name in _SHORT:
-            getattr(passes, f"add_{name}_pass")()
-    passes.run(module, builder)
-    return emitter.emit_object(module)
-
-
-def _linked(code: bytes, entry: str, signatures: Signatures) -> dict[str, Compiled] | None:
-    """Return the functions of an entry by name; None if one is missing in the code."""
-    import llvmlite.binding as llvm
-
-    engine, found = _engine(), {}
-    for name, signature in signatures:
-        symbol = _symbol(entry, name)
-        if not engine.get_function_address(symbol):
-            engine.add_object_file(llvm.ObjectFileRef.from_data(code))
-            engine.finalize_object()
-        address = engine.get_function_address(symbol)
-        if not address:
-            return None
-        call, short_call = (made(*_prototype(signature))(address) for made in (ctypes.CFUNCTYPE, ctypes.PYFUNCTYPE))
-        found[name] = Compiled(address, call, short_call)
-    return found
-
-
-def _prototype(signature: str) -> list[Any]:
-    arguments, result = _c_types(signature)
-    return [_CTYPES[result], *(ctypes.c_void_p if "*" in kind else _CTYPES[kind] for kind in arguments)]
-
-
-def _c_types(signature: str) -> tuple[list[str], str]:
-    match = _SIGNATURE.match(signature)
-    assert match is not None, signature
-    result, arguments = match.groups()
-    return [kind.strip() for kind in arguments.split(",") if kind.strip()], result
+    functions = [
+        Entry(namespace[name], symbol(entry, name), *c_types(signature)) for name, signature in source.signatures
+    ]
+    return assembly(functions, source.text, INLINED)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from ...tuning import parameters_are_changed, values_in
-from .compiler import FULL, Compiled, compiled_routines
-
-Signatures = tuple[tuple[str, str], ...]
+from . import drafts
+from .compiler import compiled_routines, compiled_source
+from .linking import Compiled, Signatures
+from .object_code import FULL
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,7 @@ class Routine:
 
     @cached_property
     def _usual(self) -> Compiled:
+        _loaded.append(self)
         return self._with("")
 
     @property
@@ -56,6 +59,32 @@ class Routine:
         """Return the function compiled with the parameters in use; `changed` are those that are not the default."""
         together = tuple(sorted(((self.name, self.signature), *self.others)))
         return compiled_routines(self.module, together, self.unrolled, self.level, changed)[self.name]
+
+
+_loaded: list[Routine] = []
+"""Routines that this process has loaded."""
+
+
+@contextmanager
+def fully_compiled() -> Iterator[None]:
+    """Compile all code that is asked for within a context at its full level: for long runs, and for times of runs."""
+    with drafts.none():
+        forget()
+        yield
+
+
+def renew() -> None:
+    """Look up anew what this process has drafts of, if some of them were finished since."""
+    if drafts.some_are_finished():
+        forget()
+
+
+def forget() -> None:
+    """Forget which functions are loaded, so that the next lookups find what was compiled since."""
+    compiled_source.cache_clear()
+    compiled_routines.cache_clear()
+    while _loaded:
+        vars(_loaded.pop()).pop("_usual", None)
 
 
 def together(module: str, level: int = FULL, **signatures: str) -> tuple[Routine, ...]:

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import arrays_of, fill, packed
+from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import together
 from ...compile.state import State
 from ...compile.system import System

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import address, addresses
+from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings

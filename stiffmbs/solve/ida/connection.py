@@ -7,8 +7,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...compile.equations import Equations
-from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import packed
+from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ...dynamics.dynamics import Dynamics

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.compiler import SHORT
 from ...compile.machine.layout import address, addresses
 from ...compile.machine.native.statuses import ROOT_RETURN, STOP_RETURN
+from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ...dynamics.dynamics import Dynamics

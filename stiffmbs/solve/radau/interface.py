@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...compile.machine.compiler import FULL
+from ...compile.machine.object_code import FULL
 from ...compile.machine.routines import together
 from ..ida.libraries import Libraries
 

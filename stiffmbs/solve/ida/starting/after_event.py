@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ....compile.machine.compiler import SHORT
 from ....compile.machine.layout import packed
+from ....compile.machine.object_code import SHORT
 from ....compile.machine.routines import Routine
 from ....dynamics.dynamics import Dynamics
 from ....model.settings import RunSettings

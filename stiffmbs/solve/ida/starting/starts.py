@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ....compile.equations import ABSENT, Equations
-from ....compile.machine.compiler import SHORT
 from ....compile.machine.layout import packed
+from ....compile.machine.object_code import SHORT
 from ....compile.machine.routines import Routine
 from ....compile.state import SETS
 from ....dynamics.dynamics import Dynamics

@@ -1,0 +1,70 @@
+"""Process of lowest priority that compiles the drafts in the cache at their full level."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from ...cache import entries
+from ...cache.contents import FINISHING
+from .drafts import draft_in
+from .object_code import machine
+
+PATIENCE = 2.0
+"""Time, s, without a new draft after which the process ends: a run makes several, one after the other."""
+PAUSE = 0.2
+"""Time, s, between two looks for drafts."""
+
+
+def finish() -> None:
+    """Compile all drafts in the cache and those that are added meanwhile; do nothing if another process does so."""
+    if hasattr(os, "nice"):
+        os.nice(19)
+    with suppress(OSError), _alone(entries.cache_directory() / FINISHING):
+        seen: set[str] = set()
+        last = time.monotonic()
+        while time.monotonic() - last < PATIENCE:
+            for name in _drafts():
+                if name not in seen:
+                    seen.add(name)
+                    finish_draft(name)
+                    last = time.monotonic()
+            time.sleep(PAUSE)
+
+
+def finish_draft(name: str) -> None:
+    """Replace a draft by code at its full level; remove it if it is damaged, keep it if it is another machine's."""
+    draft = draft_in(name)
+    if draft is not None and draft.machine != machine():
+        return
+    if draft is not None:
+        entries.write(draft.entry, draft.finished())
+    entries.remove(name)
+
+
+def _drafts() -> list[str]:
+    """Return the names of all drafts, oldest first."""
+    found = []
+    with suppress(OSError):
+        for file in os.scandir(entries.folder()):
+            with suppress(OSError):  # removed by another process
+                found.append((file.stat().st_mtime_ns, file.name))
+    return [name for _, name in sorted(found) if name.startswith("draft-")]
+
+
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """Lock a file until the end of the context or of this process; raises OSError if another process has locked it."""
+    with path.open("ab") as file:
+        if os.name == "nt":
+            import msvcrt
+
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield

@@ -1,0 +1,80 @@
+"""Object code of this processor from LLVM assembly, at three levels of optimisation with bit-equal results."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Final
+
+from ...cache import entries
+
+if TYPE_CHECKING:
+    from llvmlite import binding as llvm
+
+FULL: Final = 3
+SHORT: Final = 1
+DRAFT: Final = 0
+"""Levels of code generation. `FULL` has LLVM's usual passes, the others those of `_SHORT` alone. `DRAFT` is fast to compile."""
+INLINED = 40
+"""Instructions of functions that the passes of `_SHORT` inline: about as many as LLVM's usual ones do."""
+INLINE = " alwaysinline"
+"""Mark in the assembly of a function that they inline; the usual passes decide themselves."""
+_SHORT = ("always_inliner", "dead_arg_elimination", "sroa", "simplify_cfg", "instruction_combine")
+"""Passes for straight code, and for routines that spend their time in kernels; none transforms loops or vectorises."""
+
+
+def object_code(assembly: str, level: int, unrolled: bool) -> bytes:
+    """Return the object code of a module.
+
+    Parameters
+    ----------
+    assembly : str
+        LLVM assembly, with functions of up to `INLINED` instructions marked by `INLINE`.
+    level : int
+        `FULL`, `SHORT` or `DRAFT`. No pass may reorder or contract floating-point operations.
+    unrolled : bool
+        Whether the usual passes unroll loops.
+    """
+    import llvmlite.binding as llvm
+
+    module = llvm.parse_assembly(assembly.replace(INLINE, "") if level == FULL else assembly)
+    module.triple = llvm.get_process_triple()
+    options = llvm.create_pipeline_tuning_options(speed_level=level)
+    options.loop_unrolling = unrolled
+    emitter = _emitter(level)
+    builder = llvm.create_pass_builder(emitter, options)
+    if level == FULL:
+        passes = builder.getModulePassManager()
+    else:
+        passes = llvm.create_new_module_pass_manager()
+        for name in _SHORT:
+            getattr(passes, f"add_{name}_pass")()
+    passes.run(module, builder)
+    return emitter.emit_object(module)
+
+
+@cache
+def machine() -> str:
+    """Return a digest of the processor and of the version of LLVM, on which machine code depends."""
+    import llvmlite
+    import llvmlite.binding as llvm
+
+    features = llvm.get_host_cpu_features().flatten()
+    return entries.digest(llvm.get_process_triple(), llvm.get_host_cpu_name(), features, llvmlite.__version__)
+
+
+def new_target(level: int) -> llvm.TargetMachine:
+    """Return a target machine of LLVM for this processor."""
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    return llvm.Target.from_default_triple().create_target_machine(
+        cpu=llvm.get_host_cpu_name(),
+        features=llvm.get_host_cpu_features().flatten(),
+        opt=level,
+        codemodel="jitdefault",
+        jit=True,
+    )
+
+
+_emitter = cache(new_target)
