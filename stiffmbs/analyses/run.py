@@ -107,7 +107,7 @@ def _prepared_and_solved(
 ) -> Solution:
     """Prepare a job and solve it; raise TakesLongError if it takes long on drafts of compiled code."""
     job = prepare(data, settings, start_from, **changes)
-    if drafts.are_used():
+    if drafts.quick_ones_are_used():
         watch = Predicted(job.grid.end, watch or unwatched)
     if job.settings.errors is not False or job.settings.accuracy:
         job = recording(job)

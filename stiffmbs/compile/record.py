@@ -12,12 +12,12 @@ import re
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..cache import entries
+from ..cache import entries, library
 from ..cache.installed import installed_version
 from ..cache.source_files import digest_of, python_files
 from ..elements.element import CompiledTerms, Component, Element
@@ -25,7 +25,8 @@ from ..errors import InputError
 from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
-from .machine.compiler import CALLS_WITH_LOOPS, Description, compiled_source
+from .machine import compiler
+from .machine.compiler import CALLS_WITH_LOOPS, Description, compiled_source, of_source
 from .machine.linking import Compiled
 from .machine.object_code import FULL, SHORT
 from .machine.routines import fully_compiled
@@ -109,17 +110,31 @@ def _record_of(kind: Kind, place: Description) -> KindRecord:
     with uncollected():
         record = _derived(kind)
     if entry:
-        entries.write(entry, json.dumps(asdict(record)).encode())
+        entries.write(of_installed(entry), packed(record))
     return record
 
 
+def packed(record: KindRecord) -> bytes:
+    """Return the content of the entry of a record."""
+    return json.dumps({field.name: getattr(record, field.name) for field in fields(record)}).encode()
+
+
 def _read(entry: str) -> KindRecord | None:
-    """Return a record from the cache; None if missing or unreadable."""
-    stored = entries.read(entry)
+    """Return a record from the cache or the library; None if missing or unreadable."""
+    stored = _stored(entry)
     try:
         return None if stored is None else KindRecord(**json.loads(stored))
     except (ValueError, TypeError):
         return None
+
+
+def _stored(entry: str) -> bytes | None:
+    return entries.read(of_installed(entry)) or library.read(entry)
+
+
+def of_installed(entry: str) -> str:
+    """Return the name in the cache of an entry that the installed SymPy derives; that in the library is of any."""
+    return entries.name_of("record", entry, installed_version("sympy"))
 
 
 @cache
@@ -140,10 +155,30 @@ def kernel_of(kind: Kind, term_set: str, place: str = "") -> Compiled | None:
     source = source_of(kind, term_set)
     if source is None:
         return None
-    has_loops = hasattr(kind.element, "compiled_terms") or any(call in source for call in CALLS_WITH_LOOPS)
     return compiled_source(
-        source, "kernel", KERNEL_SIGNATURE, Description(with_place(kind, place)), FULL if has_loops else SHORT
+        source, "kernel", KERNEL_SIGNATURE, Description(with_place(kind, place)), _level(kind, source)
     )
+
+
+def _level(kind: Kind, source: str) -> int:
+    has_loops = hasattr(kind.element, "compiled_terms") or any(call in source for call in CALLS_WITH_LOOPS)
+    return FULL if has_loops else SHORT
+
+
+def in_library(kind: Kind) -> dict[str, bytes]:
+    """Return the entries of the library for a kind: its record, sources and kernels of all sets of terms."""
+    found, entry = {}, _entry(kind)
+    has_record = not hasattr(kind.element, "compiled_terms") and entry is not None
+    if has_record:
+        found[entry] = packed(record_of(kind))
+    for term_set in TERM_SETS:
+        source = source_of(kind, term_set)
+        if source is not None:
+            if has_record and term_set in RARE and (part := _entry(kind, term_set)):
+                found[part] = source.encode()
+            name, code = compiler.in_library(*of_source(source, "kernel", KERNEL_SIGNATURE, level=_level(kind, source)))
+            found[name] = code
+    return found
 
 
 @fully_compiled()
@@ -156,14 +191,14 @@ def compile_usual(kind: Kind) -> None:
 
 def _rare_source(kind: Kind, term_set: str) -> str:
     entry = _entry(kind, term_set)
-    stored = entries.read(entry) if entry else None
+    stored = _stored(entry) if entry else None
     if stored is not None:
         return stored.decode()
     from .symbolic.generate import kernel_source  # loads SymPy
 
     source = kernel_source(term_set, _terms(kind), "kernel")
     if entry:
-        entries.write(entry, source.encode())
+        entries.write(of_installed(entry), source.encode())
     return source
 
 
@@ -218,7 +253,7 @@ def _derived(kind: Kind) -> KindRecord:
 
 
 def _entry(kind: Kind, *part: str) -> str | None:
-    """Return the cache name of a record, or a part of it, from all its sources; None if a source cannot be read."""
+    """Return the name of a record, or a part of it, from all its sources but SymPy; None if a source cannot be read."""
     classes = [kind.element, *(found for _, shape in kind.fields for found in _classes_in(shape))]
     bases = [base for element in classes for base in element.__mro__ if _says_equations(base)]
     try:
@@ -306,4 +341,4 @@ def _own_files() -> str:
         *(package / "reading" / name for name in ("", "formula", "units")),
         *(package / "elements" / name for name in ("", "spatial")),
     )
-    return f"{installed_version('sympy')} {digest_of(path for folder in folders for path in python_files(folder))}"
+    return digest_of(path for folder in folders for path in python_files(folder))

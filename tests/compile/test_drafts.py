@@ -1,9 +1,11 @@
 """Drafts of compiled code: used at once, finished by another process, equal to the last bit."""
 
 import os
+import shutil
 import subprocess
 import sys
 import time
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -11,9 +13,12 @@ import pytest
 import stiffmbs
 from stiffmbs.analyses import run as runs
 from stiffmbs.analyses.long_runs import Drafted, Predicted, TakesLongError
-from stiffmbs.cache import entries
-from stiffmbs.compile.machine import compiler, drafts, finish
+from stiffmbs.cache import entries, library
+from stiffmbs.compile import record
+from stiffmbs.compile.compile_model import kinds_of
+from stiffmbs.compile.machine import compiler, drafts, finish, object_code
 from stiffmbs.compile.machine.routines import forget, fully_compiled, renew
+from stiffmbs.compile.symbolic import derive
 
 SOURCE = (
     "def norm(n, x):\n    found = 0.0\n    for k in range(n):\n        found = found + x[k]*x[k]\n    return found\n"
@@ -27,7 +32,7 @@ def started(tmp_path, monkeypatch):
     """Allow drafts in an empty cache, and count the processes that would finish them."""
     monkeypatch.setenv(entries.DIRECTORY_VARIABLE, str(tmp_path / "cache"))
     monkeypatch.delenv(drafts.VARIABLE)
-    monkeypatch.setattr(drafts, "_used", set())
+    monkeypatch.setattr(drafts, "_used", {})
     found = []
     monkeypatch.setattr(drafts, "_start_finishing", lambda: found.append(1))
     drafts._can_be_finished.cache_clear()
@@ -51,7 +56,7 @@ def stored():
 
 def test_a_draft_is_finished_later_with_equal_results(started):
     first = norm()
-    assert first.is_draft and stored() == ["draft"] and started == [1]
+    assert stored() == ["draft"] and started == [1]
     renew()
     assert norm() is first  # until it is finished
     for name in list(finish._drafts()):
@@ -59,26 +64,26 @@ def test_a_draft_is_finished_later_with_equal_results(started):
     assert stored() == ["kernel"]
     renew()
     second = norm()
-    assert not second.is_draft and second.address != first.address
+    assert second.address != first.address
     assert value(first) == value(second)
-    assert started == [1] and not drafts.are_used()
+    assert started == [1] and not drafts.quick_ones_are_used()
 
 
 def test_another_process_uses_the_draft_and_asks_for_its_end_again(started, monkeypatch):
     """The process that was to finish it may have been killed."""
     norm()
     forget()
-    monkeypatch.setattr(drafts, "_used", set())
-    monkeypatch.setattr(compiler, "_assembly", lambda *_: pytest.fail("translated again"))
-    assert norm().is_draft and started == [1, 1]
+    monkeypatch.setattr(drafts, "_used", {})
+    monkeypatch.setattr(compiler, "drafted", lambda *_: pytest.fail("translated again"))
+    assert norm() and started == [1, 1]
 
 
 def test_long_runs_and_times_of_runs_use_no_drafts(started, monkeypatch):
     first = norm()
-    monkeypatch.setattr(compiler, "_assembly", lambda *_: pytest.fail("translated again"))
+    monkeypatch.setattr(compiler, "drafted", lambda *_: pytest.fail("translated again"))
     with fully_compiled():
         second = norm()
-        assert not second.is_draft and value(first) == value(second)
+        assert second.address != first.address and value(first) == value(second)
     assert stored() == ["kernel"]
 
 
@@ -88,13 +93,13 @@ def test_where_no_process_may_be_started_nothing_is_a_draft(started, monkeypatch
         monkeypatch.setenv(entries.DIRECTORY_VARIABLE, "/dev/null/nowhere")
     else:
         monkeypatch.setenv(drafts.VARIABLE if reason == "variable" else "SLURM_JOB_ID", "0")
-    assert not norm().is_draft and not started
+    assert value(norm()) and not started and not drafts.quick_ones_are_used()
 
 
 def test_drafts_of_another_machine_are_left_to_it(started):
     norm()
     (name,) = finish._drafts()
-    entries.write(name, drafts.draft_in(name)._replace(machine="another").packed())
+    entries.write(name, drafts.draft_in(entries.read(name))._replace(machine="another").packed())
     finish.finish_draft(name)
     assert stored() == ["draft"]
 
@@ -118,6 +123,83 @@ def test_one_process_finishes_drafts_at_a_time(started, monkeypatch):
     assert stored() == ["draft"]
     finish.finish()
     assert stored() == ["kernel"]
+
+
+@pytest.fixture
+def library_of(started, tmp_path, monkeypatch):
+    """Make a library with given entries the one of the package."""
+
+    def write(contents):
+        file = tmp_path / "library.zip"
+        with ZipFile(file, "w") as archive:
+            for name, content in contents.items():
+                archive.writestr(name, content)
+        monkeypatch.setattr(library, "FILE", file)
+        return file
+
+    return write
+
+
+OF_NORM = compiler.of_source(SOURCE, "norm", SIGNATURE)
+has_x86 = pytest.mark.skipif(not object_code.generic_machine(), reason="the library has code for x86-64-v3")
+
+
+@has_x86
+def test_code_of_the_library_is_used_at_once_and_compiled_for_this_processor_later(library_of, started, monkeypatch):
+    library_of(dict([compiler.in_library(*OF_NORM)]))
+    monkeypatch.setattr(compiler, "drafted", lambda *_: pytest.fail("translated again"))
+    first = norm()
+    assert started == [1] and stored() == ["draft"] and not drafts.quick_ones_are_used()
+    for name in list(finish._drafts()):
+        finish.finish_draft(name)
+    renew()
+    assert stored() == ["kernel"] and norm().address != first.address and value(norm()) == value(first)
+
+
+@has_x86
+def test_code_of_the_library_is_used_where_no_process_may_be_started(library_of, started, monkeypatch):
+    library_of(dict([compiler.in_library(*OF_NORM)]))
+    monkeypatch.setenv("SLURM_JOB_ID", "1")
+    monkeypatch.setattr(compiler, "drafted", lambda *_: pytest.fail("translated again"))
+    assert value(norm()) and not started
+
+
+@has_x86
+@pytest.mark.parametrize("fault", ["content", "archive", "absent", "processor", "source"])
+def test_other_libraries_are_ignored(library_of, started, monkeypatch, fault):
+    name, content = compiler.in_library(*OF_NORM)
+    file = library_of({name: content[: len(content) // 2] if fault == "content" else content})
+    if fault == "archive":
+        file.write_bytes(file.read_bytes()[:200])
+    elif fault == "absent":
+        monkeypatch.setattr(library, "FILE", file.parent / "none.zip")
+    elif fault == "processor":
+        monkeypatch.setattr(compiler, "generic_machine", lambda: "")
+    elif fault == "source":
+        monkeypatch.setattr(compiler, "_language", lambda: "changed")
+    assert value(norm()) == pytest.approx(NUMBERS @ NUMBERS)
+    assert drafts.quick_ones_are_used()
+
+
+def test_records_of_the_library_need_no_derivation(library_of, examples, monkeypatch):
+    kinds = kinds_of(stiffmbs.load_scene(examples / "half_car.yaml"))
+    contents = {}
+    for kind in kinds:
+        contents |= {record._entry(kind): record.packed(record.record_of(kind))}
+        contents |= {
+            record._entry(kind, term_set): record.source_of(kind, term_set).encode()
+            for term_set in record.RARE
+            if record.source_of(kind, term_set)
+        }
+    expected = [record.record_of(kind) for kind in kinds]
+    library_of(contents)
+    for made_before in (record._record_of, record._terms, record.source_of):
+        made_before.cache_clear()
+    shutil.rmtree(entries.cache_directory())
+    monkeypatch.setattr(derive, "derive", lambda kind: pytest.fail("derived again"))
+    found = [record.record_of(kind) for kind in kinds]
+    assert [record.packed(one) for one in found] == [record.packed(one) for one in expected]
+    assert any(record.source_of(kind, term_set) for kind in kinds for term_set in record.RARE)
 
 
 @pytest.mark.long
@@ -166,15 +248,13 @@ SOLVERS = [
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    "scene", ["half_car", "stick_slip", "heavy_top"]
-)
+@pytest.mark.parametrize("scene", ["half_car", "stick_slip", "heavy_top"])
 @pytest.mark.parametrize(("solver", "settings"), SOLVERS)
 def test_runs_on_drafts_are_equal_to_the_last_bit(started, examples, scene, solver, settings):
     model = stiffmbs.load_scene(examples / f"{scene}.yaml")
     duration = min(1.0, model.run.duration)
     first = stiffmbs.run(model, duration=duration, solver=solver, **settings)
-    assert drafts.are_used()
+    assert drafts.quick_ones_are_used()
     with fully_compiled():
         second = stiffmbs.run(model, duration=duration, solver=solver, **settings)
     assert first.channels.keys() == second.channels.keys()

@@ -18,7 +18,7 @@ from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 def inlined_instructions():
     source = Record(namespace=dict, signatures=[], of="", text="")
     with patch("stiffmbs.compile.machine.translate.unit.assembly", lambda *args: reach(args[-1])):
-        return reached(lambda: compiler._assembly("", source))
+        return reached(lambda: compiler.drafted("", source))
 
 
 def normal(part=nothing, grow=nothing):

@@ -12,11 +12,12 @@ from threading import RLock
 from typing import Any
 
 from ...cache import entries
+from ...cache.contents import Kind
 from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
 from . import drafts
 from .linking import Compiled, Signatures, c_types, linked, symbol
-from .object_code import DRAFT, FULL, INLINED, machine, object_code
+from .object_code import DRAFT, FULL, GENERIC, INLINED, generic_machine, machine, object_code
 
 LOGGER = logging.getLogger(__name__)
 _ONE_AT_A_TIME = RLock()
@@ -39,7 +40,7 @@ class Description:
 
 
 @dataclass(frozen=True)
-class _Source:
+class Source:
     """Functions compiled together: their names in a namespace, which is created on demand."""
 
     signatures: Signatures
@@ -53,6 +54,8 @@ class _Source:
     level: int = FULL
 
 
+FollowsFrom = tuple[Kind, *tuple[str, ...]]
+"""Kind of an entry, and all texts that its content follows from besides the processor."""
 _UNNAMED = Description()
 
 
@@ -64,6 +67,13 @@ def compiled_source(source: str, name: str, signature: str, of: Description = _U
     function's name. `signature`: such as ``void(int64, float64*)``. `of`: description, logged while it is compiled.
     `level`: `FULL` or `SHORT`. It does not change results, as no pass may reorder floating-point operations.
     """
+    return _loaded(*of_source(source, name, signature, of, level))[name]
+
+
+def of_source(
+    source: str, name: str, signature: str, of: Description = _UNNAMED, level: int = FULL
+) -> tuple[FollowsFrom, Source]:
+    """Return what the code of a generated source follows from, and the source; parameters as for `compiled_source`."""
 
     def namespace() -> dict[str, object]:
         names: dict[str, object] = {}
@@ -72,8 +82,8 @@ def compiled_source(source: str, name: str, signature: str, of: Description = _U
 
     unrolled = SERIES in source or FLEXIBLE in source
     settings = repr((unrolled, level))
-    entry = entries.name_of("kernel", machine(), source, _language(), _called(GEOMETRY in source), signature, settings)
-    return _loaded(entry, _Source(((name, signature),), namespace, of.words, source, unrolled, level))[name]
+    follows_from: FollowsFrom = ("kernel", source, _language(), _called(GEOMETRY in source), signature, settings)
+    return follows_from, Source(((name, signature),), namespace, of.words, source, unrolled, level)
 
 
 @cache
@@ -97,16 +107,21 @@ def compiled_routines(
     Unrolled loops take LLVM longer; they speed up solutions with dense blocks only.  `level`: as for `compiled_source`.
     `changed` names the parameters in use that differ from the defaults (`stiffmbs.tuning.values_in`).
     """
+    return _loaded(*of_routines(module, signatures, unrolled, level, changed))
+
+
+def of_routines(
+    module: str, signatures: Signatures, unrolled: bool, level: int, changed: str
+) -> tuple[FollowsFrom, Source]:
+    """Return what the code of functions follows from, and the functions; parameters as for `compiled_routines`."""
     settings = repr((signatures, unrolled, level))
-    entry = entries.name_of(
-        "routine", machine(), _language(), _native(module.partition(".")[0]), module, settings, changed
-    )
+    follows_from: FollowsFrom = ("routine", _language(), _native(module.partition(".")[0]), module, settings, changed)
     words = f"the routines {module.rpartition('.')[2]}"
 
     def namespace() -> Mapping[str, object]:
         return vars(importlib.import_module(module))
 
-    return _loaded(entry, _Source(signatures, namespace, words, unrolled=unrolled, level=level))
+    return follows_from, Source(signatures, namespace, words, unrolled=unrolled, level=level)
 
 
 @cache
@@ -125,46 +140,57 @@ def _native(package: str) -> str:
     return digest_of([*files, here / "layout.py", here.parent / "bodies.py"])
 
 
-def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
-    """Return the functions of an entry from the cache, as compiled before or as a draft; else compile them."""
+def _loaded(follows_from: FollowsFrom, source: Source) -> dict[str, Compiled]:
+    """Return functions from the cache, as compiled before or as a draft, or from the library; else compile them."""
+    entry = entries.name_of(*follows_from, machine())
     with _ONE_AT_A_TIME:
         stored = entries.read(entry)
-        found = linked(stored, entry, source.signatures, is_draft=False) if stored else None
-        if found is None and drafts.are_allowed():
-            found = _draft(entry, source)
+        found = linked(stored, entry, source.signatures) if stored else None
+        if found is None and drafts.are_wanted():
+            found = _draft(entry, entries.name_of(*follows_from, generic_machine()), source)
         if found is None:
             with uncollected():
-                made = drafts.draft_in(drafts.name_of(entry))
-                code = made.finished() if made else object_code(_assembly(entry, source), source.level, source.unrolled)
+                draft = drafts.draft_in(entries.read(drafts.name_of(entry))) or drafted(entry, source)
+                code = draft.finished()
             entries.write(entry, code)
-            if made:
-                entries.remove(drafts.name_of(entry))
-            found = linked(code, entry, source.signatures, is_draft=False)
+            entries.remove(drafts.name_of(entry))
+            found = linked(code, entry, source.signatures)
     assert found is not None, entry
     return found
 
 
-def _draft(entry: str, source: _Source) -> dict[str, Compiled] | None:
-    """Return the functions of the draft of an entry, which is made if the cache has none."""
+def _draft(entry: str, shipped: str, source: Source) -> dict[str, Compiled] | None:
+    """Return the functions of the draft of an entry, or of the library; make a draft if it can be finished later."""
     name = drafts.name_of(entry)
-    draft = drafts.draft_in(name)
-    if draft is None:
+    draft = drafts.draft_of(entry, shipped)
+    if draft is None and drafts.can_be_finished():
         with uncollected():
-            text = _assembly(entry, source)
-            code = object_code(text.replace(symbol(entry, ""), symbol(name, "")), DRAFT, source.unrolled)
-        draft = drafts.Draft(entry, machine(), source.level, source.unrolled, code, text)
+            made = drafted(entry, source)
+            code = object_code(made.assembly.replace(drafts.OPEN, name), DRAFT, source.unrolled)
+        draft = made._replace(is_quick=True, symbols=name, code=code)
         entries.write(name, draft.packed())
-    drafts.use(name)
-    return linked(draft.code, name, source.signatures, is_draft=True)
+    if draft is None:
+        return None
+    drafts.use(name, draft.is_quick)
+    return linked(draft.code, draft.symbols, source.signatures)
 
 
-def _assembly(entry: str, source: _Source) -> str:
-    """Return LLVM assembly with a C function for each name of a source."""
+def in_library(follows_from: FollowsFrom, source: Source) -> tuple[str, bytes]:
+    """Return the name and the content of an entry of the library, compiled for the processor `GENERIC`."""
+    name = entries.name_of(*follows_from, generic_machine())
+    made = drafted("", source)
+    code = object_code(made.assembly.replace(drafts.OPEN, name), source.level, source.unrolled, GENERIC)
+    return name, made._replace(symbols=name, code=code).packed()
+
+
+def drafted(entry: str, source: Source) -> drafts.Draft:
+    """Return the assembly of a source with what an entry needs besides, without object code."""
     from .translate.unit import Entry, assembly
 
     LOGGER.info("compiling %s", source.of)
     namespace = source.namespace()
     functions = [
-        Entry(namespace[name], symbol(entry, name), *c_types(signature)) for name, signature in source.signatures
+        Entry(namespace[name], symbol(drafts.OPEN, name), *c_types(signature)) for name, signature in source.signatures
     ]
-    return assembly(functions, source.text, INLINED)
+    text = assembly(functions, source.text, INLINED)
+    return drafts.Draft(entry, machine(), source.level, source.unrolled, False, "", b"", text)

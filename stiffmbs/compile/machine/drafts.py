@@ -20,54 +20,75 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from ...cache import entries
-from .object_code import object_code
+from ...cache import entries, library
+from .object_code import machine, object_code
 
 VARIABLE = "STIFFMBS_DRAFTS"
 """Environment variable; with ``0`` everything is compiled at its full level at once."""
 _BATCH = ("SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID", "SGE_TASK_ID", "OAR_JOB_ID", "FLUX_JOB_ID", "COBALT_JOBID")
 """Variables that batch systems set: processes beyond the end of a job are not wanted there."""
 _FULLY: ContextVar[bool] = ContextVar("fully", default=False)
-_used: set[str] = set()
-"""Names of the drafts that this process has linked."""
+_used: dict[str, bool] = {}
+"""Names of the drafts that this process has linked, with `Draft.is_quick`."""
+OPEN = "@entry@"
+"""Part of the names of functions in assembly, which is replaced before it is compiled."""
 
 
 class Draft(NamedTuple):
-    """Entry of the cache: the `entry` that it stands for, of a machine, with the settings of its full level."""
+    """Compiled functions with the assembly that their code was made from.
+
+    - `entry`: name of the entry that stands for them at the full level.
+    - `machine`: on which the entry is to be used.
+    - `level`, `unrolled`: settings of the full level.
+    - `is_quick`: whether the code was compiled at the level `DRAFT`, not for the library.
+    - `symbols`: part of the names of functions in the code, for `stiffmbs.compile.machine.linking.symbol`; that of the
+      assembly is `OPEN`.
+    """
 
     entry: str
     machine: str
     level: int
     unrolled: bool
+    is_quick: bool
+    symbols: str
     code: bytes
     assembly: str
 
     def packed(self) -> bytes:
         """Return the content of the entry."""
-        head = json.dumps([self.entry, self.machine, self.level, self.unrolled, len(self.code)])
+        head = json.dumps([*self[:-2], len(self.code)])
         return head.encode() + b"\n" + self.code + zlib.compress(self.assembly.encode(), 1)
 
     @classmethod
     def unpacked(cls, content: bytes) -> Draft:
         """Return the draft in an entry; raises ValueError if it is of another form."""
         head, _, rest = content.partition(b"\n")
-        entry, of_machine, level, unrolled, size = json.loads(head)
+        *settings, size = json.loads(head)
         try:
-            return cls(entry, of_machine, level, unrolled, rest[:size], zlib.decompress(rest[size:]).decode())
+            return cls(*settings, rest[:size], zlib.decompress(rest[size:]).decode())
         except zlib.error as error:
             raise ValueError(str(error)) from None
 
     def finished(self) -> bytes:
         """Return the object code at the full level."""
-        return object_code(self.assembly, self.level, self.unrolled)
+        return object_code(self.assembly.replace(OPEN, self.entry), self.level, self.unrolled)
 
 
-def draft_in(name: str) -> Draft | None:
-    """Return the draft in an entry of the cache; None if there is none, or it has another form."""
+def draft_in(content: bytes | None) -> Draft | None:
+    """Return the draft in the content of an entry; None if there is none, or it has another form."""
     try:
-        return Draft.unpacked(entries.read(name) or b"")
+        return Draft.unpacked(content or b"")
     except (ValueError, TypeError):
         return None
+
+
+def draft_of(entry: str, shipped: str) -> Draft | None:
+    """Return the draft of an entry in the cache, or the code in the library, whose name is `shipped`; None without both."""
+    found = draft_in(entries.read(name_of(entry)))
+    if found is None and shipped and (found := draft_in(library.read(shipped))):
+        found = found._replace(entry=entry, machine=machine())
+        entries.write(name_of(entry), found.packed())
+    return found
 
 
 def name_of(entry: str) -> str:
@@ -75,16 +96,19 @@ def name_of(entry: str) -> str:
     return entries.name_of("draft", entry)
 
 
-def are_allowed() -> bool:
-    """Return True if drafts may be used: they can be stored, and a process that finishes them may be started."""
-    return not _FULLY.get() and _can_be_finished(entries.cache_directory())
+def are_wanted() -> bool:
+    """Return True if drafts and code of the library may be used here."""
+    return not _FULLY.get() and os.environ.get(VARIABLE) != "0"
+
+
+def can_be_finished() -> bool:
+    """Return True if drafts can be stored, and a process that finishes them may be started."""
+    return _can_be_finished(entries.cache_directory())
 
 
 @cache
 def _can_be_finished(directory: Path) -> bool:
-    if os.environ.get(VARIABLE) == "0" or any(name in os.environ for name in _BATCH):
-        return False
-    return entries.is_writable(directory)
+    return not any(name in os.environ for name in _BATCH) and entries.is_writable(directory)
 
 
 @contextmanager
@@ -97,24 +121,25 @@ def none() -> Iterator[None]:
         _FULLY.reset(token)
 
 
-def use(name: str) -> None:
+def use(name: str, is_quick: bool) -> None:
     """Record that this process uses a draft, and start the process that finishes drafts at the first one."""
-    if not _used:
+    if not _used and can_be_finished():
         _start_finishing()
-    _used.add(name)
+    _used[name] = is_quick
 
 
 def some_are_finished() -> bool:
     """Return True if drafts that this process uses were finished since; such drafts are in use no longer."""
     folder = entries.folder() if _used else Path()
-    finished = {name for name in _used if not (folder / name).exists()}
-    _used.difference_update(finished)
+    finished = [name for name in _used if not (folder / name).exists()] if can_be_finished() else []
+    for name in finished:
+        del _used[name]
     return bool(finished)
 
 
-def are_used() -> bool:
-    """Return True if this process uses drafts, unless none are allowed in this context."""
-    return bool(_used) and not _FULLY.get()
+def quick_ones_are_used() -> bool:
+    """Return True if this process uses code of the level `DRAFT`."""
+    return any(_used.values()) and are_wanted()
 
 
 def _start_finishing() -> None:

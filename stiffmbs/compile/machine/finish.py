@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -37,7 +38,7 @@ def finish() -> None:
 
 def finish_draft(name: str) -> None:
     """Replace a draft by code at its full level; remove it if it is damaged, keep it if it is another machine's."""
-    draft = draft_in(name)
+    draft = draft_in(entries.read(name))
     if draft is not None and draft.machine != machine():
         return
     if draft is not None:
@@ -59,7 +60,7 @@ def _drafts() -> list[str]:
 def _alone(path: Path) -> Iterator[None]:
     """Lock a file until the end of the context or of this process; raises OSError if another process has locked it."""
     with path.open("ab") as file:
-        if os.name == "nt":
+        if sys.platform == "win32":
             import msvcrt
 
             msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)

@@ -28,14 +28,12 @@ class Compiled(NamedTuple):
     """Compiled function: its address for other compiled code, and two ways to call it from Python.
 
     Pointers are passed as addresses (``array.ctypes.data``). `call` releases the interpreter lock; `short_call` keeps
-    it, because acquiring the lock again may take longer than a call of a few microseconds. `is_draft`: whether it was
-    compiled at the level `DRAFT`.
+    it, because acquiring the lock again may take longer than a call of a few microseconds.
     """
 
     address: int
     call: Callable[..., Any]
     short_call: Callable[..., Any]
-    is_draft: bool
 
 
 def symbol(entry: str, name: str) -> str:
@@ -43,7 +41,7 @@ def symbol(entry: str, name: str) -> str:
     return f"stiffmbs_{entry}_{name}"
 
 
-def linked(code: bytes, entry: str, signatures: Signatures, is_draft: bool) -> dict[str, Compiled] | None:
+def linked(code: bytes, entry: str, signatures: Signatures) -> dict[str, Compiled] | None:
     """Return the functions of an entry by name; None if one is missing in the code."""
     import llvmlite.binding as llvm
 
@@ -56,7 +54,7 @@ def linked(code: bytes, entry: str, signatures: Signatures, is_draft: bool) -> d
         if not address:
             return None
         call, short_call = (made(*_prototype(signature))(address) for made in (ctypes.CFUNCTYPE, ctypes.PYFUNCTYPE))
-        found[name] = Compiled(address, call, short_call, is_draft)
+        found[name] = Compiled(address, call, short_call)
     return found
 
 

@@ -18,11 +18,15 @@ INLINED = 40
 """Instructions of functions that the passes of `_SHORT` inline: about as many as LLVM's usual ones do."""
 INLINE = " alwaysinline"
 """Mark in the assembly of a function that they inline; the usual passes decide themselves."""
+GENERIC: Final = "x86-64-v3"
+"""Processor for which code in the library is compiled: every x86-64 of the last ten years has its instructions."""
+_FEATURES = ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe")
+"""Instructions of `GENERIC` beyond those of every x86-64 processor."""
 _SHORT = ("always_inliner", "dead_arg_elimination", "sroa", "simplify_cfg", "instruction_combine")
 """Passes for straight code, and for routines that spend their time in kernels; none transforms loops or vectorises."""
 
 
-def object_code(assembly: str, level: int, unrolled: bool) -> bytes:
+def object_code(assembly: str, level: int, unrolled: bool, processor: str = "") -> bytes:
     """Return the object code of a module.
 
     Parameters
@@ -33,6 +37,8 @@ def object_code(assembly: str, level: int, unrolled: bool) -> bytes:
         `FULL`, `SHORT` or `DRAFT`. No pass may reorder or contract floating-point operations.
     unrolled : bool
         Whether the usual passes unroll loops.
+    processor : str
+        Name of a processor as LLVM has it; by default this one.
     """
     import llvmlite.binding as llvm
 
@@ -40,7 +46,7 @@ def object_code(assembly: str, level: int, unrolled: bool) -> bytes:
     module.triple = llvm.get_process_triple()
     options = llvm.create_pipeline_tuning_options(speed_level=level)
     options.loop_unrolling = unrolled
-    emitter = _emitter(level)
+    emitter = _emitter(level, processor)
     builder = llvm.create_pass_builder(emitter, options)
     if level == FULL:
         passes = builder.getModulePassManager()
@@ -62,15 +68,24 @@ def machine() -> str:
     return entries.digest(llvm.get_process_triple(), llvm.get_host_cpu_name(), features, llvmlite.__version__)
 
 
-def new_target(level: int) -> llvm.TargetMachine:
-    """Return a target machine of LLVM for this processor."""
+def generic_machine() -> str:
+    """Return a digest of the processor of the library's code; empty if this processor cannot execute it."""
+    import llvmlite.binding as llvm
+
+    triple, features = llvm.get_process_triple(), llvm.get_host_cpu_features()
+    has_all = triple.startswith("x86_64") and all(features.get(name) for name in _FEATURES)
+    return entries.digest(triple, GENERIC) if has_all else ""
+
+
+def new_target(level: int, processor: str = "") -> llvm.TargetMachine:
+    """Return a target machine of LLVM for a processor, by default this one."""
     import llvmlite.binding as llvm
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     return llvm.Target.from_default_triple().create_target_machine(
-        cpu=llvm.get_host_cpu_name(),
-        features=llvm.get_host_cpu_features().flatten(),
+        cpu=processor or llvm.get_host_cpu_name(),
+        features="" if processor else llvm.get_host_cpu_features().flatten(),
         opt=level,
         codemodel="jitdefault",
         jit=True,

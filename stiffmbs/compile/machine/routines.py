@@ -57,8 +57,12 @@ class Routine:
 
     def _with(self, changed: str) -> Compiled:
         """Return the function compiled with the parameters in use; `changed` are those that are not the default."""
-        together = tuple(sorted(((self.name, self.signature), *self.others)))
-        return compiled_routines(self.module, together, self.unrolled, self.level, changed)[self.name]
+        return compiled_routines(*self.unit, changed)[self.name]
+
+    @property
+    def unit(self) -> tuple[str, Signatures, bool, int]:
+        """Module and functions that are compiled together, with their settings."""
+        return self.module, tuple(sorted(((self.name, self.signature), *self.others))), self.unrolled, self.level
 
 
 _loaded: list[Routine] = []
