@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Literal, NamedTuple, get_args
 
 Kind = Literal["record", "kernel", "routine", "draft", "file", "scene", "start", "body"]
-"""Derived kinds of elements, their machine code, that of solvers, code to be compiled at its full level, contents of YAML files,
-scenes, starts of runs, and reduced flexible bodies."""
+"""Derived kinds of elements, their machine code, that of solvers, and drafts of both. Contents of YAML files, scenes, starts of runs, and reduced
+flexible bodies."""
 KINDS: tuple[Kind, ...] = get_args(Kind)
 OTHER = "other"
 ENTRIES, SECRET, TENDED, FINISHING = "entries", "secret", "tended", "finishing"

@@ -30,6 +30,8 @@ _BATCH = ("SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID", "SGE_TASK_ID", "OAR_JOB_ID",
 _FULLY: ContextVar[bool] = ContextVar("fully", default=False)
 _used: dict[str, bool] = {}
 """Names of the drafts that this process has linked, with `Draft.is_quick`."""
+_finishing: list[subprocess.Popen[bytes]] = []
+"""Processes that finish drafts, started by this one."""
 OPEN = "@entry@"
 """Part of the names of functions in assembly, which is replaced before it is compiled."""
 
@@ -131,7 +133,9 @@ def use(name: str, is_quick: bool) -> None:
 def some_are_finished() -> bool:
     """Return True if drafts that this process uses were finished since; such drafts are in use no longer."""
     folder = entries.folder() if _used else Path()
-    finished = [name for name in _used if not (folder / name).exists()] if can_be_finished() else []
+    finished = [name for name in tuple(_used) if not (folder / name).exists()] if can_be_finished() else []
+    if finished and _finishing:
+        _finishing[-1].poll()  # collects its exit status if it has ended
     for name in finished:
         del _used[name]
     return bool(finished)
@@ -139,11 +143,21 @@ def some_are_finished() -> bool:
 
 def quick_ones_are_used() -> bool:
     """Return True if this process uses code of the level `DRAFT`."""
-    return any(_used.values()) and are_wanted()
+    return any(tuple(_used.values())) and are_wanted()
+
+
+def are_used() -> bool:
+    """Return True if this process uses drafts or code of the library."""
+    return bool(_used)
 
 
 def _start_finishing() -> None:
-    """Start the process that compiles drafts, with the packages of this process and no others, and do not wait for it."""
+    """Start the process that compiles drafts, with the packages of this process and no others, and do not wait for it.
+
+    In a program that embeds Python, `sys.executable` may be that program, which is not started.
+    """
+    if "python" not in os.path.basename(sys.executable or ""):
+        return
     import llvmlite
     import platformdirs
 
@@ -153,6 +167,7 @@ def _start_finishing() -> None:
     quiet = subprocess.DEVNULL
     low = getattr(subprocess, "IDLE_PRIORITY_CLASS", 0)
     with suppress(OSError):
-        subprocess.Popen(
-            [sys.executable, "-I", "-c", command], stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True, creationflags=low
-        )  # fmt: skip
+        started = [sys.executable, "-I", "-c", command]
+        _finishing.append(
+            subprocess.Popen(started, stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True, creationflags=low)
+        )

@@ -73,12 +73,13 @@ _loaded: list[Routine] = []
 def fully_compiled() -> Iterator[None]:
     """Compile all code that is asked for within a context at its full level: for long runs, and for times of runs."""
     with drafts.none():
-        forget()
+        if drafts.are_used():
+            forget()
         yield
 
 
 def renew() -> None:
-    """Look up anew what this process has drafts of, if some of them were finished since."""
+    """Look for all compiled functions again, if drafts that this process uses were finished since."""
     if drafts.some_are_finished():
         forget()
 
