@@ -7,7 +7,17 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.analyses import balance_within_steps, beam_elements, check, given_inputs, job, rerun, staged, start_forces
+from stiffmbs.analyses import (
+    balance_within_steps,
+    beam_elements,
+    check,
+    given_inputs,
+    job,
+    long_runs,
+    rerun,
+    staged,
+    start_forces,
+)
 from tests.decisions.common import BELOW, Record, nothing, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
@@ -31,6 +41,19 @@ def most_elements_of_a_beam():
             )
         )
     return counts[-1]
+
+
+def takes_long(spent, rest):
+    """Tell whether a run is given up that took some seconds of processor time, and is predicted to take more of them."""
+    clock = iter((0.0, 0.0, spent))
+    watch = long_runs.Predicted(1.0, nothing)
+    with patch.object(long_runs.time, "process_time", lambda: next(clock)):
+        watch(0.0)
+        try:
+            watch(spent / (spent + rest))
+        except long_runs.TakesLongError:
+            return True
+    return False
 
 
 def moves_of_a_message():
@@ -234,6 +257,8 @@ DECISIONS = {
     ),
     "analyses.given_inputs:ROUNDINGS": distance_of_a_jump,
     "analyses.job:DEPENDENT": least_singular_value,
+    "analyses.long_runs:Drafted.patience": lambda: count_while(lambda rest: not takes_long(5.0, rest), DOUBLES[:40]),
+    "analyses.long_runs:Drafted.least": lambda: count_while(lambda spent: not takes_long(1e-3 * spent, 1e9), DOUBLES[:60]),
     "analyses.rerun:ROUNDS": lambda: reruns(1),
     "analyses.rerun:PART_OF_A_FEATURE": lambda: steps_over_a_feature(0.125)[0],
     "analyses.rerun:MOST_STEPS": lambda: count_while(lambda k: steps_over_a_feature(1e-2 / k), DOUBLES[:60]),
@@ -253,7 +278,7 @@ EXPECTED = {
     "analyses.balance_within_steps:NODES": 115, "analyses.balance_within_steps:MOST_NUMBERS": 200,
     "analyses.beam_elements:MOST": 512, "analyses.check:MOST_MOVES": 50, "analyses.given_inputs:FEWEST": 513,
     "analyses.given_inputs:MOST": 65579, "analyses.given_inputs:FOLLOWED": 27, "analyses.given_inputs:JUMP": 4,
-    "analyses.given_inputs:ROUNDINGS": 9.094947017729282e-13, "analyses.job:DEPENDENT": 120, "analyses.rerun:ROUNDS": 4,
+    "analyses.given_inputs:ROUNDINGS": 9.094947017729282e-13, "analyses.job:DEPENDENT": 120, "analyses.long_runs:Drafted.patience": 14, "analyses.long_runs:Drafted.least": 40, "analyses.rerun:ROUNDS": 4,
     "analyses.rerun:PART_OF_A_FEATURE": 0.0625, "analyses.rerun:MOST_STEPS": 40, "analyses.rerun:STARTS": 14,
     "analyses.rerun:DRIFTED": 14, "analyses.rerun:LESS": 4, "analyses.staged:POINTS": 33, "analyses.staged:LEVELS": 3,
     "analyses.staged:LEAST": 1001, "analyses.staged:MOST": 500, "analyses.staged:SAME": 119,

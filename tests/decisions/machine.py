@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.compile.machine import compiler
+from stiffmbs.compile.machine import compiler, finish
 from stiffmbs.compile.machine.geometry import common_normal, ellipsoids
 from stiffmbs.compile.machine.native import evaluate, factors, rotation_vector
 from stiffmbs.compile.machine.native.beams import along, screws
@@ -19,6 +20,24 @@ def inlined_instructions():
     source = Record(namespace=dict, signatures=[], of="", text="")
     with patch("stiffmbs.compile.machine.translate.unit.assembly", lambda *args: reach(args[-1])):
         return reached(lambda: compiler.drafted("", source))
+
+
+def waits_for_drafts():
+    """Return the times for which the process without drafts waits before it ends."""
+    now = [0.0]
+    waits = []
+
+    def sleep(seconds):
+        waits.append(seconds)
+        now[0] += seconds
+
+    with (
+        patch.multiple(finish, _alone=lambda _: nullcontext(), _drafts=list),
+        patch.multiple(finish.time, monotonic=lambda: now[0], sleep=sleep),
+        patch.object(finish.os, "nice", nothing),
+    ):
+        finish.finish()
+    return waits
 
 
 def normal(part=nothing, grow=nothing):
@@ -155,6 +174,8 @@ DECISIONS = {
     "compile.machine.geometry.common_normal:FLAT": lambda: parts_of_a_normal()[-1][0],
     "compile.machine.geometry.common_normal:ROUGHLY": lambda: parts_of_a_normal()[0][0],
     "compile.machine.geometry.ellipsoids:CORE": thickness_of_a_core,
+    "compile.machine.finish:PATIENCE": lambda: round(sum(waits_for_drafts()), 6),
+    "compile.machine.finish:PAUSE": lambda: waits_for_drafts()[0],
     "compile.machine.native.beams.along:STEP": relative_step,
     "compile.machine.native.beams.screws:TERMS": lambda: terms_of(1e3),
     "compile.machine.native.beams.screws:NEGLIGIBLE": lambda: count_while(lambda x: terms_of(x) > 1, BELOW),
@@ -177,7 +198,7 @@ EXPECTED = {
     "compile.machine.geometry.common_normal:STAGES": 16, "compile.machine.geometry.common_normal:MOST_STEPS": 60,
     "compile.machine.geometry.common_normal:MOST_HALVINGS": 30.0, "compile.machine.geometry.common_normal:POLISHES": 4,
     "compile.machine.geometry.common_normal:FLAT": 1e-14, "compile.machine.geometry.common_normal:ROUGHLY": 1e-08,
-    "compile.machine.geometry.ellipsoids:CORE": 0.5, "compile.machine.native.beams.along:STEP": 0.001,
+    "compile.machine.geometry.ellipsoids:CORE": 0.5, "compile.machine.finish:PATIENCE": 2.2, "compile.machine.finish:PAUSE": 0.2, "compile.machine.native.beams.along:STEP": 0.001,
     "compile.machine.native.beams.screws:TERMS": 17, "compile.machine.native.beams.screws:NEGLIGIBLE": 274,
     "compile.machine.native.beams.section:MOST": 690, "compile.machine.native.evaluate:FARTHEST": 27,
     "compile.machine.native.factors:KEEP_DIAGONAL": 13, "compile.machine.native.factors:TOO_SMALL": 40,

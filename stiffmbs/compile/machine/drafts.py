@@ -169,5 +169,7 @@ def _start_finishing() -> None:
     with suppress(OSError):
         started = [sys.executable, "-I", "-c", command]
         _finishing.append(
-            subprocess.Popen(started, stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True, creationflags=low)
+            subprocess.Popen(
+                started, stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True, creationflags=low
+            )
         )
