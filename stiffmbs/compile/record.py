@@ -167,14 +167,14 @@ def _level(kind: Kind, source: str) -> int:
 
 def in_library(kind: Kind) -> dict[str, bytes]:
     """Return the entries of the library for a kind: its record, sources and kernels of all sets of terms."""
-    found, entry = {}, _entry(kind)
-    has_record = not hasattr(kind.element, "compiled_terms") and entry is not None
-    if has_record:
+    found: dict[str, bytes] = {}
+    entry = None if hasattr(kind.element, "compiled_terms") else _entry(kind)
+    if entry:
         found[entry] = packed(record_of(kind))
     for term_set in TERM_SETS:
         source = source_of(kind, term_set)
         if source is not None:
-            if has_record and term_set in RARE and (part := _entry(kind, term_set)):
+            if entry and term_set in RARE and (part := _entry(kind, term_set)):
                 found[part] = source.encode()
             name, code = compiler.in_library(*of_source(source, "kernel", KERNEL_SIGNATURE, level=_level(kind, source)))
             found[name] = code

@@ -65,11 +65,12 @@ class Draft(NamedTuple):
     def unpacked(cls, content: bytes) -> Draft:
         """Return the draft in an entry; raises ValueError if it is of another form."""
         head, _, rest = content.partition(b"\n")
-        *settings, size = json.loads(head)
+        entry, of_machine, level, unrolled, is_quick, symbols, size = json.loads(head)
         try:
-            return cls(*settings, rest[:size], zlib.decompress(rest[size:]).decode())
+            assembly = zlib.decompress(rest[size:]).decode()
         except zlib.error as error:
             raise ValueError(str(error)) from None
+        return cls(entry, of_machine, level, unrolled, is_quick, symbols, rest[:size], assembly)
 
     def finished(self) -> bytes:
         """Return the object code at the full level."""
