@@ -157,6 +157,14 @@ def test_code_of_the_library_is_used_at_once_and_compiled_for_this_processor_lat
 
 
 @has_x86
+def test_straight_code_of_the_library_is_not_compiled_again(library_of, started, monkeypatch):
+    library_of(dict([compiler.in_library(*compiler.of_source(SOURCE, "norm", SIGNATURE, level=object_code.SHORT))]))
+    monkeypatch.setattr(compiler, "drafted", lambda *_: pytest.fail("translated again"))
+    assert value(compiler.compiled_source(SOURCE, "norm", SIGNATURE, level=object_code.SHORT))
+    assert not started and not entries.folder().exists()
+
+
+@has_x86
 def test_code_of_the_library_is_used_where_no_process_may_be_started(library_of, started, monkeypatch):
     library_of(dict([compiler.in_library(*OF_NORM)]))
     monkeypatch.setenv("SLURM_JOB_ID", "1")

@@ -171,16 +171,21 @@ def _draft(entry: str, shipped: str, source: Source) -> dict[str, Compiled] | No
         entries.write(name, draft.packed())
     if draft is None:
         return None
-    drafts.use(name, draft.is_quick)
+    if draft.assembly:
+        drafts.use(name, draft.is_quick)
     return linked(draft.code, draft.symbols, source.signatures)
 
 
 def in_library(follows_from: FollowsFrom, source: Source) -> tuple[str, bytes]:
-    """Return the name and the content of an entry of the library, compiled for the processor `GENERIC`."""
+    """Return the name and the content of an entry of the library, compiled for the processor `GENERIC`.
+
+    Straight code is not compiled again for the own processor, because it gains nothing there.
+    """
     name = entries.name_of(*follows_from, generic_machine())
     made = drafted("", source)
     code = object_code(made.assembly.replace(drafts.OPEN, name), source.level, source.unrolled, GENERIC)
-    return name, made._replace(symbols=name, code=code).packed()
+    kept = made.assembly if source.level == FULL else ""
+    return name, made._replace(symbols=name, code=code, assembly=kept).packed()
 
 
 def drafted(entry: str, source: Source) -> drafts.Draft:

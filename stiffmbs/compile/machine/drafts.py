@@ -45,6 +45,7 @@ class Draft(NamedTuple):
     - `is_quick`: whether the code was compiled at the level `DRAFT`, not for the library.
     - `symbols`: part of the names of functions in the code, for `stiffmbs.compile.machine.linking.symbol`; that of the
       assembly is `OPEN`.
+    - `assembly`: empty for code of the library that is used for good.
     """
 
     entry: str
@@ -90,7 +91,8 @@ def draft_of(entry: str, shipped: str) -> Draft | None:
     found = draft_in(entries.read(name_of(entry)))
     if found is None and shipped and (found := draft_in(library.read(shipped))):
         found = found._replace(entry=entry, machine=machine())
-        entries.write(name_of(entry), found.packed())
+        if found.assembly:
+            entries.write(name_of(entry), found.packed())
     return found
 
 
