@@ -266,7 +266,7 @@ def _entry(kind: Kind, *part: str) -> str | None:
         _own_files(),
         *texts,
         kind.element.__qualname__,
-        repr([value for name, value in vars(kind).items() if name != "element"]),
+        repr([getattr(kind, field.name) for field in fields(kind) if field.name != "element"]),
         *part,
     )
 

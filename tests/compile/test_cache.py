@@ -298,3 +298,10 @@ def test_sources_do_not_depend_on_the_order_of_sets():
         for seed in ("1", "2")
     ]
     assert found[0] == found[1]
+
+
+def test_the_name_of_a_record_does_not_follow_what_was_asked_of_its_kind(examples):
+    kind = next(iter(kinds_of(stiffmbs.load_scene(examples / "half_car.yaml"))))
+    vars(kind).pop("has_tables", None)
+    before = record._entry(kind)
+    assert not kind.has_tables and record._entry(kind) == before
