@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..dynamics.dynamics import Dynamics
+from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..model.model_data import ModelData
@@ -32,16 +32,23 @@ class _Reports:
     project: bool
     rtol: float
 
-    def of(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> Channels:
-        """Return the channels of states. Raises SolverError if one has none."""
-        rows, _ = reported(self.dynamics, replace(self.run, t=t, q=q, u=u), project, self.rtol)
-        if len(rows.t) != len(t):
+    def rows(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
+        """Return the output rows of states."""
+        return reported(self.dynamics, replace(self.run, t=t, q=q, u=u), project, self.rtol)[0]
+
+    def channels(self, rows: OutputRows, count: int) -> Channels:
+        """Return the channels of `count` states from their rows. Raises SolverError if one has none."""
+        if len(rows.t) != count:
             raise SolverError("the equations have no finite values at some states moved by their errors")
         return channels_of(self.model, self.dynamics.system, rows)
 
     def errors(self, values: Channels, t: np.ndarray, q: np.ndarray, u: np.ndarray, of_states: np.ndarray) -> Channels:
-        """Return the errors of the channels of states with errors (dq, du, ds), from their values."""
-        better = self.of(t, *displaced(self.dynamics.system, q, u, -of_states), True)
+        """Return the errors of the channels of states with errors (dq, du, ds), from their values.
+
+        The states without these errors are projected without regard to stiff forces, with which they are not in balance anyway.
+        """
+        rows = self.dynamics.report(t, *displaced(self.dynamics.system, q, u, -of_states), True)
+        better = self.channels(rows, len(t))
         return {name: difference(name, values[name], better[name]) for name in better}
 
 
@@ -70,21 +77,21 @@ def channel_errors(
 
     `channels`: those of the run. `project`: True if the output rows of the run are projected onto the constraints.
     """
-    states = []
-    for q, u in ((found.recorded_q, found.recorded_u), (found.q, found.u)):
+    reports, count, rows = _Reports(model, dynamics, trajectory, project, rtol), len(found.t), []
+    for q, u, projected in ((found.recorded_q, found.recorded_u, project), (found.q, found.u, True)):
         if subsystem is not None:
-            whole = np.tile(start.q, (len(q), 1)), np.tile(start.u, (len(u), 1))
+            whole = np.tile(start.q, (count, 1)), np.tile(start.u, (count, 1))
             subsystem.part.put(q, u, *whole)
             q, u = whole
-        states.append((q, u))
-    reports, kept = _Reports(model, dynamics, trajectory, project, rtol), ~found.left_out
+        rows.append(reports.rows(found.t, q, u, projected))
+    kept = ~found.left_out
     kept[[0, -1]] = True
-    of_all, better = (reports.of(found.t, *each, on) for each, on in zip(states, (project, True), strict=True))
-    values = {name: each[kept] for name, each in of_all.items()}
-    errors = {name: difference(name, values[name], each[kept]) for name, each in better.items()}
-    (q, u), (better_q, better_u) = ([each[kept] for each in both] for both in states)
-    nodes = _Nodes(found.t[kept], q, u, as_rows(dynamics.system, q - better_q, u - better_u), values, errors)
-    return ChannelErrors(nodes.t, values, _at_outputs(reports, nodes, channels), found.restarts)
+    values, better = ({name: each[kept] for name, each in reports.channels(of, count).items()} for of in rows)
+    errors = {name: difference(name, values[name], better[name]) for name in values}
+    at, without = (of.at(kept) for of in rows)
+    of_states = as_rows(dynamics.system, at.q - without.q, at.u - without.u)
+    nodes = _Nodes(at.t, at.q, at.u, of_states, values, errors)
+    return ChannelErrors(at.t, values, _at_outputs(reports, nodes, channels), found.restarts)
 
 
 def _at_outputs(reports: _Reports, nodes: _Nodes, channels: Channels) -> Channels:
