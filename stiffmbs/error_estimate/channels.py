@@ -99,12 +99,15 @@ def _at_outputs(reports: _Reports, nodes: _Nodes, channels: Channels) -> Channel
 
     Errors of states between two nodes are interpolated: those of channels are not linear where a force changes with a small
     velocity, as friction does. Stiff forces need errors of states that are in balance, which interpolated ones are not: then those
-    of the channels are interpolated. This is so where a node's channel has an error of that size by the errors of its neighbours.
+    of the channels are interpolated. This is so where the errors of a node's neighbours give its channel an error that is wrong by
+    its size.
     """
     run, count = reports.run, len(next(iter(channels.values())))
     t, q, u = run.t[:count], run.q[:count], run.u[:count]
     first = np.clip(np.searchsorted(nodes.t, t, side="right") - 1, 0, len(nodes.t) - 2)
     interpolated = {name: np.interp(t, nodes.t, each) for name, each in nodes.errors.items()}
+    if len(nodes.t) < 3:
+        return interpolated
     inner = np.arange(1, len(nodes.t) - 1)
     try:
         of_outputs = reports.errors(channels, t, q, u, nodes.line(t, first, first + 1))
@@ -116,8 +119,7 @@ def _at_outputs(reports: _Reports, nodes: _Nodes, channels: Channels) -> Channel
         return interpolated
     found = {}
     for name, errors in nodes.errors.items():
-        off = np.zeros(len(errors))
-        off[inner] = np.abs(alone[name] - errors[inner])
+        off = np.pad(np.abs(alone[name] - errors[inner]), 1, mode="reflect")  # an end has no neighbours
         sizes = np.abs(errors)
         holds = np.maximum(off[:-1], off[1:]) <= np.maximum(sizes[:-1], sizes[1:])
         direct, line = of_outputs[name], interpolated[name]
