@@ -12,9 +12,10 @@ from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..solve.recorded_steps import Piece
 from .closed import Closed, closed
+from .coordinates import displaced, displacements
 from .defects import Rates, of_bdf, of_radau, slope_weights
 from .evaluated import Evaluated, evaluated
-from .linearised import Linearised, displaced, linearised
+from .linearised import Linearised, linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
 from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
@@ -27,7 +28,7 @@ class StateErrors:
 
     - `t` of shape (n,): times of the nodes, s; `recorded_q`, `recorded_u`: states of the integrator there.
     - `q`, `u`: better states, without the estimated errors.
-    - `errors` of shape (n, full): the errors (x, v, s) of the states after projection onto the constraints.
+    - `errors` of shape (n, full): the errors (dq, du, ds) of the states after projection onto the constraints.
     - `left_out`: mask of nodes with other errors of forces than those nearby: at events, where errors of time are errors as
       large as jumps; at restarts, where stiff forces are not in balance; and where they could not be balanced.
     - `lost`: mask of nodes with errors too large for linear equations; if there is one, `q` and `u` are those of the integrator.
@@ -109,7 +110,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     left_out = np.zeros(len(t) + 1, dtype=bool)
     left_out[starts[1:][fired] - 1] = True
     left_out[starts[1:]] = True
-    lost, restarts = _are_lost(dynamics.system, errors), t[starts[1:-1]]
+    lost, restarts = _are_lost(dynamics.system, q[nodes], errors), t[starts[1:-1]]
     if lost.any():
         return StateErrors(t[nodes], q[nodes], u[nodes], q[nodes], u[nodes], errors, left_out[nodes], lost, restarts)
     q_better, u_better, fails = (
@@ -120,10 +121,11 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     )
 
 
-def _are_lost(system: System, errors: np.ndarray) -> np.ndarray:
-    """Return a mask of errors (x, v, s) that are too large for linear equations."""
+def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    """Return a mask of errors (dq, du, ds) that are too large for linear equations."""
     scale = system.per_velocity(system.size, 1.0)
-    return np.asarray(~(np.abs(errors[:, : system.n_u]) <= ESTIMATE.lost * scale).all(axis=1))
+    of_poses = displacements(system, q, errors[:, : system.n_pose])
+    return np.asarray(~(np.abs(of_poses) <= ESTIMATE.lost * scale).all(axis=1))
 
 
 def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool) -> _Prepared:
@@ -182,7 +184,7 @@ def _without_errors(dynamics: Dynamics, found: _Found) -> Closed:
     """Return q and u at rows of a piece without their errors, closed at the ends of blocks, and a mask of failures."""
     each, errors, rows = found.piece, found.errors, found.rows
     at = each.states.at(rows)
-    q, u = displaced(dynamics, at, -errors)
+    q, u = displaced(dynamics.system, at.q, at.u, -errors)
     open_ = np.zeros(len(rows), dtype=bool)
     places = np.searchsorted(rows, each.rows)
     slopes = np.full((len(each.rows), errors.shape[1]), np.nan)

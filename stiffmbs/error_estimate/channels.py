@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,39 +16,112 @@ from ..solve.missing_rows import reported
 from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors
+from .coordinates import as_rows, displaced
+
+Channels = dict[str, np.ndarray]
+"""Values of all channels by name."""
+
+
+@dataclass(frozen=True)
+class _Reports:
+    """Channels of states as a run with the tolerance `rtol` reports them; `project`: True if its states are projected."""
+
+    model: ModelData
+    dynamics: Dynamics
+    run: Trajectory
+    project: bool
+    rtol: float
+
+    def rows(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
+        """Return the output rows of states."""
+        return reported(self.dynamics, replace(self.run, t=t, q=q, u=u), project, self.rtol)[0]
+
+    def channels(self, rows: OutputRows, count: int) -> Channels:
+        """Return the channels of `count` states from their rows. Raises SolverError if one has none."""
+        if len(rows.t) != count:
+            raise SolverError("the equations have no finite values at some states moved by their errors")
+        return channels_of(self.model, self.dynamics.system, rows)
+
+    def errors(self, values: Channels, t: np.ndarray, q: np.ndarray, u: np.ndarray, of_states: np.ndarray) -> Channels:
+        """Return the errors of the channels of states with errors (dq, du, ds), from their values.
+
+        The states without these errors are projected without regard to stiff forces, with which they are not in balance anyway.
+        """
+        rows = self.dynamics.report(t, *displaced(self.dynamics.system, q, u, -of_states), True)
+        better = self.channels(rows, len(t))
+        return {name: difference(name, values[name], better[name]) for name in better}
+
+
+@dataclass(frozen=True)
+class _Nodes:
+    """States of a run at the nodes of its estimate, their errors (dq, du, ds), and the values and errors of the channels."""
+
+    t: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+    of_states: np.ndarray
+    values: Channels
+    errors: Channels
+
+    def line(self, t: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """Return the errors of states at some times, each on the straight line through those at two nodes."""
+        part = ((t - self.t[first]) / (self.t[last] - self.t[first]))[:, None]
+        return self.of_states[first] + part * (self.of_states[last] - self.of_states[first])
 
 
 def channel_errors(
     model: ModelData, dynamics: Dynamics, start: InitialValues, subsystem: Subsystem | None, found: StateErrors,
-    trajectory: Trajectory, project: bool, rtol: float,
+    channels: Channels, trajectory: Trajectory, project: bool, rtol: float,
 ) -> ChannelErrors:  # fmt: skip
-    """Return the errors of all channels of a model at the nodes of one mechanism; other mechanisms stay at the start.
+    """Return the errors of all channels of a model by one mechanism, without those of others.
 
-    `project`: True if the output rows of the run are projected onto the constraints.
+    `channels`: those of the run. `project`: True if the output rows of the run are projected onto the constraints.
     """
-    states = []
-    for q, u in ((found.recorded_q, found.recorded_u), (found.q, found.u)):
+    reports, count, rows = _Reports(model, dynamics, trajectory, project, rtol), len(found.t), []
+    for q, u, projected in ((found.recorded_q, found.recorded_u, project), (found.q, found.u, True)):
         if subsystem is not None:
-            whole = np.tile(start.q, (len(q), 1)), np.tile(start.u, (len(u), 1))
+            whole = np.tile(start.q, (count, 1)), np.tile(start.u, (count, 1))
             subsystem.part.put(q, u, *whole)
             q, u = whole
-        states.append((q, u))
-    values, better = (
-        channels_of(model, dynamics.system, _rows(dynamics, replace(trajectory, t=found.t, q=q, u=u), projected, rtol))
-        for (q, u), projected in zip(states, (project, True), strict=True)
-    )
-    errors = {name: difference(name, values[name], better[name]) for name in values}
+        rows.append(reports.rows(found.t, q, u, projected))
     kept = ~found.left_out
     kept[[0, -1]] = True
-    return ChannelErrors(
-        found.t[kept], {name: each[kept] for name, each in values.items()},
-        {name: each[kept] for name, each in errors.items()}, found.restarts,
-    )  # fmt: skip
+    values, better = ({name: each[kept] for name, each in reports.channels(of, count).items()} for of in rows)
+    errors = {name: difference(name, values[name], better[name]) for name in values}
+    at, without = (of.at(kept) for of in rows)
+    of_states = as_rows(dynamics.system, at.q - without.q, at.u - without.u)
+    nodes = _Nodes(at.t, at.q, at.u, of_states, values, errors)
+    return ChannelErrors(at.t, values, _at_outputs(reports, nodes, channels), found.restarts)
 
 
-def _rows(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: float) -> OutputRows:
-    """Return the output rows of states as a run reports them. Raises SolverError if a state has none."""
-    rows, _ = reported(dynamics, trajectory, project, rtol)
-    if len(rows.t) != len(trajectory.t):
-        raise SolverError("the equations have no finite values at some states moved by their errors")
-    return rows
+def _at_outputs(reports: _Reports, nodes: _Nodes, channels: Channels) -> Channels:
+    """Return the errors of the channels of a run at its output times.
+
+    Errors of states between two nodes are interpolated: those of channels are not linear where a force changes with a small
+    velocity, as friction does. Stiff forces need errors of states that are in balance, which interpolated ones are not: then those
+    of the channels are interpolated. This is so where the errors of a node's neighbours give its channel an error that is wrong by
+    its size.
+    """
+    run, count = reports.run, len(next(iter(channels.values())))
+    t, q, u = run.t[:count], run.q[:count], run.u[:count]
+    first = np.clip(np.searchsorted(nodes.t, t, side="right") - 1, 0, len(nodes.t) - 2)
+    interpolated = {name: np.interp(t, nodes.t, each) for name, each in nodes.errors.items()}
+    if len(nodes.t) < 3:
+        return interpolated
+    inner = np.arange(1, len(nodes.t) - 1)
+    try:
+        of_outputs = reports.errors(channels, t, q, u, nodes.line(t, first, first + 1))
+        alone = reports.errors(
+            {name: each[inner] for name, each in nodes.values.items()}, nodes.t[inner], nodes.q[inner], nodes.u[inner],
+            nodes.line(nodes.t[inner], inner - 1, inner + 1),
+        )  # fmt: skip
+    except SolverError:
+        return interpolated
+    found = {}
+    for name, errors in nodes.errors.items():
+        off = np.pad(np.abs(alone[name] - errors[inner]), 1, mode="reflect")  # an end has no neighbours
+        sizes = np.abs(errors)
+        holds = np.maximum(off[:-1], off[1:]) <= np.maximum(sizes[:-1], sizes[1:])
+        direct, line = of_outputs[name], interpolated[name]
+        found[name] = np.where(holds[first] | (np.abs(direct) < np.abs(line)), direct, line)
+    return found

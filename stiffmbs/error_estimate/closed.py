@@ -13,8 +13,9 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.native.parameters import CONSISTENCY
+from .coordinates import displaced
 from .evaluated import Evaluated, evaluated
-from .linearised import Linearised, displaced, linearised, rate_changes
+from .linearised import Linearised, linearised, rate_changes
 from .parameters import ESTIMATE
 from .restarts import motion
 
@@ -25,12 +26,12 @@ Closed: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
 def closed(
     dynamics: Dynamics, at: Evaluated, space: Linearised, errors: np.ndarray, slopes: np.ndarray, step: float
 ) -> Closed:
-    """Return q and u of states without their errors (x, v, s), closed onto the equations where that is possible, and where not.
+    """Return q and u of states without their errors (dq, du, ds), closed onto the equations where that is possible, and where not.
 
     `slopes`: e' - d at the states, NaN where they are unknown. `step`: longest step, s; as in a stiff projection, the matrix of a
     part of it separates the directions that are stiff.
     """
-    (q, u), open_ = displaced(dynamics, at, -errors), np.zeros(len(errors), dtype=bool)
+    (q, u), open_ = displaced(dynamics.system, at.q, at.u, -errors), np.zeros(len(errors), dtype=bool)
     known = np.flatnonzero(np.isfinite(slopes).all(axis=1))
     if not space.n or not len(known):
         return q, u, open_
@@ -101,7 +102,7 @@ class _Iteration:
     ) -> tuple[Evaluated, np.ndarray, np.ndarray]:
         """Return the states without some errors, the residuals e' - F(z) + F(z - e) - d and their sizes."""
         at = self._at.at(rows)
-        there = evaluated(self._dynamics, at.t, *displaced(self._dynamics, at, -errors))
+        there = evaluated(self._dynamics, at.t, *displaced(self._dynamics.system, at.q, at.u, -errors))
         residuals = slopes + rate_changes(self._dynamics.system, at, there)
         return there, residuals, self._size(rows, residuals)
 

@@ -7,29 +7,32 @@ import numpy as np
 from ..compile.system import System
 from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
-from .evaluated import Evaluated, with_rates
+from .coordinates import as_rows, width
+from .evaluated import Evaluated
 from .parameters import ESTIMATE
-from .variations import Variations
 
 
 class Rates:
-    """Differences of given rates from those of the equations at evaluated states, as rows (x, v, s)."""
+    """Differences of given rates from those of the equations at evaluated states, as rows (dq, du, ds)."""
 
     def __init__(self, system: System, at: Evaluated) -> None:
-        self._system, self._trailing = system, with_rates(system)
-        self._at, self._geometry = at, Variations(system, at.q)
+        self._system = system
         self.states = np.hstack([at.q, at.u])
         self._exact = np.hstack([at.q_rates, at.acceleration])
 
+    @property
+    def width(self) -> int:
+        """Length of a row."""
+        return width(self._system)
+
     def defects(self, rates: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Return the defects of rates (q', u') at some of the states."""
-        return self.variation(rates - self._exact[rows], rows)
+        return self.changes(rates - self._exact[rows])
 
-    def variation(self, change: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Return changes of (q, u) at some of the states as rows (x, v, s)."""
-        geometry = Variations(self._system, self._at.q[rows])
-        dq, du = change[:, : self._system.n_q], change[:, self._system.n_q :]
-        return np.hstack([geometry.displacement(dq), geometry.ground(du), dq[:, self._trailing]])
+    def changes(self, change: np.ndarray) -> np.ndarray:
+        """Return changes of (q, u) as rows (dq, du, ds)."""
+        n_q = self._system.n_q
+        return as_rows(self._system, change[:, :n_q], change[:, n_q:])
 
 
 def slope_weights(nodes: np.ndarray, at: int | np.ndarray) -> np.ndarray:
@@ -60,7 +63,7 @@ def of_bdf(piece: Piece, rates: Rates, opened: bool) -> tuple[np.ndarray, np.nda
     """
     t, steps = piece.t, len(piece.t) - 1
     points = ESTIMATE.points
-    found = np.zeros((steps + 1, rates.variation(rates.states[:1], np.arange(1)).shape[1]))
+    found = np.zeros((steps + 1, rates.width))
     at_ends = np.zeros_like(found)
     by_formula = np.ones(steps, dtype=bool)
     h = np.diff(t)
@@ -83,7 +86,7 @@ def of_bdf(piece: Piece, rates: Rates, opened: bool) -> tuple[np.ndarray, np.nda
         given = np.concatenate([piece.q_rates[n], piece.u_rates[n]])
         at_end = n == steps and bool(piece.fired)
         remainder = np.zeros(found.shape[1]) if at_end else rates.defects(given[None], row)[0]
-        found[n] = at_ends[n] = rates.variation(change[None], row)[0] + remainder
+        found[n] = at_ends[n] = rates.changes(change[None])[0] + remainder
     return found, at_ends
 
 

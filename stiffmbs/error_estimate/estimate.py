@@ -59,7 +59,7 @@ def estimated(
             return _lost_from(solution, min(lost))
         project, rtol = near_constraints(settings), settings.rtol
         of_channels = [
-            channel_errors(model, dynamics, start, part, each, trajectory, project, rtol)
+            channel_errors(model, dynamics, start, part, each, solution.channels, trajectory, project, rtol)
             for part, each in zip(parts, found, strict=False)
         ]
     except (SolverError, np.linalg.LinAlgError) as error:

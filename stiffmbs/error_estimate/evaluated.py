@@ -6,17 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..errors import SolverError
 from ..solve.stiff_rows import with_stiff_forces
-from .variations import position_rates
-
-
-def with_rates(system: System) -> np.ndarray:
-    """Return the indices of the coordinates after those of the bodies that have a rate: counters, differential states."""
-    with_rate = np.append(np.ones(system.n_counters, dtype=bool), ~system.without_rate)
-    return system.n_pose + np.flatnonzero(with_rate)
+from .coordinates import pose_rates, with_rates
 
 
 @dataclass(frozen=True)
@@ -56,8 +49,8 @@ def evaluated(
     if balance and system.n_c:
         rows = with_stiff_forces(dynamics, (q, u), rows, *balance)
     q, u, acceleration = (np.ascontiguousarray(each) for each in (rows.q, rows.u, rows.acceleration))
-    trailing = _trailing_rates(dynamics, t, q, u)
-    return Evaluated(t, q, u, acceleration, position_rates(system, q, u, trailing), rows)
+    q_rates = np.hstack([pose_rates(system, q, u), _trailing_rates(dynamics, t, q, u)])
+    return Evaluated(t, q, u, acceleration, q_rates, rows)
 
 
 def _trailing_rates(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:

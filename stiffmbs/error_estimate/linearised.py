@@ -12,9 +12,9 @@ import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
-from .evaluated import Evaluated, evaluated, with_rates
+from .coordinates import as_rows, displaced, functions_of_changes, pose_changes, width, with_rates
+from .evaluated import Evaluated, evaluated
 from .parameters import ESTIMATE
-from .variations import Variations
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,8 @@ def linearised(dynamics: Dynamics, at: Evaluated, reach: float) -> Linearised:
     `reach`: longest time over which an error is transported with the same rates, s.
     """
     system = dynamics.system
-    width = (system.n_q + 2 * system.n_u) * (2 * system.n_u + system.n_q - system.n_pose)
-    count = max(1, ESTIMATE.numbers_at_once // max(width, 1))
+    numbers = (system.n_q + 2 * system.n_u) * (2 * system.n_u + system.n_q - system.n_pose)
+    count = max(1, ESTIMATE.numbers_at_once // max(numbers, 1))
     parts = [_linearised(dynamics, at.at(slice(k, k + count)), reach) for k in range(0, len(at.t), count)]
     if len(parts) == 1:
         return parts[0]
@@ -70,25 +70,25 @@ def _linearised(dynamics: Dynamics, at: Evaluated, reach: float) -> Linearised:
 
 
 def _moves(dynamics: Dynamics, at: Evaluated) -> tuple[np.ndarray, np.ndarray]:
-    """Return displacements (x, v, s) of states along their tangent spaces, shape (count, n, full), and the matrices `left`."""
+    """Return changes (dq, du, ds) of states along their tangent spaces, shape (count, n, full), and the matrices `left`."""
     system, count = dynamics.system, len(at.t)
     n_u, trailing = system.n_u, with_rates(system)
     scale = system.per_velocity(system.size, 1.0)
-    jacobian = Variations(system, at.q).ground(_velocity_constraints(dynamics, at)) * scale
+    jacobian = _velocity_constraints(dynamics, at) * scale
     free = _null_spaces(jacobian[:, system.active])
     holonomic = system.active & system.holonomic
     poses = free if holonomic.sum() == system.active.sum() else _null_spaces(jacobian[:, holonomic])
-    n_a, n_b, n_s = poses.shape[2], free.shape[2], len(trailing)
-    n = n_a + n_b + n_s
-    moves, left = np.zeros((count, n, 2 * n_u + n_s)), np.zeros((count, n, 2 * n_u + n_s))
-    left[:, :n_a, :n_u] = (poses / scale[:, None]).transpose(0, 2, 1)
-    left[:, n_a : n_a + n_b, n_u : 2 * n_u] = (free / scale[:, None]).transpose(0, 2, 1)
-    left[:, n_a + n_b :, 2 * n_u :] = np.eye(n_s)
+    n_a, n_b, n_s, n_pose, n_v = poses.shape[2], free.shape[2], len(trailing), system.n_pose, system.n_pose + n_u
+    moves, left = (np.zeros((count, n_a + n_b + n_s, width(system))) for _ in range(2))
+    along, along_v = poses.transpose(0, 2, 1), free.transpose(0, 2, 1)
+    left[:, :n_a, :n_pose] = functions_of_changes(system, at.q, along / scale)
+    left[:, n_a : n_a + n_b, n_pose:n_v] = along_v / scale
+    left[:, n_a + n_b :, n_v:] = np.eye(n_s)
     speed = max(1.0, float(np.abs(at.u / scale).max(initial=0.0)))
-    moves[:, :n_a, :n_u] = (poses * scale[:, None]).transpose(0, 2, 1)
-    moves[:, n_a : n_a + n_b, n_u : 2 * n_u] = speed * (free * scale[:, None]).transpose(0, 2, 1)
+    moves[:, :n_a, :n_pose] = pose_changes(system, at.q, along * scale)
+    moves[:, n_a : n_a + n_b, n_pose:n_v] = speed * along_v * scale
     of_states = np.maximum(1.0, np.abs(at.q[:, trailing]).max(axis=0, initial=0.0))
-    moves[:, n_a + n_b :, 2 * n_u :] = np.diag(of_states)
+    moves[:, n_a + n_b :, n_v:] = np.diag(of_states)
     return moves, left
 
 
@@ -99,35 +99,16 @@ def _differences(dynamics: Dynamics, at: Evaluated, moves: np.ndarray) -> tuple[
     if not n:
         return np.zeros((count, full, n)), np.zeros((count, full, n))
     origins = at.at(np.repeat(np.arange(count), n))
-    there = evaluated(dynamics, origins.t, *displaced(dynamics, origins, part * moves.reshape(count * n, full)))
-    changes = state_changes(system, origins, there), rate_changes(system, origins, there)
+    moved = displaced(system, origins.q, origins.u, part * moves.reshape(count * n, full))
+    there = evaluated(dynamics, origins.t, *moved)
+    changes = as_rows(system, there.q - origins.q, there.u - origins.u), rate_changes(system, origins, there)
     basis, rates = (each.reshape(count, n, full).transpose(0, 2, 1) / part for each in changes)
     return basis, rates
 
 
-def displaced(dynamics: Dynamics, at: Evaluated, variations: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return q and u of states moved by variations (x, v, s), one row each."""
-    system = dynamics.system
-    geometry, n_u = Variations(system, at.q), system.n_u
-    q = geometry.moved(at.q, variations[:, :n_u])
-    q[:, with_rates(system)] += variations[:, 2 * n_u :]
-    return q, at.u + geometry.own(variations[:, n_u : 2 * n_u])
-
-
-def state_changes(system: System, at: Evaluated, there: Evaluated) -> np.ndarray:
-    """Return the small changes from states to others as rows (x, v, s)."""
-    geometry, dq = Variations(system, at.q), there.q - at.q
-    return np.hstack([geometry.displacement(dq), geometry.ground(there.u - at.u), dq[:, with_rates(system)]])
-
-
 def rate_changes(system: System, at: Evaluated, there: Evaluated) -> np.ndarray:
-    """Return the changes of the rates from states to others nearby, as those of rows (x, v, s)."""
-    geometry, du = Variations(system, at.q), there.u - at.u
-    spin = geometry.spun(geometry.ground(system.followed * at.u), geometry.ground(du))
-    return np.hstack([
-        geometry.ground(system.followed * du), geometry.ground(there.acceleration - at.acceleration) + spin,
-        (there.q_rates - at.q_rates)[:, with_rates(system)],
-    ])  # fmt: skip
+    """Return the changes of the rates from states to others nearby, as rows (dq, du, ds)."""
+    return as_rows(system, there.q_rates - at.q_rates, there.acceleration - at.acceleration)
 
 
 def nearly_singular(dynamics: Dynamics, at: Evaluated) -> np.ndarray:
@@ -137,7 +118,7 @@ def nearly_singular(dynamics: Dynamics, at: Evaluated) -> np.ndarray:
     """
     system = dynamics.system
     scale = system.per_velocity(system.size, 1.0)
-    matrices = (Variations(system, at.q).ground(_velocity_constraints(dynamics, at)) * scale)[:, system.active]
+    matrices = (_velocity_constraints(dynamics, at) * scale)[:, system.active]
     if not 0 < matrices.shape[1] < matrices.shape[2]:
         return np.zeros(len(at.t), dtype=bool)
     sizes = np.linalg.norm(matrices, axis=2, keepdims=True)

@@ -10,10 +10,9 @@ from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from ..solve.events.restart import restarted
-from .evaluated import Evaluated, evaluated, with_rates
-from .linearised import displaced
+from .coordinates import as_rows, displaced
+from .evaluated import Evaluated, evaluated
 from .parameters import ESTIMATE
-from .variations import Variations
 
 
 def after_restart(
@@ -24,7 +23,7 @@ def after_restart(
     error: np.ndarray,
     on_left: Evaluated,
 ) -> tuple[np.ndarray, float]:
-    """Return the error (x, v, s) after a restart from that before it, as a part at the event and a delay of the motion, s.
+    """Return the error (dq, du, ds) after a restart from that before it, as a part at the event and a delay of the motion, s.
 
     `before`, `after`: the state on both sides, one each. `fired`: event functions. `on_left`: a state just before, with the
     rates there. At an event g = 0, the time is late by dt = -(g_q e_q + g_u e_u) / g', and e+ = jump(e- + f- dt) - f+ dt.
@@ -40,13 +39,8 @@ def after_restart(
 
 
 def motion(system: System, at: Evaluated) -> np.ndarray:
-    """Return the rates of states as rows (x, v, s): the variation by a change of time."""
-    return _variation(Variations(system, at.q), at.q_rates, at.acceleration, with_rates(system))
-
-
-def _variation(geometry: Variations, dq: np.ndarray, du: np.ndarray, trailing: np.ndarray) -> np.ndarray:
-    """Return changes of q and u as rows (x, v, s)."""
-    return np.hstack([geometry.displacement(dq), geometry.ground(du), dq[:, trailing]])
+    """Return the rates of states as rows (dq, du, ds): the change by a unit of time."""
+    return as_rows(system, at.q_rates, at.acceleration)
 
 
 def is_autonomous(dynamics: Dynamics, at: Evaluated) -> bool:
@@ -93,7 +87,7 @@ def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.n
     dq, du = step * rates[:n_q], step * rates[n_q:]
     slope = (values(t + step, at.q[0] + dq, at.u[0] + du) - values(t - step, at.q[0] - dq, at.u[0] - du)) / (2 * step)
     size = ESTIMATE.difference / max(float(np.abs(error).max()), np.finfo(float).tiny)
-    sides = [displaced(dynamics, at, sign * size * error[None]) for sign in (1.0, -1.0)]
+    sides = [displaced(dynamics.system, at.q, at.u, sign * size * error[None]) for sign in (1.0, -1.0)]
     by_error = (values(t, *(each[0] for each in sides[0])) - values(t, *(each[0] for each in sides[1]))) / (2 * size)
     with np.errstate(divide="ignore", invalid="ignore"):
         late = float(-(by_error / slope)[0])
@@ -103,12 +97,9 @@ def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.n
 def _jumped(dynamics: Dynamics, at: Evaluated, t: float, error: np.ndarray) -> np.ndarray:
     """Return the error after the velocities have jumped at time t, by a difference of restarts."""
     size = ESTIMATE.difference / max(float(np.abs(error).max()), np.finfo(float).tiny)
-    moved = displaced(dynamics, at, size * error[None])
+    moved = displaced(dynamics.system, at.q, at.u, size * error[None])
     try:
         base, there = restarted(dynamics, t, at.q[0], at.u[0]), restarted(dynamics, t, moved[0][0], moved[1][0])
     except SolverError:
         return error
-    return _variation(
-        Variations(dynamics.system, base.q[None]), (there.q - base.q)[None], (there.u - base.u)[None],
-        with_rates(dynamics.system),
-    )[0] / size  # fmt: skip
+    return as_rows(dynamics.system, (there.q - base.q)[None], (there.u - base.u)[None])[0] / size

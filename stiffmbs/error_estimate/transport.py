@@ -109,7 +109,8 @@ def _solved(blocks: list[Block], space: Linearised, place: np.ndarray) -> tuple[
     counts = np.array([len(block.nodes) - 1 for block in blocks])
     for k in np.flatnonzero(np.bincount(counts)):
         chosen = np.flatnonzero(counts == k)
-        for some in np.array_split(chosen, 1 + len(chosen) // at_once(int(k) * n)):
+        count = at_once(int(k) * n)
+        for some in np.split(chosen, np.arange(count, len(chosen), count)):
             own = [blocks[b] for b in some]
             first = place[np.array([block.nodes[0] for block in own])]
             at = place[np.array([block.nodes[1:] for block in own])]

@@ -14,16 +14,16 @@ from .scales import ROUNDING, kind_of
 
 @dataclass(frozen=True)
 class ChannelErrors:
-    """Values and errors of all channels at the nodes of one mechanism, by name, shape (n,); `t`, `restarts`: s."""
+    """Errors of all channels by one mechanism, by name.
+
+    `t`, `values`: nodes of the mechanism, s, and the values of the channels there. `errors`: those at the output times.
+    `restarts`: s.
+    """
 
     t: np.ndarray
     values: dict[str, np.ndarray]
     errors: dict[str, np.ndarray]
     restarts: np.ndarray
-
-    def at(self, times: np.ndarray, channel: str) -> np.ndarray:
-        """Return the errors of a channel at other times, by linear interpolation."""
-        return np.interp(times, self.t, self.errors[channel])
 
 
 def bars(
@@ -37,7 +37,7 @@ def bars(
     sampled = _between_outputs(times, shown, parts, numbers_at_once)
     found = {}
     for name, values in shown.items():
-        error = np.sum([part.at(times, name) for part in parts], axis=0)
+        error = np.sum([part.errors[name] for part in parts], axis=0)
         over_time = float(np.nanmax(np.abs(error), initial=0.0))
         if name not in sampled:
             found[name] = ErrorBar(over_time, *4 * [np.nan])

@@ -61,7 +61,7 @@ def windows(h):
         return np.zeros(nodes.shape)
 
     rates = Record(
-        states=np.zeros((len(h) + 1, 2)), variation=lambda change, _: change, defects=lambda change, _: change
+        states=np.zeros((len(h) + 1, 2)), width=2, changes=lambda change: change, defects=lambda change, _: change
     )
     with (
         patch.object(defects, "slope_weights", noted),
@@ -105,8 +105,8 @@ def is_near(distance):
 
 
 def is_lost(error):
-    system = Record(n_u=1, size=1.0, per_velocity=lambda *_: np.ones(1))
-    return along_run._are_lost(system, np.array([[error]])).any()
+    system = Record(n_pose=1, of_body=Record(dimensions=2), size=1.0, per_velocity=lambda *_: np.ones(1))
+    return along_run._are_lost(system, np.zeros((1, 1)), np.array([[error]])).any()
 
 
 def noted(group, error):

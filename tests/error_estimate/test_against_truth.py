@@ -306,6 +306,17 @@ def test_stiff_beams_that_turn_are_not_lost():
         assert 0.3 < ratio(found, channel, exact[channel]) < 3.0
 
 
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_matrices_may_be_in_memory_one_by_one(solver):
+    """The estimate of a car failed with an index of an empty group of blocks, where each block filled the memory allowed."""
+    found, by_one = (
+        solved(PENDULUM.format(duration=2), solver=solver, tuning={"error_estimate": tuning})
+        for tuning in ({}, {"numbers_at_once": 1})
+    )
+    for name, bar in by_one.errors.items():
+        assert np.isclose(bar.over_time, found.errors[name].over_time, rtol=1e-6, atol=1e-12), name
+
+
 def test_a_transport_may_begin_within_a_piece():
     """The bases of two rows are not the same: coordinates of the start are those of the first row of its first block."""
     rng = np.random.default_rng(1)

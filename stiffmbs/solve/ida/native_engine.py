@@ -110,7 +110,7 @@ class NativeEngine:
         if self._by_radau:
             from ..radau.memory import CHOSEN_FROM
 
-            places = radau(max(CHOSEN_FROM)).nodes[:-1]
+            places = radau(max(CHOSEN_FROM) + 2).nodes[:-1]  # points at which the curve through fewer has defects
         self.ida.keep_steps(True, places)
         system = self._equations.system
         free = max(system.n_u - int(system.active.sum()), 0)
