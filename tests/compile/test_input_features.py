@@ -173,6 +173,24 @@ def test_the_curvature_of_a_force_jumps_at_the_points_of_a_curve():
     assert several.within(2.0, 4.0).bends == pytest.approx([3.5])
 
 
+@pytest.mark.parametrize(
+    "kind", ["leaves a point", "reaches a point", "leaves another function", "leaves a level in between"]
+)
+def test_the_end_of_a_rest_is_found_to_the_last_digit(kind):
+    """The interval of 1e-11 s that holds it was taken for it: velocities of drives jumped within the steps after it."""
+    rng = np.random.default_rng(0)
+    table = {"table": [[0, 0], [4, 0], [5, 1], [10, 0]], "spline": True}
+    for t in rng.uniform(0.2, 4.0, 20).tolist():
+        text = {
+            "leaves a point": f"p(max(t - {t!r}, 0))",
+            "reaches a point": f"p(max({t!r} - t, 0))",
+            "leaves another function": f"max(0, max(t - {t!r}, 0)*t)",
+            "leaves a level in between": f"abs(max(t - {t!r}, 0) + min(t - 0.1, 0))",
+        }[kind]
+        found = features(text, p=table).breakpoints
+        assert np.abs(found - t).min() <= 2e-16 * t, (t, found)
+
+
 def test_a_force_with_too_many_points_bends_nowhere():
     """A run with such a force is not refused: only breakpoints are to be stopped at."""
     many = {"table": [[0, 0], [0.3e-6, 1], [0.6e-6, -1], [1e-6, 0]], "beyond": "repeat"}
