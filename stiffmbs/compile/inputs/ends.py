@@ -28,6 +28,8 @@ FARTHER_SIDE, NEARER_SIDE = 1e-6, 1e-10
 """Distances, relative to the times, at which values on both sides are compared."""
 GROWS = 3.0
 """Factor by which values must grow between these distances: that of a pole of order 1/8."""
+NEAREST_SIDE, STILL_GROWS = 1e-12, 1.5
+"""A nearer distance, and the factor by which values of a pole still grow up to it, unlike those of a steep exponential."""
 LARGEST = 1e8
 """Growth towards a pole that solvers can follow."""
 DISTANCES = np.geomspace(0.1, FARTHER_SIDE, 16)
@@ -160,8 +162,10 @@ def _is_bounded(given: Input, node: ast.expr, low: np.ndarray, high: np.ndarray)
 def _is_pole(value: Values, low: float, high: float, size: float) -> bool:
     """Return True if values grow towards the time on either side."""
     for at, sense in ((low, -1.0), (high, 1.0)):
-        far, near = value(at + sense * FARTHER_SIDE * size), value(at + sense * NEARER_SIDE * size)
-        if far is not None and near is not None and abs(near) > GROWS * abs(far) > 0.0:
+        far, near, nearest = (value(at + sense * side * size) for side in (FARTHER_SIDE, NEARER_SIDE, NEAREST_SIDE))
+        if far is None or near is None or not abs(near) > GROWS * abs(far) > 0.0:
+            continue
+        if nearest is None or abs(nearest) > STILL_GROWS * abs(near):
             return True
     return False
 
