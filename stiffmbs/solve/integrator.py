@@ -149,8 +149,8 @@ class Integrator:
     def _note_jump(self, before: float, q: np.ndarray, u: np.ndarray, event: bool) -> None:
         """Note a jump at a restart; the current state is that after it.
 
-        A state that was interpolated to an event within a step may violate the constraints just before it as well, and so
-        may velocities that a formulation does not test.
+        A state that was interpolated to an event within a step may violate the constraints just before it as well. So may
+        velocities that a formulation does not test.
         """
         dynamics, state, last = self.dynamics, self.dynamics.state, self.engine.last_step()
         if not event:
