@@ -109,9 +109,18 @@ def test_an_error_of_the_small_masses_between_joints_is_right(monkeypatch):
 
     seed, load = 6000014, convert.load_robot
     assert convert.trial(seed).outcome is Outcome.RIGHT
-    stronger = [("gravity", "[5.36618, 5.77999, -4.08424]")]
+    stronger = [("gravity", "[5.36618, 5.77999, -4.0844]")]
     monkeypatch.setattr(convert, "load_robot", lambda path, changes=(), **how: load(path, [*changes, *stronger], **how))
     assert convert.trial(seed).outcome is Outcome.WRONG
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [6000025, 6000032, 6000033, 6000042, 6000129, 6000133, 6002027])
+def test_inputs_do_not_stop_runs(seed):
+    """Breakpoints to 1e-11 s, short pulses, branches that are equal up to rounding, and an overflow of cosh stopped runs."""
+    from tests.stress.fuzzers import inputs
+
+    assert inputs.trial(seed).outcome is Outcome.RIGHT
 
 
 @pytest.mark.long
