@@ -8,6 +8,7 @@ that of sin(t)/t at zero.
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
@@ -28,8 +29,6 @@ FARTHER_SIDE, NEARER_SIDE = 1e-6, 1e-10
 """Distances, relative to the times, at which values on both sides are compared."""
 GROWS = 3.0
 """Factor by which values must grow between these distances: that of a pole of order 1/8."""
-NEAREST_SIDE, STILL_GROWS = 1e-12, 1.5
-"""A nearer distance, and the factor by which values of a pole still grow up to it, unlike those of a steep exponential."""
 LARGEST = 1e8
 """Growth towards a pole that solvers can follow."""
 DISTANCES = np.geomspace(0.1, FARTHER_SIDE, 16)
@@ -160,12 +159,17 @@ def _is_bounded(given: Input, node: ast.expr, low: np.ndarray, high: np.ndarray)
 
 
 def _is_pole(value: Values, low: float, high: float, size: float) -> bool:
-    """Return True if values grow towards the time on either side."""
+    """Return True if values grow towards the time on either side.
+
+    Those of a pole, unlike those of a steep exponential, still grow by the same power of the distance at the resolution of time.
+    """
+    order = math.log(GROWS) / math.log(FARTHER_SIDE / NEARER_SIDE)
+    still_grows = (NEARER_SIDE / (2 * SHORTEST_STRETCH)) ** order
     for at, sense in ((low, -1.0), (high, 1.0)):
-        far, near, nearest = (value(at + sense * side * size) for side in (FARTHER_SIDE, NEARER_SIDE, NEAREST_SIDE))
+        far, near, nearest = (value(at + sense * side * size) for side in (FARTHER_SIDE, NEARER_SIDE, SHORTEST_STRETCH))
         if far is None or near is None or not abs(near) > GROWS * abs(far) > 0.0:
             continue
-        if nearest is None or abs(nearest) > STILL_GROWS * abs(near):
+        if nearest is None or abs(nearest) > still_grows * abs(near):
             return True
     return False
 
