@@ -20,8 +20,8 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
 from ..dynamics.native.parameters import CONSISTENCY
 from ..dynamics.turns import counted_angles, take_nearest_turns
+from ..elements.turns import GROUND_AXES
 from ..errors import AssemblyError, InputError, StiffmbsError
-from ..model.beams.entries import GROUND_AXES
 from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
 from ..model.scene import Scene

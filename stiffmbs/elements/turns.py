@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from ..model.model_data import ModelData
 
 TURN = 2 * math.pi
+GROUND_AXES = "ground_axes"
+"""Marker of each node of a beam with axes parallel to those of the scene or part, for joints to bodies with such axes."""
 INITIAL_COUNT = 1e-9
 """Centre of the angles within half a turn, rad: half a turn up to rounding counts as positive."""
 
@@ -61,12 +63,15 @@ class WithinHalfATurn:
 class KeepsDescribedTurns(WithinHalfATurn):
     """Elements whose angle counts all turns between the described angles of planar bodies.
 
-    One that starts to act in a later pose starts within half a turn there, as in space.
+    Nodes of beams have no described angles, but directions: an element on one starts within half a turn. So does an
+    element that starts to act in a later pose, as in space.
     """
 
     def at_initial_pose(self, model: ModelData) -> Self:
-        """Return the same element."""
-        return self
+        """Return the same element, or one with an angle within half a turn on a node of a beam."""
+        owners = {marker.body for pair in self._rotations() for marker in pair} - {GROUND}
+        directed = any(GROUND_AXES in model.bodies[body].markers for body in owners)
+        return self.at_current_pose(model) if directed else self
 
     def at_current_pose(self, model: ModelData) -> Self:
         """Return the element with an angle within half a turn."""

@@ -149,18 +149,26 @@ class Integrator:
     def _note_jump(self, before: float, q: np.ndarray, u: np.ndarray, event: bool) -> None:
         """Note a jump at a restart; the current state is that after it.
 
-        A state that was interpolated to an event within a step may violate the constraints just before it as well.
+        A state that was interpolated to an event within a step may violate the constraints just before it as well. So may
+        velocities that a formulation does not test.
         """
         dynamics, state, last = self.dynamics, self.dynamics.state, self.engine.last_step()
         if not event:
+            if self._jumps.is_jump(state.u - u):
+                u = self._closed_velocities(dynamics.sides(before)[0], q, u)
             self._jumps.note(before, q, u)
         elif last and self._jumps.is_jump(state.u - u):
             back = SEARCH.finest * last[0]
-            with state.unchanged():
-                state.q[:], state.u[:] = dynamics.system.of_body.moved(q, -back * u), u
-                closed = dynamics.correct_velocities(before - back) >= 0
-                u = state.u.copy() if closed else u
+            u = self._closed_velocities(before - back, dynamics.system.of_body.moved(q, -back * u), u)
             self._jumps.note(before, state.q, u)
+
+    def _closed_velocities(self, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Return the velocities nearest to given ones that satisfy the constraints, or the given ones if there are none."""
+        state = self.dynamics.state
+        with state.unchanged():
+            state.q[:], state.u[:] = q, u
+            closed = self.dynamics.correct_velocities(t) >= 0
+            return state.u.copy() if closed else u
 
     def _ahead(self, reached: Reached, stop: float) -> float:
         """Return the time after an event within which simultaneous events are passed, s."""

@@ -19,7 +19,7 @@ from ..tuning import parameters_of
 from .driven_states import KINEMATIC, Instant, IntegratedMotion, states_after
 from .events.discontinuity import Jumps
 from .events.narrow_inputs import hidden_peak, narrower_than_output
-from .events.native.parameters import SEARCH
+from .events.native.parameters import INDISTINCT, SEARCH
 from .events.refusals import refuse_beyond_limits
 from .explicit.native.parameters import CONTROL
 from .reasons import OF_STATUS, Reason
@@ -55,7 +55,8 @@ def solve(
     system = dynamics.system
     rows = Rows(system.n_q, system.n_u, len(times))
     features = dynamics.input_features(grid.start, grid.end)
-    shortest = CONTROL.shortest * (grid.end - grid.start)
+    narrowest = min(grid.end - grid.start, features.narrowest()[0])
+    shortest = max(CONTROL.shortest * narrowest, INDISTINCT * max(abs(grid.start), abs(grid.end)))
     motion: _Motion | IntegratedMotion
     if _by_velocities(dynamics):
         longest = float(np.min(features.longest, initial=np.inf))
@@ -132,15 +133,21 @@ class _Motion:
         self._turning = self._rates_of_counters(t)
 
     def go_to(self, end: float) -> None:
-        """Compute the motion up to a later time, in as many steps as necessary."""
-        h = end - self.t
+        """Compute the motion up to a later time, in as many steps as necessary.
+
+        Where the shortest step fails, the search is repeated without the accelerations: where two branches of a drive are
+        equal up to rounding, these may be those of the other one.
+        """
+        h, without = end - self.t, False
         while self.t < end:
             h = min(h, end - self.t, max(self._features.longest_step(self.t), 2 * self._shortest))
             last = end - self.t <= h
             if self._step(end if last else self.t + h, h):
-                h *= 2
+                h, without = 2 * h, False
             elif h > self._shortest:
                 h /= 2
+            elif not without:
+                self.a, h, without = 0.0 * self.a, end - self.t, True
             else:
                 raise SolverError(self._stuck())
 

@@ -1,5 +1,6 @@
 """Beams in motion: converged values from independent methods, conservation laws, and all solvers."""
 
+import json
 import math
 
 import numpy as np
@@ -286,3 +287,25 @@ start: equilibrium
     )
     assert found.sides == ()
     assert all(mode.frequency > 0 for mode in found.modes[:2]) == (torque < 8.987)
+
+
+@pytest.mark.parametrize("angle", [-2.5, -1.0, 0.0, 1.0, 2.5])
+@pytest.mark.parametrize("element", ["torsion", "hinge"])
+def test_a_planar_scene_that_is_turned_does_not_wind_a_spring_on_a_beam(angle, element):
+    """The direction of a beam has no turns: a spring between it and a marker that turns with the scene was wound by one."""
+    along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    end = 0.5 * (np.cos(-1.7) * along + np.sin(-1.7) * across)
+    scene = {
+        "gravity": [0, 0],
+        "bodies": {
+            "rod": {"type": "beam", "start": [0, 0], "end": end.tolist(), "elements": 2, "material": {"E": 2.1e11, "nu": 0.3, "density": 7800}, "section": {"type": "circle", "diameter": 0.01}}
+        },
+        "joints": {"hinge": {"type": "revolute", "i": "rod.start", "j": {"body": "ground", "angle": angle}}},
+        "forces": {
+            "torsion": {"type": "torsion_spring", "i": "rod.start", "j": {"body": "ground", "angle": angle}, "stiffness": 2, "free_angle": 0.3}
+        },
+        "requests": {"opened": "hinge.angle"},
+    }  # fmt: skip
+    found = stiffmbs.run(stiffmbs.read_scene(json.dumps(scene)), duration=1e-3, points=2)
+    first = found["torsion.torque"][0] / -2 + 0.3 if element == "torsion" else found["hinge.angle"][0]
+    assert first == pytest.approx(-1.7)

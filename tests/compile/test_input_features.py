@@ -158,6 +158,45 @@ def test_nested_steps_take_no_longer_than_their_number():
     assert len(breakpoint_times([Input(parse(nested), nested, {}, {})], 0.0, 10.0)) >= 2
 
 
+def test_the_curvature_of_a_force_jumps_at_the_points_of_a_curve():
+    """These are no breakpoints; splines have none, and points of lines and those of a drive are breakpoints."""
+    points = [[0, 0], [2, 1], [5, 3], [7, -1], [10, 0]]
+    for how, bends, breakpoints in (
+        ({}, [2, 5, 7], []), ({"akima": True}, [2, 5, 7], []), ({"spline": True}, [], []), ({"lines": True}, [], [2, 5, 7]),
+    ):  # fmt: skip
+        found = features("law(t)", law={"table": points, **how})
+        assert found.bends == pytest.approx(bends)
+        assert found.breakpoints == pytest.approx(breakpoints)
+    several = features("law(2*t) + max(t - 2.5, 0)", law={"table": points})
+    assert several.bends == pytest.approx([1, 3.5])  # at 2.5 s is a breakpoint
+    assert several.breakpoints == pytest.approx([2.5, 5])  # beyond its end the table is straight
+    assert several.within(2.0, 4.0).bends == pytest.approx([3.5])
+
+
+@pytest.mark.parametrize(
+    "kind", ["leaves a point", "reaches a point", "leaves another function", "leaves a level in between"]
+)
+def test_the_end_of_a_rest_is_found_to_the_last_digit(kind):
+    """The interval of 1e-11 s that holds it was taken for it: velocities of drives jumped within the steps after it."""
+    rng = np.random.default_rng(0)
+    table = {"table": [[0, 0], [4, 0], [5, 1], [10, 0]], "spline": True}
+    for t in rng.uniform(0.2, 4.0, 20).tolist():
+        text = {
+            "leaves a point": f"p(max(t - {t!r}, 0))",
+            "reaches a point": f"p(max({t!r} - t, 0))",
+            "leaves another function": f"max(0, max(t - {t!r}, 0)*t)",
+            "leaves a level in between": f"abs(max(t - {t!r}, 0) + min(t - 0.1, 0))",
+        }[kind]
+        found = features(text, p=table).breakpoints
+        assert np.abs(found - t).min() <= 2e-16 * t, (t, found)
+
+
+def test_a_force_with_too_many_points_bends_nowhere():
+    """A run with such a force is not refused: only breakpoints are to be stopped at."""
+    many = {"table": [[0, 0], [0.3e-6, 1], [0.6e-6, -1], [1e-6, 0]], "beyond": "repeat"}
+    assert not len(features("law(t)", law=many).bends)
+
+
 def test_a_step_is_no_longer_than_what_it_touches_allows():
     found = InputFeatures(np.empty(0), np.array([0.0, 4.0, 5.0]), np.array([10.0, 0.1, np.inf]))
     assert found.longest_step(0.0) == 4.0

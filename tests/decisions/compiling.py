@@ -59,7 +59,7 @@ def distances_from_a_pole():
 
 def smallest_growth_at_a_pole():
     def grows(ratio):
-        found = iter([1.0, ratio, None, None])
+        found = iter([1.0, ratio, *[None] * 4])
         return ends._is_pole(lambda _: next(found), 0.0, 0.0, 1.0)
 
     return count_while(lambda ratio: not grows(ratio), 1.1 * DOUBLES[:40])

@@ -19,7 +19,7 @@ ENDS = {
 }  # fmt: skip
 HARMLESS = [
     "sin(t - 1)/(t - 1)", "1/(t^2 + 1)", "sqrt(1 - cos(3*t)^2)", "acos(cos(t))", "atan(1/(t - 5))", "sqrt(max(0, 1 - t))",
-    "branch(t - 1, 1, 1, 2)/(t + 1)", "1/((t - 1)^2 + 1e-4)", "sqrt(t^2 + 2*t + 1)", "exp(-700*t)",
+    "branch(t - 1, 1, 1, 2)/(t + 1)", "1/((t - 1)^2 + 1e-4)", "sqrt(t^2 + 2*t + 1)", "exp(-700*t)", "1/cosh((t - 1.2)/0.0013)",
 ]  # fmt: skip
 
 

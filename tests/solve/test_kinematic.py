@@ -1,5 +1,7 @@
 """Kinematic analysis and inverse dynamics: the chapter's slider-crank, dead centres, branches."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -198,3 +200,33 @@ def test_steps_follow_the_drive_where_forces_leave_no_digit_of_accelerations(for
     solution = stiffmbs.run(model, solver="kinematic", duration=1.0, points=11)
     assert solution.solver["steps"] < 5000
     np.testing.assert_allclose(solution["rod.angle"], np.sin(2 * solution.time), atol=1e-12)
+
+
+DRIVES = {
+    "a rest before a table": ("p(max(t - 0.31006039054210555, 0))", lambda t: 0.2 * max(t - 0.31006039054210555, 0.0)),
+    "a short pulse from rest": (
+        "step5(t, 1.3, 0, 1.300015, 1) - step5(t, 1.3001, 0, 1.300115, 1)", lambda t: float(1.300015 <= t <= 1.3001)
+    ),
+    "equal up to rounding": (
+        "max(p(max(t - 0.3, 0))*0, -(step5(t, 1.8907912372657665, 0, 1.8919030802843428, 1) - step5(t, 1.8930149233029192, 0, 1.8941267663214953, 1)))", lambda t: 0.0
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("solver", ["kinematic", "bdf", "radau"])
+@pytest.mark.parametrize("what", sorted(DRIVES))
+def test_a_drive_along_a_rail_never_locks(what, solver):
+    """Runs stopped at kinks that were located to 1e-11 s only, at pulses of a millionth of the run, and where branches are equal."""
+    text, exact = DRIVES[what]
+    scene = {
+        "gravity": [0, 0],
+        "bodies": {"b": {"mass": 1, "inertia": 1}},
+        "joints": {
+            "rail": {"type": "prismatic", "i": "b", "j": "ground"},
+            "motor": {"type": "drive", "joint": "rail", "position": text},
+        },
+        "tables": {"p": {"table": [[0, 0], [5, 1], [10, 2]], "spline": True}},
+    }
+    found = stiffmbs.run(stiffmbs.read_scene(json.dumps(scene)), solver=solver, duration=10, points=101)
+    assert found.success, found.message
+    np.testing.assert_allclose(found["b.x"], [exact(t) for t in found.time], rtol=0, atol=1e-8)

@@ -8,6 +8,7 @@ that of sin(t)/t at zero.
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
@@ -158,10 +159,17 @@ def _is_bounded(given: Input, node: ast.expr, low: np.ndarray, high: np.ndarray)
 
 
 def _is_pole(value: Values, low: float, high: float, size: float) -> bool:
-    """Return True if values grow towards the time on either side."""
+    """Return True if values grow towards the time on either side.
+
+    Those of a pole, unlike those of a steep exponential, still grow by the same power of the distance at the resolution of time.
+    """
+    order = math.log(GROWS) / math.log(FARTHER_SIDE / NEARER_SIDE)
+    still_grows = (NEARER_SIDE / (2 * SHORTEST_STRETCH)) ** order
     for at, sense in ((low, -1.0), (high, 1.0)):
-        far, near = value(at + sense * FARTHER_SIDE * size), value(at + sense * NEARER_SIDE * size)
-        if far is not None and near is not None and abs(near) > GROWS * abs(far) > 0.0:
+        far, near, nearest = (value(at + sense * side * size) for side in (FARTHER_SIDE, NEARER_SIDE, SHORTEST_STRETCH))
+        if far is None or near is None or not abs(near) > GROWS * abs(far) > 0.0:
+            continue
+        if nearest is None or abs(nearest) > still_grows * abs(near):
             return True
     return False
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 
 import numpy as np
@@ -35,7 +36,7 @@ class InputFeatures:
 
     `breakpoints`: times to stop and restart at, s. `starts`, `longest`: start of each interval and longest step that
     may touch it, s; empty if nothing limits steps. `note`: note for the user, or ''. `at_ends`: breakpoints at the
-    first and the last time, s.
+    first and the last time, s. `bends`: other times at which the curvature of a force's table jumps, s.
     """
 
     breakpoints: np.ndarray = field(default_factory=lambda: np.empty(0))
@@ -43,6 +44,7 @@ class InputFeatures:
     longest: np.ndarray = field(default_factory=lambda: np.empty(0))
     note: str = ""
     at_ends: np.ndarray = field(default_factory=lambda: np.empty(0))
+    bends: np.ndarray = field(default_factory=lambda: np.empty(0))
 
     @cached_property
     def all_breakpoints(self) -> np.ndarray:
@@ -67,11 +69,12 @@ class InputFeatures:
 
     def within(self, start: float, end: float) -> InputFeatures:
         """Return the features between two times."""
-        if not len(self.starts) and not len(self.breakpoints) and not len(self.at_ends):
+        if not any(map(len, (self.starts, self.breakpoints, self.at_ends, self.bends))):
             return self
         inside = (self.starts < end) & (self.ends > start)
         within, at_ends = _parted(self.all_breakpoints, start, end)
-        return InputFeatures(within, self.starts[inside], self.longest[inside], self.note, at_ends)
+        bends = self.bends[(self.bends > start) & (self.bends < end)]
+        return InputFeatures(within, self.starts[inside], self.longest[inside], self.note, at_ends, bends)
 
     def narrowest(self) -> tuple[float, float]:
         """Return length and start of the narrowest feature, s; infinite length if there is none."""
@@ -121,7 +124,23 @@ def _features(inputs: tuple[Input, ...], start: float, end: float) -> InputFeatu
     note = (
         f"'{estimated[0]}' has too many features to be listed: steps follow from a sample of them" if estimated else ""
     )
-    return InputFeatures(breakpoints, *_together(bounds, breakpoints, start, end), note, at_ends)
+    bends = _bends(inputs, np.union1d(breakpoints, at_ends), start, end)
+    return InputFeatures(breakpoints, *_together(bounds, breakpoints, start, end), note, at_ends, bends)
+
+
+def _bends(inputs: Sequence[Input], breakpoints: np.ndarray, start: float, end: float) -> np.ndarray:
+    """Return the times within a run at which the curvature of an input's table jumps, without the breakpoints.
+
+    An input with too many of them has none.
+    """
+    found = [np.empty(0)]
+    for each in inputs:
+        if each.tables and not each.of_joint:
+            with suppress(TooMany):
+                found += list(_passages(replace(each, of_joint=True), start, end))
+    times = np.unique(np.concatenate([*found, breakpoints]))
+    times = _parted(times[np.diff(times, prepend=-np.inf) > 2.0 * aside(start, end)], start, end)[0]
+    return times[~np.isin(times, breakpoints)]
 
 
 def aside(start: float, end: float) -> float:

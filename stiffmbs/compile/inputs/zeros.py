@@ -120,9 +120,18 @@ def _stands(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarra
 
 
 def _passages(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarray) -> np.ndarray:
-    """Return the crossings in monotonic intervals by bisection; end values equal to a level count."""
+    """Return the crossings in monotonic intervals by bisection; end values equal to a level count.
+
+    In an interval at the resolution of time, a formula may stay at a level before it leaves it, or after it has reached it.
+    """
     first, last = values(low), values(high)
-    at_ends = np.concatenate([low[np.isin(first, levels)], high[np.isin(last, levels)]])
+    leaves, reaches = np.isin(first, levels), np.isin(last, levels)
+    at_ends = np.concatenate(
+        [
+            _left(values, low[leaves], high[leaves], first[leaves]),
+            _left(values, high[reaches], low[reaches], last[reaches]),
+        ]
+    )
     least, most = np.minimum(first, last), np.maximum(first, last)
     from_level = np.searchsorted(levels, least, side="right")
     count = np.maximum(np.searchsorted(levels, most, side="left") - from_level, 0)
@@ -130,6 +139,16 @@ def _passages(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndar
     within = np.arange(len(stretch)) - np.repeat(np.cumsum(count) - count, count)
     level = levels[from_level[stretch] + within]
     return np.concatenate([at_ends, _bisected(values, low[stretch], high[stretch], level, (last > first)[stretch])])
+
+
+def _left(values: Values, at: np.ndarray, other: np.ndarray, level: np.ndarray) -> np.ndarray:
+    """Return the last numbers from given ones, where a formula equals a level, towards others at which it still does so."""
+    begun, at = at, at.copy()
+    other = np.where(values(other) == level, begun, other)
+    while np.any(((middle := (at + other) / 2) != at) & (middle != other)):
+        stays = values(middle) == level
+        at, other = np.where(stays, middle, at), np.where(stays, other, middle)
+    return at
 
 
 def _bisected(values: Values, low: np.ndarray, high: np.ndarray, level: np.ndarray, rising: np.ndarray) -> np.ndarray:

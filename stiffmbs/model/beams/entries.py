@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping
 
 from ...reading.files.yaml_text import Content
 
-GROUND_AXES = "ground_axes"
-"""Marker of each node with axes parallel to those of the scene or part, for joints to bodies with such axes."""
 LOAD, CONTACT = "distributed_load", "beam_contact"
 """Types of the forces on all nodes of a beam."""
 

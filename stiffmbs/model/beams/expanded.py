@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from ...elements.spatial.orientation import IDENTITY, from_matrix
+from ...elements.turns import GROUND_AXES
 from ...reading.files.yaml_text import Content
 from .discretise import Element, Line, Node, discretise
-from .entries import GROUND_AXES
 
 if TYPE_CHECKING:
     from .beam import Beam

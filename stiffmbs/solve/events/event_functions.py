@@ -151,24 +151,27 @@ def _calls(system: System) -> dict[str, np.ndarray | int]:
 class StepBound:
     """Table of step bounds for compiled code (`stiffmbs.solve.events.native.step_bound`), which may be updated.
 
-    `table`: its address does not change.
+    `table`: its address does not change. `at_bends`: True if steps end at jumps of the curvature of inputs.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, at_bends: bool = False) -> None:
+        self._at_bends = at_bends
         self.table = np.zeros(len(STEP_BOUND), dtype=np.int64)  # no features: its arrays are not read
         self._cells = self.table.view(STEP_BOUND.cells)[0]
         self._followed = NO_FEATURES
 
     def follow(self, features: InputFeatures) -> None:
         """Bound steps by these features from now on."""
-        self._cells["place"] = 0
+        self._cells["place"] = self._cells["bend"] = 0
         if features is self._followed:
             return
         self._followed = features
-        if not len(features.starts):
+        bends = features.bends if self._at_bends else np.empty(0)
+        if not len(features.starts) and not len(bends):
             self.table[:] = 0
             return
         self._kept = {
             "n": len(features.starts), "starts": np.ascontiguousarray(features.starts), "longest": np.ascontiguousarray(features.longest),
+            "n_bends": len(bends), "bends": np.ascontiguousarray(bends),
         }  # fmt: skip
         fill(self.table, STEP_BOUND, self._kept)

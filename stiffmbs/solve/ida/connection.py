@@ -169,7 +169,7 @@ class Connection:
         self._long_steps = self.long_steps.table if self.long_steps else np.zeros(len(LONG_STEPS), dtype=np.int64)
         self._samples = np.full((LOOP.samples, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
-        self.output_correction, self.step_bound = OutputCorrection(equations), StepBound()
+        self.output_correction, self.step_bound = OutputCorrection(equations), StepBound(bool(formula.repeat))
         self.watch = EventSearch(state)
         self._has_kinks = bool(equations.system.forces_by_reactions) or self.watch.n_event_functions > 0
         self.iteration = Iteration(n, self._has_kinks)

@@ -166,6 +166,7 @@ class Radau:
             "im_re": indices(pairs.im_re), "re_im": indices(pairs.re_im),
             "n_terms": n_terms, "terms": np.zeros(n_terms), "terms_aside": np.zeros(n_terms + efforts["n_levers"] + efforts["n_slopes"]),
             "entries": np.zeros(len(number)), **vectors, **at, "output_correction": connection.output_correction.table, "error_norm": connection.error_norm.table,
+            "step_bound": connection.step_bound.table,
             **_angles(equations), "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
             "misfit": np.zeros(self._most * n_efforts), "r": np.zeros(self._most * n),
             **{name: np.zeros(n) for name in ("yp", "yp_stage", "error", "weight", "atol")},

@@ -7,6 +7,7 @@ import re
 import tempfile
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.spatial_scene import SpatialScene
 from stiffmbs.results.solution import Solution
 from stiffmbs.robots.load import load_robot
+from stiffmbs.robots.scene import joints
 from stiffmbs.solve.trajectory import Outcome as Ending
 
 from ..case import Outcome, Verdict, measured
@@ -36,7 +38,9 @@ TOLERANCES = 1e-8, 1e-11
 ALIKE = 1e-4
 """Allowed difference relative to the size of a channel."""
 ROUNDING = 1e-6
-"""Allowed error of accelerations relative to the largest one; small masses between the joints of one link contribute."""
+"""Allowed error of accelerations relative to the largest one, apart from that of small masses between the joints of one link."""
+LIGHTER = 0.1
+"""Factor of these masses by which their error, proportional to them, is recognised."""
 INSTANT = 1e-6
 """Duration, s, of a run of which only the start is used."""
 _NAMED = re.compile(r"\b(joints|forces|states)\.(\w+)")
@@ -139,16 +143,30 @@ def _robot(rng: np.random.Generator, kind: str) -> Verdict:
         known = load_robot(path).inputs
         inputs = {f"{m.actuator(k).name}_input": float(d.ctrl[k]) for k in range(m.nu)}
         changes = [(f"inputs.{name}", repr(u)) for name, u in inputs.items() if name in known]
-        scene = load_robot(path, changes, coordinates=coordinates, rates=rates)
+        wanted = {m.body(k).name: _acceleration(mujoco, m, d, k) for k in range(1, m.nbody)}
+
+        def errors() -> dict[str, float]:
+            return _errors(load_robot(path, changes, coordinates=coordinates, rates=rates), wanted)
+
+        found = errors()
+        worst = max(found, key=found.__getitem__)
+        detail = f"{worst} of {text}"
+        if found[worst] > ROUNDING:
+            with patch.object(joints, "MASSLESS", LIGHTER * joints.MASSLESS):
+                lighter = errors()[worst]
+            if lighter <= 2 * LIGHTER * found[worst]:
+                return Verdict(Outcome.RIGHT, found[worst], ROUNDING, f"small masses between joints: {detail}")
+    return measured(found[worst], ROUNDING, detail)
+
+
+def _errors(scene: Any, wanted: dict[str, np.ndarray]) -> dict[str, float]:
+    """Return the errors of the accelerations at the start by body, relative to the largest acceleration."""
     solution = run(scene, duration=INSTANT, output=INSTANT, rtol=1e-10)
-    wanted = {m.body(k).name: _acceleration(mujoco, m, d, k) for k in range(1, m.nbody)}
     found = {
         name: np.array([solution[f"{name}.a{axis}"][0] for axis in "xyz"]) for name in wanted if name in scene.bodies
     }
     size = max(1.0, *(float(np.max(np.abs(wanted[name]))) for name in found))
-    errors = {name: float(np.max(np.abs(found[name] - wanted[name]))) / size for name in found}
-    worst = max(errors, key=errors.__getitem__)
-    return measured(errors[worst], ROUNDING, f"{worst} of {text}")
+    return {name: float(np.max(np.abs(found[name] - wanted[name]))) / size for name in found}
 
 
 def _acceleration(mujoco: Any, m: Any, d: Any, body: int) -> np.ndarray:

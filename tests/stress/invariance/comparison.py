@@ -12,6 +12,9 @@ from .change import Channels
 from .ways import Found
 
 NOT_COMPARED = ("constraint.",)
+ACCELERATIONS = ".ax", ".ay", ".az", ".alpha", ".wdx", ".wdy", ".wdz", "acceleration"
+ROUNDING = 1e-9
+"""Allowed difference in SI units; of accelerations, the one that changes a velocity by as much between two outputs."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,7 @@ def compared(one: Found, other: Found, bars: Channels, allowance: Allowance = AL
     allowance : Allowance
     """
     sizes = scales(one.channels, 1.0)
+    spacing = min(1.0, float(np.diff(one.time).min(initial=1.0)))
     worst = Difference(0.0, "", "no channel is compared")
     common = [name for name in one.channels if name in other.channels and not name.startswith(NOT_COMPARED)]
     for name in common:
@@ -72,11 +76,12 @@ def compared(one: Found, other: Found, bars: Channels, allowance: Allowance = AL
         size, bar = sizes.get(name, 0.0), float(np.max(bars[name]))
         size = max(size, float(np.ptp(one.channels[name])) if name.count(".") == 0 else 0.0)
         allowed = allowance.floor * size + allowance.bars * bar
-        if not bar <= allowance.sensitive * max(size, 1e-9):
+        if not bar <= allowance.sensitive * max(size, ROUNDING):
             continue
         gap = difference(name, one.channels[name], other.channels[name])
         place = int(np.argmax(gap))
-        ratio = float(gap[place]) / max(allowed, 1e-9)
+        least = ROUNDING / spacing if name.endswith(ACCELERATIONS) else ROUNDING
+        ratio = float(gap[place]) / max(allowed, least)
         if not ratio <= worst.ratio:
             detail = f"{one.channels[name][place]:.9g} and {other.channels[name][place]:.9g} at output {place}, size {size:.2g}, bar {bar:.1e}"
             worst = Difference(ratio, name, detail)

@@ -103,6 +103,36 @@ def test_conversions_are_compared_and_the_comparison_can_fail(monkeypatch, seed,
     assert trial(np.random.default_rng(seed)).outcome is Outcome.WRONG
 
 
+def test_an_error_of_the_small_masses_between_joints_is_right(monkeypatch):
+    """It is proportional to these masses; an error of gravity stays."""
+    from tests.stress.fuzzers import convert
+
+    seed, load = 6000014, convert.load_robot
+    assert convert.trial(seed).outcome is Outcome.RIGHT
+    stronger = [("gravity", "[5.36618, 5.77999, -4.0844]")]
+    monkeypatch.setattr(convert, "load_robot", lambda path, changes=(), **how: load(path, [*changes, *stronger], **how))
+    assert convert.trial(seed).outcome is Outcome.WRONG
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [6000025, 6000032, 6000033, 6000042, 6000129, 6000133, 6002027])
+def test_inputs_do_not_stop_runs(seed):
+    """Breakpoints to 1e-11 s, short pulses, branches that are equal up to rounding, and an overflow of cosh stopped runs."""
+    from tests.stress.fuzzers import inputs
+
+    assert inputs.trial(seed).outcome is Outcome.RIGHT
+
+
+@pytest.mark.long
+def test_an_error_of_fixed_steps_is_right_if_half_the_step_reduces_it_by_the_order(monkeypatch):
+    """A decay of 1600/s has an error of 4 % in steps of 1e-4 s by Euler and Cromer."""
+    from tests.stress.fuzzers.discontinuities import kinks
+
+    assert kinks.trial(6000072).outcome is Outcome.RIGHT
+    monkeypatch.setitem(kinks.OF_HALF_STEPS, "euler_cromer", 0.4)
+    assert kinks.trial(6000072).outcome is Outcome.WRONG
+
+
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", sorted(set(fuzz.fuzzers()) - {"entry-points"}))
 def test_the_first_cases_of_a_fuzzer_are_not_wrong(name):

@@ -2,8 +2,12 @@
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
-STEP_BOUND = Layout({"n": INT, "place": INT_CELL, "starts": FLOATS, "longest": FLOATS})
-"""Longest steps that resolve inputs (`stiffmbs.solve.events.event_functions`); n is 0 if nothing limits a step."""
+STEP_BOUND = Layout({
+    "n": INT, "place": INT_CELL, "starts": FLOATS, "longest": FLOATS, "n_bends": INT, "bend": INT_CELL, "bends": FLOATS,
+})  # fmt: skip
+"""Longest steps that resolve inputs (`stiffmbs.solve.events.event_functions`); n is 0 if nothing limits a step.
+
+Bends are the times at which steps of a one-step method end, and `bend` is the next one."""
 
 LONG_STEPS = Layout({
     "n_nodes": INT, "node": FLOATS, "width": INT, "ratio": FLOAT_CELL, "remembered": FLOAT_CELL, "room": INT_CELL, "count": INT_CELL, "usual": FLOAT_CELL, "row": FLOATS,

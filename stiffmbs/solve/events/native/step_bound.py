@@ -2,6 +2,7 @@
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
 from stiffmbs.solve.events.native.layouts import LONG_STEPS, STEP_BOUND
+from stiffmbs.solve.events.native.parameters import SEARCH
 
 STRETCHED = 1.01
 """Factor by which the last step may exceed a bound, to avoid a tiny remainder."""
@@ -23,6 +24,25 @@ def longest_step(f, t):
         k += 1
         h = min(h, max(f.longest[k], f.starts[k] - t))
     return h
+
+
+@compiled
+def distance_to_bend(f, t, h, least):
+    """Return the distance, above a least one, from t to the bend in a step of length h; infinity if it passes none, or several.
+
+    A curve with several bends in a step is sampled finely, and left to the error estimate.
+    """
+    passed = t + max(least, SEARCH.difference * h)
+    k = f.bend
+    while k < f.n_bends and f.bends[k] <= passed:
+        k += 1
+    while k > 0 and f.bends[k - 1] > passed:
+        k -= 1
+    f.bend = k
+    end = t + STRETCHED * h
+    passes = k < f.n_bends and f.bends[k] < end
+    several = k + 1 < f.n_bends and f.bends[k + 1] < end
+    return f.bends[k] - t if passes and not several else float("inf")
 
 
 long_steps_view = view_of("LongSteps", LONG_STEPS)

@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.access import compiled, ints, shifted
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.error_control.native.parameters import EXCLUDED
 from stiffmbs.solve.events.native.parameters import INDISTINCT
-from stiffmbs.solve.events.native.step_bound import STRETCHED
+from stiffmbs.solve.events.native.step_bound import STRETCHED, distance_to_bend, step_bound_view
 from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.between_steps import CLOSED, MOST_MOVED, UNKNOWN, close_end, closed
@@ -289,6 +289,11 @@ def step(x):
         at_stop = x.stops and x.t + (1.0 if first else STRETCHED) * h >= x.stop
         if at_stop:
             h = x.stop - x.t
+        bend = distance_to_bend(step_bound_view(x.step_bound), x.t, h, SMALLEST * abs(x.t))
+        at_bend = bend < (1.0 if at_stop else STRETCHED) * h
+        if at_bend:
+            h = bend
+            at_stop = False
         untested = h > x.keep_high * tested
         if not h > SMALLEST * abs(x.t):
             return ERROR_TEST_FAILED if x.rejected else NO_CONVERGENCE
@@ -320,10 +325,10 @@ def step(x):
         h = max(shorter, tested) if untested else shorter
         x.renewed = 1 if not x.current and x.rate_kept == 0 else 0
     x.error_size = error
-    _choose_next(x, c, h, x.h, at_stop)
+    _choose_next(x, c, h, x.h, at_stop or at_bend)
     _accept(x, c, x.t, h)
     if at_stop:
         x.t = x.stop
     x.current = 0
-    _choose_method(x, c, h if at_stop else float("inf"))
+    _choose_method(x, c, h if at_stop or at_bend else float("inf"))
     return 0
