@@ -1,5 +1,6 @@
 """Radau's steps that end at events: a mass that bounces on a spring, against the closed form."""
 
+import json
 import math
 
 import numpy as np
@@ -109,3 +110,27 @@ forces: {f: {type: force, i: b, force: [-law(b.x), 0]}}
     assert np.median(errors) < 0.5
     assert np.max(errors) < 20
     assert np.quantile(errors, 0.9) < 5
+
+
+@pytest.mark.parametrize("rtol", [1e-9, 1e-10])
+def test_events_are_found_after_a_step_of_the_rounding_of_time(rtol):
+    """The search stayed at the start of that step, where the state is not known any more: 558 of 946 events were missed."""
+    scene = {
+        "gravity": [0, 0, 0], "dimensions": 3,
+        "bodies": {
+            "b": {"mass": 1, "inertia": [1, 1, 1]},
+            "w": {"mass": 1, "inertia": [1, 1, 1], "position": [-0.2746345069082694, 1.0, 2.0], "velocity": [0.4899635233306405, 0.0, 0.0]},
+        },
+        "parameters": {"rate": 7786.977858808267, "phase": 0.16539722732825574, "level": 0.9799725038527983, "size": 20.118042941591263},
+        "forces": {"f": {"type": "force", "i": "b", "force": ["size*(branch(sin(rate*w.x + phase) - level, 0, 0, 1))", 0, 0]}},
+    }  # fmt: skip
+    found = stiffmbs.run(
+        stiffmbs.read_scene(json.dumps(scene)),
+        solver="radau",
+        stages=3,
+        rtol=rtol,
+        duration=0.7783903533091553,
+        points=11,
+    )
+    assert found["b.vx"][-1] == pytest.approx(1.0, abs=1e-7)
+    assert found.solver["events"] == 946

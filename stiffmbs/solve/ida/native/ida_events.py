@@ -213,7 +213,7 @@ def _go_back(c, w, s, begun, h, place):
     apart = INDISTINCT * abs(end) / h
     changed = 0
     while True:
-        c.returned = min(begun + place * h, end)
+        c.returned = _within_last_step(c, min(begun + place * h, end))
         call_int(c.interpolate, (c.memory, c.returned, int32(0), c.y))
         call_int(c.interpolate, (c.memory, c.returned, int32(1), c.yp))
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
@@ -245,6 +245,15 @@ def _passes_smoothly(w, h):
     return others == 0
 
 
+@compiled
+def _within_last_step(c, t):
+    """Return a time of the searched interval, or the start of the last step if it is earlier.
+
+    The interval begins earlier if indistinct steps precede, which are not searched by themselves.
+    """
+    return max(t, c.internal - c.size)
+
+
 def look_within(ida):
     """Set IDA's returned state to the first event within the last step; return `NO_EVENT`, `EVENT` or `PASSED_INTERVAL`."""
     c = native_ida_view(ida)
@@ -266,7 +275,7 @@ def look_within(ida):
     go_straight(c, s, ahead)
     noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, c.returned + ahead), ahead, w.n)
     note_mean_rates(w, h)
-    place = begun + LOOKED_AT * h
+    place = _within_last_step(c, begun + LOOKED_AT * h)
     if call_int(c.interpolate, (c.memory, place, int32(0), c.at_output)) < 0:
         return int32(NO_EVENT)
     load(s, e, c.output, array_of(c, c.yp))
@@ -277,7 +286,8 @@ def look_within(ida):
         w.at_kinks = IN_THIS_STEP if c.repeat and not call_int(c.resolves, (c.memory,)) else 0
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):
-            if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
+            at_node = _within_last_step(c, begun + w.node[node] * h)
+            if call_int(c.interpolate, (c.memory, at_node, int32(0), c.at_output)) < 0:
                 return int32(NO_EVENT)
             load(s, e, c.output, array_of(c, c.yp))
             take_reactions(w, s, begun + w.node[node] * h)
