@@ -96,10 +96,10 @@ def test_where_no_process_may_be_started_nothing_is_a_draft(started, monkeypatch
     assert value(norm()) and not started and not drafts.quick_ones_are_used()
 
 
-def test_drafts_of_another_machine_are_left_to_it(started):
+def test_drafts_of_another_machine_or_version_are_left_to_it(started):
     norm()
     (name,) = finish._drafts()
-    entries.write(name, drafts.draft_in(entries.read(name))._replace(machine="another").packed())
+    entries.write(name, drafts.draft_in(entries.read(name))._replace(origin="another").packed())
     finish.finish_draft(name)
     assert stored() == ["draft"]
 
