@@ -90,8 +90,8 @@ def read(name: str) -> bytes | None:
     return content
 
 
-def write(name: str, content: bytes) -> None:
-    """Store an entry, and remove long unused ones; if the directory is not writable, nothing is stored."""
+def write(name: str, content: bytes) -> bool:
+    """Store an entry, and remove long unused ones; return False if the directory is not writable, or is full."""
     place = folder()
     root = place.parent
     with suppress(OSError):
@@ -101,6 +101,8 @@ def write(name: str, content: bytes) -> None:
         if secret is not None:
             tend(root)
             _put(place / name, _code(secret, name, content) + content)
+            return True
+    return False
 
 
 def remove(name: str) -> None:

@@ -96,10 +96,10 @@ def test_where_no_process_may_be_started_nothing_is_a_draft(started, monkeypatch
     assert value(norm()) and not started and not drafts.quick_ones_are_used()
 
 
-def test_drafts_of_another_machine_are_left_to_it(started):
+def test_drafts_of_another_machine_or_version_are_left_to_it(started):
     norm()
     (name,) = finish._drafts()
-    entries.write(name, drafts.draft_in(entries.read(name))._replace(machine="another").packed())
+    entries.write(name, drafts.draft_in(entries.read(name))._replace(origin="another").packed())
     finish.finish_draft(name)
     assert stored() == ["draft"]
 
@@ -322,3 +322,50 @@ def test_a_long_run_starts_again_on_fully_compiled_code(started, monkeypatch, ex
     assert len(ended) == 1 and not set(stored()) & {"draft"}
     for channel in expected.channels:
         np.testing.assert_array_equal(found[channel], expected[channel], channel)
+
+
+def test_code_that_cannot_be_stored_is_compiled_fully_and_once(started, monkeypatch):
+    monkeypatch.setattr(entries, "_put", lambda *_: (_ for _ in ()).throw(OSError("no space")))
+    first = norm()
+    renew()
+    assert norm() is first and not drafts.are_used() and not started
+
+
+def test_a_draft_stays_until_its_code_is_stored(started, monkeypatch):
+    norm()
+    monkeypatch.setattr(entries, "_put", lambda *_: (_ for _ in ()).throw(OSError("no space")))
+    finish.finish_draft(*finish._drafts())
+    assert stored() == ["draft"]
+
+
+@pytest.mark.parametrize("executable", ["", None, "/usr/bin/blender"])
+def test_a_program_that_embeds_python_uses_no_drafts(started, monkeypatch, executable):
+    monkeypatch.setattr(sys, "executable", executable)
+    assert value(norm()) and stored() == ["kernel"] and not started
+
+
+def test_the_process_is_started_again_after_it_has_ended_and_gives_no_warning(started, monkeypatch, recwarn):
+    norm()
+    process = drafts._Finishing([sys.executable, "-c", ""])
+    monkeypatch.setattr(drafts, "_finishing", [process])
+    process.begin = time.monotonic()
+    drafts.use("another", True)
+    process.wait()
+    process.begin -= 2 * finish.PATIENCE
+    drafts.use("a third", True)
+    assert started == [1, 1]
+    drafts._Finishing([sys.executable, "-c", "input()"], stdin=subprocess.PIPE).__del__()
+    assert not [one for one in recwarn if "still running" in str(one.message)]
+
+
+def test_threads_may_see_at_once_that_drafts_are_finished(started, monkeypatch):
+    norm()
+    finish.finish_draft(*finish._drafts())
+    exists = type(entries.folder()).exists
+
+    def seen_by_another(path):
+        drafts._used.clear()
+        return exists(path)
+
+    monkeypatch.setattr(type(entries.folder()), "exists", seen_by_another)
+    assert drafts.some_are_finished()

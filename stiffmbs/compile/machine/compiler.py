@@ -17,7 +17,7 @@ from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
 from . import drafts
 from .linking import Compiled, Signatures, c_types, linked, symbol
-from .object_code import DRAFT, FULL, GENERIC, INLINED, generic_machine, machine, object_code
+from .object_code import DRAFT, FULL, GENERIC, INLINED, generic_machine, machine, object_code, origin
 
 LOGGER = logging.getLogger(__name__)
 _ONE_AT_A_TIME = RLock()
@@ -160,7 +160,10 @@ def _loaded(follows_from: FollowsFrom, source: Source) -> dict[str, Compiled]:
 
 
 def _draft(entry: str, shipped: str, source: Source) -> dict[str, Compiled] | None:
-    """Return the functions of the draft of an entry, or of the library; make a draft if it can be finished later."""
+    """Return the functions of the draft of an entry, or of the library; make a draft if it can be finished later.
+
+    Code that cannot be stored is compiled at its full level: the next lookup would take it for finished.
+    """
     name = drafts.name_of(entry)
     draft = drafts.draft_of(entry, shipped)
     if draft is None and drafts.can_be_finished():
@@ -168,7 +171,9 @@ def _draft(entry: str, shipped: str, source: Source) -> dict[str, Compiled] | No
             made = drafted(entry, source)
             code = object_code(made.assembly.replace(drafts.OPEN, name), DRAFT, source.unrolled)
         draft = made._replace(is_quick=True, symbols=name, code=code)
-        entries.write(name, draft.packed())
+        if not entries.write(name, draft.packed()):
+            with uncollected():
+                return linked(made.finished(), entry, source.signatures)
     if draft is None:
         return None
     if draft.assembly:
@@ -198,4 +203,4 @@ def drafted(entry: str, source: Source) -> drafts.Draft:
         Entry(namespace[name], symbol(drafts.OPEN, name), *c_types(signature)) for name, signature in source.signatures
     ]
     text = assembly(functions, source.text, INLINED)
-    return drafts.Draft(entry, machine(), source.level, source.unrolled, False, "", b"", text)
+    return drafts.Draft(entry, origin(), source.level, source.unrolled, False, "", b"", text)

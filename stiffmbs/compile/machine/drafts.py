@@ -9,9 +9,11 @@ removes the drafts. Both give bit-equal results.
 from __future__ import annotations
 
 import json
+import math
 import os
 import subprocess
 import sys
+import time
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -21,7 +23,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...cache import entries, library
-from .object_code import machine, object_code
+from .object_code import object_code, origin
 
 VARIABLE = "STIFFMBS_DRAFTS"
 """Environment variable; with ``0`` everything is compiled at its full level at once."""
@@ -30,17 +32,34 @@ _BATCH = ("SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID", "SGE_TASK_ID", "OAR_JOB_ID",
 _FULLY: ContextVar[bool] = ContextVar("fully", default=False)
 _used: dict[str, bool] = {}
 """Names of the drafts that this process has linked, with `Draft.is_quick`."""
-_finishing: list[subprocess.Popen[bytes]] = []
-"""Processes that finish drafts, started by this one."""
 OPEN = "@entry@"
 """Part of the names of functions in assembly, which is replaced before it is compiled."""
+
+
+class _Finishing(subprocess.Popen[bytes]):
+    """Process that finishes drafts and outlives this one, without a warning of that."""
+
+    begin = math.inf
+
+    def __del__(self) -> None:
+        """Do nothing."""
+
+    def has_ended(self) -> bool:
+        """Return True if it ended for want of drafts, or another process worked then and may have ended since."""
+        from .finish import PATIENCE
+
+        return self.poll() is not None and time.monotonic() - self.begin > PATIENCE
+
+
+_finishing: list[_Finishing] = []
+"""Processes that finish drafts, started by this one."""
 
 
 class Draft(NamedTuple):
     """Compiled functions with the assembly that their code was made from.
 
     - `entry`: name of the entry that stands for them at the full level.
-    - `machine`: on which the entry is to be used.
+    - `origin`: of the entry, as `stiffmbs.compile.machine.object_code.origin` gives it.
     - `level`, `unrolled`: settings of the full level.
     - `is_quick`: whether the code was compiled at the level `DRAFT`, not for the library.
     - `symbols`: part of the names of functions in the code, for `stiffmbs.compile.machine.linking.symbol`; that of the
@@ -49,7 +68,7 @@ class Draft(NamedTuple):
     """
 
     entry: str
-    machine: str
+    origin: str
     level: int
     unrolled: bool
     is_quick: bool
@@ -66,12 +85,12 @@ class Draft(NamedTuple):
     def unpacked(cls, content: bytes) -> Draft:
         """Return the draft in an entry; raises ValueError if it is of another form."""
         head, _, rest = content.partition(b"\n")
-        entry, of_machine, level, unrolled, is_quick, symbols, size = json.loads(head)
+        entry, of_origin, level, unrolled, is_quick, symbols, size = json.loads(head)
         try:
             assembly = zlib.decompress(rest[size:]).decode()
         except zlib.error as error:
             raise ValueError(str(error)) from None
-        return cls(entry, of_machine, level, unrolled, is_quick, symbols, rest[:size], assembly)
+        return cls(entry, of_origin, level, unrolled, is_quick, symbols, rest[:size], assembly)
 
     def finished(self) -> bytes:
         """Return the object code at the full level."""
@@ -90,9 +109,9 @@ def draft_of(entry: str, shipped: str) -> Draft | None:
     """Return the draft of an entry in the cache, or the code in the library, whose name is `shipped`; None without both."""
     found = draft_in(entries.read(name_of(entry)))
     if found is None and shipped and (found := draft_in(library.read(shipped))):
-        found = found._replace(entry=entry, machine=machine())
-        if found.assembly:
-            entries.write(name_of(entry), found.packed())
+        found = found._replace(entry=entry, origin=origin())
+        if found.assembly and not entries.write(name_of(entry), found.packed()):
+            found = found._replace(assembly="")
     return found
 
 
@@ -107,8 +126,12 @@ def are_wanted() -> bool:
 
 
 def can_be_finished() -> bool:
-    """Return True if drafts can be stored, and a process that finishes them may be started."""
-    return _can_be_finished(entries.cache_directory())
+    """Return True if drafts can be stored, and a process that finishes them may be started.
+
+    In a program that embeds Python, `sys.executable` may be that program, which is not to be started.
+    """
+    is_python = "python" in os.path.basename(sys.executable or "") and not hasattr(sys, "frozen")
+    return is_python and _can_be_finished(entries.cache_directory())
 
 
 @cache
@@ -127,8 +150,8 @@ def none() -> Iterator[None]:
 
 
 def use(name: str, is_quick: bool) -> None:
-    """Record that this process uses a draft, and start the process that finishes drafts at the first one."""
-    if not _used and can_be_finished():
+    """Record that this process uses a draft, and start the process that finishes drafts unless it is at work."""
+    if (not _used or (_finishing and all(process.has_ended() for process in _finishing))) and can_be_finished():
         _start_finishing()
     _used[name] = is_quick
 
@@ -137,10 +160,10 @@ def some_are_finished() -> bool:
     """Return True if drafts that this process uses were finished since; such drafts are in use no longer."""
     folder = entries.folder() if _used else Path()
     finished = [name for name in tuple(_used) if not (folder / name).exists()] if can_be_finished() else []
-    if finished and _finishing:
-        _finishing[-1].poll()  # collects its exit status if it has ended
+    for process in _finishing:
+        process.poll()  # collects its exit status if it has ended
     for name in finished:
-        del _used[name]
+        _used.pop(name, None)  # another thread may have seen it
     return bool(finished)
 
 
@@ -155,12 +178,7 @@ def are_used() -> bool:
 
 
 def _start_finishing() -> None:
-    """Start the process that compiles drafts, with the packages of this process and no others, and do not wait for it.
-
-    In a program that embeds Python, `sys.executable` may be that program, which is not started.
-    """
-    if "python" not in os.path.basename(sys.executable or ""):
-        return
+    """Start the process that compiles drafts, with the packages of this process and no others, and do not wait for it."""
     import llvmlite
     import platformdirs
 
@@ -171,8 +189,8 @@ def _start_finishing() -> None:
     low = getattr(subprocess, "IDLE_PRIORITY_CLASS", 0)
     with suppress(OSError):
         started = [sys.executable, "-I", "-c", command]
-        _finishing.append(
-            subprocess.Popen(
-                started, stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True, creationflags=low
-            )
+        process = _Finishing(
+            started, stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True, creationflags=low
         )
+        process.begin = time.monotonic()
+        _finishing[:] = [*(other for other in _finishing if other.poll() is None), process]

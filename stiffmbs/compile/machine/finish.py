@@ -12,7 +12,7 @@ from pathlib import Path
 from ...cache import entries
 from ...cache.contents import FINISHING
 from .drafts import draft_in
-from .object_code import machine
+from .object_code import origin
 
 PATIENCE = 2.0
 """Time, s, without a new draft after which the process ends: a run makes several, one after the other."""
@@ -37,13 +37,12 @@ def finish() -> None:
 
 
 def finish_draft(name: str) -> None:
-    """Replace a draft by code at its full level; remove it if it is damaged, keep it if it is another machine's."""
+    """Replace a draft by code at its full level; remove it if it is damaged, keep it if it is of another origin or cannot be replaced."""
     draft = draft_in(entries.read(name))
-    if draft is not None and draft.machine != machine():
+    if draft is not None and draft.origin != origin():
         return
-    if draft is not None:
-        entries.write(draft.entry, draft.finished())
-    entries.remove(name)
+    if draft is None or entries.write(draft.entry, draft.finished()):
+        entries.remove(name)
 
 
 def _drafts() -> list[str]:

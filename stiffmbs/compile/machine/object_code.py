@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ...cache import entries
+from ...cache.source_files import digest_of
 
 if TYPE_CHECKING:
     from llvmlite import binding as llvm
@@ -66,6 +68,12 @@ def machine() -> str:
 
     features = llvm.get_host_cpu_features().flatten()
     return entries.digest(llvm.get_process_triple(), llvm.get_host_cpu_name(), features, llvmlite.__version__)
+
+
+@cache
+def origin() -> str:
+    """Return a digest of all that object code follows from besides its assembly."""
+    return entries.digest(machine(), digest_of([Path(__file__)]))
 
 
 def generic_machine() -> str:

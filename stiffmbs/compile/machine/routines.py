@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -88,8 +88,9 @@ def forget() -> None:
     """Forget which functions are loaded, so that the next lookups find what was compiled since."""
     compiled_source.cache_clear()
     compiled_routines.cache_clear()
-    while _loaded:
-        vars(_loaded.pop()).pop("_usual", None)
+    with suppress(IndexError):  # when none is left, also because another thread forgets them at the same time
+        while True:
+            vars(_loaded.pop()).pop("_usual", None)
 
 
 def together(module: str, level: int = FULL, **signatures: str) -> tuple[Routine, ...]:
