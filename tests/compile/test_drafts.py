@@ -104,6 +104,17 @@ def test_drafts_of_another_machine_or_version_are_left_to_it(started):
     assert stored() == ["draft"]
 
 
+def test_the_draft_of_another_function_is_not_taken(started):
+    expected = value(norm())
+    (name,) = finish._drafts()
+    other = compiler.drafted(
+        "kernel-other", compiler.of_source(SOURCE.replace("found +", "found -"), "norm", SIGNATURE)[1]
+    )
+    entries.write(name, other._replace(is_quick=True, symbols=name, code=b"garbage").packed())
+    forget()
+    assert value(norm()) == expected and drafts.draft_in(entries.read(name)).code != b"garbage"
+
+
 @pytest.mark.parametrize("content", [b"", b"[]\n", b'["kernel", "", 3, false, 3]\nabc', b"\xff"])
 def test_drafts_of_another_form_are_removed(started, content):
     norm()
@@ -354,7 +365,7 @@ def test_the_process_is_started_again_after_it_has_ended_and_gives_no_warning(st
     process.begin -= 2 * finish.PATIENCE
     drafts.use("a third", True)
     assert started == [1, 1]
-    drafts._Finishing([sys.executable, "-c", "input()"], stdin=subprocess.PIPE).__del__()
+    drafts._Finishing([sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL).__del__()
     assert not [one for one in recwarn if "still running" in str(one.message)]
 
 

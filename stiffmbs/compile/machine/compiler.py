@@ -16,7 +16,7 @@ from ...cache.contents import Kind
 from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
 from . import drafts
-from .linking import Compiled, Signatures, c_types, linked, symbol
+from .linking import Compiled, Signatures, c_types, linked, sealed, symbol, unsealed
 from .object_code import DRAFT, FULL, GENERIC, INLINED, generic_machine, machine, object_code, origin
 
 LOGGER = logging.getLogger(__name__)
@@ -144,15 +144,15 @@ def _loaded(follows_from: FollowsFrom, source: Source) -> dict[str, Compiled]:
     """Return functions from the cache, as compiled before or as a draft, or from the library; else compile them."""
     entry = entries.name_of(*follows_from, machine())
     with _ONE_AT_A_TIME:
-        stored = entries.read(entry)
+        stored = unsealed(entry, entries.read(entry))
         found = linked(stored, entry, source.signatures) if stored else None
         if found is None and drafts.are_wanted():
             found = _draft(entry, entries.name_of(*follows_from, generic_machine()), source)
         if found is None:
             with uncollected():
-                draft = drafts.draft_in(entries.read(drafts.name_of(entry))) or drafted(entry, source)
+                draft = drafts.stored(entry) or drafted(entry, source)
                 code = draft.finished()
-            entries.write(entry, code)
+            entries.write(entry, sealed(entry, code))
             entries.remove(drafts.name_of(entry))
             found = linked(code, entry, source.signatures)
     assert found is not None, entry

@@ -105,9 +105,15 @@ def draft_in(content: bytes | None) -> Draft | None:
         return None
 
 
+def stored(entry: str) -> Draft | None:
+    """Return the draft of an entry in the cache, if there is one."""
+    found = draft_in(entries.read(name_of(entry)))
+    return found if found is not None and found.entry == entry else None
+
+
 def draft_of(entry: str, shipped: str) -> Draft | None:
     """Return the draft of an entry in the cache, or the code in the library, whose name is `shipped`; None without both."""
-    found = draft_in(entries.read(name_of(entry)))
+    found = stored(entry)
     if found is None and shipped and (found := draft_in(library.read(shipped))):
         found = found._replace(entry=entry, origin=origin())
         if found.assembly and not entries.write(name_of(entry), found.packed()):
@@ -184,11 +190,11 @@ def _start_finishing() -> None:
 
     packages = sorted({str(Path(file).parents[1]) for file in (llvmlite.__file__, platformdirs.__file__)})
     path = [str(Path(__file__).parents[3]), *packages]
-    command = f"import sys; sys.path[:0] = {path!r}; from {__package__}.finish import finish; finish()"
+    command = f"import sys; sys.path.extend({path!r}); from {__package__}.finish import finish; finish()"
     quiet = subprocess.DEVNULL
     low = getattr(subprocess, "IDLE_PRIORITY_CLASS", 0)
     with suppress(OSError):
-        started = [sys.executable, "-I", "-c", command]
+        started = [sys.executable, "-I", "-S", "-c", command]
         process = _Finishing(
             started, stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True, creationflags=low
         )

@@ -12,6 +12,7 @@ from pathlib import Path
 from ...cache import entries
 from ...cache.contents import FINISHING
 from .drafts import draft_in
+from .linking import sealed
 from .object_code import origin
 
 PATIENCE = 2.0
@@ -41,7 +42,7 @@ def finish_draft(name: str) -> None:
     draft = draft_in(entries.read(name))
     if draft is not None and draft.origin != origin():
         return
-    if draft is None or entries.write(draft.entry, draft.finished()):
+    if draft is None or entries.write(draft.entry, sealed(draft.entry, draft.finished())):
         entries.remove(name)
 
 

@@ -36,6 +36,17 @@ class Compiled(NamedTuple):
     short_call: Callable[..., Any]
 
 
+def sealed(entry: str, code: bytes) -> bytes:
+    """Return the content of an entry with object code: its name and the size of the code come first."""
+    return f"{entry} {len(code)}\n".encode() + code
+
+
+def unsealed(entry: str, stored: bytes | None) -> bytes | None:
+    """Return the code of an entry; None if it is damaged or another's, because LLVM aborts the process on invalid object code."""
+    code = (stored or b"").partition(b"\n")[2]
+    return code if stored == sealed(entry, code) else None
+
+
 def symbol(entry: str, name: str) -> str:
     """Return the name of a function in object code, unique in this process."""
     return f"stiffmbs_{entry}_{name}"
