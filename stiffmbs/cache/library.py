@@ -19,14 +19,15 @@ FILE = Path(__file__).parents[1] / "library.zip"
 def read(name: str) -> bytes | None:
     """Return the content of an entry; None if the library does not have it, or cannot be read."""
     archive = _opened(FILE)
-    try:
-        return archive.read(name) if archive else None
-    except (KeyError, OSError, ValueError, RuntimeError, NotImplementedError):
+    if archive is None:
         return None
-    except Exception as error:
-        if type(error).__module__ in ("zipfile", "zlib"):  # damaged
-            return None
-        raise
+    from zipfile import BadZipFile
+    from zlib import error as DamagedError
+
+    try:
+        return archive.read(name)
+    except (KeyError, OSError, ValueError, RuntimeError, BadZipFile, DamagedError):
+        return None
 
 
 @cache
