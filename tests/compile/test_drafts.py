@@ -127,7 +127,7 @@ def test_drafts_of_another_form_are_removed(started, content):
 def test_one_process_finishes_drafts_at_a_time(started, monkeypatch):
     norm()
     monkeypatch.setattr(os, "nice", lambda _: None)
-    monkeypatch.setattr(finish, "PATIENCE", 0.01)
+    monkeypatch.setattr(finish, "WAITS", finish.Finishing(patience=0.01))
     path = entries.cache_directory() / finish.FINISHING
     with finish._alone(path):
         finish.finish()
@@ -362,7 +362,7 @@ def test_the_process_is_started_again_after_it_has_ended_and_gives_no_warning(st
     process.begin = time.monotonic()
     drafts.use("another", True)
     process.wait()
-    process.begin -= 2 * finish.PATIENCE
+    process.begin -= 2 * finish.WAITS.patience
     drafts.use("a third", True)
     assert started == [1, 1]
     drafts._Finishing([sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL).__del__()

@@ -46,9 +46,9 @@ class _Finishing(subprocess.Popen[bytes]):
 
     def has_ended(self) -> bool:
         """Return True if it ended for want of drafts, or another process worked then and may have ended since."""
-        from .finish import PATIENCE
+        from .finish import WAITS
 
-        return self.poll() is not None and time.monotonic() - self.begin > PATIENCE
+        return self.poll() is not None and time.monotonic() - self.begin > WAITS.patience
 
 
 _finishing: list[_Finishing] = []

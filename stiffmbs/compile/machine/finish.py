@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from ...cache import entries
@@ -15,10 +16,21 @@ from .drafts import draft_in
 from .linking import sealed
 from .object_code import origin
 
-PATIENCE = 2.0
-"""Time, s, without a new draft after which the process ends: a run makes several, one after the other."""
-PAUSE = 0.2
-"""Time, s, between two looks for drafts."""
+
+@dataclass(frozen=True)
+class Finishing:
+    """Parameters of the process that compiles drafts.
+
+    - `patience`: time, s, without a new draft after which it ends. A run makes several; to derive the equations of one kind takes
+      about a second between two of them.
+    - `pause`: time, s, between two looks for drafts.
+    """
+
+    patience: float = 2.0
+    pause: float = 0.2
+
+
+WAITS = Finishing()
 
 
 def finish() -> None:
@@ -28,13 +40,13 @@ def finish() -> None:
     with suppress(OSError), _alone(entries.cache_directory() / FINISHING):
         seen: set[str] = set()
         last = time.monotonic()
-        while time.monotonic() - last < PATIENCE:
+        while time.monotonic() - last < WAITS.patience:
             for name in _drafts():
                 if name not in seen:
                     seen.add(name)
                     finish_draft(name)
                     last = time.monotonic()
-            time.sleep(PAUSE)
+            time.sleep(WAITS.pause)
 
 
 def finish_draft(name: str) -> None:
