@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Unpack
 
 from ..compile.active_dampers import active_damper_notes
+from ..compile.machine.routines import on_drafts
 from ..compile.system import System
 from ..compile.written_values import table_notes
 from ..dynamics.initial import InitialValues
@@ -111,6 +112,7 @@ class Report(NotebookMethods):
 
 
 @takes_settings
+@on_drafts()
 def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:
     """Examine a model: degrees of freedom, redundancy, uniqueness of reactions, singular poses, contradictions.
 

@@ -8,6 +8,7 @@ from typing import Unpack
 
 import numpy as np
 
+from ..compile.machine.routines import on_drafts
 from ..compile.system import System
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics, OutputRows
@@ -114,6 +115,7 @@ class EquilibriumFound:
 
 
 @takes_settings
+@on_drafts()
 def equilibrium(
     model: Runnable,
     settings: RunSettings | None = None,

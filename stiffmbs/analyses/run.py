@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compile.callbacks import fault_of
 from ..compile.machine import drafts
-from ..compile.machine.routines import fully_compiled
+from ..compile.machine.routines import fully_compiled, on_drafts
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
 from ..elements.requests.order import units
@@ -92,7 +92,8 @@ def run(
     if inputs:
         data = with_inputs(data, inputs, settings_of(data, settings, changes))
     try:
-        return _prepared_and_solved(data, settings, watch, start_from, changes)
+        with on_drafts():
+            return _prepared_and_solved(data, settings, watch, start_from, changes)
     except TakesLongError:
         with fully_compiled():
             return _prepared_and_solved(data, settings, watch, start_from, changes)
@@ -107,7 +108,7 @@ def _prepared_and_solved(
 ) -> Solution:
     """Prepare a job and solve it; raise TakesLongError if it takes long on drafts of compiled code."""
     job = prepare(data, settings, start_from, **changes)
-    if drafts.quick_ones_are_used():
+    if drafts.tier() == drafts.Tier.DRAFT and drafts.quick_ones_are_used():
         watch = Predicted(job.grid.end, watch or unwatched)
     if job.settings.errors is not False or job.settings.accuracy:
         job = recording(job)

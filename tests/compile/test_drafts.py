@@ -17,7 +17,7 @@ from stiffmbs.cache import entries, library
 from stiffmbs.compile import record
 from stiffmbs.compile.compile_model import kinds_of
 from stiffmbs.compile.machine import compiler, drafts, finish, object_code
-from stiffmbs.compile.machine.routines import forget, fully_compiled, renew
+from stiffmbs.compile.machine.routines import forget, fully_compiled, on_drafts, renew
 from stiffmbs.compile.symbolic import derive
 
 SOURCE = (
@@ -37,7 +37,8 @@ def started(tmp_path, monkeypatch):
     monkeypatch.setattr(drafts, "_start_finishing", lambda: found.append(1))
     drafts._can_be_finished.cache_clear()
     forget()
-    yield found
+    with on_drafts():
+        yield found
     drafts._can_be_finished.cache_clear()
     forget()
 
@@ -85,6 +86,21 @@ def test_long_runs_and_times_of_runs_use_no_drafts(started, monkeypatch):
         second = norm()
         assert second.address != first.address and value(first) == value(second)
     assert stored() == ["kernel"]
+
+
+def test_times_of_runs_have_no_drafts_inside_either(started):
+    with fully_compiled(), on_drafts():
+        norm()
+    assert stored() == ["kernel"] and not started
+
+
+def test_studies_that_follow_a_run_use_no_drafts(started):
+    """A study keeps what it has prepared, and would use drafts to its end."""
+    first = norm()
+    with drafts.down_to(drafts.Tier.LIBRARY):
+        renew()
+        assert norm().address != first.address
+        assert stored() == ["kernel"]
 
 
 @pytest.mark.parametrize("reason", ["variable", "batch", "cache"])

@@ -9,6 +9,7 @@ from typing import Unpack
 import numpy as np
 from scipy.sparse import csr_array
 
+from ...compile.machine.routines import on_drafts
 from ...dynamics.algebraic_states import failure
 from ...errors import InputError, SolverError
 from ...linear_analysis.modes import Mode, Motion, natural_modes
@@ -100,6 +101,7 @@ class Modes:
 
 
 @takes_settings
+@on_drafts()
 def modes(
     model: Runnable,
     settings: RunSettings | None = None,

@@ -146,7 +146,7 @@ def _loaded(follows_from: FollowsFrom, source: Source) -> dict[str, Compiled]:
     with _ONE_AT_A_TIME:
         stored = unsealed(entry, entries.read(entry))
         found = linked(stored, entry, source.signatures) if stored else None
-        if found is None and drafts.are_wanted():
+        if found is None and drafts.tier() > drafts.Tier.NATIVE:
             found = _draft(entry, entries.name_of(*follows_from, generic_machine()), source)
         if found is None:
             with uncollected():
@@ -166,7 +166,7 @@ def _draft(entry: str, shipped: str, source: Source) -> dict[str, Compiled] | No
     """
     name = drafts.name_of(entry)
     draft = drafts.draft_of(entry, shipped)
-    if draft is None and drafts.can_be_finished():
+    if draft is None and drafts.tier() == drafts.Tier.DRAFT and drafts.can_be_finished():
         with uncollected():
             made = drafted(entry, source)
             code = object_code(made.assembly.replace(drafts.OPEN, name), DRAFT, source.unrolled)

@@ -18,6 +18,7 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from enum import IntEnum
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -29,7 +30,17 @@ VARIABLE = "STIFFMBS_DRAFTS"
 """Environment variable; with ``0`` everything is compiled at its full level at once."""
 _BATCH = ("SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID", "SGE_TASK_ID", "OAR_JOB_ID", "FLUX_JOB_ID", "COBALT_JOBID")
 """Variables that batch systems set: processes beyond the end of a job are not wanted there."""
-_FULLY: ContextVar[bool] = ContextVar("fully", default=False)
+
+
+class Tier(IntEnum):
+    """Code that may be used: of the full level for this processor, of the library too, drafts too."""
+
+    NATIVE = 0
+    LIBRARY = 1
+    DRAFT = 2
+
+
+_TIER: ContextVar[Tier] = ContextVar("tier", default=Tier.LIBRARY)
 _used: dict[str, bool] = {}
 """Names of the drafts that this process has linked, with `Draft.is_quick`."""
 OPEN = "@entry@"
@@ -112,8 +123,10 @@ def stored(entry: str) -> Draft | None:
 
 
 def draft_of(entry: str, shipped: str) -> Draft | None:
-    """Return the draft of an entry in the cache, or the code in the library, whose name is `shipped`; None without both."""
+    """Return the draft of an entry in the cache, or code of the library, whose name is `shipped`; None without such of the tier."""
     found = stored(entry)
+    if found is not None and found.is_quick and tier() < Tier.DRAFT:
+        found = None
     if found is None and shipped and (found := draft_in(library.read(shipped))):
         found = found._replace(entry=entry, origin=origin())
         if found.assembly and not entries.write(name_of(entry), found.packed()):
@@ -126,9 +139,9 @@ def name_of(entry: str) -> str:
     return entries.name_of("draft", entry)
 
 
-def are_wanted() -> bool:
-    """Return True if drafts and code of the library may be used here."""
-    return not _FULLY.get() and os.environ.get(VARIABLE) != "0"
+def tier() -> Tier:
+    """Return which code may be used in this context."""
+    return Tier.NATIVE if os.environ.get(VARIABLE) == "0" else _TIER.get()
 
 
 def can_be_finished() -> bool:
@@ -146,13 +159,13 @@ def _can_be_finished(directory: Path) -> bool:
 
 
 @contextmanager
-def none() -> Iterator[None]:
-    """Use no drafts within a context."""
-    token = _FULLY.set(True)
+def down_to(lowest: Tier) -> Iterator[None]:
+    """Use code of a tier and of higher ones within a context."""
+    token = _TIER.set(lowest)
     try:
         yield
     finally:
-        _FULLY.reset(token)
+        _TIER.reset(token)
 
 
 def use(name: str, is_quick: bool) -> None:
@@ -175,7 +188,7 @@ def some_are_finished() -> bool:
 
 def quick_ones_are_used() -> bool:
     """Return True if this process uses code of the level `DRAFT`."""
-    return any(tuple(_used.values())) and are_wanted()
+    return any(tuple(_used.values()))
 
 
 def are_used() -> bool:

@@ -72,15 +72,24 @@ _loaded: list[Routine] = []
 @contextmanager
 def fully_compiled() -> Iterator[None]:
     """Compile all code that is asked for within a context at its full level: for long runs, and for times of runs."""
-    with drafts.none():
+    with drafts.down_to(drafts.Tier.NATIVE):
         if drafts.are_used():
             forget()
         yield
 
 
+@contextmanager
+def on_drafts() -> Iterator[None]:
+    """Use drafts for code that is compiled for the first time within a context: for what ends soon, or notes that it does not."""
+    is_timed = drafts.tier() == drafts.Tier.NATIVE
+    with drafts.down_to(drafts.Tier.NATIVE if is_timed else drafts.Tier.DRAFT):
+        yield
+
+
 def renew() -> None:
-    """Look for all compiled functions again, if drafts that this process uses were finished since."""
-    if drafts.some_are_finished():
+    """Look for all compiled functions again, if drafts in use were finished since, or are not for this context."""
+    are_for_others = drafts.tier() < drafts.Tier.DRAFT and drafts.quick_ones_are_used()
+    if drafts.some_are_finished() or are_for_others:
         forget()
 
 
