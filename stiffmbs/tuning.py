@@ -18,7 +18,7 @@ from types import FunctionType, MappingProxyType
 from typing import Any, TypeVar, cast
 
 SUBSYSTEMS = {
-    "auto": "solve.auto_decisions:AUTO",
+    "auto": "solve.auto:AUTO",
     "chattering": "solve.events.chattering:CHATTERING",
     "consistency": "dynamics.native.parameters:CONSISTENCY",
     "cost": "solve.cost:COSTS",
