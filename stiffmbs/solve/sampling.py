@@ -185,7 +185,7 @@ def _up_to_row(part: Trajectory, row: int) -> Trajectory:
     history = History(np.minimum(part.history.t[taken], part.t[row]), part.history.order[taken])
     return replace(
         part, t=part.t[rows], q=part.q[rows], u=part.u[rows], outcome=Outcome.DONE, message=Outcome.DONE.value,
-        history=history, long_steps=(), recorded=(),
+        history=history, whole_steps=(), recorded=(),
     )  # fmt: skip
 
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ..dynamics.dynamics import Dynamics
     from ..dynamics.initial import InitialValues
     from .events.departures import Departure
-    from .events.long_steps import LongSteps
+    from .events.whole_steps import WholeSteps
     from .recorded_steps import Piece
 
 ProgressCallback = Callable[[float], None]
@@ -166,7 +166,7 @@ class Trajectory:
         Notes for the user, or an empty string.
     solver : str
         Solvers used, if the user did not choose them.
-    long_steps : tuple of LongSteps
+    whole_steps : tuple of WholeSteps
         Steps much longer than their predecessors, with the motion within them; only if force laws have breakpoints.
     recorded : tuple of tuples of Piece
         Recorded steps of each mechanism that was solved separately; empty if they were not recorded.
@@ -183,7 +183,7 @@ class Trajectory:
     history: History = field(default_factory=lambda: History(np.empty(0), np.empty(0, dtype=int)))
     note: str = ""
     solver: str = ""
-    long_steps: tuple[LongSteps, ...] = ()
+    whole_steps: tuple[WholeSteps, ...] = ()
     recorded: tuple[tuple[Piece, ...], ...] = ()
     departures: tuple[Departure, ...] = ()
 
@@ -257,7 +257,7 @@ def in_common(parts: Sequence[Trajectory], counted: Sequence[Trajectory] | None 
         "history": History(t[sequence], order[sequence] if len(order) == len(t) else order[:0]),
         "note": "; ".join(dict.fromkeys(part.note for part in parts if part.note)),
         "solver": ", ".join(dict.fromkeys(part.solver for part in parts if part.solver)),
-        "long_steps": tuple(steps for part in counted for steps in part.long_steps),
+        "whole_steps": tuple(steps for part in counted for steps in part.whole_steps),
         "departures": tuple(each for part in parts for each in part.departures),
     }
 

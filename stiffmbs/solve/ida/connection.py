@@ -13,8 +13,7 @@ from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
 from ..events.event_functions import EventSearch, StepBound
-from ..events.long_steps import LongStepLog
-from ..events.native.layouts import LONG_STEPS
+from ..events.whole_steps import WholeStepLog
 from ..linear_solvers.fixed_order import Assembled, FixedOrder
 from .error_norm import ErrorNorm, Iteration
 from .libraries import Libraries, ida_libraries
@@ -145,7 +144,7 @@ class Connection:
     - `y`, `yp`, `output` of shape (n,): memory of the vectors of the solution, of its derivative, and of interpolated
       or queried values.
     - `cells`: results of the loop (`stiffmbs.solve.ida.native.layouts.NATIVE_IDA`).
-    - `long_steps`: None for scenes without laws.
+    - `whole_steps`: steps that are checked after the run.
     - `words`, `table`: table for compiled code, and its address.
     - `state_table`, `equations_table`: tables of the state and of the equations.
     """
@@ -165,8 +164,7 @@ class Connection:
         self.y, self.yp, self.output, self._probe, self._atol = (np.zeros(n) for _ in range(5))
         self._residual = np.zeros(2 * n)
         self.history = StepLog()
-        self.long_steps = LongStepLog(equations.system, len(self.reported)) if equations.system.has_laws else None
-        self._long_steps = self.long_steps.table if self.long_steps else np.zeros(len(LONG_STEPS), dtype=np.int64)
+        self.whole_steps = WholeStepLog(equations.system, len(self.reported))
         self._samples = np.full((LOOP.samples, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
         self.output_correction, self.step_bound = OutputCorrection(equations), StepBound(bool(formula.repeat))
@@ -199,7 +197,7 @@ class Connection:
                 "step_bound": self.step_bound.table, "history": history, "samples": self._samples,
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
-                "probe": self._probe, "residual": self._residual, "atol": self._atol, "long_steps": self._long_steps,
+                "probe": self._probe, "residual": self._residual, "atol": self._atol, "whole_steps": self.whole_steps.table,
                 "error_norm": self.error_norm.table,
             },
         )  # fmt: skip
@@ -226,8 +224,7 @@ class Connection:
     def forget(self) -> None:
         """Clear the history, and the pivots of the linear solver."""
         self.history.forget()
-        if self.long_steps:
-            self.long_steps.forget()
+        self.whole_steps.forget()
         self.output_correction.forget()
         self.error_norm.forget()
         self._formula.forget()

@@ -309,11 +309,6 @@ class NativeEngine:
         """Return the size, s, and order of the last step, if known."""
         return self.ida.history.last
 
-    def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Return begins, ends and interior values of steps much longer than their predecessors; None if not stored."""
-        log = self.ida.long_steps
-        return log.kept() if log else None
-
     def history(self) -> History:
         """Return the ends of the steps, and their orders."""
         t, order, _ = self.ida.history.stored()
