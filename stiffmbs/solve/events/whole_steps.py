@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebder, chebvander
 
 from ...compile.equations import Equations
-from ...compile.machine.layout import packed
+from ...compile.machine.layout import fill
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
 from ..ida.native.parameters import LOOP
@@ -78,9 +78,10 @@ class WholeStepLog:
         row = 2 + len(WHOLE) * width
         room = LOOP.most_items // row if system.has_functions else 0
         self._rows, self._shape = np.empty((room, row)), (len(WHOLE), width)
-        self.table = packed(
-            WHOLE_STEPS, {"n_nodes": len(WHOLE), "node": WHOLE, "width": width, "row": self._rows, "room": room}
-        )
+        self.table = np.zeros(len(WHOLE_STEPS), dtype=np.int64)
+        if room:
+            arrays = {"n_nodes": len(WHOLE), "node": WHOLE, "width": width, "row": self._rows, "room": room}
+            fill(self.table, WHOLE_STEPS, arrays)
         self._cells = self.table.view(WHOLE_STEPS.cells)[0]
 
     def forget(self) -> None:
