@@ -195,14 +195,6 @@ class NativeIda:
         self.step_bound.follow(features)
         self.watch.resolve(duration)
 
-    def unresolved(self) -> str:
-        """Return a sentence on periodic laws that steps do not resolve; empty if there are none."""
-        return self.watch.note()
-
-    def leave_to_newton(self, part: float) -> None:
-        """Set the part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef)."""
-        self.ask("IDASetNonlinConvCoef", part)
-
     def forget(self) -> None:
         """Reset counters, history and pivots, as before the first start."""
         self.begun, self._look = False, self._usual_batch
