@@ -12,6 +12,8 @@ import sys
 from collections.abc import Iterator
 from typing import NoReturn
 
+from .late_dataclasses import generate_later
+
 INTERRUPTED = 128 + signal.SIGINT.value
 """Exit status of a command that is interrupted before it has results, as of shells."""
 NEW_OBJECTS = 200_000
@@ -31,6 +33,7 @@ def quiet_while_loading() -> None:
     os.environ.setdefault("SYMPY_CACHE_SIZE", "None")
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.disable()  # modules and classes stay alive: scanning them is wasted time
+    generate_later("stiffmbs")
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _end)
 

@@ -28,17 +28,10 @@ from .explicit.projected import TRAITS
 from .radau import radau
 from .reasons import Reason
 from .segments import Segment, joined
-from .solver import Traits
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory
 
 MOST_MESSAGES = 3
 """Switches of integrator that the note lists."""
-
-
-def traits(settings: RunSettings) -> Traits:
-    """Return the traits of `bdf` and `radau`. The settings of the explicit scheme, projected `dop853`, are among them."""
-    reads = dict.fromkeys((*bdf.traits(settings).reads, *radau.traits(settings).reads))
-    return replace(bdf.traits(settings), name="auto", reads=tuple(reads), switches=True)
 
 
 def solve(

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from ..dynamics.dynamics import Dynamics
 from ..model.settings import RunSettings
-from . import bdf
+from . import SOLVERS
 from .auto_decisions import AUTO, ImplicitSteps, implicit_solver
 from .cost import ImplicitCost
 from .explicit.stable_step import Rates
@@ -85,7 +85,7 @@ class Implicit:
 
     def traits(self) -> Traits:
         """Return the traits of the solver."""
-        return (radau if self.name == "radau" else bdf).traits(self._settings)
+        return SOLVERS[self.name].traits(self._settings)
 
     def steps(self, t: float) -> ImplicitSteps:
         """Return the steps of all segments, the last of which has reached the time t."""
