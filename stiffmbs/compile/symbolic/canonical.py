@@ -43,8 +43,14 @@ def positive(x: sp.Expr) -> sp.Expr | None:
     n_positive = len(x.args) - 2 * sum(map(_has_minus, x.args))
     if n_positive > 0:
         return None
-    opposite = total(-part for part in x.args)
-    return opposite if n_positive < 0 or x.sort_key() < opposite.sort_key() else None
+    if any(part.is_number or any(map(_is_irrational, sp.Mul.make_args(part))) for part in x.args):
+        return -x if x.could_extract_minus_sign() else None
+    is_negative = n_positive < 0 or _has_minus(x.as_ordered_terms()[0])  # keys of x and -x differ there first
+    return total(-part for part in x.args) if is_negative else None
+
+
+def _is_irrational(factor: sp.Expr) -> bool:
+    return bool(factor.is_number and not factor.is_Number)
 
 
 def _has_minus(x: sp.Expr) -> bool:
