@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from functools import wraps
 from threading import RLock
 from typing import Any
 
@@ -33,6 +34,7 @@ def generate_later(package: str) -> None:
     """Let the dataclasses that a package defines from now on generate their methods on first use."""
     generated = dataclasses.dataclass
 
+    @wraps(generated)
     def decorator(described: type | None = None, /, **options: Any) -> Any:
         if described is None:
             return lambda described: decorator(described, **options)
@@ -48,7 +50,8 @@ def generate_later(package: str) -> None:
 
 
 def generate_now() -> None:
-    """Generate the methods of all classes, before other threads may use them."""
+    """Generate the methods of all classes, and of later ones when they are defined, before other threads may use them."""
+    dataclasses.dataclass = getattr(dataclasses.dataclass, "__wrapped__", dataclasses.dataclass)
     for described in list(_WAITING):
         _complete(described)
 

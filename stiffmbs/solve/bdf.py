@@ -24,6 +24,7 @@ from .step_logging import is_logged, log_step
 from .suspect import suspect
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
+
 def solve(
     dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback,
     control: ErrorControl | None = None,

@@ -58,9 +58,7 @@ class Registered(NamedTuple):
     traits: Callable[[RunSettings], Traits]
 
 
-def loaded_when_used(
-    module: str, package: str, known: Callable[[RunSettings], Traits] | None = None
-) -> Registered:
+def loaded_when_used(module: str, package: str, known: Callable[[RunSettings], Traits] | None = None) -> Registered:
     """Return the solver in a module with functions ``solve`` and ``traits``, imported at its first call.
 
     `known`: function for the traits that need not import the module.

@@ -15,7 +15,9 @@ PARTS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("ours, sympys", [(lambda parts: total(parts), sp.Add), (lambda parts: product(*parts), sp.Mul)])
+@pytest.mark.parametrize(
+    "ours, sympys", [(lambda parts: total(parts), sp.Add), (lambda parts: product(*parts), sp.Mul)]
+)
 def test_sums_and_products_are_those_of_sympy(ours, sympys):
     for parts in (*combinations(PARTS, repeat=2), *((*pair, z * x) for pair in combinations(PARTS, repeat=2))):
         assert sp.srepr(ours(list(parts))) == sp.srepr(sympys(*parts)), parts
