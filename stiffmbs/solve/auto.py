@@ -25,7 +25,6 @@ from .events.restart import restarted
 from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
 from .explicit.projected import TRAITS
-from .radau import radau
 from .reasons import Reason
 from .segments import Segment, joined
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory
