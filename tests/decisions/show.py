@@ -336,7 +336,7 @@ def most_lines():
 def differences():
     """Return the numbers of rows and of figures of channels that differ."""
     one = Record(relative=1.0, channel="a")
-    run = Record(channels={"a": 0.0}, time=0.0, unit=lambda _: "N")
+    run = Record(channels={"a": 0.0}, time=0.0, unit=lambda _: "N", provenance=None)
     with patch.multiple(
         sections, differences=lambda *_: [one] * 100, _row=nothing, curve_chart=nothing, changed_values=lambda *_: (),
         _changed_loads=lambda *_: (), Table=lambda _heads, rows: Record(rows=rows),
