@@ -34,7 +34,6 @@ from .force_table import LOADS, with_bar
 from .html import MOST_ROWS
 from .loads import loads_of
 from .loads_shown import loads_shown
-from .modes import modes_text
 from .origin import origin_section
 from .page.data import environment, page_data, page_parts
 from .page.modes import modes_data
@@ -126,7 +125,7 @@ def _modes(scene: Scene) -> tuple[list[str], dict[str, str] | None]:
         return [], None
     if any(note.kind == NO_EQUILIBRIUM.name for note in found.notes):
         return [], None
-    lines = modes_text(found).splitlines()
+    lines = found.table().splitlines()
     left = len(lines) - MOST_ROWS
     shown = lines if left <= 0 else [*lines[:MOST_ROWS], f"and {left} more lines: stiffmbs modes"]
     return shown, modes_data(found)

@@ -6,6 +6,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from stiffmbs.analyses.linearised import modes, modes_table
 from stiffmbs.notes import Note
 from stiffmbs.show import (
     curves,
@@ -16,7 +17,6 @@ from stiffmbs.show import (
     html,
     loads,
     loads_shown,
-    modes,
     report,
     sections,
     suspension,
@@ -298,7 +298,13 @@ def most_drawn():
 
 
 def named_bodies(shares):
-    return [*modes._bodies(Record(participation={str(k): share for k, share in enumerate(shares)}))]
+    return [*modes_table._bodies(Record(participation={str(k): share for k, share in enumerate(shares)}))]
+
+
+def printed_modes():
+    found = modes.Modes("", 0.0, 0, (), None, (), None, None)
+    with patch.object(modes, "mode_lines", lambda _, most: reach(most)):
+        return reached(lambda: str(found))
 
 
 def poses_of_a_page(n_points):
@@ -477,8 +483,9 @@ DECISIONS = {
     "show.force_table:Loads.zero": smallest_torque,
     "show.html:MOST_ROWS": lambda: html._table(["a"], [["x"]] * 200).count("<td>x"),
     "show.html:MOST_DRAWN": most_drawn,
-    "show.modes:MOST_BODIES": lambda: len(named_bodies([0.1] * 20)) - 1,
-    "show.modes:LEAST_SHARE": lambda: count_while(lambda share: named_bodies([share]), BELOW),
+    "analyses.linearised.modes:ON_A_SCREEN": printed_modes,
+    "analyses.linearised.modes_table:MOST_BODIES": lambda: len(named_bodies([0.1] * 20)) - 1,
+    "analyses.linearised.modes_table:LEAST_SHARE": lambda: count_while(lambda share: named_bodies([share]), BELOW),
     "show.page.data:MOST_POSES": lambda: poses_of_a_page(1),
     "show.page.data:POSE_VALUES": lambda: poses_of_a_page(100),
     "show.page.data:POSES_A_SECOND": poses_of_a_second,
@@ -515,7 +522,7 @@ EXPECTED = {
     "show.drawing.symbols.spatial:SPOKES": 5, "show.figure:SIZE": 13, "show.figure:MOST_PLOTS": 6, "show.flexible_body:MOST_FREQUENCIES": 13,
     "show.flexible_body:UNREPRESENTED": 27, "show.flexible_body:LARGE_CONDITION": 27, "show.force_table:PLENTY": 9, "show.force_table:LEAST_WITHOUT_EXPONENT": 40,
     "show.force_table:Loads.most": 10, "show.force_table:Loads.zero": 146, "show.html:MOST_ROWS": 40, "show.html:MOST_DRAWN": 29,
-    "show.modes:MOST_BODIES": 4, "show.modes:LEAST_SHARE": 26, "show.page.data:MOST_POSES": 1200, "show.page.data:POSE_VALUES": 342,
+    "analyses.linearised.modes:ON_A_SCREEN": 20, "analyses.linearised.modes_table:MOST_BODIES": 4, "analyses.linearised.modes_table:LEAST_SHARE": 26, "show.page.data:MOST_POSES": 1200, "show.page.data:POSE_VALUES": 342,
     "show.page.data:POSES_A_SECOND": 60, "show.page.data:CHANNEL_VALUES": 450, "show.page.data:MOST_INSTANTS": 2000,
     "show.page.modes:POINTS": 31, "show.page.modes:AMPLITUDE": 0.05, "show.report:MOST_LINES": 23, "show.sections:MOST_ROWS": 15,
     "show.sections:MOST_FIGURES": 3, "show.summary:UNBROKEN": 10000, "show.suspension:COLUMNS": 12.0, "show.suspension:ROUNDING": 119,
