@@ -23,8 +23,8 @@ FINEST = 1e-5
 class Load:
     """Force or torque of one element on its first body.
 
-    The peak is the largest magnitude at an output instant.  Its bar is the magnitude of the components' bars, a bound on
-    the error of the vector, and a bound on the errors of mean and root mean square, too.
+    The peak is the largest magnitude at an output instant.  Its bar is the magnitude of the components' bars, which
+    bounds the error of the vector.  It also bounds the errors of mean and root mean square.
     """
 
     element: str
