@@ -73,7 +73,7 @@ def curve_chart(curves: Sequence[Curve], title: str, abscissa: str, peak: str = 
             ((across, _),) = place(np.array([value]), np.array([low]))
             yield _text(across, BOTTOM + 17, _number(value), "soft", "middle")
         yield _text(RIGHT, HEIGHT - 4, abscissa, "soft", "end")
-        for k, curve in reversed(list(enumerate(curves))):
+        for k, curve in enumerate(curves):
             yield f'<path class="curve c{k}" d="{_path(place(*_thinned(curve.x, curve.y)))}"/>'
         if peak and np.isfinite(curves[0].y).any():
             yield from _marked(place, curves[0], peak)

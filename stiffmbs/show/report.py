@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,7 +34,7 @@ from .html import MOST_ROWS
 from .loads import loads_of
 from .loads_shown import loads_shown
 from .origin import origin_section
-from .page.data import environment, page_data, page_parts
+from .page.data import environment, page_data, page_file, page_parts
 from .page.modes import modes_data
 from .sections import Section, differences_section
 from .style import COLORS, data_url, dress, new_sheet
@@ -69,9 +68,7 @@ def report_page(
     other: tuple[str, Solution] | None = None,
 ) -> str:  # fmt: skip
     """Return the page as HTML, with its figures; parameters and errors as for `write_report`."""
-    template, sheet = (
-        files(__package__).joinpath(f"report.{end}").read_text(encoding="utf-8") for end in ("html", "css")
-    )
+    template, sheet = (page_file(f"report.{end}") for end in ("html", "css"))
     report, judged, origin = check(scene), verdict(solution), solution.provenance or provenance_of(scene)
     loads, unloaded = loads_of(solution)
     figures = [drawn(solution, figure) for figure in relevant_figures(solution, scene.figure)]
