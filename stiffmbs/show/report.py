@@ -17,6 +17,7 @@ from ..analyses.check import check
 from ..analyses.linearised.modes import NO_EQUILIBRIUM, modes
 from ..errors import InputError, StiffmbsError
 from ..model.scene import Figure, Scene
+from ..notes import Note
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import write_text
@@ -120,7 +121,7 @@ def _modes(scene: Scene) -> tuple[list[str], dict[str, str] | None]:
         found = modes(scene)
     except StiffmbsError:
         return [], None
-    if any(note.kind == NO_EQUILIBRIUM.name for note in found.notes):
+    if any(Note.of(note).kind == NO_EQUILIBRIUM.name for note in found.notes):
         return [], None
     lines = found.table().splitlines()
     left = len(lines) - MOST_ROWS

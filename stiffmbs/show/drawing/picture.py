@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -140,7 +140,8 @@ def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) 
     taken: list[np.ndarray] = []
     artists = []
     smaller = max(SMALLEST, min(1.0, (MANY_NAMES / len(names)) ** 0.5)) if names else 1.0
-    unit = 0.128 * smaller * float(np.diff(axes.get_xlim())[0]) / axes.get_figure().get_figwidth()
+    sheet: Any = axes.get_figure()
+    unit = 0.128 * smaller * float(np.diff(axes.get_xlim())[0]) / sheet.get_figwidth()
     for name in sorted(names, key=lambda name: name.role != "body"):
         origin, turned = poses.pose(name.anchor.body, k)
         point = view.seen((origin + turned @ name.anchor.point)[None])[0][:2]
