@@ -38,6 +38,10 @@ class Balance:
     keeps_energy: bool  # True if no non-conservative force exists: the work is then zero, not computed
     within_steps: bool = False  # True if the work is a quadrature within each step of the solver
 
+    def __repr__(self) -> str:
+        change, work = (float(values[-1]) for values in (self.change, self.work))
+        return f"<Balance: change {change:.6g} J, work {work:.6g} J, imbalance {self.imbalance:.2g} J>"
+
     @property
     def open(self) -> np.ndarray:
         """Return the energy missing in the balance since the start, shape (n,)."""
