@@ -64,7 +64,10 @@ class Check(NamedTuple):
 
 def notes_on(run: Integrated) -> tuple[Note, ...]:
     """Return the notes of all checks of a run."""
-    return tuple(Note.of(note) for check in CHECKS if check.has(run) for note in check.notes(run))
+    found: list[str] = []
+    for check in CHECKS:
+        found += check.notes(run) if check.has(run) else ()
+    return tuple(map(Note.of, found))
 
 
 def flexible_body_notes(system: System, rows: OutputRows) -> Iterator[Note]:

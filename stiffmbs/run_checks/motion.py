@@ -82,7 +82,7 @@ def _doubts(system: System) -> tuple[np.ndarray, tuple[tuple[str, str], ...]]:
 
 
 APART_FROM_COUNTERS = Routine(
-    "stiffmbs.run_checks.native.contradictions",
+    "stiffmbs.run_checks.native.turns",
     "apart_from_counters",
     "void(int64, int64, float64*, float64*, int64, int64*, int64*, float64*, int64*)",
 )
