@@ -21,8 +21,8 @@ from ..redundancy.messages.presolve_report import StructureNotes
 from ..results.channels import series_of
 from ..results.energy_balance_notes import range_notes, undefined_values
 from ..run_checks.growth import motion_within_tolerance, senseless
-from ..run_checks.left_tables import departure_notes, left_by_requests, left_tables
 from ..run_checks.motion import motion_notes
+from ..run_checks.tables import departure_notes, left_by_requests, left_tables, tabled_drive_notes
 from ..run_checks.uncertain_forces import uncertain_forces
 from ..solve.settings import settings_notes, traits_of
 from ..solve.trajectory import Trajectory
@@ -82,8 +82,7 @@ def _drives(job: Job) -> Iterator[Note]:
     """Yield notes on actuators that act on prescribed motions, and on drives by tables if the run passes their points."""
     if not any(joint.kind == "drive" for joint in job.data.joints.values()):
         return
-    from ..redundancy.opposed_actuators import opposed_notes  # models without drives load neither
-    from ..run_checks.tabled_drives import tabled_drive_notes
+    from ..redundancy.opposed_actuators import opposed_notes  # not for models without drives
 
     system, grid = job.dynamics.system, job.grid
     opposed = partial(opposed_notes, system, job.data, job.start.q, grid)

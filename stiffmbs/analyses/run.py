@@ -26,7 +26,7 @@ from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import broken_balance, is_broken
 from ..results.provenance import provenance_of
 from ..results.solution import Solution
-from ..run_checks.left_tables import left_by_requests, left_tables, refused_departure, stopped_at
+from ..run_checks.tables import left_by_requests, left_tables, refused_departure, stopped_at
 from ..solve.events.departures import Departure
 from ..solve.missing_rows import reported
 from ..solve.reasons import OF_STATUS, Reason
