@@ -15,8 +15,7 @@ from ..model.settings import DEFAULT_RTOL, RunSettings
 from ..notes import Note, NoteKind
 from ..results.channel_errors import bars
 from ..results.digits import KnownErrors, over_time
-from ..results.error_bars import UNKNOWN
-from ..results.estimate import ErrorEstimate
+from ..results.error_bars import UNKNOWN, ErrorEstimate
 from ..results.solution import Solution
 from ..solve.settings import near_constraints
 from ..solve.subsystems import Subsystem
