@@ -275,17 +275,7 @@ def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
     from ..run_checks.locked import locked
 
     found = locked(job.dynamics, job.redundancy, trajectory)
-    if found is None:
-        return trajectory
-    outputs, sentence = found
-    return replace(
-        trajectory,
-        t=trajectory.t[:outputs],
-        q=trajectory.q[:outputs],
-        u=trajectory.u[:outputs],
-        outcome=Outcome.STOPPED,
-        message=sentence,
-    )
+    return trajectory if found is None else trajectory.stopped_after(*found)
 
 
 def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:

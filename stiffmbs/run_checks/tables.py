@@ -32,7 +32,7 @@ from ..results.channels import counters
 from ..solve.events.departures import ROUNDING, Departure, merged
 from ..solve.reasons import Reason
 from ..solve.settings import traits_of
-from ..solve.trajectory import Outcome, Trajectory
+from ..solve.trajectory import Trajectory
 
 SAMPLES = 2001
 """Times between which arguments that depend on time alone are taken as straight lines."""
@@ -101,9 +101,7 @@ def refused_departure(found: list[Departure]) -> Departure | None:
 
 def stopped_at(first: Departure, trajectory: Trajectory) -> Trajectory:
     """Return a trajectory that ends at a departure, with the reason."""
-    rows = max(int(np.searchsorted(trajectory.t, first.first, side="right")), 1)
-    t, q, u = (array[:rows] for array in (trajectory.t, trajectory.q, trajectory.u))
-    return replace(trajectory, t=t, q=q, u=u, outcome=Outcome.STOPPED, message=_refusal(first))
+    return trajectory.stopped_after(int(np.searchsorted(trajectory.t, first.first, side="right")), _refusal(first))
 
 
 def _refusal(first: Departure) -> Note:
