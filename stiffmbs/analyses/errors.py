@@ -91,7 +91,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     Where breakpoints limit the steps, both runs may take the same ones; the tolerance is then smaller still.
     """
     from ..error_estimate.estimate import with_bars
-    from ..results.channel_errors import bars_by_difference
+    from ..results.error_bars import bars_by_difference
     from .run import finished
 
     steps = _steps(trajectory)

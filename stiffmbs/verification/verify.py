@@ -40,8 +40,7 @@ from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..tuning import in_use
-from .diagnostics import Comparison, by_luck, diagnostics, step_diagnostics
-from .divergence import distance, divergence
+from .diagnostics import Comparison, by_luck, diagnostics, distance, divergence, step_diagnostics
 from .missed_events import Along, DenseSamples, SteppedOver, dense_samples, looked_along, more_instants
 from .parameters import VERIFICATION
 from .solve_again import Again, levels_of, other_integrators, shorter_step, solve_again, tolerances

@@ -10,8 +10,7 @@ from stiffmbs import tuning
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.redundancy.sparse_matrix import SparseMatrix
 from stiffmbs.verification import diagnostics, missed_events, verify
-from stiffmbs.verification.diagnostics import Comparison
-from stiffmbs.verification.divergence import divergence
+from stiffmbs.verification.diagnostics import Comparison, divergence
 from stiffmbs.verification.missed_events import SteppedOver
 from stiffmbs.verification.solve_again import Deadline, OutOfTime, shorter_step, tolerances
 from tests.decisions.common import Reached, Record, nothing, parameters
