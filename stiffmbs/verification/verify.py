@@ -270,7 +270,6 @@ class _Verification:
         return Comparison(self._job, self._first, tighter, other, self._dense, bars, self._sizes)
 
     def _messages(self) -> list[str]:
-        """Return the list of reruns, and of those that failed."""
         runs = [run for run in (*self._tighter.values(), self._other, self._shorter) if run is not None]
         done = [
             run.name for run in runs if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
