@@ -37,11 +37,41 @@ class Timing:
 TIMING = Timing()
 
 
+@dataclass
+class Timed:
+    """Timed solution: a function that solves it again (None for slow ones), and its times so far, s."""
+
+    solve: Callable[[], object] | None
+    seconds: list[float]
+
+    def measure(self) -> None:
+        """Time the solution once more, unless it is slow."""
+        if self.solve is not None:
+            self.seconds.append(seconds_of(self.solve)[0])
+
+    @property
+    def median(self) -> float:
+        """Return the median of the times, s."""
+        return statistics.median(self.seconds)
+
+
 def seconds_of(solve: Callable[[], Found]) -> tuple[float, Found]:
     """Return the processor time of a solution, which excludes other programs, and the solution."""
     begun = time.process_time()
     found = solve()
     return time.process_time() - begun, found
+
+
+def take_turns(timed: Sequence[Timed], rounds: Iterable[int]) -> None:
+    """Time all solutions in each round, forwards and backwards in turn, and drop the first times, with cold caches.
+
+    The neighbours of a solution differ between both orders, so that none always follows other code with cold caches.
+    """
+    for k in rounds:
+        for one in timed[:: -1 if k % 2 else 1]:
+            one.measure()
+    for one in timed:
+        del one.seconds[: len(one.seconds) > 1]
 
 
 ENOUGH_SETTINGS = 2
@@ -51,14 +81,9 @@ WARM_UP = 1e-3
 
 
 @dataclass
-class Point:
-    """Solver configuration at a setting, with its errors by measure, or a message if it failed.
+class Point(Timed):
+    """Solver configuration at a setting, with its errors by measure, or a message if it failed."""
 
-    `solve`: function that solves it again; None for slow and failed ones. `seconds`: its times so far.
-    """
-
-    solve: Callable[[], object] | None
-    seconds: list[float]
     entry: Entry
     setting: str
     errors: Mapping[str, float]
@@ -67,21 +92,8 @@ class Point:
 
     def row(self) -> Row:
         """Return the measurement as a row."""
-        seconds = statistics.median(self.seconds) if self.seconds else np.nan
+        seconds = self.median if self.seconds else np.nan
         return Row(self.entry.name, self.setting, self.errors, seconds, self.steps, self.message)
-
-
-def take_turns(points: Sequence[Point], rounds: Iterable[int]) -> None:
-    """Time all solutions in each round, forwards and backwards in turn, and drop the first times, with cold caches.
-
-    The neighbours of a solution differ between both orders, so that none always follows other code with cold caches.
-    """
-    for k in rounds:
-        for one in points[:: -1 if k % 2 else 1]:
-            if one.solve is not None:
-                one.seconds.append(seconds_of(one.solve)[0])
-    for one in points:
-        del one.seconds[: len(one.seconds) > 1]
 
 
 @dataclass(frozen=True)
