@@ -166,7 +166,6 @@ def _signals() -> Iterator[list[int]]:
         return
 
     def interrupt(number: int, frame: object) -> None:
-        """Record a signal and interrupt the command."""
         received.append(number)
         raise KeyboardInterrupt
 
