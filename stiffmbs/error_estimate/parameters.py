@@ -38,8 +38,11 @@ class EstimateParameters:
     """Largest angle, rad, of a vibration in a block that resolves it."""
     operations: float = 1e10
     """Largest number of multiplications of a transport step by step."""
-    interpolated: float = 0.1
-    """Error of matrices interpolated between every second one, relative to them, below which they are interpolated."""
+    apart: int = 32
+    """Nodes between those at which the equations are linearised first."""
+    interpolated: float = 0.02
+    """Largest change of an implicit step over an interval by the curvature of the matrices in it, with which they are
+    interpolated by a parabola."""
     off_node: float = 0.13
     """Largest distance of the end of a step from a Radau node, in lengths of the block."""
     lost: float = 0.05
