@@ -68,15 +68,15 @@ def _interpolate(
     accurate = np.zeros(len(intervals[0]), dtype=bool)
     count = max(1, ESTIMATE.numbers_at_once // max(1, 9 * space.basis[0].size))
     for k in range(0, len(accurate), count):
-        ends = [each[k : k + count] for each in intervals]
-        aligned = [_aligned(space.at(each), space.left[ends[1]]) for each in ends]
-        accurate[k : k + count] = found = _are_on_a_line(aligned, [t[each] for each in ends], n_pose)
-        for n in np.flatnonzero(found):
-            rows = np.arange(ends[0][n] + 1, ends[2][n])
-            weights = _parabolas(t[rows], *(t[each[n]] for each in ends))
-            for name in ("basis", "rates", "left"):
-                values = np.array([getattr(each, name)[n] for each in aligned])
-                getattr(space, name)[rows] = np.tensordot(weights, values, 1)
+        ends = np.array([each[k : k + count] for each in intervals])
+        aligned = _aligned(space, ends)
+        accurate[k : k + count] = found = _are_on_a_line(*aligned, space.left[ends[1]], t[ends], n_pose)
+        arrays = _with_left(space, ends[:, found], *(each[:, found] for each in aligned))
+        for n, (first, middle, last) in enumerate(ends.T[found]):
+            rows = np.arange(first + 1, last)
+            weights = _parabolas(t[rows], t[first], t[middle], t[last])
+            for name, values in arrays.items():
+                getattr(space, name)[rows] = np.tensordot(weights, values[:, n], 1)
     return accurate
 
 
@@ -90,31 +90,35 @@ def _parabolas(t: np.ndarray, first: float, middle: float, last: float) -> np.nd
     return np.stack(weights, axis=1)
 
 
-def _aligned(space: Linearised, left: np.ndarray) -> Linearised:
-    """Return tangent spaces in the coordinates a = S e of others with the matrices S."""
-    turn = np.linalg.inv(left @ space.basis)
-    basis = space.basis @ turn
-    return Linearised(basis, space.rates @ turn, np.linalg.solve(space.left @ basis, space.left))
+def _aligned(space: Linearised, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the matrices `basis` and `rates` at three nodes of intervals in the coordinates a = S e, S of the second."""
+    turn = np.linalg.inv(space.left[ends[1]] @ space.basis[ends])
+    return space.basis[ends] @ turn, space.rates[ends] @ turn
 
 
-def _are_on_a_line(aligned: list[Linearised], t: list[np.ndarray], n_pose: int) -> np.ndarray:
+def _with_left(space: Linearised, ends: np.ndarray, basis: np.ndarray, rates: np.ndarray) -> dict[str, np.ndarray]:
+    """Return all matrices in these coordinates by name: L with L B = 1."""
+    left = space.left[ends]
+    return {"basis": basis, "rates": rates, "left": np.linalg.solve(left @ basis, left)}
+
+
+def _are_on_a_line(basis: np.ndarray, rates: np.ndarray, left: np.ndarray, t: np.ndarray, n_pose: int) -> np.ndarray:
     """Return a mask of the intervals in whose middle a line through the ends is near enough.
 
     An error D of the matrix M of a' = M a counts as c (c - M)^-1 D (c - M)^-1, c the inverse of the interval: the change of an
     implicit step over it. Stiff directions must be right relative to themselves, and soft ones relative to the interval.
+
+    `basis`, `rates` of shape (3, intervals, full, n): at the first, middle and last node, in the coordinates of the middle, with
+    its matrices `left`. `t` of shape (3, intervals): times, s.
     """
-    first, middle, last = aligned
     with np.errstate(all="ignore"):
-        c, part = 1.0 / (t[2] - t[0]), ((t[1] - t[0]) / (t[2] - t[0]))[:, None, None]
-        basis, rates = (
-            getattr(first, name) + part * (getattr(last, name) - getattr(first, name)) - getattr(middle, name)
-            for name in ("basis", "rates")
-        )
-        step = np.linalg.inv(np.eye(middle.n) - middle.left @ middle.rates / c[:, None, None])
-        change = step @ (middle.left @ rates / c[:, None, None]) @ step
-        of_poses = (middle.left[..., :n_pose] != 0.0).any(axis=(0, 2))
-        unit = np.where(of_poses, 1.0, c[:, None])  # velocities are changes of poses within the interval
-        change *= unit[:, None, :] / unit[:, :, None]
-        turned = np.linalg.norm(basis, axis=(1, 2)) / np.linalg.norm(middle.basis, axis=(1, 2))
+        part, size = ((t[1] - t[0]) / (t[2] - t[0]))[:, None, None], (t[2] - t[0])[:, None, None]
+        off_basis, off_rates = (each[0] + part * (each[2] - each[0]) - each[1] for each in (basis, rates))
+        step = np.linalg.inv(np.eye(left.shape[1]) - size * (left @ rates[1]))
+        change = step @ (size * (left @ off_rates)) @ step
+        of_poses = (left[..., :n_pose] != 0.0).any(axis=(0, 2))
+        unit = np.where(of_poses, size[:, 0], 1.0)  # velocities are changes of poses within the interval
+        change *= unit[:, None] / unit[:, :, None]
+        turned = np.linalg.norm(off_basis, axis=(1, 2)) / np.linalg.norm(basis[1], axis=(1, 2))
         off = np.maximum(np.linalg.norm(change, axis=(1, 2)), turned) / (4.0 * part * (1.0 - part))[:, 0, 0]
         return np.asarray(off <= ESTIMATE.interpolated)

@@ -38,7 +38,7 @@ class EstimateParameters:
     """Largest angle, rad, of a vibration in a block that resolves it."""
     operations: float = 1e10
     """Largest number of multiplications of a transport step by step."""
-    apart: int = 32
+    apart: int = 16
     """Nodes between those at which the equations are linearised first."""
     interpolated: float = 0.02
     """Largest change of an implicit step over an interval by the curvature of the matrices in it, with which they are
