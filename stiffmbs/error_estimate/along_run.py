@@ -15,11 +15,12 @@ from .closed import Closed, closed
 from .coordinates import displaced, displacements
 from .defects import Rates, of_bdf, of_radau, slope_weights
 from .evaluated import Evaluated, evaluated
+from .kinks import integrals_of_motion, not_smooth
 from .interpolated import Along, linearised_along
 from .linearised import Linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
-from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
+from .transport import Block, blocks_of_bdf, blocks_of_radau, integrated, transported
 from .vibrations import are_affordable, are_resolved, step_by_step
 
 
@@ -91,7 +92,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
     states = evaluated(dynamics, t, q, u, (steps, rtol))
     prepared = [
-        _prepared(dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired))
+        _prepared(dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired), rtol)
         for k, (piece, first) in enumerate(zip(pieces, starts, strict=False))
     ]
     nodes = np.concatenate([first + each.within(each.rows) for each, first in zip(prepared, starts, strict=False)])
@@ -131,12 +132,13 @@ def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
     return np.asarray(~(np.abs(of_poses) <= ESTIMATE.lost * scale).all(axis=1))
 
 
-def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool) -> _Prepared:
+def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool, rtol: float) -> _Prepared:
     rates = Rates(dynamics.system, states)
     if piece.points > 1:
         defects = of_radau(piece, rates)
+        local = _integrated(dynamics, piece, states, defects, rtol)
         at_ends = np.vstack([np.zeros_like(defects[0, :1]), defects.reshape(-1, defects.shape[2])])
-        blocks = blocks_of_radau(piece.t, defects)
+        blocks = blocks_of_radau(piece.t, local)
     else:
         defects, at_ends = of_bdf(piece, rates, opened)
         blocks = blocks_of_bdf(piece.t, defects)
@@ -144,6 +146,24 @@ def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool)
     for block in blocks:
         is_node[block.nodes] = True
     return _Prepared(piece, states, defects, at_ends, blocks, np.flatnonzero(is_node), opened)
+
+
+def _integrated(
+    dynamics: Dynamics, piece: Piece, states: Evaluated, defects: np.ndarray, rtol: float
+) -> np.ndarray:
+    """Return the integrals of the defects at the points of steps of radau, shape (steps, points, full)."""
+    sizes = np.diff(piece.t[:: piece.points])
+    local, exact = integrated(sizes, defects), motion(dynamics.system, states)
+    exact = exact[1:].reshape(defects.shape)
+    by_points = integrated(sizes, exact)
+
+    def at(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        return motion(dynamics.system, evaluated(dynamics, t, q, u, (np.full(len(t), sizes.max()), rtol)))
+
+    scale = np.maximum(np.abs(local[:, -1]).max(axis=0), np.finfo(float).tiny)
+    for step in not_smooth(exact, sizes, local).tolist():
+        local[step] += by_points[step] - integrals_of_motion(piece, step, at, scale)
+    return local
 
 
 def _transported(
