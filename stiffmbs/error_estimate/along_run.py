@@ -15,8 +15,8 @@ from .closed import Closed, closed
 from .coordinates import displaced, displacements
 from .defects import Rates, of_bdf, of_radau, slope_weights
 from .evaluated import Evaluated, evaluated
-from .kinks import integrals_of_motion, not_smooth
 from .interpolated import Along, linearised_along
+from .kinks import integrals_of_motion, not_smooth
 from .linearised import Linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
@@ -92,7 +92,9 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
     states = evaluated(dynamics, t, q, u, (steps, rtol))
     prepared = [
-        _prepared(dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired), rtol)
+        _prepared(
+            dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired), rtol
+        )
         for k, (piece, first) in enumerate(zip(pieces, starts, strict=False))
     ]
     nodes = np.concatenate([first + each.within(each.rows) for each, first in zip(prepared, starts, strict=False)])
@@ -148,9 +150,7 @@ def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool,
     return _Prepared(piece, states, defects, at_ends, blocks, np.flatnonzero(is_node), opened)
 
 
-def _integrated(
-    dynamics: Dynamics, piece: Piece, states: Evaluated, defects: np.ndarray, rtol: float
-) -> np.ndarray:
+def _integrated(dynamics: Dynamics, piece: Piece, states: Evaluated, defects: np.ndarray, rtol: float) -> np.ndarray:
     """Return the integrals of the defects at the points of steps of radau, shape (steps, points, full)."""
     sizes = np.diff(piece.t[:: piece.points])
     local, exact = integrated(sizes, defects), motion(dynamics.system, states)

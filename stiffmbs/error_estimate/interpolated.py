@@ -7,6 +7,7 @@ computed one by one do not depend continuously on the pose.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -36,7 +37,9 @@ def linearised_along(dynamics: Dynamics, at: Evaluated, starts: np.ndarray, reac
     """
     count, apart = len(at.t), ESTIMATE.apart
     bounds = np.append(starts, count)
-    knots = [np.append(np.arange(first, end - 1, apart), end - 1) for first, end in zip(bounds, bounds[1:], strict=False)]
+    knots = [
+        np.append(np.arange(first, end - 1, apart), end - 1) for first, end in pairwise(bounds)
+    ]
     first, last = (np.concatenate([each[ends] for each in knots]) for ends in (slice(None, -1), slice(1, None)))
     computed = np.zeros(count, dtype=bool)
     computed[np.concatenate([*knots, _middles(first, last)])] = True
@@ -61,9 +64,7 @@ def _middles(first: np.ndarray, last: np.ndarray) -> np.ndarray:
     return np.asarray((first + last) // 2)
 
 
-def _interpolate(
-    space: Linearised, t: np.ndarray, intervals: tuple[np.ndarray, ...], n_pose: int
-) -> np.ndarray:
+def _interpolate(space: Linearised, t: np.ndarray, intervals: tuple[np.ndarray, ...], n_pose: int) -> np.ndarray:
     """Interpolate in the intervals (first, middle, last) where that is accurate in the middle; return a mask of these."""
     accurate = np.zeros(len(intervals[0]), dtype=bool)
     count = max(1, ESTIMATE.numbers_at_once // max(1, 9 * space.basis[0].size))
