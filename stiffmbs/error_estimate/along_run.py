@@ -160,9 +160,9 @@ def _integrated(dynamics: Dynamics, piece: Piece, states: Evaluated, defects: np
     def at(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         return motion(dynamics.system, evaluated(dynamics, t, q, u, (np.full(len(t), sizes.max()), rtol)))
 
-    scale = np.maximum(np.abs(local[:, -1]).max(axis=0), np.finfo(float).tiny)
-    for step in not_smooth(exact, sizes, local).tolist():
-        local[step] += by_points[step] - integrals_of_motion(piece, step, at, scale)
+    steps, scale = not_smooth(exact, sizes, local)
+    if len(steps):
+        local[steps] += by_points[steps] - integrals_of_motion(piece, steps, at, scale)
     return local
 
 

@@ -34,6 +34,8 @@ class EstimateParameters:
     """Steps of bdf in a block of collocation, at most."""
     smooth: float = 0.1
     """Error of the quadrature over a step of radau, relative to the largest local error, above which it is adaptive."""
+    isolated: float = 0.25
+    """Largest part of the steps of which the quadrature is adaptive: kinks are isolated."""
     halvings: int = 8
     """Largest number of halvings of the intervals between the points of a step by adaptive quadrature."""
     spectra: int = 16

@@ -110,10 +110,10 @@ def linearised_nodes():
         return interpolated.linearised_along(dynamics, at, np.zeros(1, dtype=int), 0.0).computed.sum()
 
 
-def is_smooth(error):
-    """Return True if points serve to integrate rates whose coefficients do not decay, next to a defect of 1."""
-    rates = np.polynomial.legendre.legval(2.0 * radau(9).nodes - 1.0, [error] * 9)
-    return not len(kinks.not_smooth(rates[None, :, None], np.ones(1), np.ones((1, 9, 1))))
+def is_smooth(error, kinks_of_100=1):
+    """Return True if points serve to integrate rates whose coefficients do not decay in some of 100 steps, next to defects of 1."""
+    rates = np.polynomial.legendre.legval(2.0 * radau(9).nodes - 1.0, [error] * 9) * (np.arange(100) < kinks_of_100)[:, None]
+    return not len(kinks.not_smooth(rates[..., None], np.ones(100), np.ones((100, 9, 1)))[0])
 
 
 def halvings():
@@ -126,7 +126,7 @@ def halvings():
 
     t = np.append(0.0, radau(9).nodes)
     zeros = np.zeros((10, 1))
-    kinks.integrals_of_motion(Piece(t, zeros, zeros, zeros, zeros, t, 9, ()), 0, jumps, np.full(1, 1e-9))
+    kinks.integrals_of_motion(Piece(t, zeros, zeros, zeros, zeros, t, 9, ()), np.zeros(1, dtype=int), jumps, np.full(1, 1e-9))
     return (len(calls) - 1) // 2
 
 
@@ -199,6 +199,7 @@ DECISIONS = {
     "error_estimate.interpolated": lambda: count_while(lambda part: is_interpolated(1e-4 * part), DOUBLES),
     "error_estimate.smooth": lambda: count_while(lambda part: is_smooth(1e-3 * part), DOUBLES),
     "error_estimate.halvings": halvings,
+    "error_estimate.isolated": lambda: count_while(lambda count: not is_smooth(1.0, count), range(1, 101)),
     "error_estimate.row": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.row,
     "error_estimate.off_node": lambda: count_while(lambda part: is_near(1e-3 * part), DOUBLES),
     "error_estimate.lost": lambda: count_while(lambda error: not is_lost(1e-3 * error), DOUBLES),
@@ -239,5 +240,6 @@ EXPECTED = {
     "error_estimate.apart": 13,
     "error_estimate.smooth": 27,
     "error_estimate.halvings": 8,
+    "error_estimate.isolated": 25,
     "analyses.errors:MOST_REPEATS": 3,
 }  # fmt: skip
