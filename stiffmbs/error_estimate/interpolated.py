@@ -37,9 +37,7 @@ def linearised_along(dynamics: Dynamics, at: Evaluated, starts: np.ndarray, reac
     """
     count, apart = len(at.t), ESTIMATE.apart
     bounds = np.append(starts, count)
-    knots = [
-        np.append(np.arange(first, end - 1, apart), end - 1) for first, end in pairwise(bounds)
-    ]
+    knots = [np.append(np.arange(first, end - 1, apart), end - 1) for first, end in pairwise(bounds)]
     first, last = (np.concatenate([each[ends] for each in knots]) for ends in (slice(None, -1), slice(1, None)))
     computed = np.zeros(count, dtype=bool)
     computed[np.concatenate([*knots, _middles(first, last)])] = True

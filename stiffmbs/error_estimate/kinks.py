@@ -1,7 +1,7 @@
 """Integrals of the equations over steps of radau in which their right-hand side is not smooth, as at the knots of a spline.
 
-The nine points of a step integrate a kink with an error of a hundredth of its jump times the square of the step, which is
-often more than the error of the step: those that are accepted are those in which a kink happens to do no harm.
+The nine points of a step integrate a kink with an error of a hundredth of its jump times the square of the step. That is often
+more than the error of the step: steps over a kink are accepted if it does little harm to the points of the method.
 """
 
 from __future__ import annotations
@@ -22,12 +22,13 @@ Motion = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 def not_smooth(rates: np.ndarray, sizes: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the steps over which the quadrature by the points of a step may be too inaccurate, and the largest
-    local error of the others, shape (full,), to which that is relative.
+    """Return the steps over which the quadrature by their points may be too inaccurate, and the largest local error of others.
 
-    The error of the quadrature is estimated from the decay of the Legendre coefficients of z', shape (steps, points, full): that of the first one
-    that it does not integrate, whose degree is twice that of the last known one. `sizes` of shape (steps,): lengths, s. `local`
-    of shape (steps, points, full): integrals of the defects.
+    The latter, shape (full,), is the measure of the former.
+
+    The error of the quadrature is estimated from the decay of the Legendre coefficients of z', shape (steps, points, full): that
+    of the first one that it does not integrate, whose degree is twice that of the last known one. `sizes` of shape (steps,):
+    lengths, s. `local` of shape (steps, points, full): integrals of the defects.
     """
     points = rates.shape[1]
     inverse = np.linalg.inv(legvander(2.0 * radau(points).nodes - 1.0, points - 1))

@@ -112,7 +112,10 @@ def linearised_nodes():
 
 def is_smooth(error, kinks_of_100=1):
     """Return True if points serve to integrate rates whose coefficients do not decay in some of 100 steps, next to defects of 1."""
-    rates = np.polynomial.legendre.legval(2.0 * radau(9).nodes - 1.0, [error] * 9) * (np.arange(100) < kinks_of_100)[:, None]
+    rates = (
+        np.polynomial.legendre.legval(2.0 * radau(9).nodes - 1.0, [error] * 9)
+        * (np.arange(100) < kinks_of_100)[:, None]
+    )
     return not len(kinks.not_smooth(rates[..., None], np.ones(100), np.ones((100, 9, 1)))[0])
 
 
@@ -126,7 +129,9 @@ def halvings():
 
     t = np.append(0.0, radau(9).nodes)
     zeros = np.zeros((10, 1))
-    kinks.integrals_of_motion(Piece(t, zeros, zeros, zeros, zeros, t, 9, ()), np.zeros(1, dtype=int), jumps, np.full(1, 1e-9))
+    kinks.integrals_of_motion(
+        Piece(t, zeros, zeros, zeros, zeros, t, 9, ()), np.zeros(1, dtype=int), jumps, np.full(1, 1e-9)
+    )
     return (len(calls) - 1) // 2
 
 
