@@ -9,24 +9,27 @@ from itertools import compress, pairwise
 import numpy as np
 
 from ..compile.system import System
-from ..dynamics.dynamics import Dynamics
+from ..dynamics.dynamics import Dynamics, OutputRows
 from ..solve.recorded_steps import Piece
 from .closed import Closed, closed
 from .coordinates import displaced, displacements
 from .defects import Rates, of_bdf, of_radau, slope_weights
 from .evaluated import Evaluated, evaluated
-from .linearised import Linearised, linearised
+from .interpolated import Along, linearised_along
+from .kinks import integrals_of_motion, not_smooth
+from .linearised import Linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
-from .transport import Block, blocks_of_bdf, blocks_of_radau, transported
-from .vibrations import are_affordable, are_resolved, changes_little, step_by_step
+from .transport import Block, blocks_of_bdf, blocks_of_radau, integrated, transported
+from .vibrations import are_affordable, are_resolved, step_by_step
 
 
 @dataclass(frozen=True)
 class StateErrors:
     """Errors of the states of one mechanism.
 
-    - `t` of shape (n,): times of the nodes, s; `recorded_q`, `recorded_u`: states of the integrator there.
+    - `t` of shape (n,): times of the nodes, s; `recorded_q`, `recorded_u`: states of the integrator there, and `rows`: output rows
+      of these after projection onto the constraints.
     - `q`, `u`: better states, without the estimated errors.
     - `errors` of shape (n, full): the errors (dq, du, ds) of the states after projection onto the constraints.
     - `left_out`: mask of nodes with other errors of forces than those nearby: at events, where errors of time are errors as
@@ -38,6 +41,7 @@ class StateErrors:
     t: np.ndarray
     recorded_q: np.ndarray
     recorded_u: np.ndarray
+    rows: OutputRows
     q: np.ndarray
     u: np.ndarray
     errors: np.ndarray
@@ -88,22 +92,25 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
     states = evaluated(dynamics, t, q, u, (steps, rtol))
     prepared = [
-        _prepared(dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired))
+        _prepared(
+            dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired), rtol
+        )
         for k, (piece, first) in enumerate(zip(pieces, starts, strict=False))
     ]
     nodes = np.concatenate([first + each.within(each.rows) for each, first in zip(prepared, starts, strict=False)])
     reach = max((block.times[-1] for each in prepared for block in each.blocks), default=0.0)
-    space = linearised(dynamics, states.at(nodes), float(reach))
+    counts = np.cumsum([len(each.rows) for each in prepared])
+    along = linearised_along(dynamics, states.at(nodes), np.append(0, counts[:-1]), float(reach))
     found: list[_Found] = []
-    error, shift, done = np.zeros(space.basis.shape[1]), 0.0, 0
+    error, shift, done = np.zeros(along.space.basis.shape[1]), 0.0, 0
     for k, each in enumerate(prepared):
-        own, done = space.at(slice(done, done + len(each.rows))), done + len(each.rows)
+        own, done = along.at(slice(done, done + len(each.rows))), done + len(each.rows)
         if k:
             error, shift = _restarted(dynamics, prepared[k - 1], each, error, shift)
         errors, of_errors, step_wise = _transported(dynamics, each, own, error)
         error = errors[-1]
         errors = errors + shift * motion(dynamics.system, each.states.at(of_errors))
-        found.append(_Found(each, own, errors, of_errors, step_wise))
+        found.append(_Found(each, own.space, errors, of_errors, step_wise))
     errors = np.concatenate([each.errors for each in found])
     nodes = np.concatenate([first + each.rows for each, first in zip(found, starts, strict=False)])
     fired = np.array([bool(piece.fired) for piece in pieces])
@@ -111,14 +118,13 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     left_out[starts[1:][fired] - 1] = True
     left_out[starts[1:]] = True
     lost, restarts = _are_lost(dynamics.system, q[nodes], errors), t[starts[1:-1]]
+    recorded = t[nodes], q[nodes], u[nodes], states.rows.at(nodes)
     if lost.any():
-        return StateErrors(t[nodes], q[nodes], u[nodes], q[nodes], u[nodes], errors, left_out[nodes], lost, restarts)
+        return StateErrors(*recorded, q[nodes], u[nodes], errors, left_out[nodes], lost, restarts)
     q_better, u_better, fails = (
         np.concatenate(parts) for parts in zip(*(_without_errors(dynamics, each) for each in found), strict=True)
     )
-    return StateErrors(
-        t[nodes], q[nodes], u[nodes], q_better, u_better, errors, left_out[nodes] | fails, lost, restarts
-    )
+    return StateErrors(*recorded, q_better, u_better, errors, left_out[nodes] | fails, lost, restarts)
 
 
 def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
@@ -128,12 +134,13 @@ def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
     return np.asarray(~(np.abs(of_poses) <= ESTIMATE.lost * scale).all(axis=1))
 
 
-def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool) -> _Prepared:
+def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool, rtol: float) -> _Prepared:
     rates = Rates(dynamics.system, states)
     if piece.points > 1:
         defects = of_radau(piece, rates)
+        local = _integrated(dynamics, piece, states, defects, rtol)
         at_ends = np.vstack([np.zeros_like(defects[0, :1]), defects.reshape(-1, defects.shape[2])])
-        blocks = blocks_of_radau(piece.t, defects)
+        blocks = blocks_of_radau(piece.t, local)
     else:
         defects, at_ends = of_bdf(piece, rates, opened)
         blocks = blocks_of_bdf(piece.t, defects)
@@ -143,11 +150,27 @@ def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool)
     return _Prepared(piece, states, defects, at_ends, blocks, np.flatnonzero(is_node), opened)
 
 
+def _integrated(dynamics: Dynamics, piece: Piece, states: Evaluated, defects: np.ndarray, rtol: float) -> np.ndarray:
+    """Return the integrals of the defects at the points of steps of radau, shape (steps, points, full)."""
+    sizes = np.diff(piece.t[:: piece.points])
+    local, exact = integrated(sizes, defects), motion(dynamics.system, states)
+    exact = exact[1:].reshape(defects.shape)
+    by_points = integrated(sizes, exact)
+
+    def at(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        return motion(dynamics.system, evaluated(dynamics, t, q, u, (np.full(len(t), sizes.max()), rtol)))
+
+    steps, scale = not_smooth(exact, sizes, local)
+    if len(steps):
+        local[steps] += by_points[steps] - integrals_of_motion(piece, steps, at, scale)
+    return local
+
+
 def _transported(
-    dynamics: Dynamics, each: _Prepared, space: Linearised, error: np.ndarray
+    dynamics: Dynamics, each: _Prepared, along: Along, error: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the errors at rows of a piece, from that at its start, these rows, and a mask of the blocks taken step by step."""
-    t, rows, blocks = each.piece.t, each.rows, each.blocks
+    t, rows, blocks, space = each.piece.t, each.rows, each.blocks, along.space
     place = np.full(len(t), -1)
     place[rows] = np.arange(len(rows))
     step_wise = np.zeros(len(blocks), dtype=bool)
@@ -158,7 +181,7 @@ def _transported(
         begin, end = int(blocks[first].nodes[0]), int(blocks[last - 1].nodes[-1])
         own = slice(place[begin], place[end] + 1)
         if step_wise[first]:
-            found, at = _step_by_step(dynamics, each, space.at(own), slice(begin, end + 1), errors[-1][-1])
+            found, at = _step_by_step(dynamics, each, along.at(own), slice(begin, end + 1), errors[-1][-1])
         else:
             found, at = transported(blocks[first:last], space, place, errors[-1][-1])[own], rows[own]
         errors.append(found[1:])
@@ -169,15 +192,18 @@ def _transported(
 
 
 def _step_by_step(
-    dynamics: Dynamics, each: _Prepared, space: Linearised, steps: slice, error: np.ndarray
+    dynamics: Dynamics, each: _Prepared, along: Along, steps: slice, error: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the errors at all rows of some steps of a piece, from that at their start, and these rows."""
     everywhere = np.arange(steps.start, steps.stop)
     nodes, t = each.rows[(each.rows >= steps.start) & (each.rows < steps.stop)], each.piece.t
-    if not changes_little(space, t[nodes]):
-        nodes, reach = everywhere, float(np.diff(t[steps]).max())
-        space = linearised(dynamics, each.states.at(each.within(everywhere)), reach)
-    return step_by_step(t[steps], each.defects[steps], space, nodes - steps.start, error), everywhere
+    if along.computed.all():
+        nodes, at = everywhere, each.states.at(each.within(everywhere))
+        along = linearised_along(dynamics, at, np.zeros(1, dtype=int), float(np.diff(t[steps]).max()))
+    knots = along.computed.copy()
+    knots[[0, -1]] = True
+    found = step_by_step(t[steps], each.defects[steps], along.space.at(knots), nodes[knots] - steps.start, error)
+    return found, everywhere
 
 
 def _without_errors(dynamics: Dynamics, found: _Found) -> Closed:

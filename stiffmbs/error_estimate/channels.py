@@ -77,8 +77,10 @@ def channel_errors(
 
     `channels`: those of the run. `project`: True if the output rows of the run are projected onto the constraints.
     """
-    reports, count, rows = _Reports(model, dynamics, trajectory, project, rtol), len(found.t), []
-    for q, u, projected in ((found.recorded_q, found.recorded_u, project), (found.q, found.u, True)):
+    reports, count = _Reports(model, dynamics, trajectory, project, rtol), len(found.t)
+    rows = [found.rows] if project and subsystem is None else []
+    states = [(found.recorded_q, found.recorded_u, project), (found.q, found.u, True)]
+    for q, u, projected in states[len(rows) :]:
         if subsystem is not None:
             whole = np.tile(start.q, (count, 1)), np.tile(start.u, (count, 1))
             subsystem.part.put(q, u, *whole)

@@ -14,12 +14,14 @@ class EstimateParameters:
     Source: ``python -m tests.stress.self_assessment``.
     """
 
-    work: float = 2.5e6
-    """Evaluations of the equations times unknowns up to which every run estimates its error, a second or a little more.
+    work: float = 1e6
+    """Evaluations of the equations times unknowns up to which every run estimates its error, in about 0.2 s.
 
-    Each step (of radau: point of a step) is linearised by two of them for each degree of freedom."""
-    restart: float = 5e3
-    """Work at a restart in the same unit, some 2 ms, whatever the unknowns."""
+    Each step (of radau: point of a step) may be linearised, by two of them for each degree of freedom."""
+    row: float = 500.0
+    """Further work at a step (of radau: point of a step) in the same unit, some 0.1 ms, whatever the unknowns."""
+    restart: float = 2.5e4
+    """Work at a restart in the same unit, some 5 ms, whatever the unknowns."""
     difference: float = 1e-7
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""
     beside: float = 1e-3
@@ -30,6 +32,12 @@ class EstimateParameters:
     """Ratio of the steps on that polynomial above which the formula of the step gives its defect."""
     block: int = 8
     """Steps of bdf in a block of collocation, at most."""
+    smooth: float = 0.1
+    """Error of the quadrature over a step of radau, relative to the largest local error, above which it is adaptive."""
+    isolated: float = 0.25
+    """Largest part of the steps of which the quadrature is adaptive: kinks are isolated."""
+    halvings: int = 8
+    """Largest number of halvings of the intervals between the points of a step by adaptive quadrature."""
     spectra: int = 16
     """States of a piece at which the frequencies of the linearised motion are computed."""
     resolved: float = 1.0
@@ -38,8 +46,11 @@ class EstimateParameters:
     """Largest angle, rad, of a vibration in a block that resolves it."""
     operations: float = 1e10
     """Largest number of multiplications of a transport step by step."""
-    interpolated: float = 0.1
-    """Error of matrices interpolated between every second one, relative to them, below which they are interpolated."""
+    apart: int = 16
+    """Nodes between those at which the equations are linearised first."""
+    interpolated: float = 0.02
+    """Largest change of an implicit step over an interval by the curvature of the matrices in it, with which they are
+    interpolated by a parabola."""
     off_node: float = 0.13
     """Largest distance of the end of a step from a Radau node, in lengths of the block."""
     lost: float = 0.05

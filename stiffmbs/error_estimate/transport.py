@@ -66,13 +66,16 @@ def integrals(nodes: np.ndarray) -> np.ndarray:
     return np.asarray(size * np.swapaxes(np.linalg.solve(transposed, integrated), -1, -2))
 
 
-def blocks_of_radau(t: np.ndarray, defects: np.ndarray) -> list[Block]:
-    """Return one block for each step of radau from the defects at its points, shape (steps, points, full)."""
-    steps, points, _ = defects.shape
-    weights = integrals(radau(points).nodes)
+def integrated(sizes: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """Return the integrals of rates at the points of steps of radau from their starts, shape (steps, points, full)."""
+    return np.asarray(sizes[:, None, None] * np.einsum("ij,njf->nif", integrals(radau(rates.shape[1]).nodes), rates))
+
+
+def blocks_of_radau(t: np.ndarray, local: np.ndarray) -> list[Block]:
+    """Return one block for each step of radau from the integrals of defects at its points, shape (steps, points, full)."""
+    steps, points, _ = local.shape
     rows = np.arange(steps)[:, None] * points + np.arange(points + 1)
     sizes = t[rows[:, -1]] - t[rows[:, 0]]
-    local = sizes[:, None, None] * np.einsum("ij,njf->nif", weights, defects)
     return [Block(*each) for each in zip(rows, local, sizes[:, None] * radau(points).nodes, strict=True)]
 
 

@@ -44,17 +44,6 @@ def are_resolved(space: Linearised, t: np.ndarray, nodes: np.ndarray, blocks: li
     return longest(steps, nearest, ESTIMATE.resolved * ESTIMATE.block) * ESTIMATE.block <= ESTIMATE.turn
 
 
-def changes_little(space: Linearised, t: np.ndarray) -> bool:
-    """Return True if the matrices at the times `t` may be interpolated between these."""
-    if len(t) < 3:
-        return False
-    matrices = space.rates @ np.linalg.solve(space.left @ space.basis, space.left)
-    part = ((t[1:-1] - t[:-2]) / (t[2:] - t[:-2]))[:, None, None]
-    expected = matrices[:-2] + part * (matrices[2:] - matrices[:-2])
-    off = np.linalg.norm(matrices[1:-1] - expected, axis=(1, 2)) / np.linalg.norm(matrices[1:-1], axis=(1, 2))
-    return bool(off.max() <= ESTIMATE.interpolated)
-
-
 def step_by_step(
     t: np.ndarray, defects: np.ndarray, space: Linearised, nodes: np.ndarray, start: np.ndarray
 ) -> np.ndarray:

@@ -46,14 +46,15 @@ class _Open:
 class StepRecorder:
     """Steps of one run.
 
-    - `bounds`: largest work of the estimate of errors, beyond which nothing is kept and `full` is True, and that of a restart.
+    - `bounds`: largest work of the estimate of errors, beyond which nothing is kept and `full` is True, and that of a row
+      and of a restart.
     - `points`: rows per step.
     - `of_a_row`: work of the estimate for a row.
     """
 
     bounds: Recording
     points: int = 1
-    of_a_row: int = 1
+    of_a_row: float = 1.0
     full: bool = False
     _pieces: list[_Open] = field(default_factory=list)
     _work: float = 0.0

@@ -9,13 +9,14 @@ import numpy as np
 
 from stiffmbs.analyses import errors as of_runs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.error_estimate import along_run, defects, estimate, linearised, transport, vibrations
+from stiffmbs.error_estimate import along_run, defects, estimate, interpolated, kinks, linearised, transport, vibrations
 from stiffmbs.error_estimate.accuracy import Accuracy
 from stiffmbs.error_estimate.along_run import _Prepared
 from stiffmbs.error_estimate.evaluated import evaluated
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.results.error_bars import ErrorBar
+from stiffmbs.solve.radau.collocation import radau
 from stiffmbs.solve.recorded_steps import Piece, StepRecorder
 from stiffmbs.tuning import changed_values
 from tests.decisions.common import Record
@@ -90,12 +91,48 @@ def spectra():
     return made[0]
 
 
-def changes_little(part):
-    """Return True if matrices are interpolated, one of which differs by a part."""
-    rates = np.ones((3, 1, 1))
-    rates[1] += part / (1.0 - part) if part < 1.0 else 1e9
-    one = np.ones((3, 1, 1))
-    return vibrations.changes_little(linearised.Linearised(one, rates, one), np.arange(3.0))
+def is_interpolated(curvature):
+    """Return True if a matrix M of a' = M a, zero at the ends of an interval of 1 s and small in its middle, is interpolated."""
+    one, rates = np.ones((3, 1, 1, 1)), np.zeros((3, 1, 1, 1))
+    rates[1] = -curvature
+    return interpolated._are_on_a_line(one, rates, one[0], np.array([[0.0], [0.5], [1.0]]), 0)[0]
+
+
+def linearised_nodes():
+    """Return the number of states, of 97 with the same matrices, at which equations are linearised."""
+    at = Record(t=np.arange(97.0), at=lambda chosen: chosen)
+
+    def constant(dynamics, chosen, reach):
+        return linearised.Linearised(*3 * [np.ones((len(chosen), 1, 1))])
+
+    with patch.object(interpolated, "linearised", constant):
+        dynamics = Record(system=Record(n_pose=1))
+        return interpolated.linearised_along(dynamics, at, np.zeros(1, dtype=int), 0.0).computed.sum()
+
+
+def is_smooth(error, kinks_of_100=1):
+    """Return True if points serve to integrate rates whose coefficients do not decay in some of 100 steps, next to defects of 1."""
+    rates = (
+        np.polynomial.legendre.legval(2.0 * radau(9).nodes - 1.0, [error] * 9)
+        * (np.arange(100) < kinks_of_100)[:, None]
+    )
+    return not len(kinks.not_smooth(rates[..., None], np.ones(100), np.ones((100, 9, 1)))[0])
+
+
+def halvings():
+    """Return the number of halvings of the intervals between points for rates that jump within one."""
+    calls = []
+
+    def jumps(t, q, u):
+        calls.append(len(t))
+        return np.where(t < 0.61234, 0.0, 1.0)[:, None]
+
+    t = np.append(0.0, radau(9).nodes)
+    zeros = np.zeros((10, 1))
+    kinks.integrals_of_motion(
+        Piece(t, zeros, zeros, zeros, zeros, t, 9, ()), np.zeros(1, dtype=int), jumps, np.full(1, 1e-9)
+    )
+    return (len(calls) - 1) // 2
 
 
 def is_near(distance):
@@ -163,7 +200,12 @@ DECISIONS = {
     "error_estimate.resolved": lambda: count_while(lambda rate: not is_resolved(0.25 * rate), DOUBLES),
     "error_estimate.turn": lambda: count_while(lambda rate: is_resolved(1e-2 * rate), DOUBLES),
     "error_estimate.operations": lambda: count_while(lambda steps: vibrations.are_affordable(1e3 * steps, 10), DOUBLES),
-    "error_estimate.interpolated": lambda: count_while(lambda part: changes_little(1e-3 * part), DOUBLES),
+    "error_estimate.apart": linearised_nodes,
+    "error_estimate.interpolated": lambda: count_while(lambda part: is_interpolated(1e-4 * part), DOUBLES),
+    "error_estimate.smooth": lambda: count_while(lambda part: is_smooth(1e-3 * part), DOUBLES),
+    "error_estimate.halvings": halvings,
+    "error_estimate.isolated": lambda: count_while(lambda count: not is_smooth(1.0, count), range(1, 101)),
+    "error_estimate.row": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.row,
     "error_estimate.off_node": lambda: count_while(lambda part: is_near(1e-3 * part), DOUBLES),
     "error_estimate.lost": lambda: count_while(lambda error: not is_lost(1e-3 * error), DOUBLES),
     "error_estimate.tolerances": lambda: count_while(lambda error: not noted("positions", 1e-6 * error), DOUBLES),
@@ -178,7 +220,7 @@ DECISIONS = {
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
 }  # fmt: skip
 EXPECTED = {
-    "error_estimate.work": 2500000.0,
+    "error_estimate.work": 1e6,
     "error_estimate.difference": 1e-07,
     "error_estimate.beside": 10, "error_estimate.points": 6,
     "error_estimate.uneven": 14,
@@ -187,7 +229,7 @@ EXPECTED = {
     "error_estimate.resolved": 9,
     "error_estimate.turn": 17,
     "error_estimate.operations": 54,
-    "error_estimate.interpolated": 27,
+    "error_estimate.interpolated": 31,
     "error_estimate.off_node": 29,
     "error_estimate.lost": 23,
     "error_estimate.tolerances": 27,
@@ -198,6 +240,11 @@ EXPECTED = {
     "error_estimate.slope": 8.549879733383488e-08,
     "error_estimate.numbers_at_once": 400,
     "error_estimate.second": 0.1,
-    "error_estimate.restart": 101,
+    "error_estimate.restart": 21,
+    "error_estimate.row": 500.0,
+    "error_estimate.apart": 13,
+    "error_estimate.smooth": 27,
+    "error_estimate.halvings": 8,
+    "error_estimate.isolated": 25,
     "analyses.errors:MOST_REPEATS": 3,
 }  # fmt: skip

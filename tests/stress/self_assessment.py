@@ -1,10 +1,14 @@
 """Estimated errors of runs against their true errors: ``python -m tests.stress.self_assessment``.
 
-    python -m tests.stress.self_assessment [--count N] [--seed N] [--solver bdf|radau|auto|projected] [--rtol X] [SCENE...]
+    python -m tests.stress.self_assessment [--count N] [--seed N] [--solver bdf|radau|auto|projected]... [--rtol X]... [SCENE...]
 
-Prints a line for each run, with the ratio of the estimated to the true error of positions, velocities and forces, and at the end
-their quantiles, the runs that are lost or not estimated, and false and missing notes. SCENEs are files; random scenes by default.
-The truth is a run of another integrator at a much smaller tolerance.
+Prints a line for each run, with the ratio of the estimated to the true error of positions, velocities and forces, and at the end,
+for each integrator, their quantiles, the shares of runs with errors right within a factor, the runs that are lost or not
+estimated, and false and missing notes. SCENEs are files; random scenes by default, of consecutive seeds. Each is run with all
+combinations of solvers and tolerances. The truth is a run of another integrator at a much smaller tolerance. 300 scenes:
+
+    python -m tests.stress.self_assessment --seed 0 --count 300 --solver bdf --solver radau --solver projected --rtol 1e-3 \\
+        --rtol 1e-5 --rtol 1e-8
 """
 
 from __future__ import annotations
@@ -13,6 +17,7 @@ import argparse
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -37,7 +42,15 @@ AGREED = 0.1
 """Difference of the two references in the error of the run, up to which the truth is known."""
 FALSE = 3.0
 """A note on an error is false if the true error is below this part of its threshold, or missing if above as many times it."""
+FAR_BELOW = 5.0
+"""An estimate is far too small if the true error is more than so many times as large, without a note."""
 NOTE = "the estimated error of"
+FACTORS = {"bdf": (3, 0.9), "radau": (3, 0.9), "projected": (4, 0.8)}
+"""Factor within which the errors of positions are to be right, and in what share of runs, by integrator."""
+FORCES = 5, 0.8
+"""The same of forces, by all integrators."""
+MOST_LOST = 0.05
+"""Largest share of runs that may be lost."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +60,7 @@ class Assessment:
     - `status`: of the estimate, or ``no truth``.
     - `true`, `estimated`: largest errors relative to the size of their channels, by group.
     - `noted`: True if a note says that the errors are large or lost.
+    - `solver`: the integrator.
     """
 
     status: str
@@ -54,6 +68,7 @@ class Assessment:
     estimated: Mapping[str, float]
     noted: bool
     rtol: float
+    solver: str
 
     def ratios(self) -> dict[str, float]:
         """Return the estimated error in the true one by group, where this is more than rounding."""
@@ -83,7 +98,8 @@ def assess(scene: Scene, how: Mapping[str, Any]) -> Assessment:
     found = run(scene, **how, errors=True)
     rtol = float(how.get("rtol", scene.run.rtol))
     noted = any(note.startswith(NOTE) or "solution is lost" in note for note in found.notes)
-    nothing = Assessment("no truth", {}, {}, noted, rtol)
+    solver = next((name for name in FACTORS if name in str(found.solver.get("name"))), str(found.solver.get("name")))
+    nothing = Assessment("no truth", {}, {}, noted, rtol, solver)
     if not found.success or found.estimate is None:
         return nothing
     fine = []
@@ -98,7 +114,7 @@ def assess(scene: Scene, how: Mapping[str, Any]) -> Assessment:
         abs(fine[-1][group] - true) > AGREED * true for group, true in fine[0].items() if true > ROUNDING
     ):
         return nothing
-    return Assessment(found.estimate.status, fine[0], largest(found, found.errors), noted, rtol)
+    return Assessment(found.estimate.status, fine[0], largest(found, found.errors), noted, rtol, solver)
 
 
 def errors_of(solution: Solution, other: Solution) -> dict[str, float]:
@@ -137,18 +153,18 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*")
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--solver", default="")
-    parser.add_argument("--rtol", type=float)
+    parser.add_argument("--solver", action="append", default=[])
+    parser.add_argument("--rtol", type=float, action="append", default=[])
     asked = parser.parse_args()
     found = []
     names = asked.scenes or [str(seed) for seed in range(asked.seed, asked.seed + asked.count)]
-    for name in names:
+    for name, solver, rtol in product(names, asked.solver or [""], asked.rtol or [0.0]):
         try:
             if asked.scenes:
-                scene, how = load_scene(name), {"solver": asked.solver or "bdf"}
+                scene, how = load_scene(name), {"solver": solver or "bdf"}
             else:
-                scene, how = drawn(int(name), asked.solver)
-            how |= {"rtol": asked.rtol} if asked.rtol else {}
+                scene, how = drawn(int(name), solver)
+            how |= {"rtol": rtol} if rtol else {}
             one = assess(scene, how)
         except StiffmbsError as refusal:
             print(name, "refused:", str(refusal)[:100])
@@ -159,7 +175,9 @@ def main() -> None:
         )
         marks = " FALSE NOTE" * one.is_false + " SILENT" * one.is_silent
         print(f"{name} {how['solver']} {one.rtol:.0e} {one.status}: {ratios}{marks}", flush=True)
-    print(table(found))
+    for solver in sorted({one.solver for one in found}):
+        own = [one for one in found if one.solver == solver]
+        print(f"\n{solver}\n{table(own)}\n{shares(own)}")
 
 
 def table(found: list[Assessment]) -> str:
@@ -176,6 +194,24 @@ def table(found: list[Assessment]) -> str:
     for status in dict.fromkeys(one.status for one in found):
         lines.append(f"{status}: {sum(one.status == status for one in found)}")
     lines.append(f"false notes: {sum(one.is_false for one in found)}, missing: {sum(one.is_silent for one in found)}")
+    return "\n".join(lines)
+
+
+def shares(found: list[Assessment]) -> str:
+    """Return the shares of runs of one integrator with errors right within a factor, and of those lost, with what is expected."""
+    lines = []
+    for group, (factor, share) in {"positions": FACTORS.get(found[0].solver, (5, 0.0)), "forces": FORCES}.items():
+        ratios = np.array([one.ratios()[group] for one in found if group in one.ratios()])
+        if len(ratios):
+            within = np.mean((ratios > 1 / factor) & (ratios < factor))
+            lines.append(
+                f"{group} within a factor of {factor}: {within:.0%} of {len(ratios)} runs, expected {share:.0%}"
+            )
+    low = [one for one in found if not one.noted and min(one.ratios().values(), default=1.0) < 1.0 / FAR_BELOW]
+    known = [one for one in found if one.status != "no truth"]
+    lost = sum(one.status == "lost" for one in known)
+    lines.append(f"below a part of {1.0 / FAR_BELOW:g} without a note: {len(low)}, expected 0")
+    lines.append(f"lost: {lost / max(len(known), 1):.0%} of {len(known)} runs, expected at most {MOST_LOST:.0%}")
     return "\n".join(lines)
 
 

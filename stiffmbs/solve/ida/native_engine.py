@@ -115,7 +115,8 @@ class NativeEngine:
         system = self._equations.system
         free = max(system.n_u - int(system.active.sum()), 0)
         evaluations = 1 + 2 * free + system.n_q - system.n_pose  # linearised equations are differences
-        self.recorder = StepRecorder(bounds, 1 + len(places), evaluations * (system.n_q + system.n_u))
+        of_a_row = bounds.row + evaluations * (system.n_q + system.n_u + system.n_c)
+        self.recorder = StepRecorder(bounds, 1 + len(places), of_a_row)
 
     def recorded(self) -> tuple[Piece, ...]:
         """Return the recorded steps, none if there were too many, and stop recording."""
