@@ -53,6 +53,7 @@ def compare(problem, n, form, solve):
     return max(errors[name] for name in expected)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("form", [str, spectral], ids=["pairs", "spectral"])
 @pytest.mark.parametrize("name", AT_REST)
 def test_the_error_at_rest_is_within_twice_the_estimate(name, form):

@@ -19,6 +19,7 @@ def test_what_begins_and_ends_within_one_step_is_seen(case):
     assert verdict.outcome is Outcome.RIGHT, verdict
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(20))
 def test_random_contacts_and_bumps(seed):
