@@ -94,7 +94,7 @@ def test_forces_jump_at_the_points_of_a_curve_that_a_drive_follows(how):
     curve = PchipInterpolator(x, y)
     state, expected = [0.0, -curve.derivative()(0.0) / 11], [-curve.derivative()(0.0) / 11]
     for (begin, end), a, b in zip(itertools.pairwise(x), *curve.c[:2], strict=True):
-        rates = np.array([[0, 1, 0, 0], [-1e5, -3000, -6 * a, -2 * b], [0, 0, 0, 11], [0, 0, 0, 0]])  # the third is time
+        rates = np.array([[0, 1, 0, 0], [-1e5, -3000, -6 * a, -2 * b], [0, 0, 0, 11], [0, 0, 0, 0]])  # of a, a', t, 1
         rates[1:] /= 11
         state = (expm(rates * (end - begin)) @ [*state, 0, 1])[:2]
         expected.append(state[1])

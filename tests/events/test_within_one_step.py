@@ -12,6 +12,7 @@ from tests.stress.families.events import within_one_step
 from tests.stress.fuzzers import contacts
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("case", within_one_step.CASES, ids=lambda case: case.name)
 def test_what_begins_and_ends_within_one_step_is_seen(case):
