@@ -70,12 +70,6 @@ class AutoParameters:
 AUTO = tuned("auto", AutoParameters())
 
 
-def traits(settings: RunSettings) -> Traits:
-    """Return the traits of `bdf` and `radau`. The settings of the explicit scheme, projected `dop853`, are among them."""
-    reads = dict.fromkeys((*bdf.traits(settings).reads, *radau.traits(settings).reads))
-    return replace(bdf.traits(settings), name="auto", reads=tuple(reads), switches=True)
-
-
 def solve(
     dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
 ) -> Trajectory:
