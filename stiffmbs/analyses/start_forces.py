@@ -116,7 +116,6 @@ def stretched(system: System, values: np.ndarray) -> list[Stretched]:
 
 
 def _energy(system: System, rows: OutputRows, name: str) -> float:
-    """Return the energy of an element at the first row, J."""
     return float(potentials(system, rows.values[:1])[name][0])
 
 

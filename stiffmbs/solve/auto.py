@@ -36,7 +36,6 @@ from .ida.native_engine import Reached
 from .integrator import Integrator, driven
 from .radau import radau
 from .reasons import Reason
-from .solver import Traits
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory, in_common, unwatched
 
 EXPLICIT = "projected"

@@ -46,8 +46,10 @@ def presolve_sentences(whole: System, subsystems: Sequence[Subsystem], dynamics:
         inside = [listed([whole.bodies[k] for k in subsystem.part.bodies]) for subsystem in subsystems]
         yield f"{len(subsystems)} independent mechanisms solved separately: {'; '.join(inside)}"
     before, after = unknowns(whole, subsystems, dynamics)
-    if after != before:
-        yield f"{before} unknowns {'reduced' if after < before else 'increased'} to {after}"
+    if after < before:
+        yield f"{before} unknowns reduced to {after}"
+    if after > before:
+        yield f"{after} unknowns in place of {before}, so that bodies that spin do not limit the steps"
 
 
 def _of_bodies(whole: System, subsystem: Subsystem) -> Iterator[str]:
