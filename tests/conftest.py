@@ -26,8 +26,11 @@ from stiffmbs.tuning import parameters_of
 TESTS = Path(__file__).parent
 EXAMPLES = TESTS.parent / "examples"
 WITHOUT_ESTIMATES = frozenset(
-    ("adams", "beams", "elements", "events", "flexible_bodies", "presolve", "run_checks", "solve", "tyres")
-)
+    (
+        "adams", "beams", "compile", "dynamics", "elements", "equilibria", "events", "flexible_bodies", "linear_analysis", "mechanisms",
+        "model", "oracle", "presolve", "redundancy", "roads", "robots", "run_checks", "solve", "tyres",
+    )
+)  # fmt: skip
 """Folders of tests whose runs have no estimate of errors unless they ask for it."""
 EXAMPLE_SCENES = scene_files()
 """All example scenes by name, those in folders by theme too."""

@@ -49,7 +49,7 @@ def garbled(text, random):
 
 
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 10))])
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(11)
 def test_a_garbled_dataset_is_read_or_refused(tmp_path, seed):
     random, texts = Random(seed), originals()
     read = refused = 0

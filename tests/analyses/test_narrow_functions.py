@@ -33,7 +33,8 @@ def exact(width, centre):
 
 
 @pytest.mark.parametrize(
-    "solver", ["bdf", *(pytest.param(name, marks=pytest.mark.long) for name in ("radau", "projected"))]
+    "solver",
+    ["bdf", *(pytest.param(name, marks=(pytest.mark.long, pytest.mark.sampled(2))) for name in ("radau", "projected"))],
 )
 def test_a_repeated_run_is_right(solver):
     """bdf missed later passages in the repeated run: errors of 0.3 m."""

@@ -53,6 +53,7 @@ def compare(problem, n, form, solve):
     return max(errors[name] for name in expected)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("form", [str, spectral], ids=["pairs", "spectral"])
 @pytest.mark.parametrize("name", AT_REST)
 def test_the_error_at_rest_is_within_twice_the_estimate(name, form):
@@ -60,7 +61,9 @@ def test_the_error_at_rest_is_within_twice_the_estimate(name, form):
     assert errors[0] > 2.5 * errors[1]
 
 
-@pytest.mark.parametrize("form", [str, pytest.param(spectral, marks=pytest.mark.long)], ids=["pairs", "spectral"])
+@pytest.mark.parametrize(
+    "form", [str, pytest.param(spectral, marks=(pytest.mark.long, pytest.mark.sampled(3)))], ids=["pairs", "spectral"]
+)
 @pytest.mark.parametrize("name", MOVING)
 def test_the_error_of_a_motion_is_within_twice_the_estimate(name, form):
     compare(MOVING[name], 8, form, lambda scene: stiffmbs.run(scene, solver="radau"))

@@ -237,6 +237,7 @@ forces:
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("fields", "shear_centre", "wagner"),
     [
@@ -395,6 +396,7 @@ def test_a_thin_angle_of_equal_legs_has_the_coefficient_of_its_closed_form():
     assert of.wagner[0] == pytest.approx(-of.wagner[1], rel=1e-9)  # about the line across the plane of symmetry
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("sign", "wagner", "z"), [(1, 0.08, 0.0), (-1, 0.08, 0.0), (1, -0.05, 0.03), (1, 0.0, 0.03)])
 def test_a_beam_of_one_symmetry_buckles_sideways_under_a_moment(sign, wagner, z):
     """M^2 = N (G J + w M) with N = pi^2 E I3/L^2: Trahair (1993), sec. 17.4, without warping, between fork supports."""

@@ -94,6 +94,7 @@ INPUTS = {
 LONG = ("noisy(t)", "akima(t)")
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("how", WAYS, ids=str)
 @pytest.mark.parametrize(
     "force", [pytest.param(force, marks=pytest.mark.long if force in LONG else ()) for force in INPUTS]

@@ -25,7 +25,9 @@ def assert_equal(eliminated, whole, tolerance):
     assert np.max(np.abs(eliminated - whole)) <= tolerance * (1 + np.max(np.abs(whole)))
 
 
-@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 6))])
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=(pytest.mark.long, pytest.mark.sampled(3))) for seed in range(1, 6))]
+)
 def test_trees_of_all_kinds_of_joints(seed):
     """Blocks of one to six equations."""
     rng = np.random.default_rng(seed)

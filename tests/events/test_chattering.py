@@ -197,6 +197,7 @@ def test_a_jump_that_drives_the_motion_back_is_found():
     assert looked_at("-2*sign(block.vx)", 1e-9)[0] == 1
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("scene", "profile", "damping"),

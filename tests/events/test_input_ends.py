@@ -33,6 +33,7 @@ def sled(**how):
     return model
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("law", ENDS)
 @pytest.mark.parametrize("field", ["force", "position", pytest.param("velocity", marks=pytest.mark.long)])
 def test_every_solver_says_where_an_input_ends(field, law):

@@ -9,6 +9,7 @@ from tests.stress.families.events import periodic_laws
 from tests.stress.fuzzers import laws
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("case", periodic_laws.CASES, ids=lambda case: case.name)
 def test_each_period_of_a_law_is_felt(case):
     verdict = case.judge()
@@ -29,6 +30,7 @@ def test_peaks_that_are_as_wide_as_an_explicit_step(rtol):
     assert abs(solution["pushed.vx"][-1] / impulse - 1) < 1e-4
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(20))
 def test_random_laws_over_a_state(seed):

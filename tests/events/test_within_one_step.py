@@ -12,6 +12,7 @@ from tests.stress.families.events import within_one_step
 from tests.stress.fuzzers import contacts
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("case", within_one_step.CASES, ids=lambda case: case.name)
 def test_what_begins_and_ends_within_one_step_is_seen(case):
@@ -19,6 +20,7 @@ def test_what_begins_and_ends_within_one_step_is_seen(case):
     assert verdict.outcome is Outcome.RIGHT, verdict
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(20))
 def test_random_contacts_and_bumps(seed):

@@ -156,6 +156,7 @@ def test_a_very_stiff_body_moves_as_a_rigid_one(folder, rtol):
         np.testing.assert_allclose(flexible[name][10:], rigid[name][10:], atol=1e-3 * np.abs(rigid[name]).max())
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-5, 1e-6])
 def test_the_slider_of_a_crank_with_a_very_stiff_rod_is_moved_as_by_a_rigid_one(rtol):
     """The pin's force is mass times acceleration, d2/dt2 (a cos wt + sqrt(b^2 - a^2 sin^2 wt)). bdf was off by 94 to 1047 N of 382 N."""

@@ -99,7 +99,7 @@ run: {duration: 0.1}
 """
 
 
-@pytest.mark.parametrize("modes", [0, 6, 15])
+@pytest.mark.parametrize("modes", [0, 6, pytest.param(15, marks=pytest.mark.long)])
 def test_a_body_on_bushings_at_points_comes_to_rest_as_its_mesh(tmp_path, modes):
     """The mass matrix of a flexible body is not diagonal, so its accelerations are not forces over masses."""
     model = bar(tmp_path, "hexahedron27", along=4, across=1)

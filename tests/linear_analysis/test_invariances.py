@@ -101,6 +101,7 @@ def every_change(test):
     return FEW(given(seed=SEEDS)(test))
 
 
+@pytest.mark.sampled(3)
 @every_change
 def test_equilibria_modes_and_transfer_functions(seed, dimensions, name):
     content, change, units = original_and_changed(seed, dimensions, name)
@@ -138,6 +139,7 @@ def gain_of(scene, state, body, frequencies):
     )
 
 
+@pytest.mark.sampled(3)
 @every_change
 def test_sensitivities(seed, dimensions, name):
     content, change, units = original_and_changed(seed, dimensions, name)

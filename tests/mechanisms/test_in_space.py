@@ -103,6 +103,7 @@ def runs():
             yield pytest.param(path, DOP853, id=f"{path.stem}-dop853", marks=long)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(("path", "settings"), list(runs()))
 def test_an_example_is_the_same_in_space(path, settings):
@@ -249,7 +250,7 @@ def assembled(scene):
 @pytest.mark.long
 @pytest.mark.parametrize("settings", [BDF, DOP853], ids=["bdf", "dop853"])
 @pytest.mark.parametrize("kind", CASES)
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 def test_each_kind_is_the_same_in_space(kind, settings):
     scene = assembled(case(kind))
     plane, space = both(scene, duration=0.4, points=41, **settings)

@@ -23,6 +23,7 @@ def step_steer(folder, speed, travel, hand):
     return stiffmbs.run(scene, duration=1.5, output=0.05, rtol=1e-9, solver="bdf")
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(2))
 def test_a_turn_to_the_right_is_the_mirror_image_of_one_to_the_left(seed, tmp_path):

@@ -63,15 +63,7 @@ def by_axles():
     )
 
 
-def test_it_understeers_and_rolls_as_its_axles_do():
-    vehicle, axles, steer = by_axles()
-    accelerations, radii, racks, rolls = np.array([on_circle(a) for a in (0.5, 1, 1.5, 2, 2.5)]).T
-    turns = np.array([turning(vehicle, *axles, *turn) for turn in zip(accelerations, radii, strict=True)])
-    measured, expected = (gradient(accelerations, angle - WHEELBASE / radii) for angle in (steer(racks), turns[:, 0]))
-    assert measured == pytest.approx(expected, rel=0.03)
-    assert gradient(accelerations, rolls) == pytest.approx(gradient(accelerations, turns[:, 1]), rel=0.03)
-
-
+@pytest.mark.sampled(3)
 def test_both_tests_of_steady_cornering_have_the_gradients_of_its_axles():
     """The slow ramp at 80 km/h and the circle of 100 m, without air: their turns differ in speed and radius alone."""
     vehicle, axles, steer = by_axles()
@@ -85,6 +77,17 @@ def test_both_tests_of_steady_cornering_have_the_gradients_of_its_axles():
         assert found[test]["roll gradient"] == pytest.approx(1e3 * roll, rel=0.03)
 
 
+@pytest.mark.sampled(3)
+def test_it_understeers_and_rolls_as_its_axles_do():
+    vehicle, axles, steer = by_axles()
+    accelerations, radii, racks, rolls = np.array([on_circle(a) for a in (0.5, 1, 1.5, 2, 2.5)]).T
+    turns = np.array([turning(vehicle, *axles, *turn) for turn in zip(accelerations, radii, strict=True)])
+    measured, expected = (gradient(accelerations, angle - WHEELBASE / radii) for angle in (steer(racks), turns[:, 0]))
+    assert measured == pytest.approx(expected, rel=0.03)
+    assert gradient(accelerations, rolls) == pytest.approx(gradient(accelerations, turns[:, 1]), rel=0.03)
+
+
+@pytest.mark.sampled(3)
 def test_all_handling_tests_have_results():
     found = stiffmbs.handling(DATA / "own_car.yaml", workers=1)
     assert found["lane_change"]["largest lateral error"] < 0.15

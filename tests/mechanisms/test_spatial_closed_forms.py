@@ -54,6 +54,7 @@ def test_symmetric_top_against_three_hinges():
     np.testing.assert_allclose(energies(links, q, u), energies(links, q, u)[0], rtol=1e-11)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "omega",

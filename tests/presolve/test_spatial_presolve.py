@@ -314,6 +314,7 @@ def test_turns_are_counted_where_mechanisms_are_solved_apart():
     np.testing.assert_allclose(with_it["wheel0.q3"] ** 2, np.sin((8 * t + 5 * t**2) / 2) ** 2, atol=1e-7)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("kind", ["bushing", "field"])

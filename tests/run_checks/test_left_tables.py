@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -93,10 +95,9 @@ def test_ranges_enclose_values_outside(options: dict[str, object], beyond: str) 
     assert np.all(found[1] >= inside.max(axis=0) - 1e-9)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("points", [2, 2001])
-def test_a_departure_is_noted_with_its_distance_and_duration(solver: str, points: int) -> None:
-    """A stiff output grid of two points sees no departure at all; the truth is by steps of an own integrator."""
+@functools.cache
+def displacements() -> tuple[np.ndarray, np.ndarray]:
+    """Return times and displacements of the body of `spring`, by steps of another integrator."""
     from scipy.integrate import solve_ivp
 
     force = curve(Table(table=POINTS))
@@ -105,7 +106,14 @@ def test_a_departure_is_noted_with_its_distance_and_duration(solver: str, points
         max_step=1e-3, dense_output=True,
     )  # fmt: skip
     t = np.linspace(0, 2, 200_001)
-    x = exact.sol(t)[0]
+    return t, exact.sol(t)[0]
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("points", [2, 2001])
+def test_a_departure_is_noted_with_its_distance_and_duration(solver: str, points: int) -> None:
+    """A stiff output grid of two points sees no departure at all."""
+    t, x = displacements()
     outside = (x > 0.2) | (x < -0.2)
     (note,) = departures(run(spring(points=points), solver=solver, rtol=1e-7))
     assert "s: the table 'push'" in note

@@ -89,7 +89,10 @@ def test_a_damaged_store_is_refused_or_mended(folder, damage):
         assert found.identical(expected)
 
 
-@pytest.mark.parametrize("seed", [*range(10), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(10, 100))])
+@pytest.mark.parametrize(
+    "seed",
+    [*range(10), *(pytest.param(seed, marks=(pytest.mark.long, pytest.mark.sampled(9))) for seed in range(10, 100))],
+)
 def test_bits_that_have_changed_change_no_number(folder, seed):
     expected = sweep(folder / "scene.yaml", {"bodies.b.mass": [1.0, 2.0, 3.0]}, outputs=["final(b.x)", "b.vx"])
     chance = random.Random(seed)

@@ -111,6 +111,7 @@ def test_the_energy_of_a_body_follows_its_mass():
 TABLE = {"lines": True, "table": [[-1, 0], [0.1, 1], [0.2, -1], [0.5, 2], [0.6, 0], [0.85, 1], [3, 1]]}
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("force", ["F*tab(t - s)", "F*tab(t/r)", "F*tab(t - s)*(1 - cart.vx/5)"])
 @pytest.mark.parametrize(
     "of", ["integral(cart.x)", "integral(cart.ax)", "rms(cart.vx)", "mean(push.fx)", "final(cart.x)"]

@@ -65,6 +65,7 @@ def by_strips(depth, camber, width, count=200_000):
     return 2e6 * mean, 2e6 * (y * pressed).mean()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("camber", [0.0, 0.03, -0.03, 0.1, -0.2])
 @pytest.mark.parametrize("deflection", [0.02, 0.038, 0.0401, 0.045, 0.06])

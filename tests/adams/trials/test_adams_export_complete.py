@@ -148,6 +148,7 @@ def test_random_forces_are_refused_or_move_alike(kind, form, seed):
             np.testing.assert_allclose(other[f"{read}.{axis}"], one[f"{name}.{axis}"], atol=2e-7, err_msg=name)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
 def test_random_scenes_are_refused_or_run_alike(seed, tmp_path):

@@ -17,7 +17,7 @@ def both(folder, seed):
 
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(13)
 def test_motion_and_reactions(tmp_path, seed):
     trial, found, history = both(tmp_path, seed)
     for k in range(len(trial.bodies)):

@@ -10,7 +10,7 @@ from .adams_oracle import Marker, Mechanism, Part, euler, tensor
 from .adams_trials import moves_alike, played
 from .test_adams_trial_forces import step
 
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.sampled(2)]
 
 TIMES = np.linspace(0, 0.2, 11)
 LAW = (3e4, 40.0, 1.3, 2e-3)

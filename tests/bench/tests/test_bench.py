@@ -58,6 +58,7 @@ def test_starts_by_hand_are_consistent(name):
     run.close()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long if name in LONG_RACES else ()) for name in PROBLEMS]
 )
@@ -144,6 +145,7 @@ WITHOUT_YARDSTICK = (
 )
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", [pytest.param(name, marks=MANY if name in LONG_LOOKS else ()) for name in FAMILIES])
 def test_quick_look_in_json(name):
     result = CliRunner().invoke(bench, ["--quick", "--json", name])

@@ -17,6 +17,7 @@ def test_a_beam_has_about_the_error_that_is_asked_for(name):
         assert error_of(of_beam(BEAMS[name], {"solver": solver}, ERROR)(), reference) < 3 * ERROR
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("problem", BENCHMARKS, ids=lambda problem: problem.name)
 def test_other_tools_solve_the_same_problem(problem):
     own = problem.contestants()[0].at(ERROR)()

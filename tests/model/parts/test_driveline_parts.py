@@ -82,6 +82,7 @@ def test_a_locked_differential_turns_both_outputs_alike():
     assert found["diff.torque_left"][-1] == pytest.approx(LEFT * left, rel=1e-6)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("locking", ["open", "limited_slip", "viscous", "locked"])

@@ -11,7 +11,7 @@ joints: {{rail: {{type: prismatic, i: mass, j: ground}}}}
 forces: {{spring: {{type: force, i: mass, force: ["-{omega}^2*mass.x", 0]}}}}
 run: {{duration: 0.05, points: 51, solver: radau, stages: {stages}, rtol: {rtol}, atol: {rtol}}}
 """
-OMEGA, RTOL, PHASES = 1000.0, 1e-6, 150
+OMEGA, RTOL, PHASES = 1000.0, 1e-6, 50
 
 
 @pytest.mark.parametrize("stages", [3, 5, 7, "auto"])

@@ -40,6 +40,7 @@ def original(request):
     return invariances.Original(content, BDF, fine, bars_of(fine, coarse))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", invariances.WAYS)
 def test_each_change_leaves_the_motion(original, name):
     try:

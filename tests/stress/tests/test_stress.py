@@ -24,7 +24,7 @@ COSTLY = ("space", "held_twice", "cars_over_lines")
 """Families whose first case compiles more kinds than others."""
 WHOLE = ("changed_files", "opposed_actuators", "own_field_names")
 """Families of which all cases are run without being asked for: no other test has their scenes."""
-MANY = (pytest.mark.long, pytest.mark.sampled(11))
+MANY = (pytest.mark.long, pytest.mark.sampled(19))
 """As many families have each case for each of four solvers, no even number: every solver has its turn."""
 QUICK = [
     pytest.param(family, case, marks=MANY if (number >= ALWAYS and family not in WHOLE) or family in COSTLY else ())

@@ -50,6 +50,7 @@ def channels(scene, **manoeuvre):
     return {name: run[name] for name in run if name.startswith("vehicle.")}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("steer", TRANSIENT)
 def test_channels_of_a_manoeuvre_are_those_of_the_centre_of_mass(steer):
     """At the body's origin the sideslip gradient was -0.1 to -3.5 mrad/(m/s^2) for -2.63."""

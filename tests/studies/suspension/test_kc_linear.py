@@ -62,6 +62,7 @@ def compare(found, expected, tolerance):
         assert found.measures[name] == pytest.approx(value, rel=tolerance, abs=tolerance * scale), name
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("rigid", [True, False], ids=["rigid", "bushing"])
 @pytest.mark.parametrize("part", CORNERS)
