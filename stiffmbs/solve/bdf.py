@@ -106,7 +106,7 @@ def integrated(
         statistics,
         history,
         integrator.note(),
-        long_steps=integrator.long_steps(),
+        whole_steps=integrator.whole_steps(),
         recorded=tuple(filter(None, [integrator.engine.recorded()])),
         departures=integrator.engine.ida.watch.departures(),
     )
