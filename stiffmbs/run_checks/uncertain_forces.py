@@ -115,9 +115,10 @@ class _Changes(NamedTuple):
     rows: np.ndarray
 
 
-def _changes(state: State, t: float) -> Iterator[_Changes]:
-    """Yield the changes of the forces of all elements at a state."""
+def _changes(state: State, t: float) -> list[_Changes]:
+    """Return the changes of the forces of all elements at a state."""
     system = state.system
+    found: list[_Changes] = []
     state.evaluate("tangent", t)
     size = np.append(np.abs(state.q), np.zeros(system.of_body.n_q))
     rounding = 0.5 * RUN_CHECKS.roundings * np.finfo(float).eps
@@ -127,7 +128,8 @@ def _changes(state: State, t: float) -> Iterator[_Changes]:
             source, rows, column = group.placed("f_q", int(system.places["tangent"][g, at]))
             own = np.array(group.record.patterns["f_q"])[:, 0]
             values = rounding * np.abs(state.values["tangent"][source]) * size[column]
-            yield _Changes(group, values.reshape(group.count, len(own)), own, rows)
+            found.append(_Changes(group, values.reshape(group.count, len(own)), own, rows))
+    return found
 
 
 def _inertia_by_rounding(state: State, t: float) -> float:
