@@ -58,7 +58,12 @@ def needs(package: str, extra: str) -> Iterator[None]:
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] != package:
             raise
-        raise InputError(f"found no {package}, expected it installed: pip install 'stiffmbs[{extra}]'") from None
+        raise InputError(not_installed(package, f"'stiffmbs[{extra}]'")) from None
+
+
+def not_installed(package: str, source: str) -> str:
+    """Return the message on a missing package; `source` is the argument of ``pip install`` that installs it."""
+    return f"this needs {package}, which is not installed: pip install {source}"
 
 
 def refuse_missing(package: str, source: str, where: str = "") -> None:
@@ -76,7 +81,7 @@ def refuse_missing(package: str, source: str, where: str = "") -> None:
     InputError
     """
     if find_spec(package) is None:
-        raise InputError(f"{where}found no {package}, expected it installed: pip install {source}")
+        raise InputError(where + not_installed(package, source))
 
 
 def refuse_text(name: str, found: object, entries: str) -> None:

@@ -5,7 +5,6 @@ import json
 import pickle
 import re
 import sys
-from operator import attrgetter
 from pathlib import Path
 
 import pytest
@@ -135,14 +134,12 @@ def test_notes_of_joined_runs_keep_their_kinds(grown):
 
 
 def test_checks_read_what_a_run_has():
-    """Every attribute that a check names exists."""
+    """Checks have names of their own, and ask for what a run may have."""
     job = prepare(stiffmbs.read_scene(GROWS))
     trajectory, structure = job.integrate(), type("Structure", (), {"of_joints": ()})
     run = Integrated(job, job.dynamics.system, trajectory, None, structure, (), None, (), None)
     assert len({check.name for check in CHECKS}) == len(CHECKS)
-    for check in CHECKS:
-        for path in filter(None, (*check.reads, check.needs)):
-            attrgetter(path)(run)
+    assert not {check.name for check in CHECKS if check.has(run)} & {"functions", "assembly", "solver", "left tables"}
 
 
 def test_kinds_are_named_once_and_described():

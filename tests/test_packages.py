@@ -18,7 +18,7 @@ ORDER = (
     "results", "run_checks", "error_estimate", "analyses", "verification", "studies", "show", "comparison", "live", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
-ANYWHERE = {"errors", "interrupts", "methods", "notes", "processes", "solver_names", "tuning"}
+ANYWHERE = {"errors", "interrupts", "late_dataclasses", "methods", "notes", "processes", "solver_names", "tuning"}
 MOST_FILES = 25
 MODULES = {(ROOT.name, *path.relative_to(ROOT).with_suffix("").parts): path for path in sorted(ROOT.glob("**/*.py"))}
 
@@ -66,13 +66,9 @@ def test_no_module_imports_itself_through_others():
     tuple(TopologicalSorter(needed).static_order())
 
 
-def test_the_readme_lists_the_packages_in_their_order():
-    rows = re.findall(r"^\| `stiffmbs/(\w+)` \|", (ROOT.parent / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
-    assert tuple(rows) == ORDER
-
-
-def test_the_figure_of_rooms_has_the_packages_in_their_order():
+def test_the_figure_and_the_table_of_rooms_have_the_packages_in_their_order():
     page = (ROOT.parent / "docs" / "project" / "architecture.md").read_text(encoding="utf-8")
+    assert tuple(re.findall(r"^\| `stiffmbs/(\w+)` \|", page, re.MULTILINE)) == ORDER
     lines = re.findall(r"^ \w+ {2,}(\w+(?:, \w+)*)$", page.partition("## Rooms")[2], re.MULTILINE)
     assert tuple(name for line in lines for name in line.split(", ")) == ORDER
 
@@ -149,7 +145,7 @@ def test_a_command_loads_no_other():
 
 
 def test_a_warm_run_changes_package_rarely(monkeypatch):
-    """Measured: 95 files and 262 changes among 24 packages; among 17 larger ones there were 131 changes.
+    """Measured: 95 files and 270 changes among 24 packages; among 17 larger ones there were 131 changes.
 
     The estimate of the errors takes 17 files and fewer than 10 changes for each channel.
     """
@@ -158,7 +154,7 @@ def test_a_warm_run_changes_package_rarely(monkeypatch):
 
     scene = str(ROOT.parent / "examples" / "cart_pendulum.yaml")
     alone, calls = warm_run(scene, errors=False), warm_run(scene)
-    assert len(alone.files) < 97 and len(alone.changes) < 266
+    assert len(alone.files) < 97 and len(alone.changes) < 272
     assert len(calls.files - alone.files) < 20 and len(calls.changes) - len(alone.changes) < 10 * 38
 
 

@@ -43,21 +43,6 @@ PLOT = """\
    draw_rows(pyplot.figure().add_subplot(), "{problem}", rows["{problem}"])
 """
 
-PEERS_PLOT = """\
-.. plot::
-   :include-source: false
-   :filename-prefix: peers_{problem}
-   :alt: run time at equal error of several programs, {problem}
-
-   from pathlib import Path
-   from matplotlib import pyplot
-   from measured import draw_decades
-   from tests.bench.report import read_json
-
-   rows = read_json(Path("{path}").read_text(encoding="utf-8"))
-   draw_decades(pyplot.figure(figsize=(7, 4.2)).add_subplot(), rows["{problem}"])
-"""
-
 
 class MeasuredTimes(SphinxDirective):
     """A table of the times at an error of 1e-6, with their ratios to the yardstick, a line for each problem of a file."""
@@ -81,32 +66,6 @@ class MeasuredFigures(SphinxDirective):
         _text(self, file)
         path = Path(Path(self.env.srcdir).name, file).as_posix()
         return nodes_of(self, "\n".join(PLOT.format(problem=problem, path=path) for problem in problems))
-
-
-class MeasuredPeers(SphinxDirective):
-    """Run time at each decade of error, of this package and other programs: a file, and the name of a problem in it."""
-
-    required_arguments = 2
-
-    def run(self) -> list[nodes.Node]:
-        file, problem = self.arguments
-        _text(self, file)
-        path = Path(Path(self.env.srcdir).name, file).as_posix()
-        return nodes_of(self, PEERS_PLOT.format(problem=problem, path=path))
-
-
-def draw_decades(axes: Any, rows: list[Row]) -> None:
-    """Draw the times at decades of error, one line per program; own solvers are drawn thicker."""
-    from stiffmbs.show.style import COLORS, STROKES
-
-    rows = at_target_rows(rows)
-    for number, name in enumerate(dict.fromkeys(row.solver for row in rows)):
-        of_name = [(row.error, row.seconds) for row in rows if row.solver == name]
-        style = {"color": COLORS[number % len(COLORS)], "linestyle": STROKES[number % len(STROKES)]}
-        axes.loglog(*zip(*of_name, strict=True), label=name, linewidth=2.5 if name in OWN else 1.2, marker=".", **style)
-    axes.invert_xaxis()
-    axes.set(xlabel="largest error, m or rad", ylabel="CPU time, s")
-    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), fontsize=8, frameon=False)
 
 
 def _text(directive: SphinxDirective, file: str) -> str:
@@ -136,5 +95,4 @@ def _line(problem: str, rows: list[Row]) -> tuple[str, ...]:
 def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("measured-times", MeasuredTimes)
     app.add_directive("measured-figures", MeasuredFigures)
-    app.add_directive("measured-peers", MeasuredPeers)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

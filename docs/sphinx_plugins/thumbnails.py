@@ -1,4 +1,4 @@
-"""Make the films of the gallery's cards and of the landing page.
+"""Make the films of the gallery's cards.
 
     python docs/sphinx_plugins/thumbnails.py [NAME...]
 
@@ -8,7 +8,7 @@ NAME is the stem of a scene's file in examples/; all of them by default.  The fi
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -29,22 +29,18 @@ LENGTH, RATE = 3.0, 10.0
 """Duration of a film, s, and its pictures per second."""
 WIDTH = 360
 """Width of a film, pixels."""
-HERO = "hero"
-"""Film of the landing page: a car over a bump."""
 
 
-def film(
-    path: Path, changes: Sequence[tuple[str, str]] = (), view: str = "", floor: bool = False
-) -> Iterator[np.ndarray]:
-    """Yield the pictures of the run of a scene with some values changed, with or without the floor."""
-    data = stiffmbs.load_scene(path, changes)
+def film(path: Path) -> Iterator[np.ndarray]:
+    """Yield the pictures of the run of a scene, without the floor."""
+    data = stiffmbs.load_scene(path)
     solution = stiffmbs.run(data)
     poses = {"": poses_of(data, solution.time, solution.channels)}
-    drawing = drawing_of(data, along=poses[""] if floor else None)
+    drawing = drawing_of(data)
     stress = largest_stress(drawing.parts, poses[""])
     drawing = replace(drawing, name=" ", deformations={}, stress=stress)  # no title
     duration = float(solution.time[-1] - solution.time[0])
-    seen = view_named(view, drawing.dimensions, drawing.gravity)
+    seen = view_named("", drawing.dimensions, drawing.gravity)
     return pictures(
         drawing, poses, seen, Playback(duration / LENGTH, RATE), Shown(names=False, forces=False, clock=False), ()
     )
@@ -60,22 +56,15 @@ def cropped(frames: Iterator[np.ndarray]) -> list[Image.Image]:
     return [Image.fromarray(frame).crop(box) for frame in found]
 
 
-def write_webp(path: Path, frames: Iterator[np.ndarray], width: int = WIDTH) -> None:
+def write_webp(path: Path, frames: Iterator[np.ndarray]) -> None:
     """Write pictures as an animated WebP of 16 to 10 that repeats forever."""
-    size = (width, width * 10 // 16)
+    size = (WIDTH, WIDTH * 10 // 16)
     images = [ImageOps.pad(image, size, Image.Resampling.LANCZOS, color="white") for image in cropped(frames)]
     images[0].save(path, save_all=True, append_images=images[1:], duration=1000 / RATE, loop=0, quality=60, method=4)
 
 
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for name in sys.argv[1:] or [*examples(), HERO]:
-        if name == HERO:
-            write_webp(
-                FOLDER / f"{HERO}.webp",
-                film(examples()["car"], [("choose.manoeuvre", "bump"), ("run.duration", "3 s")], floor=True),
-                720,
-            )
-            continue
+    for name in sys.argv[1:] or examples():
         write_webp(FOLDER / f"{name}.webp", film(examples()[name]))
         print(name, (FOLDER / f"{name}.webp").stat().st_size)

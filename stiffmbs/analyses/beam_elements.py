@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -100,18 +99,10 @@ def _of_position(name: str, beam: Divided, differences: Mapping[str, float]) -> 
     return float(np.max([differences[channel] for channel in channels if channel in differences]))
 
 
-@dataclass(frozen=True)
-class Discretisation:
-    """Estimated errors by the division of beams into elements."""
+def discretisation(scene: Scene, found: Solution, solve: Callable[[Scene], Solution]) -> tuple[dict[str, float], str]:
+    """Return the estimated discretisation errors of the results of a scene with beams, and a sentence on them.
 
-    # of each channel, in its unit: the largest of all channels of its kind of the beam or element, as a single
-    # difference may be small by accident
-    errors: Mapping[str, float]
-    sentence: str
-
-
-def discretisation(scene: Scene, found: Solution, solve: Callable[[Scene], Solution]) -> Discretisation:
-    """Return the estimated discretisation errors of the results of a scene with beams.
+    That of a channel is the largest of all channels of its kind of the beam or element, as a single difference may be small by accident.
 
     Another beam has half as many elements. It has twice as many if an interval has a single element, or if the scene refers
     to a node that the coarser beam lacks. Let r be the ratio of both numbers, and p the order. The finer of both beams has
@@ -133,8 +124,8 @@ def discretisation(scene: Scene, found: Solution, solve: Callable[[Scene], Solut
         ratio = min(max(a / b, b / a) for a, b in counts) ** ORDER
         share = (1.0 if factor < 1 else ratio) / (ratio - 1)
         errors = _largest_of_kind(beams, {n: share * d for n, d in compared(scene, found, other).items()})
-        return Discretisation(errors, _sentence(found, errors, [*beams], counts))
-    return Discretisation({}, f"discretisation of beams not estimated: {obstacle}")
+        return errors, _sentence(found, errors, [*beams], counts)
+    return {}, f"discretisation of beams not estimated: {obstacle}"
 
 
 def _largest_of_kind(beams: Iterable[str], errors: Mapping[str, float]) -> dict[str, float]:

@@ -143,7 +143,6 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
 
 
 def _of_run(found: Examined) -> Report:
-    """Return the report on an examined model."""
     redundancy, system = found.redundancy, found.redundancy.system
     cases = tuple(overconstraints(redundancy))
     against = tuple(inconsistency_sentences(redundancy))
@@ -197,13 +196,10 @@ def _freedom_sentences(found: Examined, system: System, free: Sequence[IdleFreed
     if found.redundancy.degrees_of_freedom == 0:
         yield "joints and drives prescribe every coordinate: 0 degrees of freedom, the motion is kinematic"
     for freedom in free:
-        yield _idle_freedom_sentence(freedom)
+        body, motion, between = freedom.body, freedom.motion, listed(freedom.between)
+        if freedom.held_by:
+            prevent = "prevents" if len(freedom.held_by) == 1 else "prevent"
+            yield f"the joints let {body} {motion} by itself between {between}; {listed(freedom.held_by)} {prevent} it"
+        else:
+            yield f"{body} can {motion} by itself between {between}, which moves no other body"
     yield from unconnected_notes(system)
-
-
-def _idle_freedom_sentence(freedom: IdleFreedom) -> str:
-    body, motion, between = freedom.body, freedom.motion, listed(freedom.between)
-    if not freedom.held_by:
-        return f"{body} can {motion} by itself between {between}, which moves no other body"
-    prevent = "prevents" if len(freedom.held_by) == 1 else "prevent"
-    return f"the joints let {body} {motion} by itself between {between}; {listed(freedom.held_by)} {prevent} it"

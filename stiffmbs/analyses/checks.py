@@ -1,12 +1,11 @@
-"""Checks of runs: what each needs and reads, in the order in which a solution has their notes."""
+"""Checks of runs, in the order in which a solution has their notes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
-from itertools import repeat
-from operator import attrgetter, call
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from ..compile.callbacks import notes_on_functions
 from ..compile.system import System
 from ..compile.written_values import table_notes
 from ..dynamics.dynamics import OutputRows
-from ..dynamics.initial import InitialValues
 from ..elements.element import Force
 from ..model.scene import notes_of
 from ..notes import Note, NoteKind, Severity
@@ -23,8 +21,8 @@ from ..redundancy.messages.presolve_report import StructureNotes
 from ..results.channels import series_of
 from ..results.energy_balance_notes import range_notes, undefined_values
 from ..run_checks.growth import motion_within_tolerance, senseless
-from ..run_checks.left_tables import departure_notes, left_by_requests, left_tables
 from ..run_checks.motion import motion_notes
+from ..run_checks.tables import departure_notes, left_by_requests, left_tables, tabled_drive_notes
 from ..run_checks.uncertain_forces import uncertain_forces
 from ..solve.settings import settings_notes, traits_of
 from ..solve.trajectory import Trajectory
@@ -56,27 +54,19 @@ class Integrated:
     again: Callable[[np.ndarray], OutputRows]
 
 
-@dataclass(frozen=True)
-class Check:
-    """Check of a run.
-
-    - `notes`: function that yields the notes.
-    - `reads`: attributes of `Integrated` that are its arguments.
-    - `needs`: attribute that is false for runs without what it checks; empty if every run has it.
-    """
+class Check(NamedTuple):
+    """Check of a run: `notes` of a run that `has` what it checks."""
 
     name: str
-    notes: Callable[..., Iterable[str]]
-    reads: tuple[str, ...]
-    needs: str = ""
+    notes: Callable[[Integrated], Iterable[str]]
+    has: Callable[[Integrated], object] = lambda run: True
 
 
 def notes_on(run: Integrated) -> tuple[Note, ...]:
     """Return the notes of all checks of a run."""
     found: list[str] = []
     for check in CHECKS:
-        if not check.needs or attrgetter(check.needs)(run):
-            found += check.notes(*map(call, map(attrgetter, check.reads), repeat(run)))
+        found += check.notes(run) if check.has(run) else ()
     return tuple(map(Note.of, found))
 
 
@@ -92,8 +82,7 @@ def _drives(job: Job) -> Iterator[Note]:
     """Yield notes on actuators that act on prescribed motions, and on drives by tables if the run passes their points."""
     if not any(joint.kind == "drive" for joint in job.data.joints.values()):
         return
-    from ..redundancy.opposed_actuators import opposed_notes  # models without drives load neither
-    from ..run_checks.tabled_drives import tabled_drive_notes
+    from ..redundancy.opposed_actuators import opposed_notes  # not for models without drives
 
     system, grid = job.dynamics.system, job.grid
     opposed = partial(opposed_notes, system, job.data, job.start.q, grid)
@@ -103,60 +92,49 @@ def _drives(job: Job) -> Iterator[Note]:
     )
 
 
-def _assembly(start: InitialValues) -> tuple[str]:
-    return (start.sentence(),)
-
-
-def _start_forces(job: Job, rows: OutputRows) -> Iterator[Note]:
+def _start_forces(run: Integrated) -> Iterator[Note]:
+    job = run.job
     before = job.start_from.elements if job.start_from else None
     if job.start_from is None or before is not None:
-        yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, rows, before)
+        yield from start_force_notes(job.data, job.dynamics, job.start, job.grid.start, run.rows, before)
 
 
-def _solver(note: str) -> Iterator[Note]:
-    yield SOLVER(text=note)
+def _tolerance(run: Integrated) -> Iterator[Note]:
+    settings = run.job.settings
+    if run.system.size == 1.0 and settings.atol is None and "rtol" in traits_of(settings).reads:
+        yield from motion_within_tolerance(run.system, settings, run.trajectory)
 
 
-def _tolerance(job: Job, system: System, trajectory: Trajectory) -> Iterator[Note]:
-    if system.size == 1.0 and job.settings.atol is None and "rtol" in traits_of(job.settings).reads:
-        yield from motion_within_tolerance(system, job.settings, trajectory)
-
-
-def _ranges(job: Job, system: System, rows: OutputRows) -> Iterator[Note]:
-    limited = {name: x for name, x in job.data.forces.items() if type(x).valid_ranges is not Force.valid_ranges}
+def _ranges(run: Integrated) -> Iterator[Note]:
+    data = run.job.data
+    limited = {name: x for name, x in data.forces.items() if type(x).valid_ranges is not Force.valid_ranges}
     if ranges := {name: found for name, force in limited.items() if (found := force.valid_ranges())}:
-        yield from range_notes(ranges, partial(series_of, job.data, system, rows), rows.t)
-
-
-def _left_tables(job: Job, system: System, trajectory: Trajectory) -> Iterator[Note]:
-    yield from departure_notes(left_tables(system, trajectory, job.settings))
-
-
-def _left_by_requests(job: Job, system: System, rows: OutputRows, channels: dict[str, np.ndarray]) -> Iterator[Note]:
-    yield from departure_notes(left_by_requests(job.data, system, rows, channels))
+        yield from range_notes(ranges, partial(series_of, data, run.system, run.rows), run.rows.t)
 
 
 CHECKS = (
-    Check("parts", notes_of, ("job.data",)),
-    Check("tables", table_notes, ("job.data",), "system.has_laws"),
-    Check("active dampers", active_damper_notes, ("job.data",)),
-    Check("joints", tuple, ("structure.of_joints",)),
-    Check("drives", _drives, ("job",)),
-    Check("start", tuple, ("job.start.notes",)),
-    Check("functions", notes_on_functions, ("system",), "system.has_functions"),
-    Check("assembly", _assembly, ("job.start",), "job.start.moved"),
-    Check("forces at the start", _start_forces, ("job", "rows")),
-    Check("solver", _solver, ("trajectory.note",), "trajectory.note"),
-    Check("tolerance", _tolerance, ("job", "system", "trajectory")),
-    Check("settings", settings_notes, ("job.settings", "system")),
-    Check("reruns", tuple, ("of_reruns",)),
-    Check("ranges", _ranges, ("job", "system", "rows")),
-    Check("left tables", _left_tables, ("job", "system", "trajectory"), "system.has_tables"),
-    Check("tables left by requests", _left_by_requests, ("job", "system", "rows", "channels"), "job.data.requests"),
-    Check("flexible bodies", flexible_body_notes, ("system", "rows"), "system.has_coupled_inertia"),
-    Check("impossible results", senseless, ("job.dynamics", "rows", "job.on_constraints", "broken")),
-    Check("motion", motion_notes, ("job.dynamics", "rows", "job.settings.rtol", "again")),
-    Check("uncertain forces", uncertain_forces, ("job.dynamics", "trajectory", "rows")),
-    Check("undefined values", undefined_values, ("rows", "channels"), "channels"),
-)
+    Check("parts", lambda run: notes_of(run.job.data)),
+    Check("tables", lambda run: table_notes(run.job.data), lambda run: run.system.has_laws),
+    Check("active dampers", lambda run: active_damper_notes(run.job.data)),
+    Check("joints", lambda run: run.structure.of_joints),
+    Check("drives", lambda run: _drives(run.job)),
+    Check("start", lambda run: run.job.start.notes),
+    Check("functions", lambda run: notes_on_functions(run.system), lambda run: run.system.has_functions),
+    Check("assembly", lambda run: (run.job.start.sentence(),), lambda run: run.job.start.moved),
+    Check("forces at the start", _start_forces),
+    Check("solver", lambda run: (SOLVER(text=run.trajectory.note),), lambda run: run.trajectory.note),
+    Check("tolerance", _tolerance),
+    Check("settings", lambda run: settings_notes(run.job.settings, run.system)),
+    Check("reruns", lambda run: run.of_reruns),
+    Check("ranges", _ranges),
+    Check("left tables", lambda run: departure_notes(left_tables(run.system, run.trajectory, run.job.settings)),
+          lambda run: run.system.has_tables),
+    Check("tables left by requests", lambda run: departure_notes(left_by_requests(run.job.data, run.system, run.rows, run.channels or {})),
+          lambda run: run.job.data.requests),
+    Check("flexible bodies", lambda run: flexible_body_notes(run.system, run.rows)),
+    Check("impossible results", lambda run: senseless(run.job.dynamics, run.rows, run.job.on_constraints, run.broken)),
+    Check("motion", lambda run: motion_notes(run.job.dynamics, run.rows, run.job.settings.rtol, run.again)),
+    Check("uncertain forces", lambda run: uncertain_forces(run.job.dynamics, run.trajectory, run.rows)),
+    Check("undefined values", lambda run: undefined_values(run.rows, run.channels or {}), lambda run: run.channels),
+)  # fmt: skip
 """All checks of a run."""

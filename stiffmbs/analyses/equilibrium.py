@@ -104,6 +104,9 @@ class EquilibriumFound:
     eigenvalues: tuple[complex, ...]
     solution: Solution
 
+    def __repr__(self) -> str:
+        return f"<EquilibriumFound '{self.name}': {len(self.channels)} channels, imbalance {self.imbalance:.1e}>"
+
     def as_dict(self, scene: str) -> dict[str, object]:
         """Return the content of ``stiffmbs equilibrium --json``; `scene` is the file or name of the scene."""
         return {

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..error_estimate.parameters import ESTIMATE
 from ..errors import StiffmbsError
 from ..model.settings import LARGEST_RTOL, RunSettings
 from ..notes import NoteKind, Severity
-from ..results.estimate import ErrorEstimate
+from ..results.error_bars import ErrorEstimate
 from ..solve.explicit import DOP853
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback, Recording, Trajectory
@@ -39,8 +40,6 @@ ASK = "--errors, or errors: true in run, estimates it"
 
 def recording(job: Job) -> Job:
     """Return a job whose implicit steps are recorded: always if its errors are to be estimated, else up to some work."""
-    from ..error_estimate.parameters import ESTIMATE
-
     asked = True if job.settings.accuracy else job.settings.errors
     with in_use(job.settings.tuning):
         most = {True: np.inf, None: ESTIMATE.work, False: 0.0}[asked]
@@ -92,11 +91,12 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     Where breakpoints limit the steps, both runs may take the same ones; the tolerance is then smaller still.
     """
     from ..error_estimate.estimate import with_bars
-    from ..error_estimate.parameters import ESTIMATE
-    from ..results.channel_errors import bars_by_difference
+    from ..results.error_bars import bars_by_difference
     from .run import finished
 
-    part, steps = _second(job.settings), _steps(trajectory)
+    steps = _steps(trajectory)
+    smaller = ESTIMATE.second * job.settings.rtol >= ESTIMATE.smallest_rtol
+    part = ESTIMATE.second if smaller else 1.0 / ESTIMATE.second  # tolerance of the second run in that of the first
     system, grid = job.dynamics.system, job.grid
     breakpoints = job.dynamics.input_features(grid.start, grid.end).breakpoints if system.has_inputs else np.empty(0)
     times, at = _with_steps(solution, trajectory, breakpoints)
@@ -108,7 +108,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
             return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} failed: {error}; use --verify")
         if part > 1.0 or _steps(other.trajectory) > steps * part ** (-0.5 / DOP853.order):
             break
-        if part * settings.rtol < _smallest_rtol():
+        if part * settings.rtol < ESTIMATE.smallest_rtol:
             break
     if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")
@@ -123,8 +123,6 @@ def _with_steps(solution: Solution, trajectory: Trajectory, breakpoints: np.ndar
 
     The others are those of steps, and just after breakpoints.
     """
-    from ..error_estimate.parameters import ESTIMATE
-
     outputs = np.unique(solution.time)
     least = ESTIMATE.difference * np.ptp(outputs)
     steps = np.union1d(trajectory.step_times, breakpoints + 2.0 * least)
@@ -135,19 +133,6 @@ def _with_steps(solution: Solution, trajectory: Trajectory, breakpoints: np.ndar
     steps = steps[np.minimum(outputs[after] - steps, steps - outputs[after - 1]) > least]
     times = np.sort(np.concatenate([outputs, steps]))
     return times, np.searchsorted(times, solution.time)
-
-
-def _second(settings: RunSettings) -> float:
-    """Return the tolerance of a second run in that of a run."""
-    from ..error_estimate.parameters import ESTIMATE
-
-    return ESTIMATE.second if ESTIMATE.second * settings.rtol >= _smallest_rtol() else 1.0 / ESTIMATE.second
-
-
-def _smallest_rtol() -> float:
-    from ..error_estimate.parameters import ESTIMATE
-
-    return ESTIMATE.smallest_rtol
 
 
 def _with_errors(settings: RunSettings, part: float) -> RunSettings:

@@ -26,7 +26,8 @@ from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import broken_balance, is_broken
 from ..results.provenance import provenance_of
 from ..results.solution import Solution
-from ..run_checks.left_tables import left_by_requests, left_tables, refused_departure, stopped_at
+from ..run_checks.motion import several_solutions_note
+from ..run_checks.tables import left_by_requests, left_tables, refused_departure, stopped_at
 from ..solve.events.departures import Departure
 from ..solve.missing_rows import reported
 from ..solve.reasons import OF_STATUS, Reason
@@ -163,7 +164,7 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     system = job.dynamics.system
     balance, broken = _balance(computed.job, trajectory, rows)
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
-    several = _several_solutions(job, rows) if system.forces_by_reactions else ()
+    several = tuple(several_solutions_note(job.dynamics, rows)) if system.forces_by_reactions else ()
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     again = partial(_reported_at, job)
     notes = notes_on(
@@ -187,13 +188,6 @@ def _balance(job: Job, trajectory: Trajectory, rows: OutputRows) -> tuple[Balanc
     if balance.resolved and is_broken(system, balance, rows, settings):
         return balance, (broken_balance(system, balance, rows, settings),)
     return balance, ()
-
-
-def _several_solutions(job: Job, rows: OutputRows) -> tuple[Note, ...]:
-    """Return a note on friction with several solutions, whose rows may follow different ones: their energies differ."""
-    from ..run_checks.several_solutions import several_solutions_note
-
-    return tuple(several_solutions_note(job.dynamics, rows))
 
 
 def _headline(outcome: Outcome, message: str, notes: Sequence[Note]) -> str:
@@ -281,17 +275,7 @@ def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
     from ..run_checks.locked import locked
 
     found = locked(job.dynamics, job.redundancy, trajectory)
-    if found is None:
-        return trajectory
-    outputs, sentence = found
-    return replace(
-        trajectory,
-        t=trajectory.t[:outputs],
-        q=trajectory.q[:outputs],
-        u=trajectory.u[:outputs],
-        outcome=Outcome.STOPPED,
-        message=sentence,
-    )
+    return trajectory if found is None else trajectory.stopped_after(*found)
 
 
 def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:

@@ -245,10 +245,6 @@ def _independent(shapes: np.ndarray) -> Iterator[int]:
         rest = rest - np.outer(rest @ along, along)
 
 
-def _name(dynamics: Dynamics, shape: np.ndarray) -> str:
-    return dynamics.system.name_of(int(np.argmax(np.abs(shape))), dynamics.system.of_body.velocities)
-
-
 def _branch(dynamics: Dynamics, found: Equilibrium, direction: np.ndarray, t: float) -> Equilibrium | None:
     """Return the equilibrium reached after a small move along a direction, or None."""
     dynamics.state.q[:] = dynamics.system.of_body.moved(found.q, BRANCH * direction)
@@ -261,7 +257,7 @@ def _branch(dynamics: Dynamics, found: Equilibrium, direction: np.ndarray, t: fl
 
 def _branch_note(dynamics: Dynamics, direction: np.ndarray, poses: list[Equilibrium | None]) -> Note:
     scale = dynamics.system.per_velocity(dynamics.system.size, 1.0)
-    label = _name(dynamics, direction / scale)
+    label = dynamics.system.name_of(int(np.argmax(np.abs(direction / scale))), dynamics.system.of_body.velocities)
     count = sum(pose is not None for pose in poses)
     if not count:
         return NO_STABLE(label)

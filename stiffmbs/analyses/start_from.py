@@ -151,7 +151,6 @@ def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
 
 
 def _states(system: System, state: SavedState) -> np.ndarray:
-    """Return the values of user-defined states."""
     for name in system.states:
         if not np.isfinite(state.channels.get(name, np.nan)):
             raise InputError(f"{state.source}: found no number for the state '{name}', expected one in each row")

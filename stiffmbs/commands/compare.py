@@ -79,7 +79,9 @@ def compare(scene: str, output: Path | None, as_json: bool, **options: object) -
 def _found(scene: str, options: dict[str, Any], tell: Any) -> tuple[Found, Provenance]:
     """Return the comparison that the options request, and its origin."""
     asked = {name: options[name] for name in ("measure", "repeats", "longest")}
-    asked |= {name: _names(options[name]) for name in ("solvers", "formulations") if options[name]}
+    for name in ("solvers", "formulations"):
+        if options[name]:
+            asked[name] = [part.strip() for part in options[name].split(",") if part.strip()]
     changes = [*options["changes"], *([("run.duration", options["duration"])] if options["duration"] else [])]
     if options["error"] is not None and not options["over"]:
         raise InputError(f"--error {options['error']:g}: found no --over, expected it with --over NAME=VALUES")
@@ -104,10 +106,6 @@ def _found(scene: str, options: dict[str, Any], tell: Any) -> tuple[Found, Prove
     loaded = load_scene(scene, changes)
     with in_file(scene):
         return compare(loaded, tell=tell, **asked), provenance_of(loaded)
-
-
-def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",") if name.strip()]
 
 
 def _show(scene: str, found: Found, as_json: bool) -> None:

@@ -49,7 +49,6 @@ def modes(
     """
     from ..analyses.linearised.modes import modes as found_modes
     from ..results.files import write
-    from ..show.modes import modes_text
 
     page = output is not None and output.suffix == ".html"
     with refusing(scene, as_json, output):
@@ -66,7 +65,7 @@ def modes(
         for number in range(1, len(found.modes) + 1) if output is not None and not page else ():
             assert output is not None
             write(output.with_stem(f"{output.stem}_{number}"), found.shape(number, amplitude))
-    click.echo(json.dumps(found.as_dict(scene)) if as_json else modes_text(found))
+    click.echo(json.dumps(found.as_dict(scene)) if as_json else found.table())
 
 
 @click.command(short_help="Frequency response.")

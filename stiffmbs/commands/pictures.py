@@ -206,7 +206,6 @@ def _tell(source: str, figure: Figure, output: Path | None, as_json: bool) -> No
 
 
 def _show_window() -> None:
-    """Show the window until it is closed."""
     from matplotlib import pyplot
 
     pyplot.show()

@@ -23,6 +23,8 @@ from ..show.escaped import EscapingStream
 
 OF_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EPIPE, errno.EDQUOT)
 TOO_LITTLE_MEMORY = "found too little memory, expected more, or a smaller scene with fewer output points"
+TO_TRY = "'stiffmbs init' writes a first scene, and 'stiffmbs examples list' lists scenes to try."
+"""Advice for commands without a scene."""
 ASKING_TO_END = ("SIGINT", "SIGTERM")
 AGAIN = 0.01
 """Delay after which an interrupt lost in a callback is raised again, s."""
@@ -75,6 +77,8 @@ def _status(command: Callable[[], object], received: Sequence[int]) -> int:
     except click.ClickException as error:
         if isinstance(error, click.NoSuchOption):  # with the nearest option alone
             error = click.NoSuchOption(error.option_name, error.message, (error.possibilities or [])[:1], error.ctx)
+        if isinstance(error, click.MissingParameter) and error.param and error.param.name == "scene":
+            error = click.MissingParameter(TO_TRY, error.ctx, error.param, param_type=error.param.param_type_name)
         error.show()
         return error.exit_code
     except (KeyboardInterrupt, click.Abort):
@@ -162,7 +166,6 @@ def _signals() -> Iterator[list[int]]:
         return
 
     def interrupt(number: int, frame: object) -> None:
-        """Record a signal and interrupt the command."""
         received.append(number)
         raise KeyboardInterrupt
 

@@ -73,12 +73,8 @@ def run(
         from ..show.style import write_sheet
 
         with refusing(scene, as_json):
-            written = (
-                is_written(
-                    figure, lambda path: write_sheet(path, drawn(solution, loaded.figure), origin=solution.provenance)
-                )
-                and written
-            )
+            sheet = drawn(solution, loaded.figure)
+            written = is_written(figure, lambda path: write_sheet(path, sheet, origin=solution.provenance)) and written
     from ..show import summary
 
     if as_json:

@@ -103,23 +103,20 @@ class ComparisonOver:
         }  # fmt: skip
 
     def _rows(self, one: AtValue) -> list[dict[str, object]]:
-        setting = f"{self.parameter}={one.value:.4g}"
-        found = []
+        setting, found = f"{self.parameter}={one.value:.4g}", []
         for entry in self.entries:
-            row: dict[str, object] = {"solver": entry.name, "setting": setting}
+            row: dict[str, object] = {
+                "solver": entry.name,
+                "setting": setting,
+                "error": None,
+                "seconds": None,
+                "steps": 0,
+            }
             if one.at and entry.name in one.at.seconds:
-                row |= {
-                    "error": self.error,
-                    "seconds": one.at.seconds[entry.name],
-                    "steps": round(one.at.steps[entry.name]),
-                }
+                seconds, steps = one.at.seconds[entry.name], round(one.at.steps[entry.name])
+                row |= {"error": self.error, "seconds": seconds, "steps": steps}
             else:
-                row |= {
-                    "error": None,
-                    "seconds": None,
-                    "steps": 0,
-                    "message": one.message or "the error was not reached",
-                }
+                row["message"] = one.message or "the error was not reached"
             found.append(row)
         return found
 

@@ -26,7 +26,6 @@ def machine_sentence() -> str:
 
 
 def _processor() -> str:
-    """Return the name of the processor."""
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as lines:
             names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]

@@ -50,7 +50,6 @@ def show(comparison: Comparison | ComparisonOver, console: Console) -> None:
 
 
 def _show_measured(comparison: Comparison, console: Console, say: Say) -> None:
-    """Print the measurements, times at equal errors, and the reference."""
     unit = MEASURES[comparison.measure].unit
     say(
         f"{comparison.name or 'model'}: error in {comparison.measure} ({unit}), median time of the integration (ms), steps"
@@ -71,7 +70,6 @@ def _show_measured(comparison: Comparison, console: Console, say: Say) -> None:
 
 
 def _show_over(comparison: ComparisonOver, console: Console, say: Say) -> None:
-    """Print times against the parameter."""
     unit = MEASURES[comparison.measure].unit
     say(
         f"{comparison.name or 'model'}: median time of the integration (ms) at an error of {comparison.error:g} {unit} in "

@@ -10,8 +10,8 @@ from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..model.model_data import ModelData
-from ..results.channel_errors import ChannelErrors, difference
 from ..results.channels import channels_of
+from ..results.error_bars import ChannelErrors, difference
 from ..solve.missing_rows import reported
 from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory

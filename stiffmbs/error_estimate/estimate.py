@@ -13,10 +13,8 @@ from ..errors import SolverError
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_RTOL, RunSettings
 from ..notes import Note, NoteKind
-from ..results.channel_errors import bars
 from ..results.digits import KnownErrors, over_time
-from ..results.error_bars import UNKNOWN
-from ..results.estimate import ErrorEstimate
+from ..results.error_bars import UNKNOWN, ErrorEstimate, bars
 from ..results.solution import Solution
 from ..solve.settings import near_constraints
 from ..solve.subsystems import Subsystem

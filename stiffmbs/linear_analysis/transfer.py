@@ -105,6 +105,9 @@ class Transfer:
     at: np.ndarray
     notes: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<Transfer: {len(self.a)} states, from {', '.join(self.inputs)} to {', '.join(self.outputs)}>"
+
     def state_space(self) -> StateSpace:
         """Return the system as `scipy.signal.StateSpace`."""
         from scipy.signal import StateSpace

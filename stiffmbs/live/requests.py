@@ -18,7 +18,6 @@ from ..model.model_data import ModelData
 from ..reading.files.quoted import quoted
 from ..results.files import WRITERS, refuse_path, write
 from ..results.solution import Solution
-from ..show.modes import modes_text
 from ..show.verdict import verdict
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..verification.verify import verify
@@ -143,7 +142,7 @@ def _export(request: Request) -> dict[str, object]:
 ANSWERS: dict[str, Callable[[Request], dict[str, object]]] = {
     "solve": lambda request: shown(request.solved(), request.names("channels")),
     "check": lambda request: {"status": "done", "text": str(check(request.scene))},
-    "modes": lambda request: {"status": "done", "text": modes_text(modes(request.scene))},
+    "modes": lambda request: {"status": "done", "text": modes(request.scene).table()},
     "verify": _verify,
     "compare": _compare,
     "sweep": _sweep,

@@ -7,8 +7,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from .error_bars import ErrorBar
-from .estimate import ErrorEstimate
+from .error_bars import ErrorBar, ErrorEstimate
 from .scales import REQUEST_ROUNDING, kind_of, scales
 from .solution import Solution
 

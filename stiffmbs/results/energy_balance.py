@@ -15,13 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compile.machine.layout import addresses
-from ..compile.machine.routines import Routine
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
 from ..dynamics.dynamics import OutputRows
-
-WORK = Routine("stiffmbs.results.native.work", "work", "void(int64, float64*, float64*, float64*)")
 
 MOST_INSTANTS = 100_000
 """Number of instants of a balance at most; of more, only every second (or third, ...) is used."""
@@ -37,6 +33,10 @@ class Balance:
     scale: float  # exchanged energy: the largest kinetic energy, change of the potential energy, or work
     keeps_energy: bool  # True if no non-conservative force exists: the work is then zero, not computed
     within_steps: bool = False  # True if the work is a quadrature within each step of the solver
+
+    def __repr__(self) -> str:
+        change, work = (float(values[-1]) for values in (self.change, self.work))
+        return f"<Balance: change {change:.6g} J, work {work:.6g} J, imbalance {self.imbalance:.2g} J>"
 
     @property
     def open(self) -> np.ndarray:
@@ -86,10 +86,14 @@ def work_since_start(t: np.ndarray, power: np.ndarray) -> np.ndarray:
     Davis and Rabinowitz, Methods of Numerical Integration (1984), sec. 2.9. `t`, `power` of shape (n,): times, s, and
     power, W; n is 1 or more. The result: work since the start, shape (n,), J.
     """
-    t, power = np.ascontiguousarray(t), np.ascontiguousarray(power)
-    total = np.empty(len(t))
-    WORK.call(len(t), *addresses(t, power, total))
-    return total
+    h = np.diff(t)
+    rise = np.diff(power) / h
+    gained = h * (power[:-1] + power[1:]) / 2.0
+    if len(t) > 2:
+        inner = (rise[:-1] * h[1:] + rise[1:] * h[:-1]) / (h[:-1] + h[1:])  # of parabolas, of lines at the ends
+        slope = np.concatenate([rise[:1], inner, rise[-1:]])
+        gained += h * h * (slope[:-1] - slope[1:]) / 12.0
+    return np.append(0.0, np.cumsum(gained))
 
 
 def balance_of_steps(rows: OutputRows, weights: np.ndarray, jumps: np.ndarray, keeps_energy: bool) -> Balance:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import BinaryIO
+from zipfile import ZipFile, ZipInfo
 
 import numpy as np
 
@@ -13,7 +15,6 @@ from ..dynamics.storage import blocks, release
 from ..errors import InputError, refuse_missing
 from ..reading.ascii import in_ascii
 from ..reading.files.quoted import quoted
-from .archive import write_archive
 from .provenance import Provenance, metadata_file
 from .saved import record
 from .solution import Solution
@@ -34,6 +35,22 @@ def _write_csv(path: Path, solution: Solution) -> None:
                 file, np.column_stack([*(column[block] for column in columns), ones]), delimiter=",", fmt="%.17g"
             )
             release(*columns)
+
+
+class WithoutSeeking:
+    """Binary file that is written from its begin to its end: returning to the head of each array takes longer than to write it."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self.write, self.flush = file.write, file.flush
+
+
+def write_archive(path: Path, arrays: Mapping[str, np.ndarray]) -> None:
+    """Write an archive that `numpy.load` reads, one array after the other to save memory; `path` may be a pipe."""
+    with path.open("wb", buffering=2**20) as file, ZipFile(WithoutSeeking(file), "w") as archive:  # type: ignore[call-overload]
+        for name, values in arrays.items():
+            with archive.open(ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, values, allow_pickle=False)
+            release(values)
 
 
 def _write_npz(path: Path, solution: Solution) -> None:

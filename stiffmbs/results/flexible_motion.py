@@ -80,12 +80,7 @@ class FlexibleMotion:
 
     @staticmethod
     def check(scene: Scene, body: str) -> None:
-        """Refuse the name of another body.
-
-        Raises
-        ------
-        InputError
-        """
+        """Raise an InputError for the name of another body."""
         names = [name.removesuffix(".frame") for name, each in scene.bodies.items() if isinstance(each, FloatingFrame)]
         if body not in names:
             listed = ", ".join(names) or "none in this scene"
@@ -117,16 +112,7 @@ class FlexibleMotion:
     def displacement(self, nodes: Sequence[int] | None = None, at: slice | np.ndarray = slice(None)) -> np.ndarray:
         """Return the displacements of nodes in the floating frame, m, in the axes of the mesh.
 
-        Parameters
-        ----------
-        nodes : sequence of int, optional
-            All by default.
-        at : slice or ndarray of int
-            Output times by number.
-
-        Returns
-        -------
-        ndarray, shape (times, nodes, 3)
+        `nodes`: all by default. `at`: output times by number. The result: shape (times, nodes, 3).
         """
         chosen = np.arange(len(self.reduced.modes) // 3) if nodes is None else self._checked(nodes)
         entries = (3 * chosen[:, None] + np.arange(3)).ravel()
@@ -173,24 +159,10 @@ class FlexibleMotion:
         return nodal_stresses(self.model, self.reduced.modes)
 
     def stress(self, at: slice | np.ndarray = slice(None)) -> np.ndarray:
-        """Return the stresses at the nodes, N/m^2, in the axes of the mesh.
+        """Return the stresses xx, yy, zz, xy, yz, zx at the nodes, N/m^2, in the axes of the mesh, shape (times, nodes, 6).
 
-        They are linear in the modal coordinates, and the mean of the elements at a node.
-
-        Parameters
-        ----------
-        at : slice or ndarray of int
-            Output times by number.
-
-        Returns
-        -------
-        ndarray, shape (times, nodes, 6)
-            xx, yy, zz, xy, yz, zx.
-
-        Raises
-        ------
-        InputError
-            If the body is described by matrices.
+        They are linear in the modal coordinates, and the mean of the elements at a node. `at`: output times by number.
+        Raises InputError if the body is described by matrices.
         """
         return np.tensordot(self.modal[at], self._stress_modes, 1)
 
@@ -229,20 +201,8 @@ class FlexibleMotion:
     def write(self, path: Path, at: slice | np.ndarray = slice(None), scale: float = 1.0) -> None:
         """Write the moving and deformed mesh over time for ParaView, with displacement and stresses.
 
-        Parameters
-        ----------
-        path : Path
-            An XDMF file (.xdmf).
-        at : slice or ndarray of int
-            Output times by number.
-        scale : float
-            Factor of the deformation in the positions.
-
-        Raises
-        ------
-        InputError
-            If the type of the file is another one.
-        OSError
+        `path`: an XDMF file (.xdmf). `at`: output times by number. `scale`: factor of the deformation in the positions.
+        Raises InputError if the type of the file is another one.
         """
         if path.suffix.lower() != ".xdmf":
             raise InputError(f"-o {path}: found the type '{path.suffix}', expected .xdmf")
@@ -255,7 +215,6 @@ class FlexibleMotion:
                 writer.write_data(float(self.t[k]), point_data=self._fields(int(k), scale))
 
     def _fields(self, k: int, scale: float) -> Mapping[str, np.ndarray]:
-        """Return the fields of one output time."""
         row = np.array([k])
         own = self.displacement(at=row)[0]
         moved = self.position(at=row)[0]

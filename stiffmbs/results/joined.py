@@ -12,8 +12,7 @@ from ..notes import Note
 from ..solve.trajectory import IN_DOUBT, History
 from .digits import KnownErrors
 from .energy_balance import Balance
-from .error_bars import ErrorBar
-from .estimate import ErrorEstimate
+from .error_bars import ErrorBar, ErrorEstimate
 from .scales import MECHANICAL, ROUNDING, kind_of
 from .solution import Solution
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
+from itertools import groupby
 from pathlib import Path
 from typing import TypeAlias
 from xml.etree import ElementTree
@@ -62,15 +63,16 @@ def _reader(file: Path) -> Callable[[Path], Columns]:
 
 
 def _table(path: Path) -> Columns:
-    """Return the longest block of lines with equally many numbers, with the names in a line before it."""
+    """Return the longest block of lines with equally many numbers, two or more, with the names in a line before it."""
     lines = content_of(path).decode(errors="replace").splitlines()
     rows = [_numbers(line) for line in lines]
-    first, last = _longest_block([len(row) for row in rows])
-    if last - first < 2:
+    blocks = [[*block] for width, block in groupby(range(len(rows)), lambda k: len(rows[k])) if width > 1]
+    longest = max(blocks, key=len, default=[])
+    if len(longest) < 2:
         raise ValueError("no lines of numbers")
-    table = np.array(rows[first:last]).T
+    table = np.array([rows[k] for k in longest]).T
     found = {str(k): column for k, column in enumerate(table, start=1)}
-    for line in lines[first - 1 :: -1] if first else ():
+    for line in reversed(lines[: longest[0]]):
         names = [word.strip('"').partition(" (")[0] for word in _heads(line)]
         if len(names) == len(table):
             found |= {name: column for name, column in zip(names, table, strict=True) if name}
@@ -80,44 +82,30 @@ def _table(path: Path) -> Columns:
 
 def _heads(line: str) -> list[str]:
     """Return the names of columns, separated by tabs or commas if there are any, else by blanks."""
-    for sign in ("\t", ","):
-        if sign in line:
-            return [part.strip() for part in line.strip("\r\n").split(sign)]
-    return _WORDS.findall(line)
+    sign = next((sign for sign in "\t," if sign in line), "")
+    return [part.strip() for part in line.strip("\r\n").split(sign)] if sign else _WORDS.findall(line)
 
 
 def _numbers(line: str) -> list[float]:
     """Return the numbers of a line, or none if it has other content."""
-    parts = [part for part in _SPLIT.split(line.strip()) if part]
     try:
-        return [float(part.replace("D", "E").replace("d", "e")) for part in parts]
+        return [float(part.replace("D", "E").replace("d", "e")) for part in _SPLIT.split(line.strip()) if part]
     except ValueError:
         return []
-
-
-def _longest_block(widths: Sequence[int]) -> tuple[int, int]:
-    """Return the bounds of the longest run of lines with the same number of columns, two or more."""
-    best, start = (0, 0), 0
-    for k in range(1, len(widths) + 1):
-        if k == len(widths) or widths[k] != widths[start]:
-            if widths[start] > 1 and k - start > best[1] - best[0]:
-                best = (start, k)
-            start = k
-    return best
 
 
 def _adams_xml(path: Path) -> Columns:
     """Read Adams' .res in XML: a map that names the numbers of a step, and the steps."""
     names: dict[int, str] = {}
     rows: list[list[float]] = []
-    for element in _elements(path):
-        match element.tag.rpartition("}")[2]:
-            case "Entity":
-                entity = element.get("name") or ""
-                for component in element:
-                    names[int(component.get("id") or 0)] = ".".join(filter(None, (entity, component.get("name"))))
-            case "Step":
-                if element.get("type") != "initialConditions":
+    with path.open("rb") as file:
+        for _, element in ElementTree.iterparse(file):
+            match element.tag.rpartition("}")[2]:
+                case "Entity":
+                    entity = element.get("name") or ""
+                    for component in element:
+                        names[int(component.get("id") or 0)] = ".".join(filter(None, (entity, component.get("name"))))
+                case "Step" if element.get("type") != "initialConditions":
                     rows.append([float(text) for text in (element.text or "").split()])
     if not rows:
         raise ValueError("no steps")
@@ -125,12 +113,6 @@ def _adams_xml(path: Path) -> Columns:
     found = {names.get(k, str(k)): column for k, column in enumerate(table, start=1)}
     of_time = next((name for name in found if name.lower() in (TIME, f"{TIME}.{TIME}")), None)
     return found | {TIME: found[of_time] if of_time else table[0]}
-
-
-def _elements(path: Path) -> Iterator[ElementTree.Element]:
-    with path.open("rb") as file:
-        for _, element in ElementTree.iterparse(file):
-            yield element
 
 
 Listed: TypeAlias = Solution | str | Path | Mapping[str, np.ndarray]
@@ -258,10 +240,8 @@ def _difference(
     apart = np.abs(own - listed)
     if not np.isfinite(apart).any():
         return Difference(channel, column, float("nan"), float(t[0]), float("nan"))
-    k = int(np.nanargmax(apart))
-    size = max(_size(listed) or _size(own), least)
-    largest = float(apart[k])
-    return Difference(channel, column, largest, float(t[k]), largest / size if size else 0.0)
+    k, size = int(np.nanargmax(apart)), max(_size(listed) or _size(own), least)
+    return Difference(channel, column, float(apart[k]), float(t[k]), float(apart[k]) / size if size else 0.0)
 
 
 def _some(columns: Columns) -> str:

@@ -61,7 +61,6 @@ def _measured(model: ModelData, channels: Channels, counters: Channels) -> Calla
 
 
 def _functions_of(output: Output) -> Functions:
-    """Return the functions that a request may call."""
     return {**_FUNCTIONS, **{called: curve(table) for called, table in output.tables.items()}}
 
 
@@ -71,7 +70,6 @@ def _value(
     of_terms = {placeholder(k): term for k, term in enumerate(output.terms)}
 
     def names(name: str) -> object:
-        """Return the values over time of a name."""
         if name == TIME:
             return time
         if name in output.quantities:

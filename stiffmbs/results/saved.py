@@ -19,8 +19,7 @@ from ..model.scene import Figure
 from ..notes import Note
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
-from .error_bars import ErrorBar
-from .estimate import ErrorEstimate
+from .error_bars import ErrorBar, ErrorEstimate
 from .provenance import PROVENANCE, from_json
 from .saved_state import TURNS, reading
 

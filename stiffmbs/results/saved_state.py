@@ -7,7 +7,7 @@ import struct
 import tokenize
 import warnings
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -163,7 +163,7 @@ def _csv(path: Path) -> dict[str, object]:
         file = io.StringIO(content_of(path).decode())
         heads = [head.partition(" (")[0] for head in file.readline().rstrip("\r\n").split(",")]
         table = np.loadtxt(file, delimiter=",", ndmin=2)
-    return _named(heads, table.T)
+    return dict(zip(heads, table.T, strict=True))
 
 
 def _netcdf(path: Path) -> dict[str, object]:
@@ -173,11 +173,8 @@ def _netcdf(path: Path) -> dict[str, object]:
         names = (
             getattr(variable, "channel", name.encode()).decode("utf-8") for name, variable in file.variables.items()
         )
-        return _named(names, [np.array(variable[...], dtype=float) for variable in file.variables.values()])
-
-
-def _named(names: Iterable[str], columns: Iterable[np.ndarray]) -> dict[str, object]:
-    return dict(zip(names, columns, strict=True))
+        arrays = (np.array(variable[...], dtype=float) for variable in file.variables.values())
+        return dict(zip(names, arrays, strict=True))
 
 
 READERS: dict[str, Callable[[Path], dict[str, Any]]] = {".npz": _npz, ".csv": _csv, ".nc": _netcdf}

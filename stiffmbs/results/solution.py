@@ -17,8 +17,7 @@ from ..notes import Note
 from ..solve.trajectory import History, Outcome
 from .channels import named
 from .energy_balance import Balance
-from .error_bars import ErrorBar
-from .estimate import ErrorEstimate
+from .error_bars import ErrorBar, ErrorEstimate
 from .scales import UNITS, kind_of
 
 if TYPE_CHECKING:

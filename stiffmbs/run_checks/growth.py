@@ -50,7 +50,6 @@ def senseless(
 
 
 def _grown(system: System, rows: OutputRows) -> Iterator[Note]:
-    """Yield a note on impossible growth."""
     if not system.bodies:
         return
     of_places, of_rates = reaches(system), system.per_velocity(1.0, system.size)
@@ -124,7 +123,6 @@ def _strongest(system: System, rows: OutputRows, row: int) -> str:
 
 
 def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> Iterator[Note]:
-    """Yield a note on an open joint."""
     system, violation = dynamics.system, rows.position_violation
     if not system.n_c or np.isnan(violation).all():
         return

@@ -13,8 +13,9 @@ from ..compile.state import State
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics, OutputRows
+from ..dynamics.friction_loads import REMEDY, ambiguous_loads_clause
 from ..errors import InputError
-from ..notes import Note, NoteKind
+from ..notes import Note, NoteKind, Severity
 from ..results.joint_angles import joint_angles
 from .parameters import RUN_CHECKS
 from .singular_poses import singular_passage_notes
@@ -31,6 +32,12 @@ UNCERTAIN_TURNS = NoteKind(
     "angular velocity differ by {apart:.2g} rad; the steps are too long for the speed ({remedy}), or the reference axis of "
     "the angle becomes parallel to the axis of rotation",
     "use a smaller rtol or step",
+)
+SEVERAL_MOTIONS = NoteKind(
+    "several-motions",
+    "several motions are possible from t = {t:.6g} s on, where {clause}; the solver follows one of them: {remedy}",
+    REMEDY,
+    severity=Severity.DOUBT,
 )
 
 
@@ -82,7 +89,7 @@ def _doubts(system: System) -> tuple[np.ndarray, tuple[tuple[str, str], ...]]:
 
 
 APART_FROM_COUNTERS = Routine(
-    "stiffmbs.run_checks.native.contradictions",
+    "stiffmbs.run_checks.native.turns",
     "apart_from_counters",
     "void(int64, int64, float64*, float64*, int64, int64*, int64*, float64*, int64*)",
 )
@@ -112,6 +119,14 @@ def _apart(state: State, t: np.ndarray, q: np.ndarray, source: np.ndarray, row: 
     at_t, at_q, at_source, at_row, at_apart = addresses(t, q, source, row, apart)
     APART_FROM_COUNTERS.call(*q.shape, at_t, at_q, len(row), at_source, at_row, at_apart, address(state.table))
     return apart
+
+
+def several_solutions_note(dynamics: Dynamics, rows: OutputRows) -> Iterator[Note]:
+    """Yield a note on the first checked output time at which loads have several solutions; the state is changed."""
+    for k in some_instants(len(rows.t)):
+        if clause := ambiguous_loads_clause(dynamics, rows.t[k], rows.q[k], rows.u[k], rows.lam[k]):
+            yield SEVERAL_MOTIONS(t=rows.t[k], clause=clause)
+            return
 
 
 def refuse_far_away(system: System) -> None:

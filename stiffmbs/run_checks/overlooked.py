@@ -15,11 +15,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..compile.machine.layout import addresses
-from ..compile.machine.routines import Routine
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
+from ..dynamics.storage import blocks, release
 from ..model.settings import RunSettings
 from ..notes import Note, NoteKind
 from ..solve.error_control.tolerances import absolute_tolerances
@@ -27,13 +26,6 @@ from ..solve.events.whole_steps import Motion, WholeSteps
 from ..solve.settings import near_constraints
 from ..solve.trajectory import Trajectory
 from .parameters import RUN_CHECKS
-
-CONTRADICTING_ROWS = Routine(
-    "stiffmbs.run_checks.native.contradictions",
-    "contradicting_rows",
-    "int64(int64, int64, float64*, float64*, float64*, float64*, float64, float64*, int64, float64*, int64*)",
-)
-
 
 MISSED = (
     "a step of {step:.2g} s missed {law} at t = {t:.6g} s{more}: the accelerations of {velocity} there contradict the "
@@ -114,14 +106,18 @@ def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray, le
     `mass` of shape (n_u,): weights of accelerations. `steps`: ends of steps, s. `least` of shape (n_u,): differences
     of accelerations up to which there is no contradiction.
     """
-    found = np.empty(len(rows.t), dtype=np.int64)
-    arrays = rows.t, rows.u.T, rows.acceleration.T, mass, least, steps
-    t, u, acceleration, mass, least, steps = map(np.ascontiguousarray, arrays)
-    *of_rows, at_least, at_steps, at_found = addresses(t, u, acceleration, mass, least, steps, found)
-    count = CONTRADICTING_ROWS.call(
-        len(t), len(mass), *of_rows, RUN_CHECKS.overlooked_part, at_least, len(steps), at_steps, at_found
-    )
-    return found[:count]
+    found, ends = [np.empty(0, dtype=int)], np.append(steps, -np.inf)
+    for block in blocks(len(rows.t) - 1):
+        both = slice(block.start, block.stop + 1)
+        t, u, acceleration = rows.t[both], rows.u[both], rows.acceleration[both]
+        number = np.searchsorted(steps, t[:-1], side="right")
+        within = (number > 0) & (ends[number - 1] < t[:-1]) & (t[1:] < ends[number])
+        off = np.diff(u, axis=0) * (1.0 / np.diff(t))[:, None] - 0.5 * (acceleration[:-1] + acceleration[1:])
+        size = acceleration**2 @ mass
+        much = off**2 @ mass > RUN_CHECKS.overlooked_part**2 * np.fmax(size[:-1], size[1:])
+        found.append(block.start + np.flatnonzero(within & much & (np.abs(off) > least).any(axis=1)))
+        release(rows.u, rows.acceleration)
+    return np.concatenate(found)
 
 
 def _contradictions(rows: OutputRows, pairs: np.ndarray) -> np.ndarray:

@@ -154,7 +154,6 @@ class PosesBetween:
 
 
 def _few_of(count: int) -> list[int]:
-    """Return a few poses of a motion, evenly spaced."""
     few: list[int] = np.linspace(0, count - 1, min(count, RUN_CHECKS.usual_poses)).astype(int).tolist()
     return few
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,7 +29,7 @@ body { font-family: sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1e
 img { max-width: 100%; height: auto; } pre { overflow-x: auto; }
 table { border-collapse: collapse; } td, th { padding: 0.2em 0.8em; border-bottom: 1px solid #ccc; text-align: left; }
 </style></head><body><h1>{{ name }}: handling</h1>
-<p>Wheelbase {{ wheelbase }} m, track {{ track }} m; the wheels steer by {{ ratio }} for a unit of steering; {{ measured }}.</p>
+<p>Wheelbase {{ wheelbase }} m, track {{ track }} m; {{ steered }}; {{ measured }}.</p>
 {% for title, message, rows, figure in sections %}<h2>{{ title }}</h2>
 {% if message %}<p>Not done: {{ message }}</p>{% endif %}{% if rows %}
 <table><tr><th>metric</th><th>value</th><th>unit</th></tr>
@@ -49,6 +50,13 @@ def handling_text(scene: str, found: Handling) -> str:
         lines.append(f"{name}: {_title(name, one)}" + (f": not done: {one.message}" if one.message else ""))
         lines += [f"  {metric:52} {value:>10} {unit}" for metric, value, unit in _rows(one)]
     return "\n".join(lines)
+
+
+def _steered(found: Handling) -> str:
+    """Return a clause on the steer angle of the front wheels; the travel of the rack or the angle of the steering wheel is the joint's."""
+    if found.car.angular:
+        return f"the front wheels steer by {10 * found.ratio:.3g} deg for 10 deg of {found.car.steering}"
+    return f"the front wheels steer by {math.degrees(0.01 * found.ratio):.3g} deg for 10 mm of {found.car.steering}"
 
 
 def _measured(found: Handling) -> str:
@@ -75,7 +83,7 @@ def write_handling(path: Path, found: Handling, origin: Provenance | None = None
     ]
     template = environment().from_string(PAGE)
     page = template.render(
-        name=found.name, wheelbase=f"{found.car.wheelbase:.4g}", track=f"{found.car.track:.4g}", ratio=f"{found.ratio:.4g}",
+        name=found.name, wheelbase=f"{found.car.wheelbase:.4g}", track=f"{found.car.track:.4g}", steered=_steered(found),
         measured=_measured(found), sections=sections,
     )  # fmt: skip
     write_text(path, page_with_origin(page, origin))

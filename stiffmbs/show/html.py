@@ -8,6 +8,8 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from ..analyses.check import Report
+from ..analyses.linearised.modes import Modes
+from ..analyses.linearised.modes_table import HEADS, mode_rows
 from ..errors import StiffmbsError
 from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
@@ -29,7 +31,7 @@ def html(shown: Any) -> str:
 
     Parameters
     ----------
-    shown : Model, Scene, Report or Solution
+    shown : Model, Scene, Report, Modes or Solution
 
     Returns
     -------
@@ -40,6 +42,9 @@ def html(shown: Any) -> str:
         return _of_solution(shown)
     if isinstance(shown, Report):
         return _of_report(shown)
+    if isinstance(shown, Modes):
+        notes = "".join(f"<p>{escape(note)}</p>" for note in shown.notes)
+        return _page(shown.name, notes, _table(HEADS, mode_rows(shown.modes)))
     return _of_model(shown)
 
 

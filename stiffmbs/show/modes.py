@@ -1,4 +1,4 @@
-"""Equilibria, natural modes and frequency responses as text and numbers; equilibria as a section of a report."""
+"""Equilibria and frequency responses as text and numbers; equilibria as a section of a report."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from ..analyses.equilibrium import EquilibriumFound
-from ..analyses.linearised.modes import Modes
 from ..compile.bodies import BODY_KINDS
-from ..linear_analysis.modes import Mode, Motion
 from ..linear_analysis.transfer import Transfer
 from ..model.model_data import ModelData
 from ..notes import note_lines
@@ -58,41 +56,6 @@ def _rows(found: EquilibriumFound, names: Iterable[str], labels: tuple[str, ...]
         values = [found.channels[f"{name}.{label}"] for label in labels if f"{name}.{label}" in found.channels]
         if len(values) == len(labels):
             yield name, values
-
-
-MOST_BODIES = 4
-LEAST_SHARE = 0.01
-"""Part in the kinetic energy above which a body is named."""
-
-
-def modes_text(found: Modes) -> str:
-    """Return a table of modes: frequency, damping, eigenvalues, and the participating bodies."""
-    count = found.degrees_of_freedom
-    head = f"{found.name or 'model'} at t = {found.t:g} s: {count} degree{'s' if count != 1 else ''} of freedom"
-    columns = f"{'':>4}  {'Hz':>12}  {'damping':>10}  {'eigenvalues, 1/s':<28}  kinetic energy"
-    rows = []
-    for k, mode in enumerate(found.modes, start=1):
-        damping = "rigid body" if mode.motion is Motion.RIGID else f"{mode.damping_ratio:.4g}"
-        columns_of = f"{k:>4}  {mode.natural_frequency:>12.6g}  {damping:>10}  {_values(mode):<28}"
-        rows.append(f"{columns_of}  {', '.join(_bodies(mode))}")
-    return "\n".join([head, *([columns, *rows] if rows else []), *note_lines(found.notes)])
-
-
-def _values(mode: Mode) -> str:
-    one, *others = mode.eigenvalues
-    if mode.motion is Motion.OSCILLATING:
-        return f"{one.real:.6g} +- {abs(one.imag):.6g}i"
-    return ", ".join(f"{value.real:.6g}" for value in (one, *others))
-
-
-def _bodies(mode: Mode) -> Iterator[str]:
-    if not mode.participation:
-        yield "states alone"
-    shares = [(name, share) for name, share in mode.participation.items() if share >= LEAST_SHARE]
-    for name, share in shares[:MOST_BODIES]:
-        yield f"{name} {np.round(100 * share):.0f} %"
-    if len(shares) > MOST_BODIES:
-        yield f"and {len(shares) - MOST_BODIES} more"
 
 
 def response_text(scene: str, found: Transfer, frequencies: np.ndarray, values: np.ndarray) -> str:

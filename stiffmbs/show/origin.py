@@ -23,15 +23,19 @@ def page_with_origin(page: str, origin: Provenance | None, text: str = "") -> st
     """
     if origin is None:
         return page
+    before, end, after = page.rpartition(END)
+    return f"{before}{origin_section(origin, text)}{end}{after}"
+
+
+def origin_section(origin: Provenance, text: str = "") -> str:
+    """Return the folded section of a page with its scene and command; `text` as for `page_with_origin`."""
     lines = [f"stiffmbs {origin.version}, {origin.date}", origin.command, *(origin.changes or ("no changes",))]
     scene = text if _is_of(text, origin) else origin.scene_text
-    section = (
+    return (
         '<details id="origin"><summary><h2>Scene and command of this page</h2></summary>\n'
         f'<pre style="white-space: pre-wrap">{_escaped(chr(10).join(lines))}</pre>\n'
         f'<pre style="overflow-x: auto">{_escaped(scene)}</pre></details>\n'
     )
-    before, end, after = page.rpartition(END)
-    return f"{before}{section}{end}{after}"
 
 
 def figure_metadata(path: Path, origin: Provenance | None) -> dict[str, str | None] | None:

@@ -1,20 +1,23 @@
-"""Report: a single page on a scene and its run (needs jinja2 and matplotlib, the extra ``report``)."""
+"""Report: a single page on a scene and its run (needs jinja2 and matplotlib, the extra ``report``).
+
+The page begins with its finding, and with the loads of joints and force elements.  How it was computed is at its end.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..analyses.check import check
-from ..analyses.linearised.modes import modes
+from ..analyses.linearised.modes import NO_EQUILIBRIUM, modes
 from ..errors import InputError, StiffmbsError
 from ..model.scene import Figure, Scene
+from ..notes import Note
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import write_text
@@ -26,11 +29,13 @@ from .drawing.derive import drawing_of
 from .drawing.draw import marks_of
 from .drawing.poses import Poses, poses_of
 from .figure import drawn
-from .force_table import LOADS, elements_of, joint_forces, reactions_of, with_bar
+from .finding import finding, note_rows
+from .force_table import LOADS, with_bar
 from .html import MOST_ROWS
-from .modes import modes_text
-from .origin import page_with_origin
-from .page.data import environment, page_data, page_parts
+from .loads import loads_of
+from .loads_shown import loads_shown
+from .origin import origin_section
+from .page.data import environment, page_data, page_file, page_parts
 from .page.modes import modes_data
 from .sections import Section, differences_section
 from .style import COLORS, data_url, dress, new_sheet
@@ -64,26 +69,29 @@ def report_page(
     other: tuple[str, Solution] | None = None,
 ) -> str:  # fmt: skip
     """Return the page as HTML, with its figures; parameters and errors as for `write_report`."""
-    template = environment().from_string(files(__package__).joinpath("report.html").read_text(encoding="utf-8"))
-    report = check(scene)
+    template, sheet = (page_file(f"report.{end}") for end in ("html", "css"))
+    report, judged, origin = check(scene), verdict(solution), solution.provenance or provenance_of(scene)
+    loads, unloaded = loads_of(solution)
     figures = [drawn(solution, figure) for figure in relevant_figures(solution, scene.figure)]
     steps = [step_history(solution.history)] if len(solution.step_times) > 1 else []
-    first = [differences_section(solution, *other)] if other else []
+    first = [differences_section(solution, *other, origin)] if other else []
     poses, shown = poses_of(scene, solution.time, solution.channels), scene.figure.y if scene.figure else ()
     moving = page_data(drawing_of(scene, marks_of(report), along=poses), _motions(scene, poses, other), solution, shown)
     lines, shapes = _modes(scene)
     chosen = scene.run.model_fields_set  # shown first
     settings = dict(sorted(scene.run, key=lambda field: field[0] not in chosen))
     points = len(solution.time) + len(solution.step_times)
-    page = template.render(
-        solution=solution, verdict=verdict(solution), check=report, settings=settings, peaks=_peaks(solution),
-        energy=balance_words(solution.balance, float(solution.channels["energy.total"][0])),
-        figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
-        sections=_with_figures(sections), first=_with_figures(first), steps=[_embedded(sheet, points) for sheet in steps],
+    parts = page_parts()
+    return environment().from_string(template).render(
+        title=solution.name or "Model", origin=origin, origin_section=origin_section(origin, text), sheet=sheet,
+        solution=solution, verdict=judged, finding=finding(judged, solution, loads), check=report, settings=settings,
+        peaks=_peaks(solution), energy=balance_words(solution.balance, float(solution.channels["energy.total"][0])),
+        figures=[_embedded(figure, points) for figure in figures], own_figure=scene.figure is not None, version=version("stiffmbs"),
+        sections=_with_figures(sections), first=_with_figures(first), steps=[_embedded(figure, points) for figure in steps],
         counted=[f"{label}: {text}" for label, text in solver_lines(solution.solver)], violation=float(np.nanmax(solution.channels["constraint.position"])),
-        forces=joint_forces(solution), modes=lines, moving=moving, modes_moving=shapes, **page_parts(),
+        **loads_shown(scene, solution, loads), unloaded=unloaded, notes=note_rows(solution.notes), modes=lines, moving=moving, modes_moving=shapes,
+        verified="reruns agree within the error bars" if solution.verification else "not verified", **parts,
     )  # fmt: skip
-    return page_with_origin(page, solution.provenance or provenance_of(scene), text)
 
 
 def _with_figures(sections: Sequence[Section]) -> list[tuple[Section, list[str]]]:
@@ -101,29 +109,21 @@ def _motions(scene: Scene, poses: Poses, other: tuple[str, Solution] | None) -> 
 
 
 def relevant_figures(solution: Solution, own: Figure | None) -> list[Figure]:
-    """Return the three figures that are shown first: of the scene, of the largest force, and of the energies."""
-    shown = own.y if own else ()
-    sizes = {
-        element: float(np.nanmax(np.abs([solution.channels[f"{element}.{part}"] for part in parts])))
-        for element in elements_of(solution)
-        for parts in [[part for part in reactions_of(solution) if part[0] == "f"]]
-        if not any(name.startswith(f"{element}.") for name in shown)
-    }
-    largest = max(sizes, key=lambda element: np.nan_to_num(sizes[element]), default="")
-    found = [own] if own else []
-    if largest and sizes[largest] > 0:
-        parts = tuple(f"{largest}.{part}" for part in reactions_of(solution) if part[0] == "f")
-        found.append(Figure(title=f"force of {largest} (N)", y=parts))
-    return [*found, ENERGIES]
+    """Return the figure of the scene, or the energies if it has none and they change by work."""
+    if own is not None:
+        return [own]
+    return [] if solution.balance.keeps_energy else [ENERGIES]
 
 
 def _modes(scene: Scene) -> tuple[list[str], dict[str, str] | None]:
-    """Return natural modes about the start as lines of a table, or the reason why there are none, and their motion."""
+    """Return natural modes about the start as lines of a table, and their motion; nothing if it is no equilibrium."""
     try:
         found = modes(scene)
-    except StiffmbsError as error:
-        return [f"no modes: {error}"], None
-    lines = modes_text(found).splitlines()
+    except StiffmbsError:
+        return [], None
+    if any(Note.of(note).kind == NO_EQUILIBRIUM.name for note in found.notes):
+        return [], None
+    lines = found.table().splitlines()
     left = len(lines) - MOST_ROWS
     shown = lines if left <= 0 else [*lines[:MOST_ROWS], f"and {left} more lines: stiffmbs modes"]
     return shown, modes_data(found)

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..model.scene import Figure
 from ..results.listings import Difference, differences
 from ..results.scales import ROUNDING
 from ..results.solution import Solution
-from .figure import SIZE, draw_runs
-from .style import new_sheet
+from .curves import Curve, curve_chart
+from .loads import Column, loads_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
+
+    from ..results.provenance import Provenance
 
 
 @dataclass(frozen=True)
@@ -28,22 +30,25 @@ class Table:
 
 @dataclass(frozen=True)
 class Section:
-    """Section: a title, sentences, tables, and figures of matplotlib."""
+    """Section: a title, sentences, tables, figures of matplotlib, and charts of a page as SVG."""
 
     title: str
     sentences: tuple[str, ...]
     tables: tuple[Table, ...] = ()
     figures: tuple[Sheet, ...] = ()
+    drawings: tuple[str, ...] = ()
 
 
 MOST_ROWS, MOST_FIGURES = 15, 3
 """Numbers of channels that are listed and drawn, those with the largest relative differences first."""
+MISSING = "\N{EN DASH}"
 
 
-def differences_section(solution: Solution, name: str, other: Solution) -> Section:
-    """Return the largest differences of a run from another one.
+def differences_section(solution: Solution, name: str, other: Solution, origin: Provenance | None = None) -> Section:
+    """Return what was changed, the loads of both runs, and the largest differences of a run from another one.
 
-    `name`: name of the other run. Raises InputError if the runs have no channels or times in common.
+    `name`: name of the other run. `origin`: that of the run, by default its own. Raises InputError if the runs have no
+    channels or times in common.
     """
     found = sorted(differences(solution, other), key=lambda one: -np.nan_to_num(one.relative))
     unequal = [one for one in found if one.relative > ROUNDING]
@@ -57,18 +62,57 @@ def differences_section(solution: Solution, name: str, other: Solution) -> Secti
     ]
     head = f"{len(unequal)} of {len(found)} common channels differ from {name} by more than {ROUNDING:g} of their largest value."
     rows = tuple(_row(one, solution, other) for one in unequal[:MOST_ROWS])
-    heads = ("channel", "unit", "largest difference", "relative", "at (s)", "this run", name)
-    sheets = []
-    for one in unequal[:MOST_FIGURES]:
-        sheet = new_sheet(SIZE, False)
-        draw_runs(sheet, {"this run": solution, name: other}, Figure(title=one.channel, y=(one.channel,)))
-        sheets.append(sheet)
-    return Section(f"Differences from {name}", (head, *only), (Table(heads, rows),) if rows else (), tuple(sheets))
+    tables = (
+        Table(("changed", "this run", name), tuple(changed_values(origin or solution.provenance, other.provenance))),
+        Table(("peak of", "this run", name, "change", "unit"), tuple(_changed_loads(solution, other))),
+        Table(("channel", "largest difference", "relative", "unit", "at (s)", "this run", name), rows),
+    )
+    charts = [
+        curve_chart(
+            [Curve("this run", solution.time, solution.channels[one.channel]), Curve(name, other.time, other.channels[one.channel])],
+            f"{one.channel}, {solution.unit(one.channel)}".rstrip(", "), "time, s",
+        )
+        for one in unequal[:MOST_FIGURES]
+    ]  # fmt: skip
+    lines = (f"Solid: this run. Dashed: {name}.",) if charts else ()
+    shown = tuple(table for table in tables if table.rows)
+    return Section(f"Differences from {name}", (head, *only, *lines), shown, drawings=tuple(charts))
+
+
+def changed_values(own: Provenance | None, other: Provenance | None) -> Iterator[tuple[str, str, str]]:
+    """Yield each value of two scenes that differs, by its path, with its two texts; a missing value is a dash."""
+    if own is None or other is None:
+        return
+    here, there = (dict(_leaves("", one.scene)) for one in (own, other))
+    for path in {**here, **there}:
+        pair = here.get(path, MISSING), there.get(path, MISSING)
+        if pair[0] != pair[1]:
+            yield path, *pair
+
+
+def _leaves(path: str, value: object) -> Iterator[tuple[str, str]]:
+    if isinstance(value, Mapping):
+        for key, part in value.items():
+            yield from _leaves(f"{path}.{key}".lstrip("."), part)
+    else:
+        yield path, str(value)
+
+
+def _changed_loads(solution: Solution, other: Solution) -> Iterator[tuple[str, ...]]:
+    """Yield peaks of loads that differ between two runs, the largest first, in the unit of the largest."""
+    here = {(load.element, load.unit): load.peak for load in loads_of(solution)[0]}
+    there = {(load.element, load.unit): load.peak for load in loads_of(other)[0]}
+    for element, unit in {**here, **there}:
+        a, b = here.get((element, unit), 0.0), there.get((element, unit), 0.0)
+        if abs(a - b) > ROUNDING * max(a, b):
+            column = Column.of(unit, max(a, b))
+            change = f"{100 * (a - b) / b:+.3g} %" if b > 0 else MISSING
+            yield element, f"{a * column.factor:.5g}", f"{b * column.factor:.5g}", change, column.unit
 
 
 def _row(one: Difference, solution: Solution, other: Solution) -> tuple[str, ...]:
     values = (np.interp(one.t, run.time, run.channels[one.channel]) for run in (solution, other))
     return (
-        one.channel, solution.unit(one.channel), f"{one.largest:.4g}", f"{one.relative:.2g}", f"{one.t:.6g}",
+        one.channel, f"{one.largest:.4g}", f"{one.relative:.2g}", solution.unit(one.channel), f"{one.t:.6g}",
         *(f"{value:.6g}" for value in values),
     )  # fmt: skip

@@ -36,7 +36,6 @@ from .ida.native_engine import Reached
 from .integrator import Integrator, driven
 from .radau import radau
 from .reasons import Reason
-from .solver import Traits
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory, in_common, unwatched
 
 EXPLICIT = "projected"
@@ -68,12 +67,6 @@ class AutoParameters:
 
 
 AUTO = tuned("auto", AutoParameters())
-
-
-def traits(settings: RunSettings) -> Traits:
-    """Return the traits of `bdf` and `radau`. The settings of the explicit scheme, projected `dop853`, are among them."""
-    reads = dict.fromkeys((*bdf.traits(settings).reads, *radau.traits(settings).reads))
-    return replace(bdf.traits(settings), name="auto", reads=tuple(reads), switches=True)
 
 
 def solve(

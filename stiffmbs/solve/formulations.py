@@ -101,5 +101,3 @@ FORMULATIONS: dict[str, Callable[[RunSettings], Formulation]] = {
     "index1": lambda settings: index1(settings.stabilisation),
 }
 """Formulations by their name in the settings."""
-READ_BY_FORMULATIONS = {"index1": ("stabilisation",)}
-"""Settings that a formulation reads."""

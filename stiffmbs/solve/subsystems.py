@@ -14,7 +14,6 @@ from ..model.model_data import ModelData
 from ..model.settings import RunSettings
 from ..presolve.presolve import Part, parts_of
 from ..presolve.relations import independent_coordinates
-from .auto import begins_implicit
 from .events.restart import restarted
 from .settings import may_presolve, traits_of
 from .trajectory import Grid, Outcome, ProgressCallback, Solver, Trajectory, in_common
@@ -77,6 +76,8 @@ def _begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, setti
     """Return True if a solver that may switch starts with implicit steps; False in the plane, where no body spins."""
     if dynamics.system.of_body.dimensions == 2:
         return False
+    from .auto import begins_implicit  # check of a planar scene needs no solver
+
     state = dynamics.state
     q, u = state.q.copy(), state.u.copy()
     found = begins_implicit(dynamics, start, grid, settings)

@@ -187,6 +187,11 @@ class Trajectory:
     recorded: tuple[tuple[Piece, ...], ...] = ()
     departures: tuple[Departure, ...] = ()
 
+    def stopped_after(self, rows: int, message: str) -> Trajectory:
+        """Return the first rows, at least one, as a run that stopped there."""
+        t, q, u = (array[: max(rows, 1)] for array in (self.t, self.q, self.u))
+        return replace(self, t=t, q=q, u=u, outcome=Outcome.STOPPED, message=message)
+
     @property
     def step_times(self) -> np.ndarray:
         """Ends of the solver's own steps, s."""

@@ -171,10 +171,8 @@ class CaseSolver:
 
 def _kept(output: Output, solution: Finished, done: bool) -> float | np.ndarray:
     """Return an output of a run; a reduction of a run that stopped early is nan."""
-    if not done and not output.is_series:
-        output.value(solution)
-        return np.nan
-    return output.value(solution)
+    value = output.value(solution)
+    return value if done or output.is_series else np.nan
 
 
 def written_scene(model: Runnable) -> WrittenScene:

@@ -23,7 +23,7 @@ from ..results.instant import Instant
 from ..results.joint_angles import joint_angles
 from ..results.provenance import PROVENANCE, provenance_of
 from ..results.saved_state import TURNS, SavedState
-from ..run_checks.left_tables import may_refuse, refuse_departure
+from ..run_checks.tables import may_refuse, refuse_departure
 from ..solve.error_control.relaxation import drift_at
 from ..solve.events.restart import restarted
 from ..solve.settings import changed

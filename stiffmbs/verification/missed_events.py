@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -125,10 +126,8 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
         width, element = float(rows.t[worst + 1] - rows.t[worst]), _acting(system, rows, worst)
         if not element or poses.nearest(float(rows.t[first]), float(rows.t[last])) is not None:
             continue  # near a singular pose, any difference may decide the branch
-        if (
-            _parted(job, rows, first, last, width, left / 2, VERIFICATION.diverged * speed)
-            > VERIFICATION.elsewhere * speed
-        ):
+        parted = _parted(job, rows, first, last, width, left / 2, VERIFICATION.diverged * speed)
+        if parted > VERIFICATION.elsewhere * speed:
             yield SteppedOver(float(rows.t[worst]), width, element)
 
 
@@ -161,26 +160,19 @@ def _parted(job: Job, rows: OutputRows, first: int, last: int, width: float, all
 
     It is 0 if the solution stops early, or if a tighter tolerance alone causes much of a small difference.
     """
-    roots = np.sqrt(job.dynamics.system.mass)
-    short = _solved_again(job, rows, first, last, {"max_step": width / VERIFICATION.shorter}, allowed)
+    roots, again = np.sqrt(job.dynamics.system.mass), partial(_solved_again, job, rows, first, last, allowed)
+    short = again({"max_step": width / VERIFICATION.shorter})
     if short is None:
         return 0.0
     off = float(np.linalg.norm((short - rows.u[last]) * roots))
     if off > much:
         return off
-    tight = _solved_again(
-        job,
-        rows,
-        first,
-        last,
-        {"rtol": max(VERIFICATION.stretch_tolerance * job.settings.rtol, VERIFICATION.tightest_rtol)},
-        allowed,
-    )
+    tight = again({"rtol": max(VERIFICATION.stretch_tolerance * job.settings.rtol, VERIFICATION.tightest_rtol)})
     return off if tight is not None and np.linalg.norm((tight - short) * roots) > off / 2 else 0.0
 
 
 def _solved_again(
-    job: Job, rows: OutputRows, first: int, last: int, how: dict[str, object], allowed: float
+    job: Job, rows: OutputRows, first: int, last: int, allowed: float, how: dict[str, object]
 ) -> np.ndarray | None:
     """Return the velocities at the end of an interval solved with other settings, or None if it stops early."""
     begin, end = float(rows.t[first]), float(rows.t[last])

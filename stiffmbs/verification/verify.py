@@ -40,8 +40,7 @@ from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..tuning import in_use
-from .diagnostics import Comparison, by_luck, diagnostics, step_diagnostics
-from .divergence import distance, divergence
+from .diagnostics import Comparison, by_luck, diagnostics, distance, divergence, step_diagnostics
 from .missed_events import Along, DenseSamples, SteppedOver, dense_samples, looked_along, more_instants
 from .parameters import VERIFICATION
 from .solve_again import Again, levels_of, other_integrators, shorter_step, solve_again, tolerances
@@ -95,8 +94,8 @@ def with_discretisation(job: Job, found: Solution) -> Solution:
         other = prepare(scene, job.settings, job.start_from)
         return solved(other.varied(times=found.time))
 
-    errors = discretisation(job.data, found, solve)
-    return replace(found, discretisation=errors.errors, verification=(*found.verification, errors.sentence))
+    errors, sentence = discretisation(job.data, found, solve)
+    return replace(found, discretisation=errors, verification=(*found.verification, sentence))
 
 
 @np.errstate(all="ignore")  # as for `solved`
@@ -165,11 +164,8 @@ class _Verification:
         if self._along.stretches or self._job.dynamics.system.has_laws:
             longest = min([shorter_step(self._first), *(found.max_step for found in self._narrow)])
             name, changes = self._tighter_settings(self._levels()[0])
-            reported = self._first.time
-            self._shorter = solve_again(
-                self._job, f"{name} with steps of at most {longest:.3g} s", {**changes, "max_step": longest}, reported,
-                np.arange(len(reported)), spare,
-            )  # fmt: skip
+            name = f"{name} with steps of at most {longest:.3g} s"
+            self._shorter = self._again(name, {**changes, "max_step": longest}, spare)
 
     def _look_along_others(self, allowed: float) -> None:
         """Search runs that diverge from the first, to exclude those that missed events."""
@@ -199,24 +195,31 @@ class _Verification:
         """Make the first tighter run, with times between those of the output; the next one if it stops early."""
         start, end = float(self._first.time[0]), float(self._first.time[-1])
         times = more_instants(self._first, self._job.dynamics.input_features(start, end))
-        at = np.searchsorted(times, self._first.time)
         for level in self._levels():
-            run = self._run(level, times, at)
+            run = self._run(level, times)
             self._dense = dense_samples(self._job, run, self._sizes)
             if not run.obstacle:
                 return
 
     def _tighten(self) -> None:
         """Make the next tighter run."""
-        reported = self._first.time
         for level in self._levels():
             if level not in self._tighter:
-                self._run(level, reported, np.arange(len(reported)))
+                self._run(level)
                 return
 
-    def _run(self, level: int, times: np.ndarray, at: np.ndarray) -> Again:
+    def _again(self, name: str, changes: dict[str, object], allowed: float) -> Again:
+        """Return a rerun with the output times of the first run."""
+        return solve_again(self._job, name, changes, self._first.time, np.arange(len(self._first.time)), allowed)
+
+    def _run(self, level: int, times: np.ndarray | None = None) -> Again:
+        """Make a tighter run, with the output times of the first run or with more."""
         name, changes = self._tighter_settings(level)
-        run = solve_again(self._job, name, changes, times, at, self._left())
+        if times is None:
+            run = self._again(name, changes, self._left())
+        else:
+            at = np.searchsorted(times, self._first.time)
+            run = solve_again(self._job, name, changes, times, at, self._left())
         if not self._exact:
             self._tighter[level] = run
         return run
@@ -239,12 +242,12 @@ class _Verification:
         return f"{self._traits.name} at rtol {changes['rtol']:.3g}", changes
 
     def _ask_the_other(self) -> None:
-        settings, reported = self._job.settings, self._first.time
+        settings = self._job.settings
         tighter = {"rtol": VERIFICATION.other_of_fixed} if self._traits.fixed_steps else tolerances(settings, 2)
         for integrator in other_integrators(self._first, settings):
             changes = self._other_settings = {**integrator, **tighter}
             name = f"{traits_of(changed(settings, changes)).name} at rtol {changes['rtol']:.3g}"
-            self._other = solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left())
+            self._other = self._again(name, changes, self._left())
             if _judges(self._other) and not self._other.obstacle:
                 return
 
@@ -267,7 +270,6 @@ class _Verification:
         return Comparison(self._job, self._first, tighter, other, self._dense, bars, self._sizes)
 
     def _messages(self) -> list[str]:
-        """Return the list of reruns, and of those that failed."""
         runs = [run for run in (*self._tighter.values(), self._other, self._shorter) if run is not None]
         done = [
             run.name for run in runs if not run.obstacle and not run.blind and (run is not self._other or _judges(run))

@@ -46,7 +46,7 @@ def compare(problem, n, form, solve):
     make, expected = problem
     scene = read_scene(form(make(n)))
     found = solve(scene)
-    errors = discretisation(scene, found, solve).errors
+    errors, _ = discretisation(scene, found, solve)
     for name, value in expected.items():
         error = abs(found[name][-1] - value)
         assert error < 2 * errors[name] + 1e-6 * abs(value), name

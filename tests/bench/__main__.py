@@ -38,7 +38,7 @@ def bench(names: tuple[str, ...], as_json: bool, quick: bool, peers: bool, solve
     if peers and solvers:
         raise click.UsageError("found both --peers and --solvers, expected one of them")
     if plot is not None and find_spec("matplotlib") is None:
-        raise click.UsageError("--plot: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
+        raise click.UsageError("--plot: this needs matplotlib, which is not installed: pip install 'stiffmbs[plot]'")
     try:
         _measure(names, as_json, quick, peers, solvers, plot)
     except InputError as error:

@@ -322,3 +322,10 @@ def test_help_lists_every_command_in_one_section():
         (line,) = [line for line in lines if line.split()[:1] == [name]]
         assert line.startswith(f"  {name} "), line
     assert [line for line in lines if line.endswith(":") and not line.startswith(" ")][:2] == ["Options:", "Start:"]
+
+
+@pytest.mark.parametrize("command", ["run", "report", "check"])
+def test_a_command_without_a_scene_says_what_to_try(command):
+    result = CliRunner().invoke(main, [command])
+    assert result.exit_code == 2
+    assert "Missing argument 'SCENE'" in result.output and "'stiffmbs init' writes a first scene" in result.output

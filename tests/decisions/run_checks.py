@@ -13,11 +13,11 @@ from stiffmbs.errors import InputError
 from stiffmbs.run_checks import (
     geometric_stiffness,
     growth,
-    left_tables,
     locked,
     motion,
     overlooked,
     singular_poses,
+    tables,
     uncertain_forces,
 )
 from stiffmbs.run_checks.singular_poses import PosesBetween
@@ -347,7 +347,7 @@ DECISIONS = {
     "run_checks.parts_of_a_run": parts_of_a_whole_run,
     "run_checks.parts_of_a_peak": duration_of_a_peak,
     "run_checks.slight": change_by_errors,
-    "run_checks.left_tables:SAMPLES": lambda: len(left_tables._samples(0.0, 1.0)),
+    "run_checks.tables:SAMPLES": lambda: len(tables._samples(0.0, 1.0)),
 }
 EXPECTED = {
     "run_checks.coarse": 22, "run_checks.lost": 27, "run_checks.roundings": 4.440892099e-07,
@@ -361,5 +361,5 @@ EXPECTED = {
     "run_checks.takes_part": 7, "run_checks.floor": 1e-07, "run_checks.iterations": 1.525878906e-05,
     "run_checks.few_rows": 3, "run_checks.usual_poses": 20, "run_checks.effort": 100,
     "run_checks.contradicted_tolerances": 54, "run_checks.parts_of_a_run": 20001, "run_checks.parts_of_a_peak": 0.015503875968992248,
-    "run_checks.slight": 0.01, "run_checks.left_tables:SAMPLES": 2001,
+    "run_checks.slight": 0.01, "run_checks.tables:SAMPLES": 2001,
 }  # fmt: skip

@@ -6,7 +6,22 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.show import figure, flexible_body, force_table, html, modes, report, sections, suspension, tyre
+from stiffmbs.analyses.linearised import modes, modes_table
+from stiffmbs.notes import Note
+from stiffmbs.show import (
+    curves,
+    figure,
+    finding,
+    flexible_body,
+    force_table,
+    html,
+    loads,
+    loads_shown,
+    report,
+    sections,
+    suspension,
+    tyre,
+)
 from stiffmbs.show.drawing import as_json, bodies, deformed, derive, film, painted, picture, poses, solids, surroundings
 from stiffmbs.show.drawing.symbols import profiles, shared, spatial
 from stiffmbs.show.page import data
@@ -106,13 +121,17 @@ def longest_head():
 
 def width_of_a_picture():
     with patch.object(picture, "new_sheet", lambda size, _: reach(size[0])):
-        return reached(lambda: picture.empty_sheet(np.zeros(2), np.ones(2)))
+        return reached(lambda: picture.empty_sheet(np.zeros(2), np.array([1.0, 0.01])))
 
 
 def written_names(count):
     """Return the sizes of the letters of names of elements."""
     sizes = []
-    axes = Record(get_xlim=lambda: (0.0, 1.0), text=lambda *_, fontsize, **__: sizes.append(fontsize))
+    axes = Record(
+        get_figure=lambda: Record(get_figwidth=lambda: 8.0),
+        get_xlim=lambda: (0.0, 1.0),
+        text=lambda *_, fontsize, **__: sizes.append(fontsize),
+    )
     name = Record(role="joint", text="a", anchor=Record(body="a", point=np.zeros(3)))
     motion = Record(pose=lambda *_: (np.zeros(3), np.eye(3)))
     with patch.object(picture, "_free_place", lambda point, *_: point):
@@ -253,12 +272,13 @@ def smallest_torque():
     """Return the torque, in quarter octaves of the largest, up to which it is shown."""
 
     def is_shown(torque):
-        peaks = {"a": 1.0, "b": torque}
-        with patch.multiple(
-            force_table, reactions_of=lambda _: ("tx",), elements_of=lambda _: ["a", "b"],
-            _peak=lambda _solution, element, _parts: (peaks[element], 0.0), _row=lambda *args: args[1] + args[3],
-        ):  # fmt: skip
-            return "bN m" in force_table.joint_forces(Record(not_unique=()))
+        channels = {
+            f"{name}.{part}": np.array([size])
+            for name, size in (("a", 1.0), ("b", torque))
+            for part in ("fx", "fy", "torque")
+        }
+        found = Record(channels=channels, requested={}, errors={}, not_unique=(), time=np.zeros(1))
+        return ("b", "N m") in [(load.element, load.unit) for load in loads.loads_of(found)[0]]
 
     return count_while(is_shown, BELOW)
 
@@ -278,7 +298,13 @@ def most_drawn():
 
 
 def named_bodies(shares):
-    return [*modes._bodies(Record(participation={str(k): share for k, share in enumerate(shares)}))]
+    return [*modes_table._bodies(Record(participation={str(k): share for k, share in enumerate(shares)}))]
+
+
+def printed_modes():
+    found = modes.Modes("", 0.0, 0, (), None, (), None, None)
+    with patch.object(modes, "mode_lines", lambda _, most: reach(most)):
+        return reached(lambda: str(found))
 
 
 def poses_of_a_page(n_points):
@@ -316,11 +342,60 @@ def most_lines():
 def differences():
     """Return the numbers of rows and of figures of channels that differ."""
     one = Record(relative=1.0, channel="a")
+    run = Record(channels={"a": 0.0}, time=0.0, unit=lambda _: "N", provenance=None)
     with patch.multiple(
-        sections, differences=lambda *_: [one] * 100, _row=nothing, new_sheet=nothing, draw_runs=nothing, Figure=lambda **_: None,
-        Table=lambda _heads, rows: len(rows), Section=lambda _title, _head, tables, sheets: (tables[0], len(sheets)),
+        sections, differences=lambda *_: [one] * 100, _row=nothing, curve_chart=nothing, changed_values=lambda *_: (),
+        _changed_loads=lambda *_: (), Table=lambda _heads, rows: Record(rows=rows),
+        Section=lambda _title, _head, tables, drawings: (len(tables[0].rows), len(drawings)),
     ):  # fmt: skip
-        return sections.differences_section(Record(channels=()), "b", Record(channels=()))
+        return sections.differences_section(run, "b", run, Record())
+
+
+def steps_of_an_axis():
+    return 100.0 / curves.round_step(100.0)
+
+
+def points_of_a_curve():
+    return len(curves._thinned(np.arange(10**4), np.zeros(10**4))[0])
+
+
+def bold_part():
+    turned = np.column_stack([np.linspace(0.0, 1.0, 101), np.zeros(101)])
+    return curves.polar_chart(turned, 1.0, "", "", "").partition('class="bold"')[2].partition("/>")[0].count(",")
+
+
+def fewest_digits():
+    def is_in_question(digits):
+        judged = Record(status="done", headline="", digits={"forces": digits}, to_check=())
+        return finding.finding(judged, Record(notes=(Note("a"),)), ()).status == "doubt"
+
+    return count_while(is_in_question, range(100))
+
+
+def finest_bar():
+    return float(loads.Column("N", 1.0).words(1.0, 0.0).partition(" \N{PLUS-MINUS SIGN} ")[2])
+
+
+def rows_and_curves():
+    """Return the numbers of loads in a table before it is folded, and in a chart."""
+    load = Record(unit="N", peak=1.0, magnitude=0.0, time=0.0, unique=True)
+    with (
+        patch.multiple(
+            loads_shown, load_rows=lambda found, *_: found, spark_line=nothing, _charts=lambda found, *_: len(found)
+        ),
+        patch.object(loads_shown, "Group", lambda _title, _unit, rows, _folded, charts, _unique: (len(rows), charts)),
+    ):
+        return loads_shown._group("N", [load] * 100, {}, None)
+
+
+def narrowest_picture():
+    with patch.object(picture, "new_sheet", lambda size, _: reach(size[0])):
+        return reached(lambda: picture.empty_sheet(np.zeros(2), np.array([0.01, 1.0])))
+
+
+def highest_picture():
+    with patch.object(picture, "new_sheet", lambda size, _: reach(size[1] - 0.5)):
+        return reached(lambda: picture.empty_sheet(np.zeros(2), np.array([0.01, 1.0])))
 
 
 def width_of_a_text():
@@ -371,7 +446,11 @@ DECISIONS = {
     "show.drawing.painted:SHADOW": opacity_of_shadows,
     "show.drawing.painted:LONGEST_ARROW": longest_arrow,
     "show.drawing.painted:HEAD": longest_head,
-    "show.drawing.picture:WIDTH": width_of_a_picture,
+    "show.drawing.picture:WIDTH": width_of_a_picture, "show.drawing.picture:HEIGHT": highest_picture,
+    "show.drawing.picture:NARROWEST": narrowest_picture, "show.curves:MOST_STEPS": steps_of_an_axis,
+    "show.curves:MOST_POINTS": points_of_a_curve, "show.curves:BOLD": bold_part, "show.finding:LEAST_DIGITS": fewest_digits,
+    "show.loads:FINEST": finest_bar, "show.loads_shown:MOST_SHOWN": lambda: rows_and_curves()[0],
+    "show.loads_shown:MOST_CURVES": lambda: rows_and_curves()[1],
     "show.drawing.picture:MOST_NAMES": lambda: count_while(lambda count: written_names(count), range(1, 200)),
     "show.drawing.picture:MANY_NAMES": lambda: written_names(20)[0],
     "show.drawing.picture:SMALLEST": lambda: written_names(60)[0],
@@ -404,8 +483,9 @@ DECISIONS = {
     "show.force_table:Loads.zero": smallest_torque,
     "show.html:MOST_ROWS": lambda: html._table(["a"], [["x"]] * 200).count("<td>x"),
     "show.html:MOST_DRAWN": most_drawn,
-    "show.modes:MOST_BODIES": lambda: len(named_bodies([0.1] * 20)) - 1,
-    "show.modes:LEAST_SHARE": lambda: count_while(lambda share: named_bodies([share]), BELOW),
+    "analyses.linearised.modes:ON_A_SCREEN": printed_modes,
+    "analyses.linearised.modes_table:MOST_BODIES": lambda: len(named_bodies([0.1] * 20)) - 1,
+    "analyses.linearised.modes_table:LEAST_SHARE": lambda: count_while(lambda share: named_bodies([share]), BELOW),
     "show.page.data:MOST_POSES": lambda: poses_of_a_page(1),
     "show.page.data:POSE_VALUES": lambda: poses_of_a_page(100),
     "show.page.data:POSES_A_SECOND": poses_of_a_second,
@@ -428,7 +508,10 @@ EXPECTED = {
     "show.drawing.film:SHORTEST_FILM": 101,
     "show.drawing.film:Playback.rate": 251, "show.drawing.painted:SYMBOLS_BEFORE": 0.03, "show.drawing.painted:FOREMOST": 0.004,
     "show.drawing.painted:FLOOR_DEPTH": -1000.0, "show.drawing.painted:SHADOW": 0.07, "show.drawing.painted:LONGEST_ARROW": 0.22,
-    "show.drawing.painted:HEAD": 1.25, "show.drawing.picture:WIDTH": 8.0, "show.drawing.picture:MOST_NAMES": 60,
+    "show.drawing.painted:HEAD": 1.25, "show.drawing.picture:WIDTH": 8.0, "show.drawing.picture:HEIGHT": 6.0,
+    "show.drawing.picture:NARROWEST": 3.4, "show.curves:MOST_STEPS": 5, "show.curves:MOST_POINTS": 801, "show.curves:BOLD": 11,
+    "show.finding:LEAST_DIGITS": 2, "show.loads:FINEST": 1e-5, "show.loads_shown:MOST_SHOWN": 20, "show.loads_shown:MOST_CURVES": 4,
+    "show.drawing.picture:MOST_NAMES": 60,
     "show.drawing.picture:MANY_NAMES": 6.495190528383289, "show.drawing.picture:SMALLEST": 4.5, "show.drawing.poses:FAR": 18,
     "show.drawing.solids:ALONG": 18, "show.drawing.solids:MOST_FACES": 23, "show.drawing.solids:ROUND": 24,
     "show.drawing.surroundings:SurroundingsParameters.margin": 0.5, "show.drawing.surroundings:SurroundingsParameters.lines": 10,
@@ -439,7 +522,7 @@ EXPECTED = {
     "show.drawing.symbols.spatial:SPOKES": 5, "show.figure:SIZE": 13, "show.figure:MOST_PLOTS": 6, "show.flexible_body:MOST_FREQUENCIES": 13,
     "show.flexible_body:UNREPRESENTED": 27, "show.flexible_body:LARGE_CONDITION": 27, "show.force_table:PLENTY": 9, "show.force_table:LEAST_WITHOUT_EXPONENT": 40,
     "show.force_table:Loads.most": 10, "show.force_table:Loads.zero": 146, "show.html:MOST_ROWS": 40, "show.html:MOST_DRAWN": 29,
-    "show.modes:MOST_BODIES": 4, "show.modes:LEAST_SHARE": 26, "show.page.data:MOST_POSES": 1200, "show.page.data:POSE_VALUES": 342,
+    "analyses.linearised.modes:ON_A_SCREEN": 20, "analyses.linearised.modes_table:MOST_BODIES": 4, "analyses.linearised.modes_table:LEAST_SHARE": 26, "show.page.data:MOST_POSES": 1200, "show.page.data:POSE_VALUES": 342,
     "show.page.data:POSES_A_SECOND": 60, "show.page.data:CHANNEL_VALUES": 450, "show.page.data:MOST_INSTANTS": 2000,
     "show.page.modes:POINTS": 31, "show.page.modes:AMPLITUDE": 0.05, "show.report:MOST_LINES": 23, "show.sections:MOST_ROWS": 15,
     "show.sections:MOST_FIGURES": 3, "show.summary:UNBROKEN": 10000, "show.suspension:COLUMNS": 12.0, "show.suspension:ROUNDING": 119,

@@ -10,8 +10,7 @@ from stiffmbs import tuning
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.redundancy.sparse_matrix import SparseMatrix
 from stiffmbs.verification import diagnostics, missed_events, verify
-from stiffmbs.verification.diagnostics import Comparison
-from stiffmbs.verification.divergence import divergence
+from stiffmbs.verification.diagnostics import Comparison, divergence
 from stiffmbs.verification.missed_events import SteppedOver
 from stiffmbs.verification.solve_again import Deadline, OutOfTime, shorter_step, tolerances
 from tests.decisions.common import Reached, Record, nothing, parameters
@@ -177,7 +176,7 @@ def changes_of_an_interval():
     """Return the settings with which an unbalanced interval of 1 s is solved again."""
     found = {}
 
-    def solved(job, rows, first, last, how, allowed):
+    def solved(job, rows, first, last, allowed, how):
         found.update(how)
         return np.zeros(1)
 
@@ -201,10 +200,9 @@ def effort(evaluations):
 
 def tolerance_of_the_other():
     own = Record(
-        _job=Record(settings=SETTINGS), _first=Record(time=np.zeros(1)), _traits=Record(fixed_steps=True), _left=nothing
+        _job=Record(settings=SETTINGS), _first=None, _traits=Record(fixed_steps=True), _left=nothing, _again=raising(1)
     )
-    replaced = {"other_integrators": lambda *_: [{}], "solve_again": raising(2)}
-    with patch.multiple(verify, **replaced):
+    with patch.object(verify, "other_integrators", lambda *_: [{}]):
         return asked(lambda: verify._Verification._ask_the_other(own))["rtol"]
 
 

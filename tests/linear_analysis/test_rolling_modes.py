@@ -5,7 +5,6 @@ import pytest
 
 import stiffmbs
 from stiffmbs.linear_analysis.modes import Motion
-from stiffmbs.show.modes import modes_text
 from tests.stress.families.analyses.rolling_modes import SKATE, TRAILER
 from tests.stress.mechanisms.bicycle import bicycle, published
 
@@ -47,7 +46,7 @@ def test_an_eigenvalue_of_a_pose_alone_stands_alone():
     assert found.modes[0].motion is Motion.RIGID
     alone = stiffmbs.modes(stiffmbs.read_scene(TRAILER.format(speed=2.0)))
     assert [mode.eigenvalues for mode in alone.modes] == [(pytest.approx(-2.5),)]
-    assert alone.degrees_of_freedom == 0 and "0 degrees of freedom" in modes_text(alone)
+    assert alone.degrees_of_freedom == 0 and "0 degrees of freedom" in alone.table()
 
 
 def test_dampers_that_end_two_motions_of_what_rolls_are_two_modes():

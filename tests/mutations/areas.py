@@ -51,7 +51,7 @@ AREAS = {
         ("stiffmbs/studies/sensitivities/*.py", "stiffmbs/sensitivity_equations/*.py"),
         ("tests/studies/test_sensitivities.py", "tests/studies"),
     ),
-    "results": Area(("stiffmbs/results/*.py", "stiffmbs/results/native/*.py"), ("tests/results", "tests/analyses", "tests/verification")),
+    "results": Area(("stiffmbs/results/*.py",), ("tests/results", "tests/analyses", "tests/verification")),
     "readers": Area(
         ("stiffmbs/adams/*/*.py", "stiffmbs/robots/*.py", "stiffmbs/robots/*/*.py", "stiffmbs/reading/files/*.py"),
         ("tests/robots", "tests/adams", "tests/tyres", "tests/reading"),

@@ -6,10 +6,8 @@ from pathlib import Path
 from zipfile import ZipFile
 
 import numpy as np
-import pytest
 
-from stiffmbs.results.archive import write_archive
-from stiffmbs.tuning import in_use
+from stiffmbs.results.files import write_archive
 
 ROWS = np.random.default_rng(1).normal(size=(500, 3))
 ARRAYS = {
@@ -27,11 +25,9 @@ ARRAYS = {
 }
 
 
-@pytest.mark.parametrize("block", [100_000, 7])
-def test_archives_contain_the_arrays(tmp_path: Path, block: int) -> None:
+def test_archives_contain_the_arrays(tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
-    with in_use({"storage": {"block": block}}):
-        write_archive(path, ARRAYS)
+    write_archive(path, ARRAYS)
     with ZipFile(path) as archive:
         assert archive.testzip() is None
         assert archive.namelist() == [f"{name}.npy" for name in ARRAYS]
@@ -40,15 +36,6 @@ def test_archives_contain_the_arrays(tmp_path: Path, block: int) -> None:
         for name, values in ARRAYS.items():
             assert found[name].dtype == values.dtype and found[name].shape == values.shape
             np.testing.assert_array_equal(found[name], values)
-
-
-def test_archives_with_more_members_than_16_bits_count(tmp_path: Path) -> None:
-    path = tmp_path / "a.npz"
-    write_archive(path, {str(number): np.array(number) for number in range(70_000)})
-    with ZipFile(path) as archive:
-        assert len(archive.namelist()) == 70_000
-    with np.load(path) as found:
-        assert found["69999"] == 69_999
 
 
 def test_the_same_arrays_are_the_same_file(tmp_path: Path) -> None:

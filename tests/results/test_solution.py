@@ -85,7 +85,7 @@ def test_a_solution_becomes_a_data_set_of_xarray(in_space):
 def test_a_missing_package_is_told(solution, monkeypatch):
     monkeypatch.setattr("stiffmbs.errors.find_spec", lambda name: None)
     for use, package in ((solution.to_pandas, "pandas"), (solution.to_xarray, "xarray")):
-        with pytest.raises(InputError, match=f"found no {package}, expected it installed: pip install"):
+        with pytest.raises(InputError, match=f"this needs {package}, which is not installed: pip install"):
             use()
 
 

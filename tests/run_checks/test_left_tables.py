@@ -10,7 +10,7 @@ from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.table_ranges import TableRanges
 from stiffmbs.compile.table_values import curve, parts_of
 from stiffmbs.elements.roads.rolling_filter import heights_of
-from stiffmbs.run_checks.tabled_drives import _passes, _points
+from stiffmbs.run_checks.tables import _passes, _points
 
 POINTS = ((-0.2, -100.0), (0.0, 0.0), (0.1, 30.0), (0.2, 100.0))
 BUMP = ((0.0, 0.0), (0.5, 1.0), (1.2, 0.7), (2.0, 0.0))

@@ -11,7 +11,7 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
 from stiffmbs.model.paths.lanes import STANDARDS
-from stiffmbs.show.handling import write_handling
+from stiffmbs.show.handling import _steered, write_handling
 from stiffmbs.show.handling_figure import handling_figure
 from stiffmbs.studies.handling import study  # not its class Tested alone, which pytest would collect
 from stiffmbs.studies.handling.known import SEEN
@@ -68,3 +68,14 @@ def test_the_page_answers_in_words_and_fits_a_phone(tmp_path):
     page = (tmp_path / "page.html").read_text()
     assert "<td>passed</td><td>yes</td>" in page and "1 yes" not in page and "not reached" in page
     assert 'name="viewport"' in page and "max-width: 100%" in page
+
+
+@pytest.mark.parametrize(
+    ("angular", "words"),
+    [
+        (False, "the front wheels steer by 0.0573 deg for 10 mm of guide"),
+        (True, "the front wheels steer by 1 deg for 10 deg of guide"),
+    ],
+)
+def test_the_steer_angle_is_told_for_a_travel_or_a_turn(angular, words):
+    assert _steered(_found(angular)) == words

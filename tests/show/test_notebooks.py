@@ -1,5 +1,7 @@
 """What notebooks show: figures once, comparisons as tables, animations as pages; films of short runs in slow motion."""
 
+import builtins
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -58,3 +60,26 @@ def test_short_runs_are_shown_in_slow_motion(length, speed):
     assert instants[-1] == pytest.approx(2.0 + length, abs=speed / 25)
     assert len(Playback(speed=1.0).instants(0.0, 0.1)) == 3
     assert len(Playback().instants(0.0, 0.0)) == 2
+
+
+def test_printed_modes_fit_on_a_screen():
+    found = stiffmbs.modes(EXAMPLES / "half_car.yaml")
+    lines = str(found).splitlines()
+    assert lines[0] == f"Half car at t = {found.t:g} s: 9 degrees of freedom"
+    assert lines[1].split()[:2] == ["Hz", "damping"] and len(lines) == 2 + 9 + len(found.notes)
+    assert repr(found) == f"<Modes {lines[0]}>"
+    many = replace(found, modes=found.modes * 10)
+    assert len(str(many).splitlines()) < 25 and "and 70 more modes" in str(many)
+    assert len(many.table().splitlines()) == 2 + 90 + len(found.notes)
+    assert "<td>rigid body</td>" in found._repr_html_()
+
+
+def test_results_of_analyses_are_shown_in_one_line():
+    scene = stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml")
+    transfer = stiffmbs.transfer(scene, inputs=["bar.fy"], outputs=["bar.y"])
+    for found in (stiffmbs.equilibrium(scene), stiffmbs.run(scene, duration=0.1).balance, transfer):
+        assert len(repr(found)) < 120 and repr(found).startswith(f"<{type(found).__name__}")
+
+
+def test_names_of_the_package_replace_no_built_in():
+    assert not set(stiffmbs.__all__) & set(dir(builtins))

@@ -17,7 +17,7 @@ from stiffmbs.elements.spatial.orientation import conjugate, matrix, product, ro
 from stiffmbs.results.scales import scales
 from stiffmbs.show.figure import drawn
 from stiffmbs.show.force_table import force_rows, rich_table
-from stiffmbs.verification.divergence import distance, divergence
+from stiffmbs.verification.diagnostics import distance, divergence
 
 from ..conftest import EXAMPLES
 from ..spatial_closed_forms import matrices

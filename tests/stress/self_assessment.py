@@ -22,9 +22,8 @@ from stiffmbs.analyses.run import run
 from stiffmbs.errors import StiffmbsError
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.scene import Scene
-from stiffmbs.results.channel_errors import difference
 from stiffmbs.results.digits import GROUPS, KnownErrors, over_time
-from stiffmbs.results.error_bars import ErrorBar
+from stiffmbs.results.error_bars import ErrorBar, difference
 from stiffmbs.results.scales import kind_of
 from stiffmbs.results.solution import Solution
 

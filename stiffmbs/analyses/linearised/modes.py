@@ -14,8 +14,9 @@ from ...dynamics.algebraic_states import failure
 from ...errors import InputError, SolverError
 from ...linear_analysis.modes import Mode, Motion, natural_modes
 from ...linear_analysis.state_space import StateMatrix, state_matrix
+from ...methods import NotebookMethods
 from ...model.settings import RunSettings, Settings, takes_settings
-from ...notes import Note, NoteKind, Severity
+from ...notes import Note, NoteKind, Severity, note_lines
 from ...reading.files.quoted import MOST_LISTED
 from ...redundancy.messages.redundancy import derivative_notes
 from ...results.energy_balance import energy_balance
@@ -28,14 +29,17 @@ from ..settled import GROWING
 from ..start_from import StartFrom
 from ..steady import rotation_as_one
 from .at_state import AtState, at_state
+from .modes_table import mode_lines
 from .sides import Kink, linearised_at
 
+ON_A_SCREEN = 20
+"""Number of modes that are printed, so that they fit on a screen."""
 AT_REST = 1e-6
 """Acceleration below which a state counts as an equilibrium, relative to gravity (to 1 m/s^2 without gravity)."""
 
 
 @dataclass(frozen=True)
-class Modes:
+class Modes(NotebookMethods):
     """Natural modes about a state.
 
     Attributes
@@ -68,6 +72,27 @@ class Modes:
     about: AtState
     own_axes: csr_array
     sides: tuple[StateMatrix, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<Modes {self._head}>"
+
+    def __str__(self) -> str:
+        return self.table(ON_A_SCREEN)
+
+    @property
+    def _head(self) -> str:
+        count = self.degrees_of_freedom
+        return f"{self.name or 'model'} at t = {self.t:g} s: {count} degree{'s' if count != 1 else ''} of freedom"
+
+    def table(self, most: int | None = None) -> str:
+        """Return frequency, damping, eigenvalues and participating bodies of each mode as lines of text, and the notes.
+
+        Parameters
+        ----------
+        most : int, optional
+            Number of modes; by default all.  Printed modes are the first 20.
+        """
+        return "\n".join([self._head, *mode_lines(self.modes, most), *note_lines(self.notes)])
 
     def shape(self, number: int, amplitude: float = 0.1, points: int = 61) -> Solution:
         """Return one period of a mode as results over time, which can be drawn and saved like those of a run.
@@ -161,9 +186,8 @@ KINK = NoteKind(
 )
 NO_EQUILIBRIUM = NoteKind(
     "modes-of-a-motion",
-    "the state at t = {t:g} s is not an equilibrium: {element} = {value:.3g}; the frequencies hold at this time only, and in "
-    "coordinates that measure displacements in sizes of the mechanism ({size:.3g} m) and rotations in rad: other coordinates "
-    "have others",
+    "the state at t = {t:g} s is not an equilibrium: {element} = {value:.3g}; the frequencies hold at this time only, and "
+    "they depend on the coordinates: here displacements are relative to the size of the mechanism, {size:.3g} m, and rotations are in rad",
 )
 ROTATING = NoteKind(
     "modes-in-ground-axes",

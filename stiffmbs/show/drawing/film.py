@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...errors import InputError
+from ...errors import InputError, not_installed
 from ..style import COLORS
 from .painted import extent, painted
 from .picture import Shown, empty_sheet, explain, paint, prepare, widened, write_names
@@ -56,7 +56,7 @@ class Playback:
 def need_encoder(path: Path) -> None:
     """Check that a film can be encoded, before anything is solved."""
     if path.suffix == ".gif" and find_spec("PIL") is None:
-        raise InputError(f"-o {path}: found no Pillow, expected it installed: pip install 'stiffmbs[plot]'")
+        raise InputError(f"-o {path}: " + not_installed("Pillow", "'stiffmbs[plot]'"))
     if path.suffix == ".mp4" and _ffmpeg() is None:
         raise InputError(
             f"-o {path}: found no ffmpeg, expected it on the path, or imageio-ffmpeg: pip install 'stiffmbs[film]'"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.collections import Collection
     from matplotlib.figure import Figure as Sheet
 
-WIDTH = 8.0
-"""Width of a picture, inch."""
+WIDTH, HEIGHT, NARROWEST = 8.0, 6.0, 3.4
+"""Largest width and height of a picture, so that it fits on a screen, and least width, inch."""
 MOST_NAMES = 60
 """Number of names above which elements are not named."""
 MANY_NAMES, SMALLEST = 15, 0.6
@@ -63,9 +63,8 @@ def picture(drawing: Drawing, poses: Poses, view: View, shown: Shown, on_screen:
 
 def empty_sheet(low: np.ndarray, high: np.ndarray, on_screen: bool = False) -> tuple[Sheet, Axes]:
     """Return a sheet with the aspect ratio of the drawing, and its axes without ticks."""
-    width, height = high - low
-    size = (WIDTH, float(np.clip(WIDTH * height / width, 2.0, 9.0)) + 0.5)
-    sheet = new_sheet(size, on_screen)
+    width, height = (high - low) * min(WIDTH / (high - low)[0], HEIGHT / (high - low)[1])
+    sheet = new_sheet((max(width, NARROWEST), max(height, 2.0) + 0.5), on_screen)
     axes = sheet.add_subplot()
     prepare(axes, low, high)
     return sheet, axes
@@ -141,7 +140,8 @@ def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) 
     taken: list[np.ndarray] = []
     artists = []
     smaller = max(SMALLEST, min(1.0, (MANY_NAMES / len(names)) ** 0.5)) if names else 1.0
-    unit = 0.016 * smaller * float(np.diff(axes.get_xlim())[0])
+    sheet: Any = axes.get_figure()
+    unit = 0.128 * smaller * float(np.diff(axes.get_xlim())[0]) / sheet.get_figwidth()
     for name in sorted(names, key=lambda name: name.role != "body"):
         origin, turned = poses.pose(name.anchor.body, k)
         point = view.seen((origin + turned @ name.anchor.point)[None])[0][:2]

@@ -137,12 +137,17 @@ PARTS = {"three": "three.min.js", "viewer": "viewer.js", "style": "viewer.css"}
 
 def page_parts() -> dict[str, str]:
     """Return the scripts and styles of a page with a moving mechanism."""
-    return {name: files(__package__).joinpath(file).read_text(encoding="utf-8") for name, file in PARTS.items()}
+    return {name: page_file(file) for name, file in PARTS.items()}
+
+
+def page_file(name: str) -> str:
+    """Return the text of a file of pages: a template, a script or a style."""
+    return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
 def moving_page(title: str, data: dict[str, str]) -> str:
     """Return the page as HTML; it needs no network. `data`: result of `stiffmbs.show.page.data.page_data`."""
-    template = environment().from_string(files(__package__).joinpath("moving.html").read_text(encoding="utf-8"))
+    template = environment().from_string(page_file("moving.html"))
     return template.render(title=title or "Mechanism", **data, **page_parts())
 
 

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
+import numpy as np
+
 from .braking import braking_in_a_turn, of_braking_in_a_turn, of_straight_braking, straight_braking
 from .car import Manoeuvre
 from .known import SEEN, Known, Metrics, Run
@@ -22,9 +24,41 @@ from .parameters import (
     StepSteer,
     StraightBraking,
 )
-from .ride import of_ride, ride
 from .steady_state_cornering import constant_radius, constant_speed, of_constant_radius, of_constant_speed
 from .steering_inputs import dwell, frequency, of_dwell, of_frequency, of_step_steer, step_steer
+from .vibration import total_vibration, weighted_rms
+
+
+def _rough_from(test: Ride) -> float:
+    """Return the time from which all wheels are on the rough road, s."""
+    return 40.0 / test.speed + 0.2
+
+
+def ride(known: Known, test: Ride) -> list[Manoeuvre]:
+    """Return a random road."""
+    road = {
+        "type": "iso8608", "roughness": test.roughness, "seed": 1, "start": 20.0, "entry": 20.0, "shortest": 0.3,
+        "track": known.car.track,
+    }  # fmt: skip
+    return [Manoeuvre(test.speed, _rough_from(test) + test.duration, "0", road=road, output=0.005)]
+
+
+def of_ride(known: Known, test: Ride, runs: list[Run]) -> Metrics:
+    """Return weighted accelerations of the reference point and the dynamic wheel load."""
+    run = runs[0]
+    part = run["time"] >= _rough_from(test) - 1e-9
+    step = float(run["time"][1] - run["time"][0])
+    x, y = (weighted_rms(run[f"vehicle.{axis}"][part], step, "Wd") for axis in ("ax", "ay"))
+    z = weighted_rms(run["vehicle.az"][part], step, "Wk")
+    loads = [run[f"{tyre}.load"][part] for tyre in known.car.tyres.values()]
+    return {
+        "weighted acceleration x (Wd)": (x, "m/s^2"),
+        "weighted acceleration y (Wd)": (y, "m/s^2"),
+        "weighted acceleration z (Wk)": (z, "m/s^2"),
+        "vibration total value": (total_vibration(x, y, z), "m/s^2"),
+        "largest dynamic wheel load over its mean": (max(float(np.std(load) / np.mean(load)) for load in loads), ""),
+    }
+
 
 Test = TypeVar("Test")
 """Parameters of a test."""

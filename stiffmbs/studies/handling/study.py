@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -167,7 +168,13 @@ def _preliminary(scene: Scene, car: Car, width: float, length: float) -> Known:
 def _solved(scene: Scene, car: Car, known: Known, tests: Mapping[str, Any], pool: Executor | None) -> dict[str, Tested]:
     waiting: dict[str, tuple[Known, list[Any]]] = {}
     found = {name: Tested(parameters=asdict(parameters)) for name, parameters in tests.items()}
-    at_speed = _ramps(scene, car, known)
+
+    @cache
+    def at_speed(speed: float) -> Known:
+        """Return `Known` with the slow ramp at a speed."""
+        if speed == SPEED:
+            return known
+        return replace(known, ramp=quasi_steady(solve(ramp(car, known.per_curvature, speed))))
 
     def solve(manoeuvre: Manoeuvre) -> Run:
         return solved(with_manoeuvre(scene, car, manoeuvre))
@@ -192,19 +199,6 @@ def _solved(scene: Scene, car: Car, known: Known, tests: Mapping[str, Any], pool
         except StiffmbsError as error:
             found[name] = replace(found[name], message=str(error))
     return found
-
-
-def _ramps(scene: Scene, car: Car, known: Known) -> Callable[[float], Known]:
-    """Return a function that returns `Known` with the slow ramp at a speed, each of which is solved once."""
-    done = {SPEED: known}
-
-    def at_speed(speed: float) -> Known:
-        if speed not in done:
-            slow = solved(with_manoeuvre(scene, car, ramp(car, known.per_curvature, speed)))
-            done[speed] = replace(known, ramp=quasi_steady(slow))
-        return done[speed]
-
-    return at_speed
 
 
 def solved(scene: Scene) -> Run:

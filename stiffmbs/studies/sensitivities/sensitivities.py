@@ -10,12 +10,17 @@ from typing import Any
 import numpy as np
 
 from ...analyses.job import Job, Runnable, prepare
+from ...compile.directional.direction import Numbers
+from ...compile.reactions import reactions
+from ...compile.system import System
 from ...dynamics.dynamics import OutputRows
 from ...errors import InputError, SolverError
 from ...model.settings import RunSettings
 from ...redundancy.messages.redundancy import derivative_notes
-from ...results.channels import channels_of
+from ...results.channels import channels_of, counters, motion_channels, state_channels
+from ...results.requests import requested
 from ...sensitivity_equations.along_run import AlongRun, Instant, Side
+from ...sensitivity_equations.block_system import Change
 from ...sensitivity_equations.recorded import SENSITIVITIES, STAGES, Recorder
 from ...solve.bdf import integrated
 from ...solve.missing_rows import reported
@@ -24,7 +29,6 @@ from ...solve.trajectory import Grid, Outcome
 from ...tuning import in_use
 from ..outputs import outputs_of
 from ..stepping import FINEST
-from .channels import changed_channels, changed_requests
 from .formulas import ZERO, Formula
 from .parameters import Parameter, Scenes, with_weights
 from .set_up import SetUp, breakpoint_rates
@@ -334,3 +338,47 @@ class DifferentiatedRun:
 
 def _plain(value: Any) -> Any:
     return float(value) if np.ndim(value) == 0 else np.asarray(value, dtype=float)
+
+
+def changed_channels(
+    system: System, u: np.ndarray, numbers: Sequence[Numbers], changes: Sequence[Change], values: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Return the derivatives of the channels of bodies, elements and energies, each of shape (instants, directions).
+
+    `u` of shape (instants, n_u). `numbers`: numbers of the directions. `values` of shape (instants, directions,
+    values): derivatives of the output terms.
+    """
+    shape = len(changes), len(numbers)
+    moved_q, moved_u, moved_a = (
+        np.concatenate([getattr(change, name) for change in changes]) for name in ("q", "u", "acceleration")
+    )
+    channels = motion_channels(system, moved_q, moved_u, moved_a)
+    flat = values.reshape(-1, values.shape[-1])
+    channels |= state_channels(system, moved_q, flat)
+    channels |= reactions(system, flat)
+    channels["energy.potential"] = flat[:, system.term("output", "potential").source].sum(axis=1)
+    channels = {name: slope.reshape(shape) for name, slope in channels.items()}
+    masses = np.array([each.mass for each in numbers])
+    kinetic = np.einsum("iu,idu->id", system.mass * u, moved_u.reshape(*shape, -1)) + 0.5 * u**2 @ masses.T
+    kinetic += flat[:, system.term("output", "kinetic").source].sum(axis=1).reshape(shape)
+    return channels | {"energy.kinetic": kinetic, "energy.total": kinetic + channels["energy.potential"]}
+
+
+def changed_requests(
+    job: Job, set_ups: Sequence[SetUp], rows: OutputRows, channels: Mapping[str, np.ndarray], slopes: Mapping[str, np.ndarray],
+    moved_q: np.ndarray,
+) -> dict[str, np.ndarray]:  # fmt: skip
+    """Return the derivatives of requests, by central differences of their formulas, shape (n, directions).
+
+    `channels`: channels that formulas read, shape (n,). `slopes`: their derivatives, shape (n, directions). `moved_q`
+    of shape (n, directions, n_q): derivatives of the coordinates, including revolution counters.
+    """
+    columns = []
+    for k, set_up in enumerate(set_ups):
+        found = []
+        for scene, shift in zip(set_up.scenes, set_up.shifts, strict=True):
+            there = {name: channels[name] + shift * slope[:, k] for name, slope in slopes.items()}
+            counted = counters(scene, job.dynamics.system, rows.q + shift * moved_q[:, k])
+            found.append(requested(scene, rows.t, there, counted))
+        columns.append({name: set_up.derivative([values[name] for values in found]) for name in found[0]})
+    return {name: np.column_stack([column[name] for column in columns]) for name in columns[0]}

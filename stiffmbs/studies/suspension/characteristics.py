@@ -18,8 +18,7 @@ from ...elements.forces.springs import AngleSpring, LineSpring, Spring
 from ...model.model_data import ModelData
 from .axle import Axle, Wheel
 from .rig import STEER, centre, contact_at, contact_from, contact_velocity, pad
-from .steering_axis import SteeringAxis, steering_axis
-from .tangent import Tangent, Twist, steering_motion
+from .tangent import SteeringAxis, Tangent, Twist, steering_axis, steering_motion
 from .vehicle import Vehicle
 
 UNITS = {

@@ -7,7 +7,7 @@ from unittest.mock import patch
 import numpy as np
 
 from stiffmbs.studies import tyre_curves
-from stiffmbs.studies.suspension import axle, characteristics, kinematics_and_compliance, steering_axis, tangent
+from stiffmbs.studies.suspension import axle, characteristics, kinematics_and_compliance, tangent
 from tests.decisions.common import BELOW, Record, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
@@ -60,7 +60,7 @@ def largest_compared_value():
 
 def has_an_axis(*omega):
     twist = Record(omega=np.array(omega), v=np.zeros(3))
-    return steering_axis.steering_axis(twist, None, None) is not None
+    return tangent.steering_axis(twist, None, None) is not None
 
 
 def least_stiffness():
@@ -119,8 +119,8 @@ DECISIONS = {
     "studies.suspension.characteristics:PARALLEL": largest_angle_of_roll_paths,
     "studies.suspension.kinematics_and_compliance:STEER_ANGLE": amplitude_of_a_rotated_joint,
     "studies.suspension.kinematics_and_compliance:NEARLY_STRAIGHT": largest_compared_value,
-    "studies.suspension.steering_axis:STILL": lambda: count_while(lambda rate: has_an_axis(0.0, 0.0, rate), BELOW),
-    "studies.suspension.steering_axis:LEVEL": lambda: count_while(lambda up: has_an_axis(1.0, 0.0, up), BELOW),
+    "studies.suspension.tangent:STILL": lambda: count_while(lambda rate: has_an_axis(0.0, 0.0, rate), BELOW),
+    "studies.suspension.tangent:LEVEL": lambda: count_while(lambda up: has_an_axis(1.0, 0.0, up), BELOW),
     "studies.suspension.tangent:IDLE": least_stiffness,
     "studies.suspension.tangent:UNMET": largest_violation,
     "studies.tyre_curves:PARTS_OF_LOAD": loads_of_a_tyre,
@@ -134,8 +134,8 @@ EXPECTED = {
     "studies.suspension.axle:AXIS_ALONG_Y": 4, "studies.suspension.axle:SAME_AXLE": 20,
     "studies.suspension.axle:ON_MIDDLE_PLANE": 80, "studies.suspension.characteristics:STRAIGHT": 26,
     "studies.suspension.characteristics:PARALLEL": 159, "studies.suspension.kinematics_and_compliance:STEER_ANGLE": 10.0,
-    "studies.suspension.kinematics_and_compliance:NEARLY_STRAIGHT": 27, "studies.suspension.steering_axis:STILL": 119,
-    "studies.suspension.steering_axis:LEVEL": 80, "studies.suspension.tangent:IDLE": 1e-12,
+    "studies.suspension.kinematics_and_compliance:NEARLY_STRAIGHT": 27, "studies.suspension.tangent:STILL": 119,
+    "studies.suspension.tangent:LEVEL": 80, "studies.suspension.tangent:IDLE": 1e-12,
     "studies.suspension.tangent:UNMET": 27, "studies.tyre_curves:PARTS_OF_LOAD": 3.0, "studies.tyre_curves:SLIP": 0.3,
     "studies.tyre_curves:ANGLE": 0.2617993877991494, "studies.tyre_curves:FAR_SLIP": 1.0,
     "studies.tyre_curves:FAR_ANGLE": 0.6981317007977318, "studies.tyre_curves:DIRECTIONS": 73,

@@ -42,6 +42,20 @@ FAINT = """
 """
 """Finds texts whose contrast with their background is below that of WCAG 2.1, level AA."""
 
+OVERLAPS = """
+(() => {
+  const texts = [...document.querySelectorAll("svg")].map((svg) => [...svg.querySelectorAll("text")]
+    .map((text) => [text.textContent, text.getBoundingClientRect()]).filter(([, box]) => box.width));
+  const found = [];
+  for (const own of texts) own.forEach(([text, p], k) => own.slice(0, k).forEach(([other, q]) => {
+    const across = Math.min(p.right, q.right) - Math.max(p.left, q.left), down = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
+    if (across > 1 && down > 3) found.push([other, text]);
+  }));
+  return found;
+})()
+"""
+"""Finds pairs of labels of one drawing (SVG) that cover each other."""
+
 
 class Tab:
     """A page in a browser: its console, scripts run in it, pictures of it."""

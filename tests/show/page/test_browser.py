@@ -214,6 +214,23 @@ def test_every_text_has_the_contrast_of_wcag(tab, opened, command):
     assert len(tab.run(browser.FAINT)) == 1
 
 
+def test_a_report_fits_its_screen_and_its_labels_are_apart(tab, opened):
+    """On a desktop and on a phone, light and dark; tables are never cut at the right edge."""
+    opened("report", EXAMPLES / "crank_slider.yaml", "--no-verify", "--set", "run.points=101")
+    try:
+        for width, theme in ((1400, "light"), (390, "dark"), (390, "light")):
+            tab.do("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+            tab.do("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
+            assert tab.run("document.documentElement.scrollWidth") <= width
+            wide = "[...document.querySelectorAll('table, figure, p')].filter((one) => one.getBoundingClientRect().right > innerWidth + 1).length"
+            assert tab.run(wide) == 0
+            assert tab.run(browser.OVERLAPS) == []
+        assert [text for text in tab.run(browser.FAINT) if "kN" in text[0]] == []
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
+        tab.do("Emulation.setEmulatedMedia", features=[])
+
+
 @pytest.mark.long
 def test_a_mode_is_chosen_and_its_motion_repeats(tab, opened):
     opened("modes", EXAMPLES / "half_car.yaml")

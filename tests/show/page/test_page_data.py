@@ -11,7 +11,6 @@ import pytest
 import stiffmbs
 from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.poses import poses_of
-from stiffmbs.show.force_table import joint_forces
 from stiffmbs.show.page.data import LEVELS, Packed, page_data
 from stiffmbs.show.page.modes import modes_data
 
@@ -88,27 +87,6 @@ def test_texts_of_a_page_are_no_markup():
     solution = stiffmbs.run(scene)
     data = page_data(drawing_of(scene), {"<b>": poses_of(scene, solution.time, solution.channels)}, solution)
     assert all(re.fullmatch(r"[A-Za-z0-9+/=]*", text) for text in data.values())
-
-
-def test_joint_forces_are_magnitudes_with_their_instants():
-    """At the bottom of its swing a bar lets its pin carry 5/2 of its weight, after a quarter of a swing."""
-    solution = stiffmbs.verify(EXAMPLES / "bar_pendulum.yaml", duration=1.0)
-    (row,) = joint_forces(solution)
-    value, bar = (float(part) for part in row["peak"].split(" ± "))
-    known = [solution.errors[f"hinge.{part}"] for part in ("fx", "fy")]
-    assert bar == pytest.approx(np.hypot(*(max(e.over_time, e.least, e.greatest) for e in known)), rel=0.5)
-    assert value == pytest.approx(2.5 * 1.2 * 9.81, abs=max(bar, 1e-3))
-    lowest = solution.time[np.argmin(solution["bar.y"])]
-    assert float(row["at"]) == pytest.approx(lowest, abs=2e-3)
-    assert (row["name"], row["what"], row["unit"], row["unique"]) == ("hinge", "force", "N", "yes")
-
-
-def test_joint_forces_that_are_not_unique_say_so():
-    rows = joint_forces(stiffmbs.run(EXAMPLES / "door.yaml", duration=0.1))
-    assert {(row["name"], row["what"]): row["unique"] for row in rows} == {
-        ("upper_hinge", "force"): "no", ("upper_hinge", "torque"): "no", ("lower_hinge", "force"): "no",
-        ("lower_hinge", "torque"): "no", ("closer", "force"): "yes", ("closer", "torque"): "yes",
-    }  # fmt: skip
 
 
 def test_the_page_of_modes_shows_one_period_of_each_vibration():

@@ -1,4 +1,4 @@
-"""Compiled loops over output instants give what NumPy gives, and the work is of the order that its rule has."""
+"""Rows that contradict the next one, and work of the order that its rule has."""
 
 from types import SimpleNamespace
 

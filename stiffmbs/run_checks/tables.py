@@ -1,4 +1,4 @@
-"""Tables whose points a run has left: which, how far and for how long.
+"""Tables whose points a run has left, which, how far and for how long; drives whose positions follow tables.
 
 The steps of integrators record the arguments of tables in force laws (`stiffmbs.solve.events.native.outside`). Arguments
 that depend on time alone are known without a run. Solvers that do not search their steps for events, and requests, are
@@ -8,18 +8,20 @@ judged at the output times.
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from ..compile.inputs.of_time import Input, expressions_of, given_to
+from ..compile.inputs.of_time import TABLE, Given, Input, expressions_of, given_to
 from ..compile.inputs.table_ranges import TableRanges
 from ..compile.state import State
 from ..compile.system import System
 from ..compile.table_values import curve, ends_of, spline_data
 from ..compile.written_values import table_arguments, tables_in
 from ..dynamics.dynamics import OutputRows
+from ..elements.element import Element, Joint
+from ..elements.joints.drive import Drive
 from ..elements.states.amount import TABLE as INPUT_TABLE
 from ..errors import SolverError
 from ..model.model_data import ModelData
@@ -27,10 +29,10 @@ from ..model.settings import RunSettings
 from ..notes import Note, NoteKind, of_users
 from ..reading.table import Table
 from ..results.channels import counters
-from ..solve.events.departures import Departure, merged
+from ..solve.events.departures import ROUNDING, Departure, merged
 from ..solve.reasons import Reason
 from ..solve.settings import traits_of
-from ..solve.trajectory import Outcome, Trajectory
+from ..solve.trajectory import Trajectory
 
 SAMPLES = 2001
 """Times between which arguments that depend on time alone are taken as straight lines."""
@@ -43,6 +45,19 @@ EXTENDED = NoteKind(
     "{least:.6g} to {greatest:.6g})",
 )
 LEFT = NoteKind("table-left", EXTENDED.text, "state 'beyond': hold, extend, error or repeat, or give more points")
+SMOOTH_CURVES = "use 'spline: true', or 'smoothing' with the accuracy of measured points"
+KINKED = NoteKind(
+    "drive-by-lines",
+    "{element}: the position by the table '{label}' follows straight lines, so velocities jump at the points: the effort of "
+    "the drive and all reactions lack these impulses and are not those of a smooth motion",
+    SMOOTH_CURVES,
+)
+SHAPE_PRESERVING = NoteKind(
+    "drive-by-table",
+    "{element}: the position by the table '{label}' follows a curve whose accelerations jump at the points, so the effort of "
+    "the drive and all reactions are those of this interpolation and may be several times those of a smooth motion",
+    SMOOTH_CURVES,
+)
 
 
 def left_tables(system: System, trajectory: Trajectory, settings: RunSettings) -> list[Departure]:
@@ -62,14 +77,20 @@ def left_by_requests(
     found: list[Departure] = []
     counted = counters(model, system, rows.q)
     for name, output in model.outputs().items():
-        for node in ast.walk(output.tree):
-            match node:
-                case ast.Call(ast.Name(label), [argument]) if label in output.tables:
-                    x = value_over_time(model, replace(output, tree=argument), rows.t, channels, counted)
-                    known = np.isfinite(x)
-                    if known.any():
-                        found += _departure(name, label, output.tables[label], rows.t[known], x[known])
+        for label, argument in _arguments(output.tree, output.tables):
+            x = value_over_time(model, replace(output, tree=argument), rows.t, channels, counted)
+            known = np.isfinite(x)
+            if known.any():
+                found += _departure(name, label, output.tables[label], rows.t[known], x[known])
     return list(merged(found))
+
+
+def _arguments(tree: ast.expr, tables: Collection[str]) -> Iterator[tuple[str, ast.expr]]:
+    """Yield the tables that an expression calls, each with its argument."""
+    for node in ast.walk(tree):
+        match node:
+            case ast.Call(ast.Name(label), [argument]) if label in tables:
+                yield label, argument
 
 
 def refused_departure(found: list[Departure]) -> Departure | None:
@@ -80,9 +101,7 @@ def refused_departure(found: list[Departure]) -> Departure | None:
 
 def stopped_at(first: Departure, trajectory: Trajectory) -> Trajectory:
     """Return a trajectory that ends at a departure, with the reason."""
-    rows = max(int(np.searchsorted(trajectory.t, first.first, side="right")), 1)
-    t, q, u = (array[:rows] for array in (trajectory.t, trajectory.q, trajectory.u))
-    return replace(trajectory, t=t, q=q, u=u, outcome=Outcome.STOPPED, message=_refusal(first))
+    return trajectory.stopped_after(int(np.searchsorted(trajectory.t, first.first, side="right")), _refusal(first))
 
 
 def _refusal(first: Departure) -> Note:
@@ -135,19 +154,21 @@ def _of_time(system: System, start: float, end: float) -> Iterator[Departure]:
         if not group.has_inputs:
             continue
         for name, element in zip(group.names, group.elements, strict=True):
-            for tree, text, values, tables in expressions_of(element, given):
-                if name in given.tables and INPUT_TABLE in tables:
+            for law in _laws(element, given):
+                if name in given.tables and INPUT_TABLE in law.tables:
                     continue  # the value of an input, which is noted where it is used
-                known = Input(tree, text, values, {label: TableRanges(table) for label, table in tables.items()})
-                for node in ast.walk(tree):
-                    match node:
-                        case ast.Call(ast.Name(label), [argument]) if label in tables:
-                            label = (
-                                text.removeprefix(OF_FIELD) if text.startswith(OF_FIELD) else label.removesuffix("(t)")
-                            )
-                            with np.errstate(all="ignore"):
-                                x = known.at(t, argument)
-                            yield from _departure(name, label, tables[node.func.id], t, x)  # type: ignore[union-attr, attr-defined]
+                for called, argument in _arguments(law.tree, law.tables):
+                    of_field = law.text.startswith(OF_FIELD)
+                    label = law.text.removeprefix(OF_FIELD) if of_field else called.removesuffix("(t)")
+                    with np.errstate(all="ignore"):
+                        x = law.at(t, argument)
+                    yield from _departure(name, label, law.tables[called].table, t, x)
+
+
+def _laws(element: Element, given: Given) -> Iterator[Input]:
+    """Yield the formulas and tables of time of an element."""
+    for tree, text, values, tables in expressions_of(element, given):
+        yield Input(tree, text, values, {label: TableRanges(table) for label, table in tables.items()})
 
 
 def _samples(start: float, end: float) -> np.ndarray:
@@ -208,3 +229,40 @@ def _at_states(system: System, times: np.ndarray, q: np.ndarray, u: np.ndarray) 
     for (element, label, table), x in zip(arguments, values.T, strict=True):
         if table is not None and np.isfinite(x).all():
             yield from _departure(element, label, table, times, x)
+
+
+def tabled_drive_notes(system: System, joints: Mapping[str, Joint], breakpoints: np.ndarray) -> Iterator[Note]:
+    """Yield a note for each drive whose position is a table without continuous accelerations at some breakpoints, s."""
+    given = given_to(system)
+    for name, joint in joints.items():
+        if isinstance(joint, Drive) and joint.prescribed_position is not None:
+            for law in _laws(joint, given):
+                for label, ranges in law.tables.items():
+                    table, points = ranges.table, _points(ranges.table)
+                    arguments = (law.at(breakpoints, part) for _, part in _arguments(law.tree, [label]))
+                    if any(_passes(table, points, argument) for argument in arguments):
+                        kind = KINKED if table.lines else SHAPE_PRESERVING
+                        yield kind(name, label="position" if label == TABLE else label.removesuffix("(t)"))
+
+
+def _points(table: Table) -> np.ndarray:
+    """Return the points at which the second derivative of a table, or its first one, is not continuous."""
+    x, y = np.array(table.table).T
+    slopes = np.diff(y) / np.diff(x)
+    bends = np.abs(np.diff(slopes)) > ROUNDING * np.abs(slopes).max()
+    if table.interpolation in ("spline", "smoothing") or not bends.any():
+        return np.empty(0)
+    at_ends = table.repeats or table.beyond == "hold"
+    return x[np.concatenate([[at_ends], bends if table.lines else np.ones(len(bends), dtype=bool), [at_ends]])]
+
+
+def _passes(table: Table, points: np.ndarray, argument: np.ndarray) -> bool:
+    """Return True if the argument is at one of some points of a table."""
+    first, last = table.table[0][0], table.table[-1][0]
+    if table.repeats:
+        argument = first + np.mod(argument - first, last - first)
+    if not len(points):
+        return False
+    after = np.minimum(np.maximum(np.searchsorted(points, argument), 1), len(points) - 1)
+    apart = np.minimum(np.abs(argument - points[after]), np.abs(argument - points[after - 1]))
+    return bool((apart <= ROUNDING * (last - first)).any())

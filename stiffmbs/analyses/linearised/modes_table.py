@@ -1,0 +1,57 @@
+"""Natural modes as rows and as lines of a table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ...linear_analysis.modes import Mode, Motion
+
+HEADS = ("", "Hz", "damping", "eigenvalues, 1/s", "kinetic energy")
+MOST_BODIES = 4
+LEAST_SHARE = 0.01
+"""Part in the kinetic energy above which a body is named."""
+
+
+def mode_rows(modes: Sequence[Mode]) -> list[tuple[str, str, str, str, str]]:
+    """Return number, natural frequency, damping ratio, eigenvalues and participating bodies of each mode."""
+    return [
+        (
+            str(k),
+            f"{mode.natural_frequency:.6g}",
+            "rigid body" if mode.motion is Motion.RIGID else f"{mode.damping_ratio:.4g}",
+            _values(mode),
+            ", ".join(_bodies(mode)),
+        )
+        for k, mode in enumerate(modes, start=1)
+    ]
+
+
+def mode_lines(modes: Sequence[Mode], most: int | None = None) -> list[str]:
+    """Return the lines of a table with its heads; with `most`, at most so many modes, and the number of the others."""
+    shown = modes[:most]
+    left = len(modes) - len(shown)
+    lines = [
+        f"{k:>4}  {hz:>12}  {damping:>10}  {values:<28}  {bodies}"
+        for k, hz, damping, values, bodies in mode_rows(shown)
+    ]
+    head = [f"{HEADS[0]:>4}  {HEADS[1]:>12}  {HEADS[2]:>10}  {HEADS[3]:<28}  {HEADS[4]}"] if lines else []
+    return [*head, *lines, *([f"and {left} more modes"] if left else [])]
+
+
+def _values(mode: Mode) -> str:
+    one, *others = mode.eigenvalues
+    if mode.motion is Motion.OSCILLATING:
+        return f"{one.real:.6g} +- {abs(one.imag):.6g}i"
+    return ", ".join(f"{value.real:.6g}" for value in (one, *others))
+
+
+def _bodies(mode: Mode) -> Iterator[str]:
+    if not mode.participation:
+        yield "states alone"
+    shares = [(name, share) for name, share in mode.participation.items() if share >= LEAST_SHARE]
+    for name, share in shares[:MOST_BODIES]:
+        yield f"{name} {np.round(100 * share):.0f} %"
+    if len(shares) > MOST_BODIES:
+        yield f"and {len(shares) - MOST_BODIES} more"

@@ -1,0 +1,136 @@
+"""Loads of a run: sorted, with peaks, means and bars; over the driving angle; and what a report says of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs.notes import Note, Severity
+from stiffmbs.show.driving_angle import driving_angle, rotating_loads
+from stiffmbs.show.finding import finding, note_rows
+from stiffmbs.show.loads import Column, Load, load_rows, loads_of
+from stiffmbs.show.sections import differences_section
+from stiffmbs.show.verdict import verdict
+
+from ..conftest import EXAMPLES
+
+
+@pytest.fixture(scope="module")
+def crank_slider():
+    scene = stiffmbs.load_scene(EXAMPLES / "crank_slider.yaml")
+    return scene, stiffmbs.run(scene)
+
+
+def load_with(values, bar=np.nan, unit="N"):
+    time = np.linspace(0.0, 1.0, len(values))
+    return Load("pin", unit, time, np.array(values, float).reshape(len(values), -1), bar, True)
+
+
+def test_loads_are_magnitudes_with_their_instants():
+    """At the bottom of its swing a bar lets its pin carry 5/2 of its weight, after a quarter of a swing."""
+    solution = stiffmbs.verify(EXAMPLES / "bar_pendulum.yaml", duration=1.0)
+    (load,), without = loads_of(solution)
+    known = [solution.errors[f"hinge.{part}"] for part in ("fx", "fy")]
+    assert load.bar == pytest.approx(np.hypot(*(max(e.over_time, e.least, e.greatest) for e in known)))
+    assert load.peak == pytest.approx(2.5 * 1.2 * 9.81, abs=max(load.bar, 1e-3))
+    assert load.time[load.peak_row] == pytest.approx(solution.time[np.argmin(solution["bar.y"])], abs=2e-3)
+    assert (load.element, load.unit, load.unique, without) == ("hinge", "N", True, [])
+
+
+def test_loads_that_are_not_unique_say_so_and_stay():
+    loads, _ = loads_of(stiffmbs.run(EXAMPLES / "door.yaml", duration=0.1))
+    unique = {(load.element, load.unit): load.unique for load in loads}
+    hinges = [unique[f"{end}_hinge", unit] for end in ("upper", "lower") for unit in ("N", "N m")]
+    assert not any(hinges) and unique["closer", "N m"] and ("closer", "N") not in unique
+
+
+def test_mean_and_root_mean_square_are_over_time_not_over_points():
+    load = replace(load_with([[0.0], [4.0], [0.0]]), time=np.array([0.0, 3.0, 4.0]))
+    assert load.mean == pytest.approx(2.0) and load.rms == pytest.approx(np.sqrt(8.0)) and load.peak == 4.0
+
+
+def test_loads_without_values_have_no_peak():
+    load = load_with([[np.nan], [np.nan]])
+    assert load.peak == 0.0 and load.mean == 0.0
+
+
+def test_the_largest_load_is_first_and_all_have_one_unit(crank_slider):
+    loads, without = loads_of(crank_slider[1])
+    forces = [load for load in loads if load.unit == "N"]
+    assert [load.peak for load in forces] == sorted((load.peak for load in forces), reverse=True) and not without
+    column = Column.of("N", forces[0].peak)
+    assert column.unit == "kN"
+    rows = list(load_rows(forces, column, {"ground_pin": "revolute, crank on ground"}))
+    assert rows[0].share == 1.0 and float(rows[0].peak) == pytest.approx(forces[0].peak / 1e3, rel=1e-4)
+    assert rows[0].about == "revolute, crank on ground"
+
+
+@pytest.mark.parametrize(
+    ("largest", "value", "bar", "unit", "words"),
+    [(999.0, 12.0, 0.3, "N", "12.0 ± 0.3"), (1e3, 1234.0, 20.0, "kN", "1.23 ± 0.02"), (2e6, 2e6, np.nan, "MN", "2"),
+     (5.0, 5.0, 1e-12, "N", "5.00000 ± 0.00005")],
+)  # fmt: skip
+def test_a_column_has_one_unit_and_as_many_digits_as_the_bar_allows(largest, value, bar, unit, words):
+    column = Column.of("N", largest)
+    assert (column.unit, column.words(value, bar)) == (unit, words)
+
+
+def test_the_driving_angle_is_the_last_revolution_of_a_drive(crank_slider):
+    angle = driving_angle(*crank_slider)
+    assert angle.joint == "ground_pin" and angle.rows[-1] == len(crank_slider[1].time) - 1
+    assert 0 <= angle.sorted_degrees[0] < 2 and 358 < angle.sorted_degrees[-1] < 360
+    assert driving_angle(crank_slider[0], stiffmbs.run(crank_slider[0], duration=0.1)) is None  # less than a revolution
+
+
+def test_loads_rotate_on_a_crank_and_stay_on_the_ground(crank_slider):
+    """The thrust on the slider is constant: on the ground its direction stays, on the crank it goes around."""
+    scene, solution = crank_slider
+    angle = driving_angle(scene, solution)
+    load = next(load for load in loads_of(solution)[0] if load.element == "ground_pin")
+    on_crank, on_ground = dict(rotating_loads(scene, solution, load, angle.rows)).values()
+    assert np.hypot(*on_crank.T) == pytest.approx(np.hypot(*on_ground.T))
+    assert np.ptp(np.arctan2(*on_ground.T[::-1])) < 1.0
+    assert np.ptp(np.unwrap(np.arctan2(*on_crank.T[::-1]))) > 6.0
+
+
+@pytest.mark.parametrize(
+    ("notes", "digits", "mark"),
+    [((), 3, "Reliable"), ((), 1, "To be checked"), ((), None, "Completed"),
+     ((Note("x", severity=Severity.WARNING),), 3, "To be checked"), ((Note("x"),), 3, "Reliable")],
+)  # fmt: skip
+def test_a_finding_is_reliable_only_with_known_digits_and_without_warnings(crank_slider, notes, digits, mark):
+    solution = replace(crank_slider[1], notes=notes)
+    judged = replace(verdict(solution), digits={} if digits is None else {"forces": digits})
+    found = finding(judged, solution, loads_of(solution)[0])
+    assert found.mark.endswith(mark) and found.status == ("doubt" if mark == "To be checked" else "done")
+    assert found.sentence.startswith("The largest force is 5.41") and "kN, in ground_pin at 0.06" in found.sentence
+
+
+def test_a_run_that_stops_says_so_before_all_else(crank_slider):
+    solution = crank_slider[1]
+    judged = replace(verdict(solution), status="stopped", headline="0 s to 1 s: singular pose")
+    found = finding(judged, solution, loads_of(solution)[0])
+    assert found.mark.endswith("Stopped") and found.sentence == "0 s to 1 s: singular pose."
+
+
+def test_notes_are_sorted_by_what_they_mean_each_with_what_to_do():
+    notes = [
+        Note("auto chose radau"),
+        Note("peaks lie between; use points: steps", "k", "", "use points: steps", Severity.WARNING),
+        Note("the balance is broken", severity=Severity.DOUBT),
+    ]
+    rows = note_rows(notes)
+    assert [row.meaning for row in rows] == ["the result may be wrong", "may change the result", "changes nothing"]
+    assert (rows[1].text, rows[1].remedy) == ("peaks lie between", "use points: steps")
+    assert rows[2].remedy == "Nothing to do."
+
+
+def test_differences_begin_with_what_was_changed_and_the_loads():
+    scene = stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml", [("bar_mass", "2.4 kg")])
+    runs = [stiffmbs.run(model, duration=0.5) for model in (scene, stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml"))]
+    section = differences_section(runs[0], "first", runs[1])
+    changed, loads, channels = section.tables
+    assert changed.rows == (("parameters.bar_mass", "2.4 kg", "1.2 kg"),)
+    assert loads.rows[0][0] == "hinge" and loads.rows[0][3:] == ("+100 %", "N")
+    assert channels.heads[0] == "channel" and len(section.drawings) == 3
