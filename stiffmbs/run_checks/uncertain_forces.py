@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compile.group import Group
 from ..compile.state import State
 from ..compile.terms import TERM_SETS
 from ..dynamics.dynamics import Dynamics, OutputRows
@@ -47,7 +48,8 @@ def coarse_forces_notes(dynamics: Dynamics, trajectory: Trajectory, rows: Output
 
     There they follow from second differences of positions, which are no accelerations where the step changes (Gear,
     Hsu and Petzold 1981, Differential-algebraic equations revisited). Accelerations then differ from the mean rate of
-    velocities since the output before, at most a step earlier. The difference counts relative to the largest force.
+    velocities since the output before, at most a step earlier. The difference counts relative to the largest force, and
+    from the rounding of coordinates on: bodies without loads have no other forces.
     """
     ends, orders = trajectory.history.t, trajectory.history.order
     if len(orders) != len(ends) or len(rows.t) < 2 or not (orders == 1).any():
@@ -74,8 +76,10 @@ def coarse_forces_notes(dynamics: Dynamics, trajectory: Trajectory, rows: Output
     at, off, lengths = at[found], off[found] / largest, lengths[found]
     if not len(at):
         return
+    t = float(rows.t[at[-1]])
     dynamics.state.q[:], dynamics.state.u[:] = rows.q[at[-1]], rows.u[at[-1]]
-    long = lengths > stiffness_at(dynamics, float(rows.t[at[-1]])).long_step
+    rounding = _inertia_by_rounding(dynamics.state, t)
+    long = (lengths > stiffness_at(dynamics, t).long_step) & (off * largest > rounding)
     if long.any():
         at, off = at[long], off[long]
         times = f"{len(at)} output time{'s' * (len(at) > 1)}"
@@ -99,21 +103,52 @@ class LostDigits(NamedTuple):
     largest: float
 
 
-def lost_digits(state: State, t: float) -> LostDigits:
-    """Return the largest change of a force by the rounding of coordinates at a state."""
-    system, found = state.system, [("", 0.0)]
+class _Changes(NamedTuple):
+    """Changes of the forces of a group of elements by the rounding of coordinates.
+
+    One row for each element, with their rows among the element's velocities and among those of the model.
+    """
+
+    group: Group
+    values: np.ndarray
+    own_rows: np.ndarray
+    rows: np.ndarray
+
+
+def _changes(state: State, t: float) -> list[_Changes]:
+    """Return the changes of the forces of all elements at a state."""
+    system = state.system
+    found: list[_Changes] = []
     state.evaluate("tangent", t)
-    size, width = np.append(np.abs(state.q), np.zeros(system.of_body.n_q)), system.of_body.n_u
+    size = np.append(np.abs(state.q), np.zeros(system.of_body.n_q))
     rounding = 0.5 * RUN_CHECKS.roundings * np.finfo(float).eps
     at = 1 + TERM_SETS["tangent"].index("f_q")
     for g, group in enumerate(system.groups):
         if group.entries["f_q"] and group.kind.element.kind:
-            source, _, column = group.placed("f_q", int(system.places["tangent"][g, at]))
-            row = np.array(group.record.patterns["f_q"])[:, 0]
-            changes = (rounding * np.abs(state.values["tangent"][source]) * size[column]).reshape(group.count, len(row))
-            straight = (row % width < system.of_body.linear)[:, None]
-            of_rows = changes @ (straight & (row[:, None] == np.arange(width * group.kind.n_bodies)))
-            found += zip(group.names, of_rows.max(axis=1).tolist(), strict=True)
+            source, rows, column = group.placed("f_q", int(system.places["tangent"][g, at]))
+            own = np.array(group.record.patterns["f_q"])[:, 0]
+            values = rounding * np.abs(state.values["tangent"][source]) * size[column]
+            found.append(_Changes(group, values.reshape(group.count, len(own)), own, rows))
+    return found
+
+
+def _inertia_by_rounding(state: State, t: float) -> float:
+    """Return the largest force of inertia that rounding of coordinates causes, divided by the root of its inertia."""
+    mass = state.system.mass
+    forces = np.zeros_like(mass)
+    for found in _changes(state, t):
+        forces += np.bincount(found.rows, found.values.ravel(), minlength=len(mass))[: len(mass)]
+    return float(np.sqrt(np.sum(forces**2 / mass)))
+
+
+def lost_digits(state: State, t: float) -> LostDigits:
+    """Return the largest change of a force by the rounding of coordinates at a state."""
+    system, found = state.system, [("", 0.0)]
+    width = system.of_body.n_u
+    for group, changes, row, _ in _changes(state, t):
+        straight = (row % width < system.of_body.linear)[:, None]
+        of_rows = changes @ (straight & (row[:, None] == np.arange(width * group.kind.n_bodies)))
+        found += zip(group.names, of_rows.max(axis=1).tolist(), strict=True)
     state.evaluate("motion", t)
     forces = state.vector("motion", "f")[system.per_velocity(1.0, 0.0) == 1.0]
     return LostDigits(*max(found, key=lambda each: each[1]), float(np.abs(forces).max(initial=0.0)))

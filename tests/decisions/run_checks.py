@@ -69,7 +69,11 @@ def contradiction_in_a_step_of_order_1():
 
     def is_silent(off):
         rows = Record(t=ends, q=zeros, u=zeros, acceleration=np.array([[1.0], [off]]))
-        replaced = {"stiffness_at": lambda *_: Record(long_step=0.0), "largest_force": lambda *_: 1.0}
+        replaced = {
+            "stiffness_at": lambda *_: Record(long_step=0.0),
+            "largest_force": lambda *_: 1.0,
+            "_inertia_by_rounding": lambda *_: 0.0,
+        }
         with patch.multiple(uncertain_forces, **replaced):
             return silent(uncertain_forces.coarse_forces_notes(dynamics, trajectory, rows))
 
