@@ -80,14 +80,17 @@ def _as_dataset(
 def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
     """Return the text of a scene from a file of another program."""
     from ..adams.load import convert_file
-    from ..analyses.load_scene import ROBOTS, refuse_others
+    from ..analyses.load_scene import CAD, ROBOTS, refuse_others
+    from ..cad.load import convert_cad, is_cad
     from ..robots.load import convert_robot
 
     refuse_others(path)
-    suffix = Path(path).suffix.lower()
+    suffix, found = Path(path).suffix.lower(), convert_file
     if changes:
         raise InputError(f"{path}: found --set, expected it with --in-space alone")
-    if suffix in ROBOTS:
+    if suffix in CAD and is_cad(path):
+        found = convert_cad
+    elif suffix in ROBOTS:
         return convert_robot(path, coordinates=assigned(AT, coordinates, float))
     if coordinates:
         raise InputError(f"{path}: found --at, expected it with a robot alone")
@@ -95,7 +98,7 @@ def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, 
         raise InputError(
             f"{path}: found a scene, expected an Adams/Solver dataset (.adm), a robot ({', '.join(ROBOTS)}), or --in-space"
         )
-    return convert_file(path)
+    return found(path)
 
 
 @click.command(short_help="Results compared with another program's listing.")

@@ -49,6 +49,11 @@ class Node:
         found = [child for child in self._children if child.tag == tag]
         return [below for child in found for below in child.findall(rest)] if rest else found
 
+    def children(self) -> list[Node]:
+        """Return all children."""
+        self._fields.request(*(_child(child.tag) for child in self._children))
+        return self._children
+
     def without_effect(self, *tags: str) -> None:
         """Exclude children from the report."""
         self._fields.request(*map(_child, tags))
