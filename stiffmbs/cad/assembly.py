@@ -134,7 +134,8 @@ def rotation(where: str, values: np.ndarray) -> np.ndarray:
         nearest: np.ndarray = left @ right
         if np.linalg.det(nearest) > 0 and np.max(np.abs(nearest - values)) < ROUGH:
             return nearest if np.max(np.abs(nearest - values)) > 1e-15 else values
-    raise CadFault(f"{where}: found {np.array2string(values, precision=4)}, expected a rotation matrix")
+    rows = "; ".join(" ".join(f"{x:.4g}" for x in row) for row in values)
+    raise CadFault(f"{where}: found the rows {rows}, expected a rotation matrix")
 
 
 def axes_along(z: np.ndarray) -> np.ndarray:

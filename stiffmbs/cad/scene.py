@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from ..elements.spatial.number_format import quaternion, vector
 from ..elements.spatial.orientation import IDENTITY
@@ -20,6 +21,10 @@ def scene(assembly: Assembly) -> Content:
     called: dict[str | None, str] = {None: GROUND}
     for part in assembly.parts:
         called[part.name] = names.take(part.name)
+    notes = list(assembly.notes)
+    if not any(part.link.mass for part in assembly.parts):
+        assembly = replace(assembly, parts=tuple(replace(part, link=replace(part.link, mass=1.0)) for part in assembly.parts))
+        notes.append("no part has a mass: each has 1 kg, so that the forces mean nothing")
     masses = Masses([part.link for part in assembly.parts], [part.placed for part in assembly.parts], "part")
     markers: dict[str, Content] = {}
     ties = [(names.take(tie.name), tie) for tie in assembly.ties]
@@ -36,7 +41,7 @@ def scene(assembly: Assembly) -> Content:
     found["bodies"] = {called[part.name]: _body(part, masses, markers.get(called[part.name])) for part in assembly.parts}
     found["markers"] = markers.get(GROUND, {})
     found["run"] = assembly.run
-    found["notes"] = [*assembly.notes, *_notes(assembly, called)]
+    found["notes"] = [*notes, *_notes(assembly, called)]
     return {key: value for key, value in found.items() if value or key == "bodies"}
 
 

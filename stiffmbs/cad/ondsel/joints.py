@@ -44,10 +44,11 @@ class Ends:
 
 def joint(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
     """Yield the joints of the scene for a joint of the file."""
-    if item.label in SAME:
-        yield Tie(name, SAME[item.label], ends.i, ends.j)
-    elif item.label in OTHERS:
-        yield from OTHERS[item.label](name, item, ends)
+    kind = kind_of(item)
+    if kind in SAME:
+        yield Tie(name, SAME[kind], ends.i, ends.j)
+    elif kind in OTHERS:
+        yield from OTHERS[kind](name, item, ends)
     else:
         raise CadFault(f"line {item.line}, {name}: found {item.label}, expected one of {', '.join((*SAME, *OTHERS))}")
 
@@ -66,7 +67,7 @@ def _line_in_plane(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
 
 
 def _planar(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
-    yield Tie(name, "planar", ends.j, ends.offset(item))
+    yield Tie(name, "planar", ends.offset(item), ends.j)
 
 
 def _spherical_rod(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
@@ -85,12 +86,12 @@ def _off_axis(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
 
 def _parallel_rod(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
     yield from _off_axis(name, item, ends)
-    yield Tie(f"{name}_axes", "parallel", ends.j, ends.i)
+    yield Tie(f"{name}_axes", "parallel", ends.i, ends.j)
 
 
 def _hinged_rod(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
     yield from _off_axis(name, item, ends)
-    yield Tie(f"{name}_axes", "planar", ends.j, ends.i)
+    yield Tie(f"{name}_axes", "planar", ends.i, ends.j)
 
 
 def _angle(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
@@ -98,7 +99,7 @@ def _angle(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
 
 
 def _screw(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
-    yield Tie(name, "thread", ends.j, ends.i, {"pitch": _not_zero(name, item, "pitch")})
+    yield Tie(name, "thread", ends.i, ends.j, {"pitch": _not_zero(name, item, "pitch")})
 
 
 def _rack(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
@@ -111,18 +112,30 @@ def _rack(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
 
 
 def _gear(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
-    """Yield r_J theta_J + r_I theta_I = 0 with angles from the start relative to the carrier of both wheels' hinges."""
+    """Yield theta_J + (r_I/r_J) theta_I = (s + r_I/r_J) phi, with s = 1 for z axes of one direction and -1 for opposite ones.
+
+    The angles theta of the wheels and phi of the line of their centres start at zero, and are relative to the part on
+    which both turn by revolute joints; phi remains zero, but the force between the teeth is its gradient.
+    """
     ratio = _not_zero(name, item, "radiusI") / _not_zero(name, item, "radiusJ")
     carriers = ends.hinges.get(ends.i.part, frozenset()) & ends.hinges.get(ends.j.part, frozenset())
     if len(carriers) != 1:
-        raise CadFault(f"line {item.line}, {name}: found {len(carriers)} parts on which both wheels turn by revolute joints, expected one")
+        raise CadFault(
+            f"line {item.line}, {name}: found {len(carriers)} parts on which both wheels turn by revolute joints, expected one"
+        )
     carrier = next(iter(carriers))
-    zeros = {
-        key: Seat(carrier, drawn.within(ends.frames[carrier])) for key, drawn in (("zero_i", ends.drawn_i), ("zero_j", ends.drawn_j))
-    }  # fmt: skip
-    sense = 1 if ends.drawn_i.axes[:, 2] @ ends.drawn_j.axes[:, 2] > 0 else -1
-    formula = f"az({{j}}, {{zero_j}}) + {sense * ratio!r}*az({{i}}, {{zero_i}})"
-    yield Tie(name, "equation", ends.i, ends.j, equation=formula, others=zeros)
+    z, line = ends.drawn_i.axes[:, 2], ends.drawn_j.position - ends.drawn_i.position
+    x = line - z * (z @ line)
+    length = float(np.linalg.norm(x))
+    if length == 0:
+        raise CadFault(f"line {item.line}, {name}: found the centres of both wheels on one axis, expected them apart")
+    centres = Frame(ends.drawn_i.position, np.column_stack([x / length, np.cross(z, x) / length, z]))
+    drawn = {"zero_i": ends.drawn_i, "zero_j": ends.drawn_j, "line": centres}
+    others = {key: Seat(carrier, frame.within(ends.frames[carrier])) for key, frame in drawn.items()}
+    sense = 1 if z @ ends.drawn_j.axes[:, 2] > 0 else -1
+    phi = "atan2(dy({j}, {i}, {line}), dx({j}, {i}, {line}))"
+    formula = f"az({{j}}, {{zero_j}}) + {ratio!r}*az({{i}}, {{zero_i}}) - {sense + ratio!r}*{phi}"
+    yield Tie(name, "equation", ends.i, ends.j, equation=formula, others=others)
 
 
 def _seen_from(outer: Frame, inner: Frame) -> np.ndarray:
@@ -143,3 +156,13 @@ OTHERS: dict[str, Callable[[str, Item, Ends], Iterator[Tie]]] = {
     "RevRevJoint": _hinged_rod, "AngleJoint": _angle, "ScrewJoint": _screw, "RackPinionJoint": _rack, "GearJoint": _gear,
 }  # fmt: skip
 """Joints that take other markers, lengths, or several joints of a scene."""
+
+
+def kind_of(item: Item) -> str:
+    """Return the kind of a joint, also of the remainder of its name that OndselSolver writes if GCC has compiled it."""
+    found = [kind for kind in (*SAME, *OTHERS) if item.label == f"N3MbD{len(kind) + 4}ASMT{kind}E"[CUT:]]
+    return found[0] if len(found) == 1 else item.label
+
+
+CUT = len("class MbD::ASMT")
+"""Characters that OndselSolver removes from the name of a joint's class, as MSVC writes it."""

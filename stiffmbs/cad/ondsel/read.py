@@ -17,7 +17,7 @@ from ...reading.files.requested import unused_notes
 from ...reading.files.yaml_text import Content
 from ...robots.robot import Link
 from ..assembly import WORLD, Assembly, CadFault, Frame, Part, Seat, Tie, rotation
-from .joints import Ends, joint
+from .joints import Ends, joint, kind_of
 from .tree import Item, tree
 
 SHAPES, STEPS, PICTURES = "shapes are not read", "the solver chooses its steps", "films are not read"
@@ -106,7 +106,7 @@ def _ties(
     hinges: dict[str | None, set[str | None]] = {}
     for item in joints:
         i, j = pairs[id(item)]
-        if item.label == "RevoluteJoint":
+        if kind_of(item) == "RevoluteJoint":
             hinges.setdefault(i.part, set()).add(j.part)
             hinges.setdefault(j.part, set()).add(i.part)
     alone, known = [], set[str]()
@@ -137,7 +137,7 @@ def _seat(item: Item, label: str, seats: Mapping[tuple[str, ...], Seat]) -> Seat
 
 def _drives(motions: list[Item], joints: list[Item], assembly: Item) -> Iterator[tuple[str, tuple[str, Content]]]:
     """Yield the drives: the coordinate of I relative to J is minus the motion of J relative to I."""
-    kinds = {one.text("Name"): one.label for one in joints}
+    kinds = {one.text("Name"): kind_of(one) for one in joints}
     start = _times(assembly)[0]
     for item in motions:
         name = item.text("Name")

@@ -13,6 +13,8 @@ from ..assembly import CadFault
 
 RESULTS = "TimeSeries"
 """Line after which the results of a run follow."""
+DEFAULTS = {"Assembly": {"Velocity3D": "0 0 0", "Omega3D": "0 0 0"}}
+"""Entries without effect by kind."""
 SPACES = 4
 """Spaces that are one step of indentation; OndselSolver writes tabs."""
 
@@ -38,7 +40,7 @@ class Item:
             item.kind, item.owner = f"{self.kind}/{item.label}".removeprefix("Assembly/").removeprefix("/"), self.owner
             item.close()
         values = {item.label: " ".join(low.label for low in item.below) for item in self.below if item.below}
-        self._fields = Fields(self.kind, self.owner, values)
+        self._fields = Fields(self.kind, self.owner, values, DEFAULTS.get(self.kind))
 
     def find(self, label: str) -> Item | None:
         """Return the first entry with a label."""
@@ -69,7 +71,7 @@ class Item:
         found = self.find(label)
         if found is None and default is not None:
             return default
-        text = "" if found is None else " ".join(item.label for item in found.below)
+        text = "" if found is None else " ".join(word for item in found.below for word in item.label.split())
         try:
             values = np.array([float(word.removesuffix("d")) for word in text.split()])
         except ValueError:
