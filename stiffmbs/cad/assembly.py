@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..elements.spatial.massless import BEYOND
 from ..elements.spatial.orientation import from_matrix
 from ..reading.files.xml_nodes import FileFault
 from ..reading.files.yaml_text import Content
@@ -17,6 +18,8 @@ ROUGH = 1e-3
 """Largest departure of a given rotation matrix from a rotation, for values written with few digits."""
 PARALLEL = 1e-9
 """Largest sine of the angle between directions that count as parallel."""
+LARGEST = 1e100
+"""Largest number of a file."""
 
 
 class CadFault(FileFault):
@@ -122,6 +125,13 @@ def off_axis(name: str, i: Seat, j: Seat, distance: float) -> Tie:
         return Tie(name, "point_on_line", i, j)
     formula = f"sqrt(dx({{i}}, {{j}}, {{j}})^2 + dy({{i}}, {{j}}, {{j}})^2) - {distance!r}"
     return Tie(name, "equation", i, j, equation=formula)
+
+
+def finite(where: str, values: np.ndarray) -> np.ndarray:
+    """Return numbers of a file; raise CadFault for some that are too large to compute with."""
+    if np.any(np.abs(values) > LARGEST):
+        raise CadFault(f"{where}: {BEYOND}")
+    return values
 
 
 def rotation(where: str, values: np.ndarray) -> np.ndarray:

@@ -12,6 +12,8 @@ from stiffmbs.elements.spatial.orientation import matrix
 from stiffmbs.errors import InputError
 from stiffmbs.results.listings import differences
 
+from .asmt_files import CRANK, MOTION
+
 DATA = Path(__file__).parents[1] / "data" / "cad"
 DISTANCES = ("gears", "links", "line", "table")
 """Mechanisms whose accelerations OndselSolver computes otherwise than as the rate of its velocities."""
@@ -54,70 +56,6 @@ def test_motion_and_forces_are_those_of_freecads_solver(name):
         np.testing.assert_allclose(sign * run[channel][rows][1:], stored[channel][1:], rtol=1e-8, atol=1e-8, err_msg=channel)
         compared += 1
     assert compared > 30
-
-
-CRANK = """\
-OndselSolver
-Assembly
-	Name
-		Rig
-	RefPoints
-		RefPoint
-			Position3D
-				0.1	0	0
-			Markers
-				Marker
-					Name
-						pivot
-	Parts
-		Part
-			Name
-				arm
-			Position3D
-				0.1	0	0
-			Omega3D
-				0	0	2
-			PrincipalMassMarker
-				Position3D
-					0.5	0	0
-				Mass
-					2
-				MomentOfInertias
-					0.01	0.2	0.2
-			RefPoints
-				RefPoint
-					Markers
-						Marker
-							Name
-								hub
-	ConstraintSets
-		Joints
-			RevoluteJoint
-				Name
-					hinge
-				MarkerI
-					/Rig/arm/hub
-				MarkerJ
-					/Rig/pivot
-		Motions
-	ConstantGravity
-		0	-9.81	0
-	SimulationParameters
-		tend
-			0.5
-		hout
-			0.1
-"""
-MOTION = """\
-		Motions
-			RotationalMotion
-				Name
-					motor
-				MotionJoint
-					/Rig/hinge
-				RotationZ
-					-2.0d*time
-"""
 
 
 def _read(tmp_path, text):

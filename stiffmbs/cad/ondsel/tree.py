@@ -9,7 +9,7 @@ import numpy as np
 
 from ...reading.files.quoted import quoted
 from ...reading.files.requested import Fields
-from ..assembly import CadFault
+from ..assembly import CadFault, finite
 
 RESULTS = "TimeSeries"
 """Line after which the results of a run follow."""
@@ -79,7 +79,7 @@ class Item:
         if len(values) != np.prod(shape) or not np.all(np.isfinite(values)):
             line = self.line if found is None else found.line
             raise CadFault(f"line {line}, {label}: found '{quoted(text)}', expected {int(np.prod(shape))} numbers")
-        return values.reshape(shape)
+        return finite(f"line {self.line}, {label}", values).reshape(shape)
 
     def number(self, label: str, default: float | None = None) -> float:
         """Return the number of an entry."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...reading.files.xml_nodes import Node
-from ..assembly import WORLD, CadFault, Frame, rotation
+from ..assembly import WORLD, CadFault, Frame, finite, rotation
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def numbers(where: str, node: Node, tag: str, count: int) -> np.ndarray:
     if len(found) != count or not np.all(np.isfinite(found)):
         what = f"{count} numbers" if count > 1 else "a number"
         raise CadFault(f"{where}: found <{tag}> '{text}', expected {what}")
-    return found
+    return finite(where, found)
 
 
 def tied(top: Instance) -> Iterator[tuple[Instance, Instance | None]]:
