@@ -19,15 +19,16 @@ from .assembly import Assembly
 from .scene import scene
 
 XML, ASMT = ".xml", ".asmt"
-_SIMSCAPE = re.compile(r"<(SimscapeMultibodyImportXML|PhysicalModelingXMLFile)\b")
-HEAD = 4000
-"""Characters at the start of an XML file in which its root element is looked for."""
+_SIMSCAPE = re.compile(
+    r"(?:\s|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>]*>)*<(?:SimscapeMultibodyImportXML|PhysicalModelingXMLFile)\b", re.DOTALL
+)
+"""Start of an XML file up to its root element."""
 
 
 def is_cad(path: str | Path) -> bool:
     """Return True for an .asmt file, and for an XML file whose root is one of Simscape Multibody."""
     suffix = Path(path).suffix.lower()
-    return suffix == ASMT or (suffix == XML and _SIMSCAPE.search(file_text(path)[:HEAD]) is not None)
+    return suffix == ASMT or (suffix == XML and _SIMSCAPE.match(file_text(path)) is not None)
 
 
 def load_cad(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:

@@ -23,7 +23,9 @@ def scene(assembly: Assembly) -> Content:
         called[part.name] = names.take(part.name)
     notes = list(assembly.notes)
     if not any(part.link.mass for part in assembly.parts):
-        assembly = replace(assembly, parts=tuple(replace(part, link=replace(part.link, mass=1.0)) for part in assembly.parts))
+        assembly = replace(
+            assembly, parts=tuple(replace(part, link=replace(part.link, mass=1.0)) for part in assembly.parts)
+        )
         notes.append("no part has a mass: each has 1 kg, so that the forces mean nothing")
     masses = Masses([part.link for part in assembly.parts], [part.placed for part in assembly.parts], "part")
     markers: dict[str, Content] = {}
@@ -38,7 +40,9 @@ def scene(assembly: Assembly) -> Content:
     for name, (joint, entry) in assembly.drives.items():
         coordinate = joints[joint] + entry.pop("coordinate", "")
         found["joints"][names.take(name)] = {"type": "drive", "joint": coordinate} | entry
-    found["bodies"] = {called[part.name]: _body(part, masses, markers.get(called[part.name])) for part in assembly.parts}
+    found["bodies"] = {
+        called[part.name]: _body(part, masses, markers.get(called[part.name])) for part in assembly.parts
+    }
     found["markers"] = markers.get(GROUND, {})
     found["run"] = assembly.run
     found["notes"] = [*notes, *_notes(assembly, called)]

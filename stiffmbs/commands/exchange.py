@@ -17,7 +17,9 @@ from .scene import CHANGES, assigned, file_beside, is_written, option, output_op
 DATASET, ASSEMBLY, AT = ".adm", ".asmt", "--at JOINT=VALUE with a number"
 
 
-@click.command(short_help="Write a dataset, a robot, an assembly, or a planar scene, as a scene; or a scene as a dataset or assembly.")
+@click.command(
+    short_help="Write a dataset, a robot, an assembly, or a planar scene, as a scene; or a scene as a dataset or assembly."
+)
 @click.argument("scene")
 @output_option("Scene file, dataset if it ends in .adm, or assembly if it ends in .asmt; by default standard output.")
 @option("--in-space", "Take a planar SCENE, and write it in the x-y plane of space.")

@@ -32,7 +32,9 @@ def _pose(run, body, centre, rows):
     return origin, np.array([turned @ w for turned, w in zip(axes, of("w"), strict=True)])
 
 
-@pytest.mark.parametrize("name", ["shafts", pytest.param("rods", marks=pytest.mark.long), pytest.param("plates", marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "name", ["shafts", pytest.param("rods", marks=pytest.mark.long), pytest.param("plates", marks=pytest.mark.long)]
+)
 def test_motion_and_forces_are_those_of_freecads_solver(name):
     """Positions and velocities of all parts, and the force and torque of each joint, at each output time."""
     path = DATA / f"{name}.asmt"
@@ -53,7 +55,9 @@ def test_motion_and_forces_are_those_of_freecads_solver(name):
         sign = -1 if joint in ON_J else 1
         if joint.endswith("motor") or joint == "jack":  # its torque is about another point
             continue
-        np.testing.assert_allclose(sign * run[channel][rows][1:], stored[channel][1:], rtol=1e-8, atol=1e-8, err_msg=channel)
+        np.testing.assert_allclose(
+            sign * run[channel][rows][1:], stored[channel][1:], rtol=1e-8, atol=1e-8, err_msg=channel
+        )
         compared += 1
     assert compared > 30
 
@@ -118,13 +122,19 @@ def test_what_is_wrong_is_named(tmp_path, old, new, message):
 
 def test_entries_without_effect_are_noted(tmp_path):
     """Limits change the motion of FreeCAD's solver; none is dropped without a word."""
-    limited = CRANK.replace("\tConstantGravity", "\t\tLimits\n\t\t\tRotationLimit\n\t\t\t\tName\n\t\t\t\t\tstop\n\tConstantGravity")
+    limited = CRANK.replace(
+        "\tConstantGravity", "\t\tLimits\n\t\t\tRotationLimit\n\t\t\t\tName\n\t\t\t\t\tstop\n\tConstantGravity"
+    )
     notes = " ".join(_read(tmp_path, limited.replace("\t\ttend", "\t\thmax\n\t\t\t1\n\t\ttend")).notes)
     assert "ConstraintSets Limits" in notes and "SimulationParameters hmax" in notes
 
 
 def test_parts_without_mass_move_by_their_joints_alone(tmp_path):
-    massless = CRANK.replace("\t\tMotions\n", MOTION).replace("\t\t\t\t\t2\n", "\t\t\t\t\t0\n").replace("0.01	0.2	0.2", "0	0	0")
+    massless = (
+        CRANK.replace("\t\tMotions\n", MOTION)
+        .replace("\t\t\t\t\t2\n", "\t\t\t\t\t0\n")
+        .replace("0.01	0.2	0.2", "0	0	0")
+    )
     scene = _read(tmp_path, massless)
     assert any("each has 1 kg" in note for note in scene.notes)
     np.testing.assert_allclose(stiffmbs.run(scene)["arm.wz"], 2.0, rtol=1e-9)

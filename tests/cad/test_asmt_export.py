@@ -42,7 +42,9 @@ def test_a_scene_is_the_same_after_a_file(tmp_path):
     np.testing.assert_allclose(other.t, one.t)
     for body in ("crank", "beam", "nut", "float"):
         for what in ("x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz"):
-            np.testing.assert_allclose(other[f"{body}.{what}"], one[f"{body}.{what}"], atol=1e-7, err_msg=f"{body}.{what}")
+            np.testing.assert_allclose(
+                other[f"{body}.{what}"], one[f"{body}.{what}"], atol=1e-7, err_msg=f"{body}.{what}"
+            )
     np.testing.assert_allclose(other["hinge.fx"], one["hinge.fx"], atol=1e-5)
 
 
@@ -51,9 +53,11 @@ def test_a_law_that_the_solver_cannot_read_is_not_written():
     assert any("joint motor (its coordinate or its law)" in note for note in written_assembly(scene).notes)
 
 
-@pytest.mark.parametrize("kind", ["universal", "cylindrical", "prismatic", "planar", "parallel", "perpendicular", "fixed", "orientation"])
+@pytest.mark.parametrize(
+    "kind", ["universal", "cylindrical", "prismatic", "planar", "parallel", "perpendicular", "fixed", "orientation"]
+)
 def test_joints_are_written_and_read_as_they_are(tmp_path, kind):
-    turned = ', orientation: {z: [1, 0, 0]}' if kind in ("universal", "perpendicular") else ""
+    turned = ", orientation: {z: [1, 0, 0]}" if kind in ("universal", "perpendicular") else ""
     text = (
         "{dimensions: 3, bodies: {a: {mass: 1, inertia: [1, 1, 1]}}, joints: {j: {type: "
         f"{kind}, i: {{body: a, point: [0.1, 0, 0]}}, j: {{body: ground, point: [0.1, 0, 0]{turned}}}}}}}}}"

@@ -48,7 +48,9 @@ def test_units_of_the_file_are_converted(tmp_path):
     """Without units of the data, those of the model count: g and mm here, as Creo writes kg and mm."""
     units = '<ModelUnits mass="gram" length="millimeter"/>'
     text = document(
-        instance("bob", "arm", "100 0 0"), parts=part("arm", "2000", "100 0 0", "1e7 2e7 3e7 0 0 1e6", units), units=units
+        instance("bob", "arm", "100 0 0"),
+        parts=part("arm", "2000", "100 0 0", "1e7 2e7 3e7 0 0 1e6", units),
+        units=units,
     )
     body = _read(tmp_path, text).bodies["bob"]
     assert body.mass == pytest.approx(2) and tuple(body.position) == pytest.approx((0.1, 0, 0))
@@ -116,11 +118,21 @@ def test_each_mate_is_the_joint_that_it_is(tmp_path, mate, one, other, kinds, fr
 
 @pytest.mark.parametrize(
     ("kind", "freedoms"),
-    [("Weld", 0), ("Revolute", 1), ("Prismatic", 1), ("Cylindrical", 2), ("Spherical", 3), ("Planar", 3), ("PinSlot", 2)],
+    [
+        ("Weld", 0),
+        ("Revolute", 1),
+        ("Prismatic", 1),
+        ("Cylindrical", 2),
+        ("Spherical", 3),
+        ("Planar", 3),
+        ("PinSlot", 2),
+    ],
 )
 def test_joints_of_onshape_leave_their_freedoms(tmp_path, kind, freedoms):
     text = document(
-        BASE + instance("bob", "arm", "0.1 0 0"), joints=joint(kind, "j", "base", "bob", "0.1 0.2 0", "0 0.2 0"), parts=part("block") + part("arm")
+        BASE + instance("bob", "arm", "0.1 0 0"),
+        joints=joint(kind, "j", "base", "bob", "0.1 0.2 0", "0 0.2 0"),
+        parts=part("block") + part("arm"),
     )
     scene = _read(tmp_path, text)
     assert stiffmbs.check(scene).degrees_of_freedom == freedoms
@@ -129,7 +141,13 @@ def test_joints_of_onshape_leave_their_freedoms(tmp_path, kind, freedoms):
         assert run["bob.az"][0] == pytest.approx(0, abs=1e-9)
 
 
-NESTED = instance("hand", "gripper", "0 0 1", "0 -1 0 1 0 0 0 0 1", instance("palm", "arm", "0.1 0 0", grounded="true") + instance("tip", "arm", "0.1 0.2 0"))
+NESTED = instance(
+    "hand",
+    "gripper",
+    "0 0 1",
+    "0 -1 0 1 0 0 0 0 1",
+    instance("palm", "arm", "0.1 0 0", grounded="true") + instance("tip", "arm", "0.1 0.2 0"),
+)
 GRIPPER = '<Assembly name="gripper" uid="gripper"><Constraints/><Joints>' + joint("Revolute", "knuckle", "palm", "tip", "0 0.2 0", "0 0 0") + "</Joints></Assembly>"  # fmt: skip
 
 
@@ -137,10 +155,10 @@ def test_joints_of_a_subassembly_are_in_each_of_its_instances(tmp_path):
     """A hand turned by 90 deg about z at z = 1, with a tip on its palm; a joint to the hand is one to its palm."""
     second = NESTED.replace('"hand"', '"other"').replace("<Translation>0 0 1<", "<Translation>0 0 2<")
     text = document(
-        BASE + NESTED + second, joints=joint("Weld", "wrist", "base", "hand", "0 0 1", "0 0 0", "0 -1 0 1 0 0 0 0 1".replace("0 -1 0 1 0 0 0 0 1", "1 0 0 0 1 0 0 0 1")),
+        BASE + NESTED + second, joints=joint("Weld", "wrist", "base", "hand", "0 0 1", "0 0 0"),
         parts=part("block") + part("arm"), assemblies=GRIPPER,
     )  # fmt: skip
-    with pytest.raises(InputError, match="wrist.*(drawn 90 degrees|degrees apart)"):
+    with pytest.raises(InputError, match=r"wrist.*degrees apart"):
         _read(tmp_path, text)
     scene = _read(tmp_path, text.replace("Weld", "Spherical"))
     assert tuple(scene.bodies["hand_tip"].position) == pytest.approx((-0.2, 0.1, 1))
@@ -183,7 +201,9 @@ def test_parts_without_mass_and_mates_are_left_out(tmp_path):
 def test_names_without_letters_of_scenes_have_a_word(tmp_path):
     text = CART.replace('"rail"', '"同心1"').replace('"cart"', '"小车"').replace("<Uid>cart<", "<Uid>小车<")
     scene = _read(tmp_path, text)
-    assert any(name.startswith("part_") for name in scene.bodies) and any(name.startswith("Concentric_") for name in scene.joints)
+    assert any(name.startswith("part_") for name in scene.bodies) and any(
+        name.startswith("Concentric_") for name in scene.joints
+    )
 
 
 @pytest.mark.parametrize(

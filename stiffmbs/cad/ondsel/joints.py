@@ -105,7 +105,9 @@ def _screw(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
 def _rack(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
     """Yield x + R theta = constant: J's displacement along x of the rack I, and its angle about z, as drawn at the start."""
     radius = _not_zero(name, item, "pitchRadius")
-    aligned = Seat(ends.i.part, Frame(ends.i.frame.position, ends.i.frame.axes @ _seen_from(ends.drawn_i, ends.drawn_j)))
+    aligned = Seat(
+        ends.i.part, Frame(ends.i.frame.position, ends.i.frame.axes @ _seen_from(ends.drawn_i, ends.drawn_j))
+    )
     x = float(ends.drawn_i.axes[:, 0] @ (ends.drawn_j.position - ends.drawn_i.position))
     formula = f"dx({{j}}, {{i}}, {{i}}) + {radius!r}*az({{j}}, {{zero}}) - {x!r}"
     yield Tie(name, "equation", ends.i, ends.j, equation=formula, others={"zero": aligned})
@@ -114,8 +116,8 @@ def _rack(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
 def _gear(name: str, item: Item, ends: Ends) -> Iterator[Tie]:
     """Yield theta_J + (r_I/r_J) theta_I = (s + r_I/r_J) phi, with s = 1 for z axes of one direction and -1 for opposite ones.
 
-    The angles theta of the wheels and phi of the line of their centres start at zero, and are relative to the part on
-    which both turn by revolute joints; phi remains zero, but the force between the teeth is its gradient.
+    The angles theta of the wheels and phi of the line of their centres start at zero. They are relative to the part on
+    which both wheels turn by revolute joints. The angle phi remains zero; its gradient is the force between the teeth.
     """
     ratio = _not_zero(name, item, "radiusI") / _not_zero(name, item, "radiusJ")
     carriers = ends.hinges.get(ends.i.part, frozenset()) & ends.hinges.get(ends.j.part, frozenset())

@@ -68,7 +68,9 @@ def read_asmt(text: str) -> Assembly:
 
 def _frame(item: Item, outer: Frame) -> Frame:
     turned = item.numbers("RotationMatrix", (3, 3), np.eye(3))
-    return Frame(item.numbers("Position3D", (3,), np.zeros(3)), rotation(f"line {item.line}, RotationMatrix", turned)).on(outer)
+    return Frame(
+        item.numbers("Position3D", (3,), np.zeros(3)), rotation(f"line {item.line}, RotationMatrix", turned)
+    ).on(outer)
 
 
 def _part(item: Item, world: Frame) -> Part:
@@ -91,7 +93,10 @@ def _part(item: Item, world: Frame) -> Part:
 def _markers(assembly: Item, parts: tuple[Part, ...], world: Frame) -> Iterator[tuple[tuple[str, ...], Seat]]:
     """Yield the markers by their names, with that of the part before it."""
     owners = [item for item in assembly.each("Parts") if item.label == "Part"]
-    for part, item, frame in ((None, assembly, world), *((one.name, item, WORLD) for one, item in zip(parts, owners, strict=True))):
+    for part, item, frame in (
+        (None, assembly, world),
+        *((one.name, item, WORLD) for one, item in zip(parts, owners, strict=True)),
+    ):
         for point in item.each("RefPoints"):
             outer = _frame(point, frame)
             for marker in point.each("Markers"):
@@ -119,7 +124,9 @@ def _ties(
             alone.append(name)
             continue
         drawn = [seat.frame.on(frames[seat.part]) for seat in (i, j)]
-        yield from joint(name, item, Ends(i, j, *drawn, {part: frozenset(found) for part, found in hinges.items()}, frames))
+        yield from joint(
+            name, item, Ends(i, j, *drawn, {part: frozenset(found) for part, found in hinges.items()}, frames)
+        )
     if alone:
         notes.append(f"joints with both markers on one part are left out: {listed(alone)}")
 

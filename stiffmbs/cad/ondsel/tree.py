@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
@@ -15,7 +16,7 @@ RESULTS = "TimeSeries"
 """Line after which the results of a run follow."""
 DEFAULTS = {"Assembly": {"Velocity3D": "0 0 0", "Omega3D": "0 0 0"}}
 """Entries without effect by kind."""
-SPACES = 4
+SPACES: Final = 4
 """Spaces that are one step of indentation; OndselSolver writes tabs."""
 
 

@@ -21,7 +21,10 @@ from ..assembly import WORLD, Frame
 from .joints import SAME
 from .read import COORDINATES, FUNCTIONS, LAW
 
-KINDS = {kind: name for name, kind in SAME.items() if name != "AtPointJoint"} | {"planar": "PlanarJoint", "thread": "ScrewJoint"}
+KINDS = {kind: name for name, kind in SAME.items() if name != "AtPointJoint"} | {
+    "planar": "PlanarJoint",
+    "thread": "ScrewJoint",
+}
 """Joints of the file by those of a scene between the same markers."""
 ON_J = {"point_on_line": "PointInLineJoint", "point_on_plane": "PointInPlaneJoint"}
 """Joints whose marker I is the scene's marker j."""
@@ -46,12 +49,20 @@ def written_assembly(scene: SpatialData, source: str = "scene") -> WrittenAssemb
     `source`: name of the scene in messages. Raises InputError for a scene with bodies that are not rigid.
     """
     if flexible := [name for name, body in scene.bodies.items() if not body.rigid]:
-        raise InputError(f"{source}: found the flexible bodies {listed(flexible)}, expected rigid ones in an .asmt file")
+        raise InputError(
+            f"{source}: found the flexible bodies {listed(flexible)}, expected rigid ones in an .asmt file"
+        )
     writer = _Writer(scene)
     lines = [*writer.assembly()]
-    lost = [f"{section[:-1] if section != 'variables' else 'variable'} {listed(list(found))}" for section in WITHOUT if (found := getattr(scene, section, None))]
+    lost = [
+        f"{section[:-1] if section != 'variables' else 'variable'} {listed(list(found))}"
+        for section in WITHOUT
+        if (found := getattr(scene, section, None))
+    ]
     lost += [f"joint {name} ({reason})" for name, reason in writer.lost.items()]
-    return WrittenAssembly("\n".join(lines) + "\n", tuple(f"not written (an .asmt file has nothing of this kind): {one}" for one in lost))
+    return WrittenAssembly(
+        "\n".join(lines) + "\n", tuple(f"not written (an .asmt file has nothing of this kind): {one}" for one in lost)
+    )
 
 
 class _Writer:
@@ -60,14 +71,18 @@ class _Writer:
     def __init__(self, scene: SpatialData) -> None:
         self.scene = scene
         self.lost: dict[str, str] = {}
-        self.frames = {name: Frame(np.array(body.position), matrix(body.orientation)) for name, body in scene.bodies.items()}
+        self.frames = {
+            name: Frame(np.array(body.position), matrix(body.orientation)) for name, body in scene.bodies.items()
+        }
         self.markers: dict[str, list[tuple[str, Frame]]] = {name: [] for name in (GROUND, *scene.bodies)}
         self.name = "Assembly1"
 
     def assembly(self) -> Iterator[str]:
         """Yield the lines of the file."""
         drives = {name: joint for name, joint in self.scene.joints.items() if joint.kind == "drive"}
-        joints = [line for name, joint in self.scene.joints.items() if name not in drives for line in self._joint(name, joint)]
+        joints = [
+            line for name, joint in self.scene.joints.items() if name not in drives for line in self._joint(name, joint)
+        ]
         motions = [line for name, drive in drives.items() for line in self._motion(name, drive)]
         yield from ("OndselSolver", "Assembly")
         yield from _entry(1, "Notes", "(Text string: '' runs: (Core.RunArray runs: #() values: #()))")
@@ -86,10 +101,24 @@ class _Writer:
         end = run.duration if run is not None else 1.0
         points = run.points if run is not None and isinstance(run.points, int) else DEFAULT_POINTS
         step = (run.output if run is not None else None) or end / (points - 1)
-        for key, value in (("tstart", 0.0), ("tend", end), ("hmin", 1e-9), ("hmax", end), ("hout", step), ("errorTol", 1e-6)):
+        for key, value in (
+            ("tstart", 0.0),
+            ("tend", end),
+            ("hmin", 1e-9),
+            ("hmax", end),
+            ("hout", step),
+            ("errorTol", 1e-6),
+        ):
             yield from _entry(2, key, repr(float(value)))
         yield "\tAnimationParameters"
-        for key, word in (("nframe", "2"), ("icurrent", "1"), ("istart", "1"), ("iend", "2"), ("isForward", "true"), ("framesPerSecond", "30")):
+        for key, word in (
+            ("nframe", "2"),
+            ("icurrent", "1"),
+            ("istart", "1"),
+            ("iend", "2"),
+            ("isForward", "true"),
+            ("framesPerSecond", "30"),
+        ):
             yield from _entry(2, key, word)
 
     def _part(self, name: str, body: Any) -> Iterator[str]:
@@ -100,7 +129,12 @@ class _Writer:
         yield "\t\tPart"
         yield from _entry(3, "Name", name)
         yield from _pose(3, frame)
-        yield from (*_row(3, "Velocity3D", velocity), *_row(3, "Omega3D", omega), "\t\t\tFeatureOrder", "\t\t\tPrincipalMassMarker")
+        yield from (
+            *_row(3, "Velocity3D", velocity),
+            *_row(3, "Omega3D", omega),
+            "\t\t\tFeatureOrder",
+            "\t\t\tPrincipalMassMarker",
+        )
         yield from _entry(4, "Name", "MassMarker")
         yield from _pose(4, Frame(centre, matrix(body.principal_axes())))
         yield from _entry(4, "Mass", repr(float(body.mass)))
@@ -114,7 +148,12 @@ class _Writer:
         for marker, frame in self.markers[name]:
             yield f"{tabs}\tRefPoint"
             yield from _pose(level + 2, WORLD)
-            yield from (f"{tabs}\t\tMarkers", f"{tabs}\t\t\tMarker", *_entry(level + 4, "Name", marker), *_pose(level + 4, frame))
+            yield from (
+                f"{tabs}\t\tMarkers",
+                f"{tabs}\t\t\tMarker",
+                *_entry(level + 4, "Name", marker),
+                *_pose(level + 4, frame),
+            )
         yield from (f"{tabs}RefCurves", f"{tabs}RefSurfaces")
 
     def _joint(self, name: str, joint: Any) -> Iterator[str]:
@@ -123,7 +162,9 @@ class _Writer:
             fields = {"offset": 0.0} if kind == "planar" else {"pitch": joint.pitch} if kind == "thread" else {}
             yield from self._between(name, KINDS[kind], joint.i, joint.j, fields)
         elif kind in ON_J:
-            yield from self._between(name, ON_J[kind], joint.j, joint.i, {"offset": 0.0} if kind == "point_on_plane" else {})
+            yield from self._between(
+                name, ON_J[kind], joint.j, joint.i, {"offset": 0.0} if kind == "point_on_plane" else {}
+            )
         elif kind == "distance":
             yield from self._between(name, ROD, joint.i, joint.j, {"distanceIJ": joint.length})
         elif kind == "screw":
@@ -143,7 +184,10 @@ class _Writer:
     def _marked(self, name: str, marker: Any) -> str:
         """Add a marker at its initial pose; return its path."""
         drawn = self.scene.initial_marker(marker)
-        frame = Frame(np.array(drawn.point, dtype=float).ravel(), np.column_stack([np.ravel(drawn.x), np.ravel(drawn.y), np.ravel(drawn.z)]).astype(float))
+        frame = Frame(
+            np.array(drawn.point, dtype=float).ravel(),
+            np.column_stack([np.ravel(drawn.x), np.ravel(drawn.y), np.ravel(drawn.z)]).astype(float),
+        )
         body = marker.body
         self.markers[body].append((name, frame.within(self.frames.get(body, WORLD))))
         return f"/{self.name}/{name}" if body == GROUND else f"/{self.name}/{body}/{name}"
@@ -174,9 +218,9 @@ class _Writer:
                 node.id = OF_LAWS.get(node.id, repr(float(parameters[node.id])) if node.id in parameters else "")
                 if not node.id:
                     return None
-            elif isinstance(node, ast.operator | ast.unaryop) and not isinstance(node, OPERATIONS):
-                return None
-            elif not isinstance(node, ast.expr | ast.expr_context | ast.operator | ast.unaryop):
+            elif (isinstance(node, ast.operator | ast.unaryop) and not isinstance(node, OPERATIONS)) or not isinstance(
+                node, ast.expr | ast.expr_context | ast.operator | ast.unaryop
+            ):
                 return None
         return f"-1.0*({ast.unparse(tree)})"
 

@@ -73,7 +73,9 @@ class Ends:
         drawn = frame.on(one.frame)
         part = None if one is self.top else one.carrier()
         if part is None and one is not self.top:
-            raise CadFault(f"{where}: found the subassembly {one.label} without a part that is fixed in it, expected one")
+            raise CadFault(
+                f"{where}: found the subassembly {one.label} without a part that is fixed in it, expected one"
+            )
         if part is None:
             return End(shape, Seat(None, drawn), drawn)
         seat = Seat(part.label, frame if part is one else drawn.within(part.frame))

@@ -8,6 +8,7 @@ Simscape Multibody User's Guide, 'CAD Translation'.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import Final
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from .instances import Instance, numbers, readable, tied, tree
 from .mates import Left, joint, mate
 
 ROOT, FIRST = "SimscapeMultibodyImportXML", "PhysicalModelingXMLFile"
-GRAVITY = (0.0, 0.0, -9.80665)
+GRAVITY: Final = (0.0, 0.0, -9.80665)
 """Gravity that smimport gives a model, m/s^2; the files state none."""
 RUN = {"duration": 1, "output": 0.01}
 """Default run settings, which the files lack."""
@@ -48,7 +49,11 @@ def read_simscape(text: str) -> Assembly:
     """
     root = parsed(text, "Simscape Multibody XML", {})
     if root.tag != ROOT:
-        what = " of the first generation, expected one of the second: export it again" if root.tag == FIRST else f", expected <{ROOT}>"
+        what = (
+            " of the first generation, expected one of the second: export it again"
+            if root.tag == FIRST
+            else f", expected <{ROOT}>"
+        )
         raise CadFault(f"found <{root.tag}>{what}")
     assembly = root.find("RootAssembly")
     if assembly is None:
@@ -99,7 +104,9 @@ def _links(root: Node, units: tuple[float, float] | None, length: float) -> Iter
         known.add(uid)
         kg, m = units or _units(node.find("ModelUnits"), where)
         if m != length:
-            raise CadFault(f"{where}: found another unit of length than that of the assembly, expected one: set it in the part")
+            raise CadFault(
+                f"{where}: found another unit of length than that of the assembly, expected one: set it in the part"
+            )
         mass, centre, inertia = 0.0, np.zeros(3), np.zeros((3, 3))
         if (properties := node.find("MassProperties")) is not None:
             mass = float(numbers(where, properties, "Mass", 1)[0]) * kg
@@ -108,7 +115,12 @@ def _links(root: Node, units: tuple[float, float] | None, length: float) -> Iter
             inertia = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
         if mass < 0:
             raise CadFault(f"{where}: found a mass of {mass:g} kg, expected 0 or more")
-        yield uid, Link(where.removeprefix("part "), None, mass=mass, center_of_mass=tuple(map(float, centre)), inertia=inertia)
+        yield (
+            uid,
+            Link(
+                where.removeprefix("part "), None, mass=mass, center_of_mass=tuple(map(float, centre)), inertia=inertia
+            ),
+        )
 
 
 def _parts(top: Instance, links: Mapping[str, Link], notes: list[str]) -> Iterator[Part]:
@@ -129,7 +141,10 @@ def _rigid(top: Instance) -> Iterator[Tie]:
             yield Tie(f"{part.label}_ground", "fixed", Seat(part.label, WORLD), Seat(None, part.frame))
         else:
             yield Tie(
-                f"{part.label}_rigid", "fixed", Seat(part.label, WORLD), Seat(other.label, part.frame.within(other.frame))
+                f"{part.label}_rigid",
+                "fixed",
+                Seat(part.label, WORLD),
+                Seat(other.label, part.frame.within(other.frame)),
             )
 
 

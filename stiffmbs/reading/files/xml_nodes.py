@@ -29,10 +29,7 @@ class Node:
         children = {_child(child.tag): child.tag for child in element}
         own = {name: value for name, value in element.attrib.items() if not name.startswith("xmlns")}
         self._fields = Fields(kind, owner, {**own, **children}, (defaults or {}).get(kind))
-        self._children = [
-            Node(child, f"{below}{child.tag}", child.get("name") or owner, defaults)
-            for child in element
-        ]
+        self._children = [Node(child, f"{below}{child.tag}", child.get("name") or owner, defaults) for child in element]
 
     def get(self, name: str, default: str | None = None) -> str | None:
         """Return an attribute."""
