@@ -145,3 +145,11 @@ def test_results_of_a_file_are_a_listing():
     run = stiffmbs.run(load_cad(DATA / "shafts.asmt"), rtol=1e-9)
     found = {one.channel: one.relative for one in differences(run, DATA / "shafts.asmt", {})}
     assert found["rack_teeth.fx"] < 1e-9 and found["screw_sleeve.fx"] < 1e-9
+
+
+def test_the_force_between_teeth_acts_at_the_pitch_radius():
+    """The torque of the mesh on wheel I is the force times its radius of 0.2 m, and the axles carry the force."""
+    run = stiffmbs.run(load_cad(DATA / "shafts.asmt"), rtol=1e-9)
+    force = np.hypot(run["gears_mesh.fx"], run["gears_mesh.fy"])
+    assert np.max(force) > 1
+    np.testing.assert_allclose(0.2 * force, np.abs(run["gears_mesh.tz"]), rtol=1e-4)
