@@ -65,13 +65,14 @@ def _exported(
     from ..adams.load import COMMANDS
     from ..analyses.in_space import in_space
     from ..analyses.load_scene import ROBOTS, load_scene
+    from ..cad.load import is_cad
     from ..cad.ondsel.write import written_assembly
     from ..model.spatial_scene import SpatialScene
     from ..robots.load import load_robot
 
     commands = output.with_suffix(COMMANDS) if output.suffix.lower() == DATASET else None
     refuse_own_input("-o", path, commands)
-    if coordinates and Path(path).suffix.lower() in ROBOTS:
+    if coordinates and Path(path).suffix.lower() in ROBOTS and not is_cad(path):
         scene = load_robot(path, changes, coordinates=assigned(AT, coordinates, float))
     else:
         scene = load_scene(path, changes)
