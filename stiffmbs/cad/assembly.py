@@ -93,8 +93,8 @@ class Tie:
 class Assembly:
     """Parts with the joints between them.
 
-    `gravity`: m/s^2. `drives`: entries of drives by name, without the names of their joints, and the joints that they
-    drive. `run`: settings of the run. `notes`: omitted content.
+    `gravity`: m/s^2. `drives`: by name, the joint, its coordinate such as ``.angle`` or nothing, and the position as a
+    formula. `run`: settings of the run. `notes`: omitted content.
     """
 
     name: str
@@ -102,7 +102,7 @@ class Assembly:
     ties: tuple[Tie, ...]
     gravity: tuple[float, ...]
     run: Content
-    drives: Mapping[str, tuple[str, Content]] = field(default_factory=dict)
+    drives: Mapping[str, tuple[str, str, str]] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
 

@@ -37,9 +37,8 @@ def scene(assembly: Assembly) -> Content:
         "gravity": vector(assembly.gravity),
         "joints": {name: _joint(tie, name, called, markers) for name, tie in ties},
     }
-    for name, (joint, entry) in assembly.drives.items():
-        coordinate = joints[joint] + entry.pop("coordinate", "")
-        found["joints"][names.take(name)] = {"type": "drive", "joint": coordinate} | entry
+    for name, (joint, coordinate, law) in assembly.drives.items():
+        found["joints"][names.take(name)] = {"type": "drive", "joint": joints[joint] + coordinate, "position": law}
     found["bodies"] = {
         called[part.name]: _body(part, masses, markers.get(called[part.name])) for part in assembly.parts
     }

@@ -36,7 +36,6 @@ COORDINATES = {
 LAW = {"RotationalMotion": "RotationZ", "TranslationalMotion": "TranslationZ"}
 FUNCTIONS = {"arcsin": "asin", "arctan": "atan", "asin": "asin", "sin": "sin", "cos": "cos", "abs": "abs"}
 """Functions of motions by their names in a scene."""
-_WORD = re.compile(r"[A-Za-z_]\w*")
 _NUMBER = re.compile(r"(?<![\w.])((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)d(?!\w)")
 
 
@@ -52,7 +51,7 @@ def read_asmt(text: str) -> Assembly:
         raise CadFault("found two parts of one name, expected one of each")
     seats = dict(_markers(item, parts, world))
     sets = item.find("ConstraintSets")
-    ties, notes, drives = [], list[str](), dict[str, tuple[str, Content]]()
+    ties, notes, drives = [], list[str](), dict[str, tuple[str, str, str]]()
     if sets is not None:
         joints = sets.each("Joints")
         ties = list(_ties(joints, seats, frames, notes))
@@ -142,7 +141,7 @@ def _seat(item: Item, label: str, seats: Mapping[tuple[str, ...], Seat]) -> Seat
     raise CadFault(f"line {item.line}, {label}: found {quoted(path)}, expected the path of a marker")
 
 
-def _drives(motions: list[Item], joints: list[Item], assembly: Item) -> Iterator[tuple[str, tuple[str, Content]]]:
+def _drives(motions: list[Item], joints: list[Item], assembly: Item) -> Iterator[tuple[str, tuple[str, str, str]]]:
     """Yield the drives: the coordinate of I relative to J is minus the motion of J relative to I."""
     kinds = {one.text("Name"): kind_of(one) for one in joints}
     start = _times(assembly)[0]
@@ -157,7 +156,7 @@ def _drives(motions: list[Item], joints: list[Item], assembly: Item) -> Iterator
             expected = " or ".join(COORDINATES[item.label])
             raise CadFault(f"{where}: found a motion of {of}, expected one of a {expected} of the file")
         law = _law(where, item.text(LAW[item.label]), start)
-        yield name, (of, {"coordinate": coordinate, "position": f"-({law})"})
+        yield name, (of, coordinate, f"-({law})")
 
 
 def _law(where: str, text: str, start: float) -> str:
