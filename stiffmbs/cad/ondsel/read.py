@@ -113,6 +113,7 @@ def _ties(
         if kind_of(item) == "RevoluteJoint":
             hinges.setdefault(i.part, set()).add(j.part)
             hinges.setdefault(j.part, set()).add(i.part)
+    turning = {part: frozenset(found) for part, found in hinges.items()}
     alone, known = [], set[str]()
     for item in joints:
         (i, j), name = pairs[id(item)], item.text("Name")
@@ -122,10 +123,8 @@ def _ties(
         if i.part == j.part:
             alone.append(name)
             continue
-        drawn = [seat.frame.on(frames[seat.part]) for seat in (i, j)]
-        yield from joint(
-            name, item, Ends(i, j, *drawn, {part: frozenset(found) for part, found in hinges.items()}, frames)
-        )
+        drawn_i, drawn_j = (seat.frame.on(frames[seat.part]) for seat in (i, j))
+        yield from joint(name, item, Ends(i, j, drawn_i, drawn_j, turning, frames))
     if alone:
         notes.append(f"joints with both markers on one part are left out: {listed(alone)}")
 

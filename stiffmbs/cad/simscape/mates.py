@@ -38,8 +38,16 @@ CONCENTRIC: dict[tuple[str, str], tuple[str, ...]] = {
     **dict.fromkeys([(LINE, LINE), (CIRCLE, LINE), (CIRCLE, CIRCLE)], ("cylindrical",)),
     (POINT, LINE): ("point_on_line",), (POINT, CIRCLE): ("point_on_line",), (POINT, POINT): ("spherical",),
 }  # fmt: skip
-PARALLEL_TO = {(LINE, LINE): ("parallel",), (PLANE, PLANE): ("parallel",), (LINE, PLANE): ("perpendicular",)}
-ACROSS = {(LINE, LINE): ("perpendicular",), (PLANE, PLANE): ("perpendicular",), (LINE, PLANE): ("parallel",)}
+PARALLEL_TO: dict[tuple[str, str], tuple[str, ...]] = {
+    (LINE, LINE): ("parallel",),
+    (PLANE, PLANE): ("parallel",),
+    (LINE, PLANE): ("perpendicular",),
+}
+ACROSS: dict[tuple[str, str], tuple[str, ...]] = {
+    (LINE, LINE): ("perpendicular",),
+    (PLANE, PLANE): ("perpendicular",),
+    (LINE, PLANE): ("parallel",),
+}
 BY_SHAPES: dict[str, dict[tuple[str, str], tuple[str, ...]]] = {
     "Coincident": COINCIDENT, "Concentric": CONCENTRIC, "Parallel": PARALLEL_TO, "Perpendicular": ACROSS,
 }  # fmt: skip
