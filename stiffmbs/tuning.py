@@ -18,7 +18,7 @@ from types import FunctionType, MappingProxyType
 from typing import Any, TypeVar, cast
 
 SUBSYSTEMS = {
-    "auto": "solve.auto_decisions:AUTO",
+    "auto": "solve.auto:AUTO",
     "chattering": "solve.events.chattering:CHATTERING",
     "consistency": "dynamics.native.parameters:CONSISTENCY",
     "cost": "solve.cost:COSTS",
@@ -43,7 +43,6 @@ SUBSYSTEMS = {
     "kinematic": "solve.driven_states:KINEMATIC",
     "linear_analysis": "linear_analysis.parameters:LINEAR_ANALYSIS",
     "linear_solver": "solve.ida.choice:COSTS",
-    "long_steps": "solve.events.long_steps:LONG_STEP",
     "loop": "solve.ida.native.parameters:LOOP",
     "matrices": "sparse.parameters:MATRICES",
     "narrow_inputs": "solve.events.narrow_inputs:NARROW_INPUTS",

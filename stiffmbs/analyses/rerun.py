@@ -19,7 +19,7 @@ import numpy as np
 
 from ..dynamics.dynamics import OutputRows
 from ..notes import Note, NoteKind, Severity
-from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_in_long_steps, together
+from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_in_whole_steps, together
 from ..solve.error_control.relaxation import DRIFT, Drift, drift_of, drifts
 from ..solve.settings import traits_of
 from ..solve.trajectory import Outcome, Trajectory
@@ -108,14 +108,14 @@ def _longest_step(missed: Sequence[Overlooked]) -> float:
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
-    """Return the missed events that output instants, or instants within long steps, show."""
+    """Return the missed events that output instants, or instants within steps with Python functions, show."""
     system, trajectory = job.dynamics.system, computed.trajectory
     if not system.has_laws:
         return None
-    long_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.long_steps
+    whole_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.whole_steps
     found = [
         overlooked(job.dynamics, computed.rows, trajectory, job.settings),
-        *(overlooked_in_long_steps(steps, job.settings, float(trajectory.t[-1])) for steps in long_steps),
+        *(overlooked_in_whole_steps(steps, job.settings, float(trajectory.t[-1])) for steps in whole_steps),
     ]
     return together([each for each in found if each is not None])
 

@@ -16,7 +16,6 @@ from ..compile.group import Group
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.initial import InitialValues
-from ..equilibria.equilibrium import find_equilibrium
 from ..errors import StiffmbsError
 from ..model.model_data import ModelData
 from ..model.scene import Scene
@@ -198,6 +197,8 @@ def _deflected(deflection: float, element: Stretched, system: System) -> str:
 
 def _in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> list[Stretched]:
     """Return the elements in the equilibrium near the start; none if it is not found."""
+    from ..equilibria.equilibrium import find_equilibrium
+
     try:
         dynamics.state.q[:] = start.q
         found = find_equilibrium(dynamics, t)

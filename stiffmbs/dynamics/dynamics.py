@@ -26,14 +26,13 @@ if TYPE_CHECKING:
     from .elimination.eliminated import Eliminated
 
 T = TypeVar("T")
-ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, CONTRADICTING, OUTPUT_POINTS = together(
+ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, OUTPUT_POINTS = together(
     "stiffmbs.dynamics.native.dynamics",
     SHORT,
     assemble="int64(float64, float64, int64, int64*)",
     correct_velocities="int64(float64, int64*)",
     accelerate="int64(float64, float64*, int64*)",
     factor_and_solve="int64(float64*, int64*)",
-    contradicting="int64(int64, float64*, float64*, float64, float64*, float64*, float64*, float64, float64*, float64, float64, float64*, int64*, int64*)",
     output_points="int64(int64, float64*, float64*, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
 )
 
@@ -252,27 +251,6 @@ class Dynamics:
         """Return 0 or a failure (`stiffmbs.compile.machine.native.statuses`), and u'. The multipliers are in `state.lam`."""
         acceleration = np.empty(self.system.n_u)
         return ACCELERATE.short_call(t, address(acceleration), self._at), acceleration
-
-    def contradicting(
-        self, ends: tuple[np.ndarray, np.ndarray], apart: float, states: tuple[np.ndarray, np.ndarray],
-        tolerances: tuple[float, np.ndarray], bounds: tuple[float, float],
-    ) -> np.ndarray:  # fmt: skip
-        """Return the numbers of the steps whose polynomial contradicts the accelerations at the midpoint.
-
-        - `ends` of shape (n,): begin and end of each step, s.
-        - `apart`: distance from the midpoint, as a fraction of the step, at which `states` of shapes (n, 2, n_q),
-          (n, 2, n_u) are given on both sides.
-        - `tolerances`: rtol and atol, shape (n_u,), of velocities.
-        - `bounds`: largest difference, as a fraction of the mass-weighted accelerations, and in tolerances over the step.
-        """
-        (begin, end), (q, u), (rtol, atol) = ends, states, tolerances
-        found, rate = np.empty(len(begin), dtype=np.int64), np.empty(self.system.n_u)
-        arrays = [np.ascontiguousarray(array) for array in (begin, end, q, u, self.system.mass, atol)]
-        at_begin, at_end, at_q, at_u, at_mass, at_atol = (address(array) for array in arrays)
-        count = CONTRADICTING.call(
-            len(begin), at_begin, at_end, apart, at_q, at_u, at_mass, rtol, at_atol, *bounds, address(rate), address(found), self._at
-        )  # fmt: skip
-        return np.flatnonzero(found) if count else np.empty(0, dtype=int)
 
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Return q' at a state whose accelerations were just computed; that of an algebraic state is zero."""

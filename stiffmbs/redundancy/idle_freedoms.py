@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from random import Random
 
 import numpy as np
 
@@ -50,11 +51,9 @@ def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
     if not motions:
         return []
     q = state.q.copy()
-    step = (
-        REDUNDANCY.perturbation
-        * np.random.default_rng(1).uniform(-1, 1, system.n_u)
-        * system.per_velocity(system.size, 1.0)
-    )
+    random = Random(1)  # NumPy's takes longer to import than all of this
+    move = np.array([random.uniform(-1.0, 1.0) for _ in range(system.n_u)])
+    step = REDUNDANCY.perturbation * move * system.per_velocity(system.size, 1.0)
     state.q[:] = system.of_body.moved(q, step)
     also = dict(_free_motions(dynamics, list(motions), t)) if dynamics.assemble(t) >= 0 else {}
     state.q[:] = q

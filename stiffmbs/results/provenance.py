@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..model.files.stages import WrittenScene
 from ..model.model_data import ModelData
-from ..model.model_text import model_content, written
-from ..model.read_scene import effective
 from ..model.scene import Scene
 from ..model.settings import RunSettings
 from ..reading.files.yaml_text import Content, scene_text
@@ -132,6 +130,8 @@ def _source(data: ModelData) -> WrittenScene | None:
 
 def _content(data: ModelData | WrittenScene, chosen: Mapping[str, object]) -> tuple[Content, dict[str, object]]:
     """Return a scene or model as in a scene file, with other settings."""
+    from ..model.model_text import written
+
     content, in_parts = _of_data(data)
     run = {name: written(value) for name, value in chosen.items() if value is not None}
     known = {name: value for name, value in (content.get("run") or {}).items() if name not in chosen}
@@ -139,6 +139,9 @@ def _content(data: ModelData | WrittenScene, chosen: Mapping[str, object]) -> tu
 
 
 def _of_data(data: ModelData | WrittenScene) -> tuple[Content, dict[str, object]]:
+    from ..model.model_text import model_content
+    from ..model.read_scene import effective
+
     if isinstance(data, WrittenScene):
         return effective(data)
     read = _source(data)
@@ -154,6 +157,8 @@ def _of_scene(data: ModelData) -> Content:
     """Return the sections of a changed scene that a model does not have, if they differ from their defaults."""
     if not isinstance(data, Scene):
         return {}
+    from ..model.model_text import written
+
     values = {name: getattr(data, name) for name in ("start", "at_start", "stages", "figure", "notes", "run")}
     defaults = {name: Scene.model_fields[name].get_default(call_default_factory=True) for name in values}
     return {name: written(value) for name, value in values.items() if value != defaults[name]}

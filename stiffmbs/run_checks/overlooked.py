@@ -23,7 +23,7 @@ from ..dynamics.dynamics import Dynamics, OutputRows
 from ..model.settings import RunSettings
 from ..notes import Note, NoteKind
 from ..solve.error_control.tolerances import absolute_tolerances
-from ..solve.events.long_steps import LONG_STEP, LongSteps, Motion
+from ..solve.events.whole_steps import Motion, WholeSteps
 from ..solve.settings import near_constraints
 from ..solve.trajectory import Trajectory
 from .parameters import RUN_CHECKS
@@ -47,7 +47,7 @@ class Overlooked:
     """Events that the steps of a run missed.
 
     - `times`: output times that show them, s: in each step that of the largest acceleration of the first contradicting
-      pair, and in long steps those of the largest accelerations.
+      pair, and with Python functions those of the largest accelerations.
     - `step`: length of the first of these steps, s.
     - `velocity`: velocity that would have changed most there.
     - `element`: force law with the largest force there, or an empty string.
@@ -158,43 +158,17 @@ def acting(system: System, rows: OutputRows, k: int) -> str:
     return max(of_laws, key=lambda name: of_laws[name], default="").rpartition(".")[0]
 
 
-def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float) -> Overlooked | None:
-    """Return the events that long steps, up to the end of the output, s, missed, or None.
-
-    The steps are checked at their midpoint, and throughout if a force law is a Python function.
-    """
-    count = int(np.searchsorted(found.begin, end))
-    steps = np.arange(count) if found.whole else _doubtful(found, count, settings)
-    if not len(steps):
+def overlooked_in_whole_steps(found: WholeSteps, settings: RunSettings, end: float) -> Overlooked | None:
+    """Return the events that steps with Python functions, up to the end of the output, s, missed, or None."""
+    if not (count := int(np.searchsorted(found.begin, end))):
         return None
-    if found.whole:
-        steps, parts = _all_along(found, steps, settings)
-        motion = found.at(steps, parts)
-    else:
-        motion = found.middles(steps)
+    steps, parts = _all_along(found, np.arange(count), settings)
+    motion = found.at(steps, parts)
     rows = found.dynamics.report(motion.t, motion.q, motion.u, near_constraints(settings))
     return _judged(found, steps, motion, rows, settings)
 
 
-def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray:
-    """Return the few of the first `count` steps that need a full check."""
-    system = found.dynamics.system
-    atol = found.dynamics.kept("tolerances", settings, lambda: absolute_tolerances(system, settings))
-    tolerances = settings.rtol, atol[system.n_q :]
-    ends, states = (found.begin[:count], found.end[:count]), (found.q[:count], found.u[:count])
-    return found.dynamics.contradicting(
-        ends,
-        LONG_STEP.from_middle,
-        states,
-        tolerances,
-        (
-            RUN_CHECKS.worth_a_note * RUN_CHECKS.overlooked_part,
-            RUN_CHECKS.worth_a_note * RUN_CHECKS.contradicted_tolerances,
-        ),
-    )
-
-
-def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
+def _all_along(found: WholeSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
     """Return steps and fractions of them, evenly spaced in time; an odd number in each includes its midpoint."""
     counts = 2 * ((found.end - found.begin)[steps] / (2.0 * _spacing(settings))).astype(int) + 1
     first, of_number = (np.repeat(values, counts) for values in (np.cumsum(counts) - counts, counts))
@@ -202,7 +176,7 @@ def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tu
 
 
 def _judged(
-    found: LongSteps, steps: np.ndarray, motion: Motion, rows: OutputRows, settings: RunSettings
+    found: WholeSteps, steps: np.ndarray, motion: Motion, rows: OutputRows, settings: RunSettings
 ) -> Overlooked | None:
     system, done = found.dynamics.system, len(rows.t)
     steps, rate = steps[:done], motion.rate[:done]
@@ -224,7 +198,7 @@ def _judged(
     first = peaks[0]
     of_first = np.abs(off[first]) / (tolerance[system.n_q :] + settings.rtol * np.abs(rows.u[first]))
     velocity = system.name_of(int(np.nanargmax(of_first)), system.of_body.velocities)
-    shortest = _shortest(found, steps[peaks], rows.t[peaks], settings) if found.whole else math.inf
+    shortest = _shortest(found, steps[peaks], rows.t[peaks], settings)
     return Overlooked(rows.t[peaks], float(length[first]), velocity, acting(system, rows, first), shortest)
 
 
@@ -232,7 +206,7 @@ def _spacing(settings: RunSettings) -> float:
     return settings.duration / RUN_CHECKS.parts_of_a_run
 
 
-def _shortest(found: LongSteps, steps: np.ndarray, times: np.ndarray, settings: RunSettings) -> float:
+def _shortest(found: WholeSteps, steps: np.ndarray, times: np.ndarray, settings: RunSettings) -> float:
     """Return the duration of the shortest of the contradictions around some times, s, at half of their height."""
     parts = np.linspace(-1.0, 1.0, RUN_CHECKS.parts_of_a_peak)
     length = (found.end - found.begin)[steps]
@@ -252,7 +226,7 @@ def _peaks(places: np.ndarray, steps: np.ndarray, size: np.ndarray) -> list[int]
     return [int(part[np.argmax(size[part])]) for part in np.split(places, ends) if len(part)]
 
 
-def _of_errors(found: LongSteps, rows: OutputRows, k: int, settings: RunSettings) -> np.ndarray:
+def _of_errors(found: WholeSteps, rows: OutputRows, k: int, settings: RunSettings) -> np.ndarray:
     """Return the change of accelerations at a row by errors far below the tolerance; stiff forces make it large."""
     dynamics, state = found.dynamics, np.concatenate([rows.q[k], rows.u[k]])
     errors = RUN_CHECKS.slight * (absolute_tolerances(dynamics.system, settings) + settings.rtol * np.abs(state))

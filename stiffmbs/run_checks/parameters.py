@@ -86,8 +86,6 @@ class RunCheckParameters:
     """Number of samples over a run with Python functions, whose features are unknown."""
     parts_of_a_peak: int = 129
     """Samples around a contradiction, from which its duration follows."""
-    worth_a_note: float = 0.1
-    """Fraction of both bounds below which no event counts as missed, for accelerations at states that are not projected."""
     slight: float = 0.01
     """Error of positions and velocities within a step, in tolerances, whose effect on stiff forces is tolerated."""
 

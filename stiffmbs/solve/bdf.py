@@ -16,23 +16,13 @@ from .error_control.relaxation import RELAXATION, refuse_drift
 from .events.chattering import CHATTERING
 from .events.refusals import DIVERGENCE, refuse_beyond_sense
 from .explicit.native.parameters import CONTROL
-from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
+from .formulations import FORMULATIONS
 from .ida.native_engine import Reached
 from .integrator import Integrator
 from .reasons import Reason
-from .solver import Traits
 from .step_logging import is_logged, log_step
 from .suspect import suspect
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
-
-READ = ("formulation", "rtol", "atol", "max_step", "max_order")
-"""Settings that the solver reads."""
-
-
-def traits(settings: RunSettings) -> Traits:
-    """Return the traits of BDF with a formulation, which may read further settings."""
-    of_formulation = READ_BY_FORMULATIONS.get(settings.formulation, ())
-    return Traits("bdf", (*READ, *of_formulation), implicit=True)
 
 
 def solve(
@@ -106,7 +96,7 @@ def integrated(
         statistics,
         history,
         integrator.note(),
-        long_steps=integrator.long_steps(),
+        whole_steps=integrator.whole_steps(),
         recorded=tuple(filter(None, [integrator.engine.recorded()])),
         departures=integrator.engine.ida.watch.departures(),
     )

@@ -12,10 +12,10 @@ from ..model.settings import RunSettings
 from .error_control.error_test import CHOSEN, ErrorControl
 from .events.chattering import Chattering, HoveringEvents
 from .events.discontinuity import Jumps
-from .events.long_steps import LongSteps
 from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
 from .events.restart import restarted, straight_on
+from .events.whole_steps import WholeSteps
 from .ida.choice import Driven, driven_natively
 from .ida.native.parameters import LOOP
 from .ida.native_engine import Reached
@@ -180,10 +180,10 @@ class Integrator:
         """Return the number of steps so far."""
         return self.engine.steps()
 
-    def long_steps(self) -> tuple[LongSteps, ...]:
-        """Return the recorded steps that are much longer than their predecessors."""
-        kept = self.engine.long_steps()
-        return (LongSteps.of(self.dynamics, self.equations, *kept),) if kept and len(kept[0]) else ()
+    def whole_steps(self) -> tuple[WholeSteps, ...]:
+        """Return the steps that are to be checked after the run."""
+        kept = self.engine.ida.whole_steps.kept()
+        return (WholeSteps.of(self.dynamics, self.equations, *kept),) if len(kept[0]) else ()
 
     def _explained(self, reached: Reached) -> Reached:
         """Replace a failure by one that names the chattering force, if there is one."""

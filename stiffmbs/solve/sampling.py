@@ -36,8 +36,8 @@ from .trajectory import (
     ProgressCallback,
     Solver,
     Trajectory,
+    in_common,
     just_after,
-    summed,
 )
 
 
@@ -185,7 +185,7 @@ def _up_to_row(part: Trajectory, row: int) -> Trajectory:
     history = History(np.minimum(part.history.t[taken], part.t[row]), part.history.order[taken])
     return replace(
         part, t=part.t[rows], q=part.q[rows], u=part.u[rows], outcome=Outcome.DONE, message=Outcome.DONE.value,
-        history=history, long_steps=(), recorded=(),
+        history=history, whole_steps=(), recorded=(),
     )  # fmt: skip
 
 
@@ -196,16 +196,10 @@ def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: E
     t, q, u = (np.concatenate(columns) for columns in zip(first, *kept, strict=True))
     if parts and parts[-1].outcome is not Outcome.DONE:
         ending.outcome, ending.message = parts[-1].outcome, parts[-1].message
-    times, orders = zip(*((part.history.t, part.history.order) for part in parts), strict=True) if parts else ((), ())
-    return Trajectory(
-        t, q, u, ending.outcome, ending.message,
-        summed([{"steps": 0, "seconds": 0.0}, *(part.statistics for part in parts)]),
-        History(np.concatenate([*times, np.empty(0)]), np.concatenate([*orders, np.empty(0, dtype=int)])),
-        "; ".join([*dict.fromkeys(part.note for part in parts if part.note)][: MOST_LISTED]),
-        ", ".join(dict.fromkeys(part.solver for part in parts if part.solver)),
-        tuple(steps for part in parts for steps in part.long_steps),
-        departures=tuple(each for part in parts for each in part.departures),
-    )  # fmt: skip
+    fields = in_common(parts)
+    fields["statistics"] = {"steps": 0, "seconds": 0.0, **fields["statistics"]}
+    fields["note"] = "; ".join([*dict.fromkeys(part.note for part in parts if part.note)][:MOST_LISTED])
+    return Trajectory(t, q, u, ending.outcome, ending.message, **fields)
 
 
 def _output_rows(part: Trajectory, grid: Grid) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

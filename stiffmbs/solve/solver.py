@@ -58,8 +58,11 @@ class Registered(NamedTuple):
     traits: Callable[[RunSettings], Traits]
 
 
-def loaded_when_used(module: str, package: str) -> Registered:
-    """Return the solver in a module with functions ``solve`` and ``traits``, imported at its first call."""
+def loaded_when_used(module: str, package: str, known: Callable[[RunSettings], Traits] | None = None) -> Registered:
+    """Return the solver in a module with functions ``solve`` and ``traits``, imported at its first call.
+
+    `known`: function for the traits that need not import the module.
+    """
 
     @cache
     def loaded() -> Any:
@@ -72,4 +75,4 @@ def loaded_when_used(module: str, package: str) -> Registered:
         found: Traits = loaded().traits(settings)
         return found
 
-    return Registered(solve, traits)
+    return Registered(solve, known or traits)

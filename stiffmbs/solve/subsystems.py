@@ -7,8 +7,6 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-import numpy as np
-
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..dynamics.storage import allocated
@@ -16,10 +14,9 @@ from ..model.model_data import ModelData
 from ..model.settings import RunSettings
 from ..presolve.presolve import Part, parts_of
 from ..presolve.relations import independent_coordinates
-from .auto import begins_implicit
 from .events.restart import restarted
 from .settings import may_presolve, traits_of
-from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
+from .trajectory import Grid, Outcome, ProgressCallback, Solver, Trajectory, in_common
 
 
 class Subsystem(NamedTuple):
@@ -79,6 +76,8 @@ def _begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, setti
     """Return True if a solver that may switch starts with implicit steps; False in the plane, where no body spins."""
     if dynamics.system.of_body.dimensions == 2:
         return False
+    from .auto import begins_implicit  # check of a planar scene needs no solver
+
     state = dynamics.state
     q, u = state.q.copy(), state.u.copy()
     found = begins_implicit(dynamics, start, grid, settings)
@@ -132,17 +131,6 @@ def _together(subsystems: Sequence[Subsystem], found: Sequence[Trajectory], star
     for subsystem, trajectory in zip(subsystems, found, strict=False):
         subsystem.part.put(trajectory.q[:rows], trajectory.u[:rows], q, u)
     ending = next((each for each in found if each.outcome is not Outcome.DONE), found[-1])
-    return replace(
-        ending, t=found[0].t[:rows], q=q, u=u, statistics=summed([each.statistics for each in found]), history=_merged([each.history for each in found]),
-        note="; ".join(each.note for each in found if each.note),
-        solver=", ".join(dict.fromkeys(each.solver for each in found if each.solver)),
-        long_steps=tuple(steps for each in found for steps in each.long_steps),
-        recorded=tuple(pieces for each in found for pieces in each.recorded) if all(each.recorded for each in found) else (),
-        departures=tuple(each for trajectory in found for each in trajectory.departures),
-    )  # fmt: skip
-
-
-def _merged(histories: Sequence[History]) -> History:
-    t, order = (np.concatenate(parts) for parts in zip(*((h.t, h.order) for h in histories), strict=True))
-    sequence = np.argsort(t, kind="stable")
-    return History(t[sequence], order[sequence] if len(order) == len(t) else order)
+    all_recorded = all(each.recorded for each in found)
+    recorded = tuple(pieces for each in found for pieces in each.recorded) if all_recorded else ()
+    return replace(ending, t=found[0].t[:rows], q=q, u=u, recorded=recorded, **in_common(found))

@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from ..dynamics.dynamics import Dynamics
     from ..dynamics.initial import InitialValues
     from .events.departures import Departure
-    from .events.long_steps import LongSteps
+    from .events.whole_steps import WholeSteps
     from .recorded_steps import Piece
 
 ProgressCallback = Callable[[float], None]
@@ -166,7 +166,7 @@ class Trajectory:
         Notes for the user, or an empty string.
     solver : str
         Solvers used, if the user did not choose them.
-    long_steps : tuple of LongSteps
+    whole_steps : tuple of WholeSteps
         Steps much longer than their predecessors, with the motion within them; only if force laws have breakpoints.
     recorded : tuple of tuples of Piece
         Recorded steps of each mechanism that was solved separately; empty if they were not recorded.
@@ -183,7 +183,7 @@ class Trajectory:
     history: History = field(default_factory=lambda: History(np.empty(0), np.empty(0, dtype=int)))
     note: str = ""
     solver: str = ""
-    long_steps: tuple[LongSteps, ...] = ()
+    whole_steps: tuple[WholeSteps, ...] = ()
     recorded: tuple[tuple[Piece, ...], ...] = ()
     departures: tuple[Departure, ...] = ()
 
@@ -238,6 +238,28 @@ def summed(parts: Sequence[Mapping[str, int | float | str]]) -> dict[str, int | 
         words = "; ".join(dict.fromkeys(map(str, values)))
         together[name] = (max(numbers) if name == "order" else sum(numbers)) if numbers else words
     return together
+
+
+def in_common(parts: Sequence[Trajectory], counted: Sequence[Trajectory] | None = None) -> dict[str, Any]:
+    """Return the fields of a trajectory that parts of it, in time or in space, have together: all but times, states and outcome.
+
+    `counted`: parts of which steps are counted, all by default.
+    """
+    counted = parts if counted is None else counted
+    t, order = (
+        np.concatenate([nothing, *(getattr(part.history, name) for part in counted)])
+        for name, nothing in (("t", np.empty(0)), ("order", np.empty(0, dtype=int)))
+    )
+    sequence = np.argsort(t, kind="stable")
+    seconds = summed([{"seconds": part.statistics["seconds"]} for part in parts])
+    return {
+        "statistics": {**summed([part.statistics for part in counted]), **seconds},
+        "history": History(t[sequence], order[sequence] if len(order) == len(t) else order[:0]),
+        "note": "; ".join(dict.fromkeys(part.note for part in parts if part.note)),
+        "solver": ", ".join(dict.fromkeys(part.solver for part in parts if part.solver)),
+        "whole_steps": tuple(steps for part in counted for steps in part.whole_steps),
+        "departures": tuple(each for part in parts for each in part.departures),
+    }
 
 
 class Rows:

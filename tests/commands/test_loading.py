@@ -33,6 +33,23 @@ def test_a_warm_run_does_not_load_the_metadata_of_packages(tmp_path):
     assert found.stdout.splitlines()[-1] == "set()"
 
 
+def test_a_check_loads_no_solver(tmp_path):
+    program = "import sys; from stiffmbs.commands.main import main; import atexit;" + (
+        f"sys.argv[1:] = ['check', {str(EXAMPLES / 'cart_pendulum.yaml')!r}];"
+        "atexit.register(lambda: print([name for name in sys.modules if name in ('stiffmbs.solve.auto', 'stiffmbs.solve.bdf')])); main()"
+    )
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert found.stdout.splitlines()[-1] == "[]"
+
+
+def test_an_import_loads_no_dataclasses():
+    program = "import sys, stiffmbs; print(sys.modules.keys() & {'dataclasses', 'inspect', 'numpy'})"
+    found = subprocess.run(
+        [sys.executable, "-S", "-c", program], capture_output=True, text=True, check=True, cwd=EXAMPLES.parent
+    )
+    assert found.stdout.strip() == "set()"
+
+
 @pytest.mark.parametrize("environment", [{}, {"COLUMNS": "90"}, {"PYTHONIOENCODING": "ascii"}])
 def test_a_summary_in_a_file_loads_rich_only_where_it_changes_the_text(environment, tmp_path):
     arguments = ["run", str(EXAMPLES / "cart_pendulum.yaml"), "-o", str(tmp_path / "out.npz"), "--duration", "0.1"]

@@ -205,10 +205,11 @@ def velocity_within_tolerances():
 def judged(off, acceleration):
     """Return whether the midpoint of a step of 1 s shows a missed event; `off` is in tolerances."""
     system = Record(mass=np.ones(1), n_q=0, n_c=0, of_body=Record(velocities=None), name_of=lambda *_: "a.vx")
-    found = Record(dynamics=Record(system=system, state=None), begin=np.zeros(1), end=np.ones(1), whole=False)
+    found = Record(dynamics=Record(system=system, state=None), begin=np.zeros(1), end=np.ones(1))
     rows = Record(t=np.zeros(1), u=np.zeros((1, 1)), acceleration=np.array([[acceleration]]))
     replaced = {
-        "absolute_tolerances": lambda *_: np.ones(1), "acting": lambda *_: "", "_of_errors": lambda *_: np.zeros(1)
+        "absolute_tolerances": lambda *_: np.ones(1), "acting": lambda *_: "", "_of_errors": lambda *_: np.zeros(1),
+        "_shortest": lambda *_: 1.0,
     }  # fmt: skip
     with patch.multiple(overlooked, **replaced):
         made = overlooked._judged(found, np.array([0]), Record(rate=np.array([[acceleration - off]])), rows, SETTINGS)
@@ -235,13 +236,6 @@ def duration_of_a_peak():
 def parts_of_a_whole_run():
     found = Record(begin=np.zeros(1), end=np.ones(1))
     return len(overlooked._all_along(found, np.array([0]), SETTINGS)[1])
-
-
-def bounds_of_a_quick_check():
-    """Return the largest contradictions that a quick check of long steps accepts."""
-    dynamics = Record(system=Record(n_q=0), kept=lambda *_: np.ones(1), contradicting=lambda *each: each[-1])
-    found = Record(dynamics=dynamics, begin=[], end=[], q=[], u=[])
-    return overlooked._doubtful(found, 0, SETTINGS)[0]
 
 
 def change_by_errors():
@@ -348,7 +342,6 @@ DECISIONS = {
     "run_checks.contradicted_tolerances": lambda: count_while(lambda off: not judged(off, 0.0), DOUBLES),
     "run_checks.parts_of_a_run": parts_of_a_whole_run,
     "run_checks.parts_of_a_peak": duration_of_a_peak,
-    "run_checks.worth_a_note": bounds_of_a_quick_check,
     "run_checks.slight": change_by_errors,
     "run_checks.left_tables:SAMPLES": lambda: len(left_tables._samples(0.0, 1.0)),
 }
@@ -363,6 +356,6 @@ EXPECTED = {
     "run_checks.worth_telling": 27, "run_checks.last_digits": 54, "run_checks.nearly_singular": 21,
     "run_checks.takes_part": 7, "run_checks.floor": 1e-07, "run_checks.iterations": 1.525878906e-05,
     "run_checks.few_rows": 3, "run_checks.usual_poses": 20, "run_checks.effort": 100,
-    "run_checks.contradicted_tolerances": 54, "run_checks.parts_of_a_run": 20001, "run_checks.parts_of_a_peak": 0.015503875968992248, "run_checks.worth_a_note": 0.03,
+    "run_checks.contradicted_tolerances": 54, "run_checks.parts_of_a_run": 20001, "run_checks.parts_of_a_peak": 0.015503875968992248,
     "run_checks.slight": 0.01, "run_checks.left_tables:SAMPLES": 2001,
 }  # fmt: skip

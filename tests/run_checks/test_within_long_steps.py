@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.analyses.job import prepare
 from stiffmbs.run_checks import overlooked as within_long_steps
-from stiffmbs.run_checks.overlooked import overlooked_in_long_steps
-from stiffmbs.solve.events.long_steps import LONG_STEP, WHOLE, LongSteps
+from stiffmbs.solve.events.whole_steps import WHOLE, WholeSteps
 from stiffmbs.tuning import parameters_of
 
 SOLVERS = (
@@ -72,27 +70,7 @@ def test_motion_within_steps_is_that_of_their_polynomial():
     part = np.array([0.1, 0.5, 0.93])
     t = 2.0 + 0.5 * WHOLE
     u = np.stack([t**5, 3 * t], axis=1)[None]
-    motion = LongSteps(None, np.array([2.0]), np.array([2.5]), u, u).at(np.zeros(3, dtype=int), part)
+    motion = WholeSteps(None, np.array([2.0]), np.array([2.5]), u, u).at(np.zeros(3, dtype=int), part)
     assert motion.t == pytest.approx(2.0 + 0.5 * part)
     assert motion.u[:, 0] == pytest.approx(motion.t**5)
     assert motion.rate == pytest.approx(np.stack([5 * motion.t**4, np.full(3, 3.0)], axis=1))
-
-
-@pytest.mark.parametrize("place", [5.0, 8.0, 3.0])
-def test_the_middle_of_a_long_step_is_judged(place):
-    """Steps that go straight from x = 4 to 6 m and from 7 to 9 m at 10 m/s, beside a formula's Gaussian."""
-    model = stiffmbs.Model("Ball", gravity=(0, 0))
-    model.add("ball", stiffmbs.Body(mass=1, inertia=1, velocity=(10, 0)))
-    model.add("push", stiffmbs.AppliedForce(i="ball", force=(f"{HEIGHT}*exp(-((ball.x - {place})/0.01)^2)", 0)))
-    job = prepare(model, duration=1.0, rtol=1e-6)
-    begin, end = np.array([0.4, 0.7]), np.array([0.6, 0.9])
-    middle = np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
-    t = begin[:, None] + middle * (end - begin)[:, None]
-    q, u = np.zeros((2, 2, 3)), np.zeros((2, 2, 3))
-    q[..., 0], u[..., 0] = 10 * t, 10.0
-    found = overlooked_in_long_steps(LongSteps(job.dynamics, begin, end, q, u), job.settings, 1.0)
-    if place == 3.0:
-        assert found is None
-    else:
-        assert (found.times, found.element, found.velocity) == (pytest.approx([place / 10]), "push", "ball.vx")
-        assert found.step == pytest.approx(0.2)

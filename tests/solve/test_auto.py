@@ -6,8 +6,8 @@ import pytest
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Bushing, Distance, Model, Prismatic
 from stiffmbs.analyses.job import prepare
-from stiffmbs.solve import auto_checks, auto_choice
-from stiffmbs.solve.auto_decisions import AUTO, Interval, cost_ahead, implicit_solver, steps_of_decay
+from stiffmbs.solve import auto
+from stiffmbs.solve.auto import AUTO, Interval, cost_ahead, implicit_solver, steps_of_decay
 from stiffmbs.solve.explicit.stable_step import rates_at
 from tests.bench.drives import CARS
 from tests.stress.mechanisms.parallelogram import parallelogram, swing_error
@@ -165,7 +165,7 @@ def test_output_points_within_one_explicit_step_do_not_ask_for_a_change_of_hands
 
 def test_the_rate_is_asked_for_once_where_explicit_steps_to_the_end_cost_less_than_trials(examples, monkeypatch):
     asked = []
-    monkeypatch.setattr(auto_choice, "rates_at", lambda *state: asked.append(state[1]) or rates_at(*state))
+    monkeypatch.setattr(auto, "rates_at", lambda *state: asked.append(state[1]) or rates_at(*state))
     scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e5")])
     solution = stiffmbs.run(scene, solver="auto", rtol=1e-4, errors=False)
     assert solution.solver["name"] == "projected"
@@ -229,9 +229,9 @@ def test_radau_is_kept_if_the_rest_of_its_steps_costs_less(examples, stiffness, 
 
 def test_steps_up_to_the_decay_of_a_vibration():
     """Nothing is seen of a vibration within a tolerance; e tolerances decay in 40 radians, if the run has as many."""
-    assert steps_of_decay(AUTO, 1.0, 0.0, 100.0) == 0.0
-    assert steps_of_decay(AUTO, 2.0, 0.0, 100.0) == pytest.approx(100.0 * AUTO.steps_per_radian)
-    assert steps_of_decay(AUTO, np.e, 0.025, 100.0) == pytest.approx(40.0 * AUTO.steps_per_radian)
+    assert steps_of_decay(1.0, 0.0, 100.0) == 0.0
+    assert steps_of_decay(2.0, 0.0, 100.0) == pytest.approx(100.0 * AUTO.steps_per_radian)
+    assert steps_of_decay(np.e, 0.025, 100.0) == pytest.approx(40.0 * AUTO.steps_per_radian)
 
 
 def test_explicit_steps_are_not_taken_to_be_longer_than_those_of_radau(examples):
@@ -242,8 +242,8 @@ def test_explicit_steps_are_not_taken_to_be_longer_than_those_of_radau(examples)
 
 def test_checks_of_implicit_steps_are_spaced_in_proportion_to_the_steps_taken(examples, monkeypatch):
     """Each returns from compiled code and costs as much as several steps; 2000 steps have 15, and 10 or 24 at half or twice their density."""
-    checks, wait = [], auto_checks.ImplicitCheck._wait
-    monkeypatch.setattr(auto_checks.ImplicitCheck, "_wait", lambda check: checks.append(1) or wait(check))
+    checks, wait = [], auto.ImplicitCheck._wait
+    monkeypatch.setattr(auto.ImplicitCheck, "_wait", lambda check: checks.append(1) or wait(check))
     stiffmbs.run(examples / "vehicles" / "quarter_car.yaml", solver="auto", rtol=1e-4)
     assert 13 <= len(checks) <= 18
 
@@ -279,7 +279,7 @@ def test_radau_is_tried_sooner_at_a_loose_tolerance(examples, rtol, name):
     [(0.9, 1.0, "radau"), (1.5, 2.9, "bdf"), (np.inf, 2.9, "bdf"), (1.5, 3.1, "radau")],
 )
 def test_bdf_is_taken_for_overdamped_motions_in_short_runs(damping_ratio, run_length, name):
-    assert implicit_solver(AUTO, damping_ratio, run_length) == name
+    assert implicit_solver(damping_ratio, run_length) == name
 
 
 @pytest.mark.parametrize("name", ["dzhanibekov", "heavy_top"])

@@ -96,7 +96,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     J = e.by_u.matrix(V)
     _refuse_rates_by_velocities(e, C)
     for row in range(J.rows):
-        if J[row, :].is_zero_matrix:
+        if all(entry == 0 for entry in J[row, :]):
             raise InputError(
                 f"{kind.element.__name__}: found equation {row + 1} of {J.rows}, which depends on no coordinate of a body"
             )
@@ -265,9 +265,8 @@ def _symmetric(second: sp.Matrix) -> sp.Matrix:
 
 
 def _entries(matrix: sp.Matrix) -> list[Entry]:
-    rows, columns = matrix.shape
-    every = (Entry(sp.sympify(matrix[r, c]), r, c) for r in range(rows) for c in range(columns))
-    return [entry for entry in every if entry.expression != 0]
+    columns = matrix.cols
+    return [Entry(x, *divmod(k, columns)) for k, x in enumerate(map(sp.sympify, matrix.flat())) if x != 0]
 
 
 NO_VALUE = (sp.nan, sp.zoo, sp.oo, -sp.oo)

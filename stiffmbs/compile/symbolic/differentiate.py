@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import sympy as sp
 
+from .canonical import positive, product, total
 from .nonsmooth import NonsmoothBase
 
 Slope = tuple[sp.Symbol, sp.Expr]
@@ -51,7 +52,8 @@ class Derivatives:
         if not x.args:
             return x
         if x not in self._names:
-            self._names[x] = -self.named(-x) if x.could_extract_minus_sign() else self._new("named", x)
+            opposite = positive(x)
+            self._names[x] = self._new("named", x) if opposite is None else -self.named(opposite)
         return self._names[x]
 
     def variable(self, x: sp.Expr, state: Iterable[sp.Symbol]) -> sp.Symbol:
@@ -146,17 +148,17 @@ class Derivatives:
             case sp.Symbol():
                 return self.named(self.along(self.meanings[x], rates))
             case sp.Add():
-                return sp.Add(*(self.along(part, rates) for part in x.args))
+                return total(self.along(part, rates) for part in x.args)
             case sp.Mul():
-                return sp.Add(
-                    *(sp.Mul(*x.args[:k], self.along(part, rates), *x.args[k + 1 :]) for k, part in enumerate(x.args))
+                return total(
+                    product(*x.args[:k], self.along(part, rates), *x.args[k + 1 :]) for k, part in enumerate(x.args)
                 )
             case _:
                 return self._by_all(x, rates)
 
     def _by_all(self, x: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
         parts = ((rate, self.partial(x, symbol)) for symbol, rate in rates.items())
-        return sp.Add(*(rate * part for rate, part in parts if part is not sp.S.Zero))
+        return total(product(rate, part) for rate, part in parts if part is not sp.S.Zero)
 
     def _depends(self, x: sp.Expr, v: sp.Symbol) -> bool:
         """Return True if x depends on v."""
@@ -186,9 +188,9 @@ class Derivatives:
     def _by_rule(self, x: sp.Expr, v: sp.Symbol) -> sp.Expr:
         match x:
             case sp.Add():
-                return sp.Add(*(self.partial(part, v) for part in x.args))
+                return total(self.partial(part, v) for part in x.args)
             case sp.Mul():
-                return sp.Add(*(sp.Mul(*x.args[:k], part, *x.args[k + 1 :]) for k, part in self._changed(x, v)))
+                return total(product(*x.args[:k], part, *x.args[k + 1 :]) for k, part in self._changed(x, v))
             case sp.Pow() if isinstance(x.base, sp.cosh) and x.exp.is_negative:
                 (argument,) = x.base.args  # sinh(a)/cosh(a)^2 would overflow to NaN
                 return x.exp * x * sp.tanh(argument) * self.partial(argument, v)
@@ -203,7 +205,7 @@ class Derivatives:
             case NonsmoothBase():
                 return x.by_parts(lambda part: self.partial(part, v))
             case sp.Function():
-                return sp.Add(*(x.fdiff(k + 1) * part for k, part in self._changed(x, v)))
+                return total(product(x.fdiff(k + 1), part) for k, part in self._changed(x, v))
             case _:
                 return sp.diff(x, v)
 

@@ -11,11 +11,13 @@ import sympy as sp
 
 from ...elements.element import IN_EQUATIONS
 from ...errors import InputError
+from .canonical import product, total
 from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Slope
 from .logarithm import PlanarLogarithm, SpatialLogarithm, logarithm
 from .read import read
-from .relative_rotation import RelativeRotation, ShortestRotation, product
+from .relative_rotation import RelativeRotation, ShortestRotation
+from .relative_rotation import product as turned
 from .spline import common_normal, integral
 
 if TYPE_CHECKING:
@@ -64,15 +66,10 @@ class Variables:
         partial, changes = self.element.derivatives.partial, []
         for symbol, much in of_row:
             parts = ((effort, partial(x, symbol)) for effort, x in pairs)
-            whole = sp.Add(*(_product(effort, part) for effort, part in parts if part is not sp.S.Zero))
+            whole = total(product(effort, part) for effort, part in parts if part is not sp.S.Zero)
             if whole is not sp.S.Zero:
-                changes.append(whole if much == 1 else self.element.named(whole) * much)
-        return sp.Add(*changes)
-
-
-def _product(effort: sp.Expr, part: sp.Expr) -> sp.Expr:
-    """Return a product; SymPy takes as long for a factor 1 as for any other."""
-    return part if effort is sp.S.One else effort * part
+                changes.append(whole if much is sp.S.One else product(self.element.named(whole), much))
+        return total(changes)
 
 
 class SymbolicElement:
@@ -216,7 +213,7 @@ class SymbolicElement:
         """Define symbols for a relative rotation, with the derivatives stated by `RelativeRotation`."""
         back = sp.diag(1, -1, -1, -1) * self.named(j.quaternion)
         inverse_length = sp.sqrt(i.body.inverse_square * j.body.inverse_square) / 2
-        meaning = product(back, self.named(i.quaternion)) * self.named(inverse_length)
+        meaning = turned(back, self.named(i.quaternion)) * self.named(inverse_length)
         parts = [sp.Symbol(f"turn{len(self._rotations)}_{k}", real=True) for k in range(4)]
         turn = RelativeRotation(parts[0], sp.Matrix(parts[1:]))
         halves = [turn.rates(self.named(sp.Matrix([axis[k] for axis in j.axes]) / 2)) for k in range(3)]

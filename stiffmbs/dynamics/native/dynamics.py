@@ -56,33 +56,6 @@ def factor_and_solve(b, factors):
     return 0
 
 
-def contradicting(count, begin, end, apart, q, u, mass, rtol, atol, part, tolerances, rate, found, dynamics):
-    """Mark the steps among `count` whose midpoint accelerations contradict their polynomial; return their number.
-
-    Each step has two states (n_q, n_u numbers), at a distance of `apart` step lengths before and after its midpoint.
-    `rate` is working memory.  A step without a solution for accelerations is marked, too.
-    """
-    m = dynamics_view(dynamics)
-    s = state_view(m.state)
-    total = 0
-    for step in range(count):
-        h = end[step] - begin[step]
-        first, second = shifted(q, 2 * step * s.n_q), shifted(q, (2 * step + 1) * s.n_q)
-        for k in range(s.n_q):
-            s.q[k] = 0.5 * (first[k] + second[k])
-        first, second = shifted(u, 2 * step * s.n_u), shifted(u, (2 * step + 1) * s.n_u)
-        for k in range(s.n_u):
-            s.u[k] = 0.5 * (first[k] + second[k])
-            rate[k] = (second[k] - first[k]) / (2.0 * apart * h)
-        solved = to_accelerations(s, m, 0.5 * (begin[step] + end[step])) >= 0
-        acceleration = factors_view(m.acceleration_factors).b
-        found[step] = 0
-        if not solved or _contradicts(h, acceleration, rate, s.u, mass, rtol, atol, part, tolerances, s.n_u):
-            found[step] = 1
-            total += 1
-    return total
-
-
 @compiled
 def _largest_violation(s, violation):
     """Return the largest violation of a joint: the norm over its equations (for a revolute joint, the gap)."""
@@ -228,22 +201,3 @@ def output_points(
         if failed:
             return row
     return count
-
-
-@compiled
-def _contradicts(h, acceleration, rate, u, mass, rtol, atol, part, tolerances, n_u):
-    """Return True if accelerations contradict the rates of a step of length h.
-
-    They must differ by more than a fraction `part` and, over the step, by more than `tolerances` of a velocity.
-    """
-    off = 0.0
-    by_forces = 0.0
-    by_rates = 0.0
-    most = 0.0
-    for k in range(n_u):
-        differs = acceleration[k] - rate[k]
-        off += mass[k] * differs * differs
-        by_forces += mass[k] * acceleration[k] * acceleration[k]
-        by_rates += mass[k] * rate[k] * rate[k]
-        most = max(most, abs(differs) * h / (atol[k] + rtol * abs(u[k])))
-    return not (off <= part * part * max(by_forces, by_rates) or most <= tolerances)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,11 @@ from ...compile.coordinates import FIXED, Coordinates
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
 from ...notes import Note, NoteKind
-from ...solve.subsystems import Subsystem
 from ..overconstraint import listed
 from ..redundancy import Redundancy
+
+if TYPE_CHECKING:
+    from ...solve.subsystems import Subsystem
 
 
 def unknowns(whole: System, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> tuple[int, int]:

@@ -19,19 +19,12 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ...compile.equations import Equations
-from ...compile.machine.layout import addresses
-from ...compile.machine.routines import Routine
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..ida.native.parameters import LOOP
 from .native.parameters import A_STABLE_ORDER
 from .tolerances import independent_tolerances
 
-CUBIC = Routine(
-    "stiffmbs.solve.error_control.native.cubic",
-    "cubic",
-    "void(int64, int64, float64*, float64, float64*, float64*, float64*)",
-)
 HIGHEST_ORDER: Final = 5
 """Highest order of BDF in IDA: higher ones are unstable or nearly so."""
 ERROR_CONSTANT = 1 / ((A_STABLE_ORDER + 1) * sum(1 / k for k in range(1, A_STABLE_ORDER + 1)))
@@ -98,11 +91,11 @@ def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray) -> CubicFit:
 
     `samples` of shape (`LOOP.samples`, 1 + n): times and states. `atol` of shape (n,).
     """
-    count, n = len(samples), samples.shape[1] - 1
-    samples, work, found = np.ascontiguousarray(samples), np.empty(n + 6 * count + 8), np.zeros(2)
-    rows, at_atol, at_work, at_found = addresses(samples, atol, work, found)
-    CUBIC.short_call(count, n, rows, rtol, at_atol, at_work, at_found)
-    return CubicFit(*found.tolist())
+    t, rows = samples[:, 0], samples[:, 1:] / (rtol * np.abs(samples[-1, 1:]) + atol)
+    powers = np.vander(2.0 * (t - t[0]) / (t[-1] - t[0]) - 1.0, 4)
+    found, *_ = np.linalg.lstsq(powers, rows, rcond=None)
+    squares = np.mean((rows - powers @ found) ** 2, axis=1)
+    return CubicFit(float(np.sqrt(squares.max())), float(np.sqrt(np.mean(found[0] ** 2))))
 
 
 def predicted_gain(fit: CubicFit, parameters: StabilityLimitParameters) -> float:

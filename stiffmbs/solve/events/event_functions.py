@@ -15,8 +15,8 @@ from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
 from .chattering import CHATTERING
 from .departures import Departure, departures
-from .long_steps import WHOLE
 from .native.layouts import ALWAYS, EVENT_SEARCH, STEP_BOUND
+from .whole_steps import WHOLE
 
 NODES = len(WHOLE)
 """Number of interpolation nodes of a step."""

@@ -99,7 +99,7 @@ class AdaptiveRun:
             ending.message = Reason.STIFF.of(message) if ending.outcome is Outcome.STOPPED else message
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": ending.seconds}
-        note = "; ".join(filter(None, (self._note, self._jumps.sentence(), self.work.unresolved())))
+        note = "; ".join(filter(None, (self._note, self._jumps.sentence(), self.work.watch.note())))
         return Trajectory(
             *self._rows.stored,
             ending.outcome,
@@ -107,8 +107,8 @@ class AdaptiveRun:
             statistics,
             history,
             note,
-            long_steps=self.work.long_steps(),
-            departures=self.work.departures(),
+            whole_steps=self.work.whole_steps(),
+            departures=self.work.watch.departures(),
         )
 
     def _reason(self, status: int) -> str:

@@ -14,9 +14,8 @@ from ...dynamics.initial import InitialValues
 from ...dynamics.storage import FAILURES
 from ...model.settings import RunSettings
 from ..error_control.tolerances import absolute_tolerances
-from ..events.departures import Departure
 from ..events.event_functions import EventSearch, StepBound
-from ..events.long_steps import LongStepLog, LongSteps
+from ..events.whole_steps import WholeSteps
 from ..trajectory import Grid, Rows
 from .native.parameters import CONTROL
 from .scheme import Scheme, StepMemory
@@ -67,14 +66,10 @@ class Integration:
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been collected
         self.step_bound, self.watch = StepBound(), EventSearch(dynamics.state)
-        self._long_steps = dynamics.kept(
-            "long_steps", len(memory.y), lambda: LongStepLog(dynamics.system, len(memory.y))
-        )
-        self._long_steps.forget()
         self.watch.end_steps_at_kinks()
         self.watch.follow_reactions(dynamics)
         self.watch.resolve(grid.end - grid.start)
-        memory.renew(*addresses(self.watch.table, self.step_bound.table, self._long_steps.table))
+        memory.renew(*addresses(self.watch.table, self.step_bound.table))
         self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)
         self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
         memory.atol[:] = self.atol
@@ -106,18 +101,10 @@ class Integration:
         """Return a counter: ``steps``, ``rejected``, ``accelerations`` or ``stiff_steps`` (limited by stability)."""
         return int(self._cells[name])
 
-    def unresolved(self) -> str:
-        """Return a sentence on force laws that repeat within a step, or an empty string."""
-        return self.watch.note()
-
-    def departures(self) -> tuple[Departure, ...]:
-        """Return the tables whose points the steps have left."""
-        return self.watch.departures()
-
-    def long_steps(self) -> tuple[LongSteps, ...]:
-        """Return the recorded steps that are much longer than their predecessors."""
-        begin, end, y = self._long_steps.kept()
-        return (LongSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
+    def whole_steps(self) -> tuple[WholeSteps, ...]:
+        """Return the steps that are to be checked after the run."""
+        begin, end, y = self._memory.whole_steps.kept()
+        return (WholeSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
 
     def collect(self, rows: Rows) -> None:
         """Append the rows and step ends of the last call, and release their memory for the next."""

@@ -13,6 +13,7 @@ from ...compile.machine.layout import packed
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.native.parameters import CONSISTENCY
+from ..events.whole_steps import WholeStepLog
 from ..ida.native.parameters import LOOP
 from .native.layouts import EXPLICIT, SCHEME
 
@@ -98,7 +99,7 @@ ADVANCE, END_AT_EVENT = together(
     advance="int64(float64, int64, int64, int64, int64*)",
     end_at_event="int32(int64*)",
 )
-WATCH, STEP_BOUND, LONG_STEPS = (list(EXPLICIT).index(name) for name in ("watch", "step_bound", "long_steps"))
+WATCH, STEP_BOUND = (list(EXPLICIT).index(name) for name in ("watch", "step_bound"))
 """Columns of the table that each run sets."""
 
 
@@ -112,6 +113,7 @@ class StepMemory:
       at a start.
     - `atol`, `times` of shapes (n_q + n_u,), (n_times,).
     - `row_t`, `row_y`, `ends` of shapes (capacity,), (capacity, n_q + n_u), (capacity,).
+    - `whole_steps`: steps that are checked after the run.
     - `table`: addresses and cells (`stiffmbs.solve.explicit.native.layouts.EXPLICIT`).
     - `cells`: cells of the table by name.
     """
@@ -122,7 +124,7 @@ class StepMemory:
         self.capacity = capacity = max(1, min(LOOP.most_steps, LOOP.most_items // max(n, 1)))
         self.y, self.lam, self.atol, self.times = np.zeros(n), np.zeros(system.n_c), np.zeros(n), np.zeros(n_times)
         self.row_t, self.row_y, self.ends = np.empty(capacity), np.empty((capacity, n)), np.empty(capacity)
-        stages = np.zeros((scheme.extended, n))
+        stages, self.whole_steps = np.zeros((scheme.extended, n)), WholeStepLog(system, n)
         self.end_rates = stages[scheme.stages]
         searched = system.n_values("event_function") > 0
         nothing = np.zeros(1, dtype=np.int64)
@@ -135,12 +137,13 @@ class StepMemory:
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "n_times": n_times, "times": self.times,
             "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
-            "watch": nothing, "step_bound": nothing, "long_steps": nothing,
+            "watch": nothing, "step_bound": nothing, "whole_steps": self.whole_steps.table,
         }  # fmt: skip
         self.table = packed(EXPLICIT, self._arrays)
         self.cells, self._new = self.table.view(EXPLICIT.cells)[0], self.table.copy()
 
-    def renew(self, watch: int, step_bound: int, long_steps: int) -> None:
+    def renew(self, watch: int, step_bound: int) -> None:
         """Reset all cells for a new run, and set the addresses of its tables."""
         self.table[:] = self._new
-        self.table[[WATCH, STEP_BOUND, LONG_STEPS]] = watch, step_bound, long_steps
+        self.table[[WATCH, STEP_BOUND]] = watch, step_bound
+        self.whole_steps.forget()

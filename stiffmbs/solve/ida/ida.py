@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import weakref
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...compile.machine.layout import address, addresses
+from ...compile.machine.layout import address, addresses, packed
 from ...compile.machine.native.statuses import ROOT_RETURN, STOP_RETURN
 from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import Routine
@@ -17,11 +17,16 @@ from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 from ..error_control.error_test import ErrorControl
+from ..events.event_functions import EventSearch, StepBound
+from ..events.whole_steps import WholeStepLog
 from ..linear_solvers.fixed_order import FixedOrder
-from .connection import BDF, MODULE, Connection, Formula
+from .connection import BDF, FUNCTIONS, LOOK_AT_START, LOOK_WITHIN, MODULE, Formula
+from .error_norm import ErrorNorm, Iteration
+from .native.layouts import NATIVE_IDA
 from .native.parameters import LOOP
+from .output_correction import OutputCorrection
 from .session import Session
-from .statistics import Statistics, Status, failure_sentence
+from .statistics import Statistics, Status, StepLog, failure_sentence
 
 if TYPE_CHECKING:
     from .starting.after_event import EventRestarts
@@ -40,7 +45,7 @@ AT_THE_END = np.empty(0)
 """No place within a step."""
 
 
-class NativeIda(Connection):
+class NativeIda:
     """IDA memory of one formulation of one system, for any number of starts.
 
     Only one thread at a time may use an instance.  Several threads may use their own instances and states: the
@@ -55,7 +60,11 @@ class NativeIda(Connection):
     - `growth`: least factor by which a step is enlarged (IDASetEtaFixedStepBounds); IDA's own by default.
     - `formula`: BDF with IDA's own convergence test by default.
     - `reported`: unknowns returned at output times; all by default.
-    - `y`, `yp` of shape (n,): solution at `t`, overwritten by every call.
+    - `y`, `yp` of shape (n,): solution at `t`, overwritten by every call. `output` of shape (n,): interpolated or queried values.
+    - `cells`: results of the loop (`stiffmbs.solve.ida.native.layouts.NATIVE_IDA`).
+    - `whole_steps`: steps that are checked after the run.
+    - `words`, `table`: table for compiled code, and its address.
+    - `state_table`, `equations_table`: tables of the state and of the equations.
     - `begun`: True if IDA was started since it was created or reset.
 
     Raises Unavailable if the SUNDIALS libraries cannot be used, and ValueError if IDA rejects a setting.
@@ -80,19 +89,61 @@ class NativeIda(Connection):
         reported: np.ndarray | None = None,
     ) -> None:
         n, formula = equations.n, formula or BDF()
-        session = Session(formula.libraries())
+        if np.shape(atol) != (n,):
+            raise ValueError(f"atol: found shape {np.shape(atol)}, expected {(n,)}")
+        self._session = session = Session(formula.libraries())
         self._finalizer = weakref.finalize(self, session.close)
-        super().__init__(equations, state, matrix, np.arange(n) if reported is None else reported, session, formula)
+        self._state, self._equations, self._formula = state, equations, formula
+        self.reported = np.ascontiguousarray(np.arange(n) if reported is None else reported, dtype=np.int64)
+        self.y, self.yp, self.output, self._probe = (np.zeros(n) for _ in range(4))
+        self._atol, self._residual = np.array(atol, dtype=float), np.zeros(2 * n)
+        self.history, self.whole_steps = StepLog(), WholeStepLog(equations.system, len(self.reported))
+        self._samples = np.full((LOOP.samples, 1 + len(self.reported)), np.nan)
+        self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
+        self.output_correction, self.step_bound = OutputCorrection(equations), StepBound(bool(formula.repeat))
+        self.watch = EventSearch(state)
+        self._has_kinks = bool(equations.system.forces_by_reactions) or self.watch.n_event_functions > 0
+        self.iteration, self.error_norm = Iteration(n, self._has_kinks), ErrorNorm(n)
+        self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
+        self.memory = formula.memory(session)
+        self.words = self._packed()
+        self.table, self.cells = self.words.ctypes.data, self.words.view(NATIVE_IDA.cells)[0]
+        formula.connect(self, session, self._assembled)
         self._statistics = Statistics(session.libraries, self.memory, formula.counters(self.memory, session.libraries))
         self._flag, self.begun = 0, False
         self._batch = min(max(LOOP.most_items // n, 1), LOOP.most_steps)
         self._look = self._usual_batch = self._batch
         self._trace = np.empty((0, 2 + 2 * n))
-        self._set_tolerances(rtol, atol)
+        self.cells["rtol"] = rtol
+        self.ask("IDASVtolerances", rtol, session.vector(self._atol))
         self.ask("IDASetMaxStep", max_step)
         if renewal is not None:
             self.ask("IDASetDeltaCjLSetup", renewal)
         self._growth = growth
+
+    def _packed(self) -> np.ndarray:
+        functions = {name: self._session.libraries.address(function) for name, function in FUNCTIONS.items()}
+        history, formulation = self.history.rows(2 * LOOP.most_steps), self._equations.formulation
+        for term_set in (formulation.residual_set, formulation.matrix_set):
+            self._state.load(term_set)
+        self.equations_table, self._slots = self._equations.table()
+        self.state_table, self._calls = self._state.restricted(self._equations.used())
+        return packed(
+            NATIVE_IDA,
+            {
+                "state": self.state_table, "equations": self.equations_table,
+                **functions,
+                "matrix": self._assembled.values,
+                "memory": self.memory, "repeat": self._formula.repeat, "resolves": self._formula.resolves, "y": self.y_vector, "yp": self.yp_vector,
+                "at_output": self.output_vector, "output": self.output,
+                "n_reported": len(self.reported), "reported": self.reported,
+                "step_bound": self.step_bound.table, "history": history, "samples": self._samples,
+                "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
+                "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
+                "probe": self._probe, "residual": self._residual, "atol": self._atol, "whole_steps": self.whole_steps.table,
+                "error_norm": self.error_norm.table,
+            },
+        )  # fmt: skip
 
     @property
     def t(self) -> float:
@@ -144,20 +195,15 @@ class NativeIda(Connection):
         self.step_bound.follow(features)
         self.watch.resolve(duration)
 
-    def unresolved(self) -> str:
-        """Return a sentence on periodic laws that steps do not resolve; empty if there are none."""
-        return self.watch.note()
-
-    def leave_to_newton(self, part: float) -> None:
-        """Set the part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef)."""
-        self.ask("IDASetNonlinConvCoef", part)
-
     def forget(self) -> None:
         """Reset counters, history and pivots, as before the first start."""
         self.begun, self._look = False, self._usual_batch
         self.ask("IDAReInit", 0.0, self.y_vector, self.yp_vector)  # resets IDA's counters
         self._statistics.forget()
-        super().forget()
+        for each in (self.history, self.whole_steps, self.output_correction, self.error_norm, self._formula):
+            each.forget()
+        if self._assembled.pivots is not None:
+            self._assembled.pivots["ready"] = 0
 
     def begin(
         self, t: float, y: np.ndarray, yp: np.ndarray, first_step: float = 0.0, highest_order: int | None = None
@@ -276,6 +322,47 @@ class NativeIda(Connection):
         weighted = np.multiply(np.abs(errors), weights, out=np.zeros_like(weights), where=weights > 0)
         k = int(np.argmax(weighted))
         return k, float(weighted[k])
+
+    @property
+    def _polished(self) -> bool:
+        return bool(self._formula.repeat) or self.output_correction.ready
+
+    def address(self, function: str) -> int:
+        """Return the address of a SUNDIALS function, for compiled code."""
+        return self._session.libraries.address(function)
+
+    def ask(self, function: str, *arguments: Any) -> None:
+        """Call a function of IDA. Raises ValueError if IDA reports an error."""
+        flag = getattr(self._session.libraries, function)(self.memory, *arguments)
+        if flag < 0:
+            raise ValueError(failure_sentence(flag))
+
+    def answer(self, function: str, *arguments: Any) -> np.ndarray:
+        """Call a function of IDA that fills a vector, and return a copy of it."""
+        self.ask(function, *arguments, self.output_vector)
+        return self.output.copy()
+
+    def _forget_step(self, t: float) -> None:
+        """Forget the last step before a start or restart of the integrator at `t`."""
+        for cell, value in (("returned", t), ("internal", t), ("size", 0.0), ("tiny", 0), ("since_sample", 0)):
+            self.cells[cell] = value
+        self._samples[:] = np.nan
+        self.watch.begin()
+        self.iteration.begin()
+        self.history.begin(t)
+
+    def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
+        """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""
+        needed = long_step < np.inf or self._has_kinks
+        if needed and not (self._formula.repeat or self.output_correction.ready):
+            self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
+        self.output_correction.limit(long_step, part, balanced)
+
+    def run(self, loop: Routine, *arguments: Any) -> int:
+        """Call a compiled loop and add its steps to the history; return IDA's last flag."""
+        flag: int = self._session.call(loop.call, *arguments, self.table)
+        self.history.add(int(self.cells["recorded"]))
+        return flag
 
     def close(self) -> None:
         """Free the SUNDIALS objects; automatic at the end of the instance, which cannot be used afterwards."""

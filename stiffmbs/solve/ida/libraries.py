@@ -157,7 +157,6 @@ SUNMatrix SUNBandMatrix(sunindextype, sunindextype, sunindextype, SUNContext)
 double* SUNBandMatrix_Data(SUNMatrix)
 sunindextype SUNBandMatrix_LDim(SUNMatrix)
 sunindextype SUNBandMatrix_StoredUpperBandwidth(SUNMatrix)
-int SUNMatZero(SUNMatrix)
 void SUNMatDestroy(SUNMatrix)
 
 SUNLinearSolver SUNLinSol_Dense(N_Vector, SUNMatrix, SUNContext)

@@ -98,7 +98,7 @@ class NativeEngine:
         the `stiffness` are corrected.
         """
         self._newton, self._stiffness = newton, stiffness
-        self.ida.leave_to_newton(newton)
+        self.ida.ask("IDASetNonlinConvCoef", newton)
         self.ida.error_norm.filter_always(self._order.held)
         self._follow_stiffness(t)
         self.ida.begin(t, y, yp, highest_order=self._order.order)
@@ -290,7 +290,7 @@ class NativeEngine:
 
     def note(self) -> str:
         """Return a sentence on the integration for the user; empty if there is none."""
-        notes = self._order.note(self.ida.history.count), self.ida.unresolved(), self.ida.output_correction.note()
+        notes = self._order.note(self.ida.history.count), self.ida.watch.note(), self.ida.output_correction.note()
         return "; ".join(filter(None, notes))
 
     def steps(self) -> int:
@@ -308,11 +308,6 @@ class NativeEngine:
     def last_step(self) -> tuple[float, int] | None:
         """Return the size, s, and order of the last step, if known."""
         return self.ida.history.last
-
-    def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Return begins, ends and interior values of steps much longer than their predecessors; None if not stored."""
-        log = self.ida.long_steps
-        return log.kept() if log else None
 
     def history(self) -> History:
         """Return the ends of the steps, and their orders."""

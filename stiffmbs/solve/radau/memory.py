@@ -28,7 +28,7 @@ from .native.layouts import COLLOCATION, RADAU
 from .parameters import RadauParameters
 
 if TYPE_CHECKING:
-    from ..ida.connection import Connection
+    from ..ida.ida import NativeIda
 
 CHOSEN_FROM = tuple(count for count in get_args(RunSettings.model_fields["stages"].annotation) if count != "auto")
 """Numbers of stages among which a run chooses."""
@@ -110,16 +110,7 @@ class Radau:
         self._methods = methods
         self._most = max(methods)
         self._words = np.zeros(len(RADAU), dtype=np.int64)
-
-    @property
-    def repeat(self) -> int:
-        """Return the address of the function that repeats the last step."""
-        return REPEAT.address
-
-    @property
-    def resolves(self) -> int:
-        """Return the address of the function that tells whether the error estimate of the last step holds over jumps."""
-        return RESOLVES.address
+        self.repeat, self.resolves = REPEAT.address, RESOLVES.address
 
     def libraries(self) -> Libraries:
         """Return the SUNDIALS functions, with those of IDA replaced."""
@@ -135,7 +126,7 @@ class Radau:
         cells = first + self._words.itemsize * np.arange(len(COUNTERS))
         return np.array([np.full(len(COUNTERS), COUNTER.address), cells])
 
-    def connect(self, connection: Connection, session: Session, real: Assembled) -> None:
+    def connect(self, ida: NativeIda, session: Session, real: Assembled) -> None:
         """Create matrices and vectors, and fill the memory."""
         equations, n, system = self._equations, self._equations.n, self._equations.system
         self._of_equations = equations.table()
@@ -155,7 +146,7 @@ class Radau:
         n_terms = len(self._state.values[equations.formulation.matrix_set])
         n_efforts, n_all = efforts["n_efforts"], n + efforts["n_efforts"]
         values = {
-            "state": connection.state_table, "equations": self._of_equations[0], "array_of": session.libraries.address("N_VGetArrayPointer"), "n": n, "algebraic": algebraic,
+            "state": ida.state_table, "equations": self._of_equations[0], "array_of": session.libraries.address("N_VGetArrayPointer"), "n": n, "algebraic": algebraic,
             "methods": self._addresses(0), "below": self._addresses(-2), "n_methods": len(self._methods),
             "setup": session.libraries.address("SUNLinSolSetup"),
             "solve": session.libraries.address("SUNLinSolSolve"),
@@ -165,8 +156,8 @@ class Radau:
             "n_imaginary": len(imaginary), "imaginary_of": number.astype(np.int32),
             "im_re": indices(pairs.im_re), "re_im": indices(pairs.re_im),
             "n_terms": n_terms, "terms": np.zeros(n_terms), "terms_aside": np.zeros(n_terms + efforts["n_levers"] + efforts["n_slopes"]),
-            "entries": np.zeros(len(number)), **vectors, **at, "output_correction": connection.output_correction.table, "error_norm": connection.error_norm.table,
-            "step_bound": connection.step_bound.table,
+            "entries": np.zeros(len(number)), **vectors, **at, "output_correction": ida.output_correction.table, "error_norm": ida.error_norm.table,
+            "step_bound": ida.step_bound.table,
             **_angles(equations), "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
             "misfit": np.zeros(self._most * n_efforts), "r": np.zeros(self._most * n),
             **{name: np.zeros(n) for name in ("yp", "yp_stage", "error", "weight", "atol")},

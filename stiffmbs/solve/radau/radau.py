@@ -15,11 +15,9 @@ from ..bdf import integrated, refuse_untested_reactions
 from ..cost import ImplicitCost, least_solver, of_evaluation
 from ..error_control.error_test import ErrorControl
 from ..error_control.native.parameters import NEWTON
-from ..formulations import READ_BY_FORMULATIONS
 from ..ida.choice import Driven, chosen, natural
 from ..ida.native_engine import NativeEngine
 from ..integrator import Integrator
-from ..solver import Traits
 from ..trajectory import Grid, ProgressCallback, Trajectory
 from .memory import Radau, pair_cost
 from .parameters import RADAU
@@ -34,8 +32,6 @@ class StepwiseControl(ErrorControl):
     by_step = ("u",)
 
 
-READ = ("formulation", "rtol", "atol", "max_step", "stages")
-"""Settings that the solver reads."""
 CONTROL = tuned("error_test_of_radau", StepwiseControl(margin=1.0, relaxation=0.01))
 ITERATIONS, START_STEPS = 3, 4
 """Average number of Newton iterations in a step; small steps after a start per digit of the relative tolerance."""
@@ -44,12 +40,6 @@ RESIDUAL = 4.0
 
 Source: run times of the half car, the chain, the elastic bearing and the axle on bushings.
 """
-
-
-def traits(settings: RunSettings) -> Traits:
-    """Return the traits of Radau methods with a formulation, which may read further settings."""
-    of_formulation = READ_BY_FORMULATIONS.get(settings.formulation, ())
-    return Traits("radau", (*READ, *of_formulation), implicit=True)
 
 
 def solve(

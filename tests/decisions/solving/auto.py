@@ -6,12 +6,12 @@ from unittest.mock import patch
 
 import numpy as np
 
-from stiffmbs.solve import auto, auto_checks, auto_choice, auto_decisions
+from stiffmbs.solve import auto
 from stiffmbs.solve.cost import ImplicitCost
 from stiffmbs.solve.radau import radau
 from stiffmbs.solve.radau.radau import of_radau
 from stiffmbs.solve.trajectory import Outcome, Trajectory
-from tests.decisions.common import Record, nothing, parameters
+from tests.decisions.common import Record, nothing
 from tests.solve.test_parameter_thresholds import count_while
 
 
@@ -21,21 +21,25 @@ def check_after_steps():
     engine = Record(ida=Record(pause_after=waits.append))
     integrator = Record(steps=lambda: counts.pop(0) if len(counts) > 1 else counts[0], engine=engine)
     implicit = Record(integrator=integrator, steps=lambda t: Record(time=t), start=0.0, cost=Record(step=1.0))
-    choice = Record(
-        implicit=implicit, parameters=parameters("auto"), explicit_cost=lambda *_: 0.0, remaining=lambda t: 0.0,
-    )  # fmt: skip
-    check = auto_checks.ImplicitCheck(choice, 0.0)
+    run = Record(implicit=implicit, explicit_cost=lambda *_: 0.0, remaining=lambda t: 0.0)
+    check = auto.ImplicitCheck(run, 0.0)
     check._begun = 0
     counts[:] = [1000]
     check._wait()
     return waits[-1]
 
 
+def tolerated_loss():
+    """Return the loss of implicit steps that is tolerated, where explicit ones cost 1000."""
+    integrator = Record(steps=lambda: 0, engine=Record(ida=Record(pause_after=nothing)))
+    implicit = Record(integrator=integrator, steps=lambda t: Record(time=t), start=1.0, cost=Record(step=1.0))
+    run = Record(implicit=implicit, explicit_cost=lambda *_: 1000.0, remaining=lambda t: 0.0)
+    return auto.ImplicitCheck(run, 0.0)._wait()
+
+
 def switches_in_a_note():
     trajectory = Trajectory(np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1)), Outcome.DONE, "", {})
-    run = Record(
-        _messages=["switch"] * 20, _segments=[Record(traits=Record(implicit=True), trajectory=trajectory)],
-    )  # fmt: skip
+    run = Record(_messages=["switch"] * 20, _segments=[trajectory])
     return auto._AutoRun._joined(run).note.count("switch")
 
 
@@ -61,13 +65,11 @@ def residual_by_which_radau_chooses():
 
 
 DECISIONS = {
-    "auto.steps_per_radian": lambda: auto_decisions.steps_of_decay(parameters("auto"), np.e, 1.0, np.inf),
-    "auto.trial_margin": lambda: count_while(
-        lambda k: auto_decisions.implicit_solver(parameters("auto"), 2.0, 0.1 * k) == "bdf", range(100)
-    ),
+    "auto.steps_per_radian": lambda: auto.steps_of_decay(np.e, 1.0, np.inf),
+    "auto.trial_margin": lambda: count_while(lambda k: auto.implicit_solver(2.0, 0.1 * k) == "bdf", range(100)),
     "auto.check_interval": check_after_steps,
-    "auto.trial_loss": lambda: auto_decisions.tolerable_loss(parameters("auto"), 1.0, 1000.0),
-    "cost.restart_steps": lambda: auto_choice.Choice.explicit_cost(Record(_explicit_rate=0.0, explicit_step=1.0), 0.0, 1),
+    "auto.trial_loss": tolerated_loss,
+    "cost.restart_steps": lambda: auto._AutoRun.explicit_cost(Record(_explicit_rate=0.0, explicit_step=1.0), 0.0, 1),
     "solve.auto:MOST_MESSAGES": switches_in_a_note,
     "solve.radau.radau:ITERATIONS": lambda: of_five_stages("step_residuals"),
     "solve.radau.radau:START_STEPS": lambda: of_five_stages("start_steps"),

@@ -168,7 +168,7 @@ def first_check_of_drift(name, counts):
         integrator = Record(
             dynamics=job, run=lambda *_, **__: [reached], equations=Record(states=lambda rows: (rows, rows)),
             engine=Record(last_step=nothing, history=nothing, recorded=tuple, ida=Record(watch=Record(departures=nothing, refuse_departures=nothing))), steps=lambda: steps,
-            split=lambda y: (y, y), settings=None, statistics=dict, note=str, long_steps=nothing,
+            split=lambda y: (y, y), settings=None, statistics=dict, note=str, whole_steps=nothing,
         )  # fmt: skip
         checks = {"refuse_drift": nothing, "refuse_beyond_sense": nothing, name: lambda *_: made.append(1)}
         with patch.multiple(bdf, _failure=lambda *_: "", **checks):

@@ -8,8 +8,7 @@ import numpy as np
 
 from stiffmbs.solve import missing_rows, sampling
 from stiffmbs.solve.events import discontinuity, narrow_inputs
-from stiffmbs.solve.events.long_steps import LongStepLog
-from stiffmbs.solve.events.native import bounds, step_bound
+from stiffmbs.solve.events.native import bounds
 from stiffmbs.solve.explicit.native import explicit_events
 from stiffmbs.solve.ida.native import ida_events, passage
 from stiffmbs.solve.trajectory import Grid, History, Outcome, Trajectory
@@ -87,26 +86,6 @@ def step_bound_by_a_feature():
     return count_while(
         lambda k: bounds.bounded_by_feature(searched(n_turns=1, rate_before=np.array([0.01 * k]))), range(1, 400)
     )
-
-
-def length_of_a_long_step(has_functions):
-    """Return the hundredths of a usual step up to which one is not long, after twenty steps of twice that length."""
-    log = LongStepLog(Record(has_functions=has_functions, has_laws=False), 1)
-    w = Record(**{name: float(log._cells[name]) for name in ("ratio", "remembered")}, usual=1.0, count=0, room=10)
-    for _ in range(5):
-        step_bound.is_to_be_kept(w, 2.0)
-    usual = w.usual
-
-    def is_usual(hundredths):
-        w.usual = usual
-        return not step_bound.is_to_be_kept(w, 0.01 * hundredths)
-
-    return count_while(is_usual, range(1, 3000))
-
-
-def places_of_a_long_step():
-    log = LongStepLog(Record(has_functions=False, has_laws=False), 1)
-    return float(np.diff(log._arrays["node"])[0])
 
 
 def samples_of_narrow_features():
@@ -189,8 +168,6 @@ DECISIONS = {
     "next_step.first_part": lambda: bounded_passage(searched(n_turns=1)).first,
     "next_step.inside": lambda: bounded_passage(searched(), repeat=1).passage,
     "next_step.lifted": first_part_of_a_run,
-    "long_steps.for_others": lambda: length_of_a_long_step(False),
-    "long_steps.from_middle": places_of_a_long_step,
     "narrow_inputs.most_samples": samples_of_narrow_features,
     "jumps.jumps": smallest_jump,
     "jumps.rate_interval": interval_of_rates,
@@ -202,8 +179,8 @@ DECISIONS = {
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
     "next_step.short_of": 0.001, "next_step.of_an_interval": 34, "next_step.just_after": 48, "next_step.soon": 53, "next_step.passage_steps": 0.0625,
-    "next_step.first_part": 0.0078125, "next_step.inside": 0.4, "next_step.lifted": 10, "long_steps.for_others": 594,
-    "long_steps.from_middle": 0.0002, "narrow_inputs.most_samples": 5000, "jumps.jumps": 99, "jumps.rate_interval": 0.0001,
+    "next_step.first_part": 0.0078125, "next_step.inside": 0.4, "next_step.lifted": 10,
+    "narrow_inputs.most_samples": 5000, "jumps.jumps": 99, "jumps.rate_interval": 0.0001,
     "solve.events.native.step_bound:STRETCHED": 99, "solve.events.narrow_inputs:NEAR_INPUT_END": 9, "solve.trajectory:SAME_TIME": 40,
     "solve.missing_rows:MOST_MISSING": 100,
 }  # fmt: skip

@@ -14,7 +14,7 @@ from stiffmbs import AppliedForce, Body, Contact, Model, Revolute
 from stiffmbs.analyses.job import prepare
 from stiffmbs.compile.equations import Equations
 from stiffmbs.compile.state import State
-from stiffmbs.solve.formulations.si2 import SI2_EXACT
+from stiffmbs.solve.formulations import SI2_EXACT
 from stiffmbs.solve.ida import choice, operations
 from stiffmbs.solve.ida.choice import chosen
 from stiffmbs.solve.ida.ida import NativeIda

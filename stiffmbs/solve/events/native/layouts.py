@@ -9,12 +9,11 @@ STEP_BOUND = Layout({
 
 Bends are the times at which steps of a one-step method end, and `bend` is the next one."""
 
-LONG_STEPS = Layout({
-    "n_nodes": INT, "node": FLOATS, "width": INT, "ratio": FLOAT_CELL, "remembered": FLOAT_CELL, "room": INT_CELL, "count": INT_CELL, "usual": FLOAT_CELL, "row": FLOATS,
+WHOLE_STEPS = Layout({
+    "n_nodes": INT, "node": FLOATS, "width": INT, "room": INT, "count": INT_CELL, "row": FLOATS,
 })  # fmt: skip
-"""Storage of long steps (`stiffmbs.solve.events.native.step_bound`): one row for both ends of a step and its states, of
-`width` numbers, at the nodes.  Cells: ratio of a long step to the usual one, number of steps in the mean that is usual,
-space for rows (0 for none), stored rows, usual step."""
+"""Storage of steps (`stiffmbs.solve.events.native.step_bound`): one row for both ends of a step and its states, of
+`width` numbers, at the nodes; space for rows (0 for none), and stored rows."""
 
 ALWAYS, IN_THIS_STEP = range(1, 3)
 """Values of the cell `at_kinks`: kinks of tables end all steps, or this step of a method whose error estimate does not hold."""

@@ -1,7 +1,7 @@
-"""Bound of the step size that resolves the features of inputs, and storage of long steps to be checked after the run."""
+"""Bound of the step size that resolves the features of inputs, and storage of steps to be checked after the run."""
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, view_of
-from stiffmbs.solve.events.native.layouts import LONG_STEPS, STEP_BOUND
+from stiffmbs.solve.events.native.layouts import STEP_BOUND, WHOLE_STEPS
 from stiffmbs.solve.events.native.parameters import SEARCH
 
 STRETCHED = 1.01
@@ -45,20 +45,12 @@ def distance_to_bend(f, t, h, least):
     return f.bends[k] - t if passes and not several else float("inf")
 
 
-long_steps_view = view_of("LongSteps", LONG_STEPS)
-
-
-@compiled
-def is_to_be_kept(w, h):
-    """Return True if a step is much longer than its predecessors, and there is space for it."""
-    usual = w.usual
-    w.usual = usual + (h - usual) / w.remembered
-    return h > w.ratio * usual and w.count < w.room
+whole_steps_view = view_of("WholeSteps", WHOLE_STEPS)
 
 
 @compiled
 def next_row(w, begin, end):
-    """Return memory for the states of the next long step; `w.count += 1` stores it."""
+    """Return memory for the states of the next step; `w.count += 1` stores it."""
     row = shifted(w.row, w.count * (2 + w.n_nodes * w.width))
     row[0] = begin
     row[1] = end

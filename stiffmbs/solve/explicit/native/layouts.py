@@ -19,7 +19,7 @@ EXPLICIT = Layout({
     "n_event_functions": INT, "end_at_event": INT, "at_event": INT_CELL, "uncertain": INT_CELL, "distance": FLOAT_CELL, "distance_of_end": FLOAT_CELL, "watch": INTS,
     "started": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
-    "long_steps": INTS, "repeats": FLOAT_CELL,
+    "whole_steps": INTS, "repeats": FLOAT_CELL,
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
     "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 })  # fmt: skip

@@ -16,14 +16,7 @@ from stiffmbs.compile.machine.native.statuses import (
     UNSTABLE,
 )
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.events.native.step_bound import (
-    STRETCHED,
-    is_to_be_kept,
-    long_steps_view,
-    longest_step,
-    next_row,
-    step_bound_view,
-)
+from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, next_row, step_bound_view, whole_steps_view
 from stiffmbs.solve.explicit.native.attempt import across, arrive, attempt, distance_of_end, uncertain_end
 from stiffmbs.solve.explicit.native.error_estimate import trusted_error
 from stiffmbs.solve.explicit.native.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
@@ -163,10 +156,10 @@ def _shortest_to_event(x, c, s, m, explicit):
 
 
 @compiled
-def _keep_if_long(x, c, s, m):
-    """Store states within the last step if it is much longer than its predecessors."""
-    w = long_steps_view(x.long_steps)
-    if w.room == 0 or not is_to_be_kept(w, x.span):
+def _keep_whole(x, c, s, m):
+    """Store states within the last step if it is to be checked after the run."""
+    w = whole_steps_view(x.whole_steps)
+    if w.count >= w.room:
         return
     if x.dense_ready or prepare(x, c, s, m) == 0:
         row = next_row(w, x.t_before, x.t_before + x.span)
@@ -213,7 +206,7 @@ def advance(end, steps, held, own_steps, explicit):
             continue
         x.ends[x.steps % x.capacity] = x.t
         x.steps += 1
-        _keep_if_long(x, c, s, m)
+        _keep_whole(x, c, s, m)
         if own_steps:
             store_step(x)
         if x.stable == 0.0 and x.far_beyond > far_beyond:

@@ -8,14 +8,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_pr
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.events.native.bounds import bounded_by_feature, departed, event_search_view, repeats
 from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
-from stiffmbs.solve.events.native.step_bound import (
-    STRETCHED,
-    is_to_be_kept,
-    long_steps_view,
-    longest_step,
-    next_row,
-    step_bound_view,
-)
+from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, next_row, step_bound_view, whole_steps_view
 from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
@@ -175,7 +168,7 @@ def stepped(c, ida, stop):
     if flag == ROOT_RETURN and _interpolates_stiffly(c):
         corrected_at_event(c.output_correction, c.state, c.equations, _before_event(c, begun), array_of(c, c.y))
     if flag >= 0:
-        _keep_if_long(c, begun)
+        _keep_whole(c, begun)
     if flag >= 0 and c.trace:
         _keep_step(c, begun)
     return flag
@@ -256,11 +249,11 @@ def _report(c, values, row):
 
 
 @compiled
-def _keep_if_long(c, begun):
-    """Store states within the last step if it is much longer than its predecessors."""
-    w = long_steps_view(c.long_steps)
+def _keep_whole(c, begun):
+    """Store states within the last step if it is to be checked after the run."""
+    w = whole_steps_view(c.whole_steps)
     h = c.returned - begun
-    if w.room == 0 or not is_to_be_kept(w, h):
+    if w.count >= w.room:
         return
     row = next_row(w, begun, c.returned)
     for node in range(w.n_nodes):

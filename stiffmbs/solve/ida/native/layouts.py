@@ -17,7 +17,7 @@ NATIVE_IDA = Layout({
     "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "atol": FLOATS, "rtol": FLOAT_CELL,
-    "long_steps": INTS, "error_norm": INTS,
+    "whole_steps": INTS, "error_norm": INTS,
     "attempted": FLOAT_CELL, "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL,
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS

@@ -17,12 +17,12 @@ from ...error_control.error_test import ErrorControl
 from ...error_control.native.parameters import NEWTON
 from ...error_control.newton import RowSums, Stiffness, row_sums_of
 from ...error_control.relaxation import drift_of_positions, drift_of_velocities, inverse_mass
-from ..connection import Connection
 from ..native.layouts import START
 from ..statistics import Statistics, failure_sentence
 
 if TYPE_CHECKING:
     from ....dynamics.initial import InitialValues
+    from ..ida import NativeIda
 
 _START = Routine(
     "stiffmbs.solve.ida.starting.native.start", "start", "int32(float64, int64, int64, int64*)", level=SHORT
@@ -38,25 +38,25 @@ OF_STIFFNESS = "of_positions", "of_velocities"
 class Starts:
     """Compiled starts of one integrator.
 
-    `connection`: connection to IDA. `statistics`: counters of IDA. `table`: table for compiled code
+    `ida`: driver of IDA. `statistics`: counters of IDA. `table`: table for compiled code
     (`stiffmbs.solve.ida.native.layouts.START`).
     """
 
     def __init__(
-        self, dynamics: Dynamics, equations: Equations, connection: Connection, statistics: Statistics,
+        self, dynamics: Dynamics, equations: Equations, ida: NativeIda, statistics: Statistics,
         settings: RunSettings, control: ErrorControl,
     ) -> None:  # fmt: skip
         system, self._state = dynamics.system, dynamics.state
         for term_set in ("motion", "tangent"):
             self._state.load(term_set)
         values: dict[str, Any] = {
-            "dynamics": dynamics.table, "ida": connection.table, "error_norm": connection.error_norm.table, "n_watched": connection.watch.n,
+            "dynamics": dynamics.table, "ida": ida.table, "error_norm": ida.error_norm.table, "n_watched": ida.watch.n,
             "rate": np.zeros(system.n_q), "kept": np.zeros(system.n_q + system.n_u + system.n_c), "sums": np.zeros(system.n_u),
             **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **statistics.arrays,
             **newton_bounds(settings.rtol, control.newton), "growth": control.growth,
-            **{name: connection.address(function) for name, function in FUNCTIONS.items()},
+            **{name: ida.address(function) for name, function in FUNCTIONS.items()},
         }  # fmt: skip
-        self._kept = values, connection
+        self._kept = values, ida
         self.table = packed(START, values)
         self._cells, self._at = self.table.view(START.cells)[0], self.table.ctypes.data
 

@@ -1,0 +1,29 @@
+"""Sums and products of the derivation are those of SymPy, of which records and their kernels follow."""
+
+from itertools import product as combinations
+
+import pytest
+import sympy as sp
+
+from stiffmbs.compile.symbolic.canonical import positive, product, total
+
+x, y, z = sp.symbols("x y z", real=True)
+PARTS = (
+    x, -x, 2 * x, x * y, -3 * x * y, x + y, x - y, 2 * (x + y), sp.Mul(2, x + y, evaluate=False), x + y + 1, x**2, 1 / x, sp.sqrt(x**2 + y**2),
+    1 / sp.sqrt(x**2 + y**2), sp.sin(x), sp.exp(x), sp.exp(-y), sp.Abs(x), sp.sqrt(2), sp.sqrt(2) * x, sp.pi, sp.S.Zero, sp.S.One, -sp.S.One,
+    sp.Rational(1, 2), sp.Float("0.1"), sp.Float("0.3"), sp.oo, y**z, x**z,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "ours, sympys", [(lambda parts: total(parts), sp.Add), (lambda parts: product(*parts), sp.Mul)]
+)
+def test_sums_and_products_are_those_of_sympy(ours, sympys):
+    for parts in (*combinations(PARTS, repeat=2), *((*pair, z * x) for pair in combinations(PARTS, repeat=2))):
+        assert sp.srepr(ours(list(parts))) == sp.srepr(sympys(*parts)), parts
+
+
+def test_signs_are_those_of_sympy():
+    for one in (*PARTS, *(a - b for a, b in combinations(PARTS[:-3], repeat=2)), x - y - z, z - x - y, 1 - x, x - 1):
+        has_minus = one.could_extract_minus_sign()
+        assert positive(one) == (-one if has_minus else None), one
