@@ -199,7 +199,7 @@ class _Writer:
         coordinate = "" if joint is None else of.coordinate_of(joint)
         motion = {"angle": "RotationalMotion", "displacement": "TranslationalMotion"}.get(coordinate or "", "")
         law = self._law(drive.prescribed_position)
-        if not motion or law is None or KINDS.get(joint.kind, "") not in COORDINATES[motion]:
+        if joint is None or not motion or law is None or KINDS.get(joint.kind, "") not in COORDINATES[motion]:
             self.lost[name] = "its coordinate or its law"
             return
         yield f"\t\t\t{motion}"
