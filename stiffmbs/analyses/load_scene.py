@@ -1,4 +1,4 @@
-"""Loading of scenes: YAML files, Adams/Solver datasets, and robots in URDF or MJCF."""
+"""Loading of scenes: YAML files, Adams/Solver datasets, robots in URDF or MJCF, and assemblies of CAD programs."""
 
 from __future__ import annotations
 
@@ -19,22 +19,24 @@ OTHERS = {
     ".bin": "a database of Adams/View: export the model there by File > Export > Adams/Solver dataset, and read the .adm",
     ".sdf": "SDFormat, which is not read: convert it to MJCF, for example by sdformat_mjcf's sdformat2mjcf, or to URDF",
     ".osim": "a model of OpenSim, which is not read: convert it to MJCF, for example by MyoConverter",
-    ".asmt": "an assembly of FreeCAD (MbD), which is not read: write its bodies and joints as a scene, or export it as URDF",
     ".mbd": "an input file of MBDyn, which is not read: write its nodes, joints and forces as a scene",
 }
 """Files of other programs that are recognised by their suffix, and what to do with them."""
 ROBOTS = (".urdf", ".xml", ".mjcf")
 """File suffixes of robots."""
+CAD = (".asmt", ".xml")
+"""File suffixes of assemblies; the root element tells an XML file from MJCF."""
 
 
 def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:
-    """Read a scene file, an Adams/Solver dataset, or a robot's file.
+    """Read a scene file, an Adams/Solver dataset, a robot's file, or a CAD program's.
 
     Parameters
     ----------
     path : str or Path
         A YAML file, or ``-`` for standard input; a dataset if its name ends in ``.adm``, a robot in URDF if it ends in
-        ``.urdf``, in MJCF (needs the extra ``robots``) if it ends in ``.xml`` or ``.mjcf``.
+        ``.urdf``, in MJCF (needs the extra ``robots``) if it ends in ``.xml`` or ``.mjcf``; an assembly if it ends in
+        ``.asmt`` (FreeCAD), or is Simscape Multibody XML.
     changes : sequence of (path, text)
         Values that replace those of the file, such as ``("bodies.cart.mass", "12 kg")``.
 
@@ -53,6 +55,11 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
             raise InputError(f"changes: found {change!r}, expected pairs such as ('bodies.cart.mass', '12 kg')")
     refuse_others(path)
     suffix = Path(path).suffix.lower()
+    if suffix in CAD:
+        from ..cad.load import is_cad, load_cad
+
+        if is_cad(path):
+            return load_cad(path, changes)
     if suffix in ROBOTS:
         from ..robots.load import load_robot
 

@@ -14,12 +14,14 @@ from ..reading.files.files_read import content_of
 from .process import Status
 from .scene import CHANGES, assigned, file_beside, is_written, option, output_option, refuse_own_input, refusing
 
-DATASET, AT = ".adm", "--at JOINT=VALUE with a number"
+DATASET, ASSEMBLY, AT = ".adm", ".asmt", "--at JOINT=VALUE with a number"
 
 
-@click.command(short_help="Write a dataset, a robot, or a planar scene, as a scene; or a scene as a dataset.")
+@click.command(
+    short_help="Write a dataset, a robot, an assembly, or a planar scene, as a scene; or a scene as a dataset or assembly."
+)
 @click.argument("scene")
-@output_option("Scene file, or dataset if it ends in .adm; by default standard output.")
+@output_option("Scene file, dataset if it ends in .adm, or assembly if it ends in .asmt; by default standard output.")
 @option("--in-space", "Take a planar SCENE, and write it in the x-y plane of space.")
 @option(
     "--at JOINT=VALUE ...",
@@ -30,9 +32,11 @@ DATASET, AT = ".adm", "--at JOINT=VALUE with a number"
 def convert(
     scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
 ) -> None:
-    """Convert an Adams/Solver dataset (.adm) or a robot (URDF, MJCF) to a scene, or a planar scene to space.
+    """Convert an Adams/Solver dataset (.adm), a robot (URDF, MJCF) or an assembly (Simscape Multibody XML, .asmt) to a scene,
+    or a planar scene to space.
 
-    If OUTPUT ends in .adm, the scene is written as a dataset, with a command file (.acf) for its run next to it.
+    If OUTPUT ends in .adm, the scene is written as a dataset, with a command file (.acf) for its run next to it; if it ends in
+    .asmt, as an assembly for FreeCAD's solver.
 
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
@@ -41,8 +45,8 @@ def convert(
 
     with refusing(scene):
         refuse_own_input("-o", scene, output)
-        if output is not None and output.suffix.lower() == DATASET:
-            texts = _as_dataset(scene, output, coordinates, changes)
+        if output is not None and output.suffix.lower() in (DATASET, ASSEMBLY):
+            texts = _exported(scene, output, coordinates, changes)
         else:
             text = text_in_space(scene, changes) if in_space else _of_other(scene, coordinates, changes)
             texts = {output: text}
@@ -53,41 +57,46 @@ def convert(
             sys.exit(Status.FAILED)
 
 
-def _as_dataset(
+def _exported(
     path: str, output: Path, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
 ) -> dict[Path | None, str]:
-    """Return a dataset and its command file, by their paths."""
+    """Return a dataset and its command file, or an assembly, by their paths."""
     from ..adams.export.dataset_text import written_dataset
     from ..adams.load import COMMANDS
     from ..analyses.in_space import in_space
     from ..analyses.load_scene import ROBOTS, load_scene
+    from ..cad.load import is_cad
+    from ..cad.ondsel.write import written_assembly
     from ..model.spatial_scene import SpatialScene
     from ..robots.load import load_robot
 
-    commands = output.with_suffix(COMMANDS)
+    commands = output.with_suffix(COMMANDS) if output.suffix.lower() == DATASET else None
     refuse_own_input("-o", path, commands)
-    if coordinates and Path(path).suffix.lower() in ROBOTS:
+    if coordinates and Path(path).suffix.lower() in ROBOTS and not is_cad(path):
         scene = load_robot(path, changes, coordinates=assigned(AT, coordinates, float))
     else:
         scene = load_scene(path, changes)
     spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
-    found = written_dataset(spatial, path)
+    found = written_assembly(spatial, path) if commands is None else written_dataset(spatial, path)
     for line in note_lines(found.notes):
         click.echo(line, err=True)
-    return {output: found.text, commands: found.commands}
+    return {output: found.text} | ({} if commands is None else {commands: found.commands})
 
 
 def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
     """Return the text of a scene from a file of another program."""
     from ..adams.load import convert_file
-    from ..analyses.load_scene import ROBOTS, refuse_others
+    from ..analyses.load_scene import CAD, ROBOTS, refuse_others
+    from ..cad.load import convert_cad, is_cad
     from ..robots.load import convert_robot
 
     refuse_others(path)
-    suffix = Path(path).suffix.lower()
+    suffix, found = Path(path).suffix.lower(), convert_file
     if changes:
         raise InputError(f"{path}: found --set, expected it with --in-space alone")
-    if suffix in ROBOTS:
+    if suffix in CAD and is_cad(path):
+        found = convert_cad
+    elif suffix in ROBOTS:
         return convert_robot(path, coordinates=assigned(AT, coordinates, float))
     if coordinates:
         raise InputError(f"{path}: found --at, expected it with a robot alone")
@@ -95,7 +104,7 @@ def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, 
         raise InputError(
             f"{path}: found a scene, expected an Adams/Solver dataset (.adm), a robot ({', '.join(ROBOTS)}), or --in-space"
         )
-    return convert_file(path)
+    return found(path)
 
 
 @click.command(short_help="Results compared with another program's listing.")

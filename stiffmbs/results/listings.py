@@ -1,4 +1,4 @@
-"""Comparison with columns over time of files: of this package, tables as text, and Adams' .res files in XML."""
+"""Comparison with columns over time of files: of this package, tables as text, Adams' .res and FreeCAD's .asmt files."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from ..errors import InputError
 from ..reading.did_you_mean import did_you_mean
 from ..reading.files.files_read import content_of
 from ..reading.files.quoted import quoted
+from ..reading.files.xml_nodes import FileFault
 from ..reading.names import owner_of
 from .saved_state import READERS, readable
 from .scales import ROUNDING
@@ -31,8 +32,8 @@ _WORDS = re.compile(r'"[^"]*"|[^\s,;"]+')
 def read_columns(path: str | Path) -> Columns:
     """Read the columns of a file over time; raise an InputError if it has none.
 
-    The file holds results of this package (.npz, .csv, .nc) or of Adams (.res, .xml), or a table as text: .tab, .txt,
-    .csv, .req and others, with time in its first column.  A column of a table has its number as a name, ``1`` for time, and
+    The file holds results of this package (.npz, .csv, .nc), of Adams (.res, .xml) or of FreeCAD's solver (.asmt), or a
+    table as text: .tab, .txt, .csv, .req and others, with time in its first column.  A column of a table has its number as a name, ``1`` for time, and
     its name in the header if that has as many names as columns.  A column of Adams' XML is called ``entity.component``.
     """
     file = Path(path)
@@ -53,6 +54,8 @@ def read_columns(path: str | Path) -> Columns:
 def _reader(file: Path) -> Callable[[Path], Columns]:
     if file.suffix in (".res", ".xml"):
         return _adams_xml
+    if file.suffix == ".asmt":
+        return _asmt
     if file.suffix in (".npz", ".nc"):
         return lambda path: {
             name: np.asarray(values, dtype=float)
@@ -113,6 +116,15 @@ def _adams_xml(path: Path) -> Columns:
     found = {names.get(k, str(k)): column for k, column in enumerate(table, start=1)}
     of_time = next((name for name in found if name.lower() in (TIME, f"{TIME}.{TIME}")), None)
     return found | {TIME: found[of_time] if of_time else table[0]}
+
+
+def _asmt(path: Path) -> Columns:
+    from ..cad.ondsel.series import stored_results
+
+    try:
+        return stored_results(content_of(path).decode(errors="replace"))
+    except FileFault as fault:
+        raise ValueError(str(fault)) from None
 
 
 Listed: TypeAlias = Solution | str | Path | Mapping[str, np.ndarray]

@@ -13,8 +13,9 @@ from ..errors import InputError
 from ..model.read_scene import made_scene
 from ..model.scene import Scene
 from ..reading.files.text_file import file_text, source_name
+from ..reading.files.xml_nodes import FileFault
 from ..reading.files.yaml_text import scene_text
-from .robot import Robot, RobotFault
+from .robot import Robot
 from .scene.scene import scene
 
 URDF = ".urdf"
@@ -59,7 +60,7 @@ def convert_robot(
 def _found(path: str | Path, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, object]:
     try:
         return scene(_read(path), coordinates, rates)
-    except RobotFault as fault:
+    except FileFault as fault:
         raise InputError(f"{source_name(path)}: {fault}") from None
     except np.linalg.LinAlgError:
         raise InputError(f"{source_name(path)}: {BEYOND}") from None

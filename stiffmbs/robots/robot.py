@@ -10,11 +10,12 @@ import numpy as np
 
 from ..elements.spatial.marker import ORIGIN
 from ..elements.spatial.orientation import IDENTITY
+from ..reading.files.xml_nodes import FileFault
 
 JointKind = Literal["hinge", "slide", "ball", "free"]
 
 
-class RobotFault(Exception):
+class RobotFault(FileFault):
     """Invalid or unsupported content of a robot file; the message names the link, joint or actuator."""
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from ..elements.spatial.marker import ORIGIN
 from ..elements.spatial.orientation import IDENTITY, about, matrix, product
 from ..reading.files.requested import unused_notes
+from ..reading.files.xml_nodes import Node, parsed
 from .robot import JointKind, Link, LinkJoint, Relation, Robot, RobotFault, Transmission
-from .xml_nodes import Node, parsed
 
 KINDS: dict[str, JointKind] = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide", "floating": "free"}
 OF_ONE_COORDINATE = ("revolute", "continuous", "prismatic")

@@ -53,7 +53,7 @@ AREAS = {
     ),
     "results": Area(("stiffmbs/results/*.py",), ("tests/results", "tests/analyses", "tests/verification")),
     "readers": Area(
-        ("stiffmbs/adams/*/*.py", "stiffmbs/robots/*.py", "stiffmbs/robots/*/*.py", "stiffmbs/reading/files/*.py"),
-        ("tests/robots", "tests/adams", "tests/tyres", "tests/reading"),
+        ("stiffmbs/adams/*/*.py", "stiffmbs/robots/*.py", "stiffmbs/robots/*/*.py", "stiffmbs/cad/*.py", "stiffmbs/cad/*/*.py", "stiffmbs/reading/files/*.py"),
+        ("tests/robots", "tests/cad", "tests/adams", "tests/tyres", "tests/reading"),
     ),
 }  # fmt: skip

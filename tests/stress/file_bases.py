@@ -1,6 +1,10 @@
-"""Scenes and datasets that a fuzzer changes: small, and of all kinds of sections that files have."""
+"""Scenes, datasets and assemblies that a fuzzer changes: small, and of all kinds of sections that files have."""
 
 from __future__ import annotations
+
+from ..cad.asmt_files import CRANK as HINGED
+from ..cad.asmt_files import MOTION
+from ..cad.simscape_files import BASE, CART, constraint, document, instance, joint, part, shape
 
 PENDULUM = """\
 name: Pendulum with a spring
@@ -106,6 +110,23 @@ REQUEST/1, F2=DX(20,1), F3=VX(20)
 ACCGRAV/KGRAV=-9.81
 END
 """
+
+MATED = document(
+    BASE + instance("sub", "assembly", "0.1 0 0.5", below=instance("arm", "arm", grounded="true") + instance("tip", "arm", "0.2 0 0"))
+    + instance("bob", "arm", "0.4 0.1 0", rigidGroup="g") + instance("cap", "arm", "0.4 0.3 0", rigidGroup="g"),
+    constraint("Distance", "d", shape("plane", "base", "0 0 0", "0 0 1"), shape("plane", "bob", "0 0 0.1", "0 0 1"))
+    + constraint("Angle", "a", shape("line", "base", "0 0 0", "1 0 0"), shape("line", "bob", "0 0 0", "0.6 0.8 0"))
+    + constraint("Tangent", "t", shape("plane", "base", "0 0 0", "0 1 0"), shape("cylinder", "bob", "0 0 0", "1 0 0")),
+    joint("Revolute", "hinge", "base", "sub arm", "0.1 0 0.5", "0 0 0") + joint("Weld", "weld", "base", "cap", "0.4 0.3 0"),
+    part("block") + part("arm"),
+    '<Assembly name="assembly" uid="assembly"><Joints>' + joint("PinSlot", "slot", "arm", "tip", "0.2 0 0") + "</Joints></Assembly>",
+).replace("><", ">\n<")  # fmt: skip
+ASSEMBLIES = (
+    (".xml", CART.replace("><", ">\n<")), (".xml", MATED), (".asmt", HINGED), (".asmt", HINGED.replace("\t\tMotions\n", MOTION)),
+    *((".asmt", HINGED.replace("RevoluteJoint", kind).replace("\t\tMotions\n", f"\t\t\t\t{field}\n\t\t\t\t\t0.1\n\t\tMotions\n"))
+      for kind, field in (("CylSphJoint", "distanceIJ"), ("PlanarJoint", "offset"), ("ScrewJoint", "pitch"), ("RackPinionJoint", "pitchRadius"))),
+)  # fmt: skip
+"""Assemblies with the suffixes of their files."""
 
 SCENES = (PENDULUM, CRANK, CHAIN, SPACE)
 DATASETS = (ARM, ELASTIC)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
@@ -18,15 +18,18 @@ from .mechanism import Hold, Mechanism
 
 
 class Masses:
-    """Small mass and inertia for massless links: fractions of the robot's lightest mass, at its size."""
+    """Small mass and inertia for massless links: fractions of the lightest mass, at the mechanism's size.
 
-    def __init__(self, robot: Robot, mechanism: Mechanism) -> None:
-        least = min((link.mass for link in robot.links if link.mass > 0), default=0.0)
+    `word`: what the links are called in messages.
+    """
+
+    def __init__(self, links: Iterable[Link], frames: Iterable[Placed], word: str = "link") -> None:
+        least = min((link.mass for link in links if link.mass > 0), default=0.0)
         if least == 0:
-            raise RobotFault("found no link with a mass, expected one at least")
+            raise RobotFault(f"found no {word} with a mass, expected one at least")
         self.lightest = least
         self.mass = MASSLESS * least
-        self.moment = massless_moment(least, [frame.position for _, frame in mechanism.bodies.values()])
+        self.moment = massless_moment(least, [frame.position for frame in frames])
 
 
 def bodies(mechanism: Mechanism, masses: Masses) -> Content:
@@ -34,17 +37,21 @@ def bodies(mechanism: Mechanism, masses: Masses) -> Content:
     found = {}
     for name, (link, frame) in mechanism.bodies.items():
         between = name in mechanism.between
-        body = _between(link, masses) if between else _heavy(link, masses)
+        body = _between(link, masses) if between else rigid_body(link, masses)
         markers = mechanism.markers.get(name)
         centre = (0.0, 0.0, 0.0) if between else link.center_of_mass
-        found[name] = body | _motion(frame, centre) | ({"markers": markers} if markers else {})
+        found[name] = body | motion(frame, centre) | ({"markers": markers} if markers else {})
     return found
 
 
 def notes(mechanism: Mechanism) -> list[str]:
     """Return a note on inertias that no distribution of mass has."""
-    own = {name: link for name, (link, _) in mechanism.bodies.items() if name not in mechanism.between}
-    odd = [name for name, link in own.items() if breaks_triangle(link.inertia)]
+    return odd_inertias({name: link for name, (link, _) in mechanism.bodies.items() if name not in mechanism.between})
+
+
+def odd_inertias(links: Mapping[str, Link]) -> list[str]:
+    """Return a note on the inertias of links, by name, that no distribution of mass has."""
+    odd = [name for name, link in links.items() if breaks_triangle(link.inertia)]
     return (
         [f"the largest moment of inertia of {', '.join(odd)} is greater than the sum of the other two"] if odd else []
     )
@@ -57,14 +64,15 @@ def _between(link: Link, masses: Masses) -> dict[str, object]:
     return {"mass": link.mass * MASSLESS or masses.mass, "inertia": [moment or masses.moment] * 3}
 
 
-def _heavy(link: Link, masses: Masses) -> dict[str, object]:
+def rigid_body(link: Link, masses: Masses, word: str = "link") -> dict[str, object]:
+    """Return the body of a link; missing mass and inertia are small ones. `word`: what it is called in messages."""
     tensor = link.inertia
     if not np.all(np.isfinite(tensor)):
-        raise RobotFault(f"link {link.name}: found moments of inertia above 1e308 kg m^2, expected finite values")
+        raise RobotFault(f"{word} {link.name}: found moments of inertia above 1e308 kg m^2, expected finite values")
     moments = np.linalg.eigvalsh(tensor)
     if moments[0] < -MOMENT_ROUNDING * max(moments[-1], masses.moment) or not np.all(np.isfinite(moments)):
         raise RobotFault(
-            f"link {link.name}: found the principal moments of inertia {', '.join(f'{x:g}' for x in moments)} kg m^2, expected none below 0"
+            f"{word} {link.name}: found the principal moments of inertia {', '.join(f'{x:g}' for x in moments)} kg m^2, expected none below 0"
         )
     body: dict[str, object] = {"mass": plain(link.mass or masses.mass)}
     if moments[0] < 0:  # rounding error
@@ -83,7 +91,8 @@ def _heavy(link: Link, masses: Masses) -> dict[str, object]:
     return body
 
 
-def _motion(frame: Placed, center_of_mass: tuple[float, ...]) -> Content:
+def motion(frame: Placed, center_of_mass: tuple[float, ...]) -> Content:
+    """Return the initial pose and velocities of a body."""
     found: dict[str, object] = {"position": vector(frame.position)}
     if frame.orientation != (1.0, 0.0, 0.0, 0.0):
         found["orientation"] = vector(frame.orientation)

@@ -29,7 +29,7 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
     _check_joints(robot, {**coordinates, **rates})
     coordinates, rates = with_followers(robot, coordinates, rates)
     mechanism = Mechanism(robot, coordinates, rates)
-    masses = Masses(robot, mechanism)
+    masses = Masses(robot.links, [frame for _, frame in mechanism.bodies.values()])
     acting = actuators(robot, mechanism)
     found: Content = {
         "name": robot.name,

@@ -121,13 +121,13 @@ def _tried(folder: Path, dataset: bytes, commands: bytes) -> Verdict:
         return Verdict(
             Outcome.WRONG, detail=f"done, but {unsaid[0]} is no number at some time; notes: {solution.notes}"
         )
-    other = _another(solution, run(read_scene(convert_file(path)), watch=patience(PATIENCE), **settings))
+    other = another_channel(solution, run(read_scene(convert_file(path)), watch=patience(PATIENCE), **settings))
     if other:
         return Verdict(Outcome.WRONG, detail=f"the converted scene has another {other}")
     return Verdict(Outcome.RIGHT, detail="; ".join(solution.notes))
 
 
-def _another(one: Solution, other: Solution) -> str:
+def another_channel(one: Solution, other: Solution) -> str:
     """The first channel that is other in a second solution; nothing where all are alike."""
     if other.outcome is not Ending.DONE or len(other.time) != len(one.time):
         return "ending"

@@ -7,29 +7,29 @@ from typing import Any
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers.expat import ExpatError, ParserCreate
 
-from ..reading.files.requested import Fields
-from .robot import RobotFault
+from .requested import Fields
+
+
+class FileFault(Exception):
+    """Invalid or unsupported content of a file of another program; the message names the element."""
 
 
 class Node:
     """Element of an XML file.
 
-    `kind`: tags from the root to the element, separated by ``/``. `owner`: name of the nearest named element.
-    `defaults`: values without effect, by kind.
+    `kind`: tags from the root to the element without the root's own, separated by ``/``. `owner`: name of the nearest
+    named element. `defaults`: values without effect, by kind.
     """
 
     def __init__(
         self, element: Element, kind: str = "", owner: str = "", defaults: Mapping[str, Mapping[str, Any]] | None = None
     ) -> None:
-        self.tag, self.attributes = element.tag, element.attrib
-        kind = kind or element.tag
+        self.tag, self.attributes, self.text = element.tag, element.attrib, (element.text or "").strip()
+        below, kind = f"{kind}/" if kind else "", kind or element.tag
         children = {_child(child.tag): child.tag for child in element}
         own = {name: value for name, value in element.attrib.items() if not name.startswith("xmlns")}
         self._fields = Fields(kind, owner, {**own, **children}, (defaults or {}).get(kind))
-        self._children = [
-            Node(child, f"{kind}/{child.tag}".removeprefix("robot/"), child.get("name") or owner, defaults)
-            for child in element
-        ]
+        self._children = [Node(child, f"{below}{child.tag}", child.get("name") or owner, defaults) for child in element]
 
     def get(self, name: str, default: str | None = None) -> str | None:
         """Return an attribute."""
@@ -45,6 +45,11 @@ class Node:
         self._fields.request(_child(tag))
         found = [child for child in self._children if child.tag == tag]
         return [below for child in found for below in child.findall(rest)] if rest else found
+
+    def children(self) -> list[Node]:
+        """Return all children."""
+        self._fields.request(*(_child(child.tag) for child in self._children))
+        return self._children
 
     def without_effect(self, *tags: str) -> None:
         """Exclude children from the report."""
@@ -71,12 +76,12 @@ def _child(tag: str) -> str:
 
 
 def parsed(text: str, expected: str, defaults: Mapping[str, Mapping[str, Any]]) -> Node:
-    """Read an XML file; namespace prefixes need not be declared. Raises RobotFault for text that is not well-formed."""
+    """Read an XML file; namespace prefixes need not be declared. Raises FileFault for text that is not well-formed."""
     builder, parser = TreeBuilder(), ParserCreate()
     parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
     parser.CharacterDataHandler = builder.data
     try:
         parser.Parse(text, True)
     except ExpatError as error:
-        raise RobotFault(f"found no well-formed XML ({error}), expected {expected}") from None
+        raise FileFault(f"found no well-formed XML ({error}), expected {expected}") from None
     return Node(builder.close(), defaults=defaults)

@@ -1,0 +1,1 @@
+"""Assemblies of CAD programs: Simscape Multibody XML and the .asmt files of FreeCAD's solver."""

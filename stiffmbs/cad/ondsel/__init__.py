@@ -1,0 +1,1 @@
+"""Text files .asmt of OndselSolver, the multibody solver of FreeCAD."""

@@ -1,0 +1,1 @@
+"""Simscape Multibody XML, which SolidWorks, Creo, Inventor and Onshape export."""

@@ -1,0 +1,141 @@
+"""Instances of parts and subassemblies: their poses, and which of them move as one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...reading.files.xml_nodes import Node
+from ..assembly import WORLD, CadFault, Frame, finite, rotation
+
+
+@dataclass(frozen=True)
+class Instance:
+    """Part or subassembly in the tree of instances.
+
+    `uids`: from the root to the instance. `label`: names along this path, unique. `entity`: uid of its part or
+    assembly. `frame`: in the world. `grounded`: fixed to the frame of its assembly. `rigid`: a subassembly whose parts do
+    not move. `group`: name of those instances of its assembly that move as one.
+    """
+
+    uids: tuple[str, ...]
+    label: str
+    entity: str
+    frame: Frame
+    grounded: bool
+    rigid: bool
+    group: str
+    children: tuple[Instance, ...] = ()
+
+    def leaves(self) -> Iterator[Instance]:
+        """Yield the instances of parts."""
+        if not self.children:
+            yield self
+        for child in self.children:
+            yield from child.leaves()
+
+    def below(self) -> Iterator[Instance]:
+        """Yield the instance and all below it."""
+        yield self
+        for child in self.children:
+            yield from child.below()
+
+    def found(self, uids: tuple[str, ...]) -> Instance | None:
+        """Return the instance at a path below this one."""
+        if not uids:
+            return self
+        child = next((child for child in self.children if child.uids[-1] == uids[0]), None)
+        return None if child is None else child.found(uids[1:])
+
+    def carrier(self) -> Instance | None:
+        """Return the part that its frame moves with; None for a subassembly that has no such part."""
+        if self.rigid or not self.children:
+            return next(self.leaves())
+        return next((carrier for child in self.children if child.grounded and (carrier := child.carrier())), None)
+
+
+def tree(root: Node, uid: str, length: float) -> Instance:
+    """Return the root assembly; `length`: unit of length, m."""
+    top = Instance((), "", uid, WORLD, grounded=True, rigid=False, group="")
+    node = root.find("InstanceTree")
+    found = replace(top, children=() if node is None else _children(node, top, length))
+    if not found.children:
+        raise CadFault("found no instance of a part, expected <Instance> in <InstanceTree>")
+    return found
+
+
+def _children(node: Node, above: Instance, length: float) -> tuple[Instance, ...]:
+    found: dict[str, Instance] = {}
+    labels = set[str]()
+    for child in node.findall("Instance"):
+        uid = child.get("uid") or ""
+        label = f"{above.label}/{readable(child.get('name') or uid, 'part')}".removeprefix("/")
+        label = f"{label}_{uid}" if label in labels else label
+        labels.add(label)
+        where = f"instance {label}"
+        if not uid or uid in found:
+            raise CadFault(f"{where}: found the uid '{uid}', expected one of its own")
+        frame = transform(where, child, length).on(above.frame)
+        one = Instance(
+            (*above.uids, uid), label, child.get("entityUid") or "", frame, child.get("grounded") == "true",
+            child.get("rigid") == "true", child.get("rigidGroup") or "",
+        )  # fmt: skip
+        found[uid] = replace(one, children=_children(child, one, length))
+    return tuple(found.values())
+
+
+def readable(name: str | None, word: str) -> str:
+    """Return a name, after a word if it has no letters that the names of a scene have."""
+    return name if name and re.search("[A-Za-z]", name) else f"{word}_{name or ''}"
+
+
+def transform(where: str, node: Node, length: float) -> Frame:
+    """Return the frame of a <Transform>: rotation by rows, and translation."""
+    given = node.find("Transform")
+    if given is None:
+        return WORLD
+    turned = rotation(where, numbers(where, given, "Rotation", 9).reshape(3, 3))
+    return Frame(numbers(where, given, "Translation", 3) * length, turned)
+
+
+def numbers(where: str, node: Node, tag: str, count: int) -> np.ndarray:
+    """Return the numbers in a child."""
+    child = node.find(tag)
+    text = "" if child is None else child.text
+    try:
+        found = np.array([float(word) for word in text.split()])
+    except ValueError:
+        found = np.empty(0)
+    if len(found) != count or not np.all(np.isfinite(found)):
+        what = f"{count} numbers" if count > 1 else "a number"
+        raise CadFault(f"{where}: found <{tag}> '{text}', expected {what}")
+    return finite(where, found)
+
+
+def tied(top: Instance) -> Iterator[tuple[Instance, Instance | None]]:
+    """Yield the pairs of parts that move as one, and the parts that are fixed to ground, each with None."""
+    for one in top.below():
+        if one is not top and one.rigid and one.children:
+            first, *others = one.leaves()
+            yield from ((other, first) for other in others)
+        elif one.children and not any(one.uids[: len(above)] == above for above in _rigid(top)):
+            yield from _in_flexible(one, None if one is top else one.carrier())
+
+
+def _rigid(top: Instance) -> list[tuple[str, ...]]:
+    return [one.uids for one in top.below() if one.rigid and one.children]
+
+
+def _in_flexible(one: Instance, carrier: Instance | None) -> Iterator[tuple[Instance, Instance | None]]:
+    grounded = [found for child in one.children if child.grounded and (found := child.carrier())]
+    yield from ((part, carrier) for part in grounded if part is not carrier)
+    groups: dict[str, Instance] = {}
+    for child in one.children:
+        part = child.carrier()
+        if child.group and part is not None:
+            first = groups.setdefault(child.group, part)
+            if first is not part:
+                yield part, first
