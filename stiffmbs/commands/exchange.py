@@ -77,10 +77,16 @@ def _exported(
     else:
         scene = load_scene(path, changes)
     spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
-    found = written_assembly(spatial, path) if commands is None else written_dataset(spatial, path)
-    for line in note_lines(found.notes):
+    texts: dict[Path | None, str]
+    if commands is None:
+        assembly = written_assembly(spatial, path)
+        texts, notes = {output: assembly.text}, assembly.notes
+    else:
+        dataset = written_dataset(spatial, path)
+        texts, notes = {output: dataset.text, commands: dataset.commands}, dataset.notes
+    for line in note_lines(notes):
         click.echo(line, err=True)
-    return {output: found.text} | ({} if commands is None else {commands: found.commands})
+    return texts
 
 
 def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:

@@ -51,8 +51,8 @@ def _tried(path: Path) -> Verdict:
         return Verdict(Outcome.TOLD, detail="read as another format")
     scene = load_scene(path)
     str(check(scene))
-    settings = {"duration": min(MOMENT, scene.run.duration), "points": 5}
-    solution = run(scene, watch=patience(PATIENCE), **settings)
+    duration = min(MOMENT, scene.run.duration)
+    solution = run(scene, watch=patience(PATIENCE), duration=duration, points=5)
     shown(solution)
     if solution.outcome is not Ending.DONE:
         return told(solution.message)
@@ -61,7 +61,8 @@ def _tried(path: Path) -> Verdict:
         return Verdict(
             Outcome.WRONG, detail=f"done, but {unsaid[0]} is no number at some time; notes: {solution.notes}"
         )
-    other = another_channel(solution, run(read_scene(convert_cad(path)), watch=patience(PATIENCE), **settings))
+    again = run(read_scene(convert_cad(path)), watch=patience(PATIENCE), duration=duration, points=5)
+    other = another_channel(solution, again)
     if other:
         return Verdict(Outcome.WRONG, detail=f"the converted scene has another {other}")
     return Verdict(Outcome.RIGHT, detail="; ".join(solution.notes))
