@@ -31,9 +31,6 @@ def quiet_while_loading() -> None:
     os.environ.setdefault("SYMPY_CACHE_SIZE", "None")
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.disable()  # modules and classes stay alive: scanning them is wasted time
-    from .late_dataclasses import generate_later  # dataclasses takes as long to import as all of the package
-
-    generate_later("stiffmbs")
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _end)
 

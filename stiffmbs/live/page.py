@@ -12,7 +12,6 @@ from typing import Any
 
 from ..analyses.job import Runnable, data_of, settings_of
 from ..errors import InputError, refuse_missing
-from ..late_dataclasses import generate_now
 from ..model.model_data import ModelData
 from ..model.model_text import model_text
 from ..reading.files.yaml_text import scene_text
@@ -168,7 +167,6 @@ def _served(document: Any, data: ModelData | None, port: int, browser: bool) -> 
             listening.close()
 
     workers.start_ahead()
-    generate_now()
     thread = threading.Thread(target=serve, daemon=True)
     thread.start()
     url = f"http://{LOOPBACK}:{number}/{token}/"

@@ -13,7 +13,6 @@ from queue import Empty, LifoQueue
 from typing import Any
 
 from ..errors import InputError, SolverError, StiffmbsError
-from ..late_dataclasses import generate_now
 from ..reading.files.quoted import written
 from .case_solver import CaseSolver, Row, Task
 
@@ -43,7 +42,6 @@ def executor_of(workers: int | None, executor: Executor | None) -> Iterator[tupl
     if count == 1:
         yield None, 1
         return
-    generate_now()
     threads = ThreadPoolExecutor(count)
     try:
         yield threads, count
