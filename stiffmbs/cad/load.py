@@ -60,6 +60,8 @@ def _found(path: str | Path) -> Content:
         return scene(_reader(path)(file_text(path)))
     except FileFault as fault:
         raise InputError(f"{source_name(path)}: {fault}") from None
+    except RecursionError:
+        raise InputError(f"{source_name(path)}: the file cannot be read (its elements are nested too deeply)") from None
     except np.linalg.LinAlgError:
         raise InputError(f"{source_name(path)}: {BEYOND}") from None
 

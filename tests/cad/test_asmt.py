@@ -20,6 +20,8 @@ DISTANCES = ("gears", "links", "line", "table")
 ON_J = ("slot", "bearing")
 """Joints whose reaction the scene reports on the part of marker J: points on a line or plane of I."""
 
+PIVOT = "\t\tRefPoint\n\t\t\tMarkers\n\t\t\t\tMarker\n\t\t\t\t\tName\n\t\t\t\t\t\tpivot\n"
+"""A second marker of this name."""
 WITHOUT_TORQUE = "joint"
 """Joint of constant velocity, of which OndselSolver reports no torque; those of its neighbours contain it."""
 
@@ -112,12 +114,22 @@ def test_a_later_start_is_in_the_laws(tmp_path):
         ("\t\tMotions\n", MOTION.replace("time", "theta"), "found theta in '-2.0d.theta', expected one of time"),
         ("\t\tMotions\n", MOTION.replace("RotationalMotion", "TranslationalMotion"), "motion of hinge, expected one of a Trans"),
         ("\t\tMotions\n", MOTION.replace("RotationalMotion", "GeneralMotion"), "found GeneralMotion, expected one of Rot"),
+        ("\t\tMotions\n", MOTION + MOTION.removeprefix("\t\tMotions\n"), "motor: found two motions motor, expected one of each"),
+        ("\tParts\n", "\tConstantGravity\n\t\t0 0 0\n\tParts\n", "found ConstantGravity twice in Assembly"),
+        ("\tParts\n", PIVOT + "\tParts\n", "found two markers pivot, expected one of each name"),
+        ("\tParts\n", "".join("\t" * k + "x\n" for k in range(1, 1500)) + "\tParts\n", "nested too deeply"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_named(tmp_path, old, new, message):
     assert old in CRANK
     with pytest.raises(InputError, match=message):
         _read(tmp_path, CRANK.replace(old, new, 1))
+
+
+def test_a_motion_is_left_out_with_its_joint(tmp_path):
+    scene = _read(tmp_path, CRANK.replace("\t\tMotions\n", MOTION).replace("/Rig/pivot", "/Rig/arm/hub"))
+    assert not scene.joints
+    assert "motions of joints that are left out are left out: motor" in scene.notes
 
 
 def test_entries_without_effect_are_noted(tmp_path):

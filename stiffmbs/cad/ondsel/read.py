@@ -49,13 +49,17 @@ def read_asmt(text: str) -> Assembly:
     frames: dict[str | None, Frame] = {None: WORLD} | {part.name: part.frame for part in parts}
     if len(frames) <= len(parts):
         raise CadFault("found two parts of one name, expected one of each")
-    seats = dict(_markers(item, parts, world))
+    seats = dict[tuple[str, ...], Seat]()
+    for path, seat in _markers(item, parts, world):
+        if path in seats:
+            raise CadFault(f"found two markers {'/'.join(path)}, expected one of each name")
+        seats[path] = seat
     sets = item.find("ConstraintSets")
     ties, notes, drives = [], list[str](), dict[str, tuple[str, str, str]]()
     if sets is not None:
         joints = sets.each("Joints")
         ties = list(_ties(joints, seats, frames, notes))
-        drives = dict(_drives(sets.each("Motions"), joints, item))
+        drives = _drives(sets.each("Motions"), joints, item, {tie.name for tie in ties}, notes)
     gravity = item.numbers("ConstantGravity", (3,), np.zeros(3))
     if stored:
         notes.append("results stored in the file are not read")
@@ -140,13 +144,19 @@ def _seat(item: Item, label: str, seats: Mapping[tuple[str, ...], Seat]) -> Seat
     raise CadFault(f"line {item.line}, {label}: found {quoted(path)}, expected the path of a marker")
 
 
-def _drives(motions: list[Item], joints: list[Item], assembly: Item) -> Iterator[tuple[str, tuple[str, str, str]]]:
-    """Yield the drives: the coordinate of I relative to J is minus the motion of J relative to I."""
+def _drives(
+    motions: list[Item], joints: list[Item], assembly: Item, held: set[str], notes: list[str]
+) -> dict[str, tuple[str, str, str]]:
+    """Return the drives: the coordinate of I relative to J is minus the motion of J relative to I. `held`: joints of the scene."""
     kinds = {one.text("Name"): kind_of(one) for one in joints}
     start = _times(assembly)[0]
+    found: dict[str, tuple[str, str, str]] = {}
+    alone = []
     for item in motions:
         name = item.text("Name")
         where = f"line {item.line}, {name}"
+        if name in found:
+            raise CadFault(f"{where}: found two motions {name}, expected one of each name")
         if item.label not in COORDINATES:
             raise CadFault(f"{where}: found {item.label}, expected one of {', '.join(COORDINATES)}")
         of = item.text("MotionJoint").rpartition("/")[2]
@@ -155,7 +165,13 @@ def _drives(motions: list[Item], joints: list[Item], assembly: Item) -> Iterator
             expected = " or ".join(COORDINATES[item.label])
             raise CadFault(f"{where}: found a motion of {of}, expected one of a {expected} of the file")
         law = _law(where, item.text(LAW[item.label]), start)
-        yield name, (of, coordinate, f"-({law})")
+        if of in held:
+            found[name] = of, coordinate, f"-({law})"
+        else:
+            alone.append(name)
+    if alone:
+        notes.append(f"motions of joints that are left out are left out: {listed(alone)}")
+    return found
 
 
 def _law(where: str, text: str, start: float) -> str:

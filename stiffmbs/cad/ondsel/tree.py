@@ -44,9 +44,12 @@ class Item:
         self._fields = Fields(self.kind, self.owner, values, DEFAULTS.get(self.kind))
 
     def find(self, label: str) -> Item | None:
-        """Return the first entry with a label."""
+        """Return the entry with a label, None without one; raise CadFault if there are several."""
         self._fields.request(label)
-        return next((item for item in self.below if item.label == label), None)
+        found = [item for item in self.below if item.label == label]
+        if len(found) > 1:
+            raise CadFault(f"line {found[1].line}: found {label} twice in {self.label}, expected it once")
+        return found[0] if found else None
 
     def each(self, label: str) -> list[Item]:
         """Return the lines below an entry."""

@@ -11,6 +11,8 @@ import numpy as np
 from ...reading.files.xml_nodes import Node
 from ..assembly import WORLD, CadFault, Frame, finite, rotation
 
+FLAGS = {"true": True, "1": True, "false": False, "0": False}
+
 
 @dataclass(frozen=True)
 class Instance:
@@ -61,30 +63,39 @@ def tree(root: Node, uid: str, length: float) -> Instance:
     """Return the root assembly; `length`: unit of length, m."""
     top = Instance((), "", uid, WORLD, grounded=True, rigid=False, group="")
     node = root.find("InstanceTree")
-    found = replace(top, children=() if node is None else _children(node, top, length))
+    found = replace(top, children=() if node is None else _children(node, top, length, set()))
     if not found.children:
         raise CadFault("found no instance of a part, expected <Instance> in <InstanceTree>")
     return found
 
 
-def _children(node: Node, above: Instance, length: float) -> tuple[Instance, ...]:
+def _children(node: Node, above: Instance, length: float, labels: set[str]) -> tuple[Instance, ...]:
+    """Return the instances in a node; `labels`: those of the tree so far, to which theirs are added."""
     found: dict[str, Instance] = {}
-    labels = set[str]()
     for child in node.findall("Instance"):
         uid = child.get("uid") or ""
         label = f"{above.label}/{readable(child.get('name') or uid, 'part')}".removeprefix("/")
-        label = f"{label}_{uid}" if label in labels else label
+        if not uid or uid in found:
+            raise CadFault(f"instance {label}: found the uid '{uid}', expected one of its own")
+        while label in labels:
+            label = f"{label}_{uid}"
         labels.add(label)
         where = f"instance {label}"
-        if not uid or uid in found:
-            raise CadFault(f"{where}: found the uid '{uid}', expected one of its own")
         frame = transform(where, child, length).on(above.frame)
         one = Instance(
-            (*above.uids, uid), label, child.get("entityUid") or "", frame, child.get("grounded") == "true",
-            child.get("rigid") == "true", child.get("rigidGroup") or "",
+            (*above.uids, uid), label, child.get("entityUid") or "", frame, _flag(where, child, "grounded"),
+            _flag(where, child, "rigid"), child.get("rigidGroup") or "",
         )  # fmt: skip
-        found[uid] = replace(one, children=_children(child, one, length))
+        found[uid] = replace(one, children=_children(child, one, length, labels))
     return tuple(found.values())
+
+
+def _flag(where: str, node: Node, name: str) -> bool:
+    """Return an attribute that is true or false, as XML Schema and programs write it."""
+    text = node.get(name, "false") or ""
+    if text.lower() not in FLAGS:
+        raise CadFault(f"{where}: found {name}='{text}', expected true or false")
+    return FLAGS[text.lower()]
 
 
 def readable(name: str | None, word: str) -> str:
