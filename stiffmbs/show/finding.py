@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..notes import Note, Severity
+from ..results.digits import KnownErrors, over_time
 from ..results.solution import Solution
 from .loads import Column, Load
 from .verdict import Verdict
@@ -13,6 +14,7 @@ from .verdict import Verdict
 LEAST_DIGITS = 2
 """Number of digits of forces below which loads are not called reliable."""
 FEW_DIGITS = "Error bars of forces are large: set a smaller relative tolerance in the scene, such as run: {rtol: 1e-8}."
+FEW_INSTANTS = "Error bars of forces are large as peaks lie between the output times: use a smaller output interval, or points: steps."
 MARKS = {
     "doubt": "! In doubt",
     "stopped": "\N{MULTIPLICATION SIGN} Stopped",
@@ -55,8 +57,14 @@ def finding(judged: Verdict, solution: Solution, loads: Sequence[Load]) -> Findi
         else:
             mark = "\N{CHECK MARK} Completed" if digits is None else "\N{CHECK MARK} Reliable"
     sentence = _largest(loads) if judged.status == "done" else f"{judged.headline}."
-    few = (FEW_DIGITS,) if digits is not None and digits < LEAST_DIGITS else ()
+    few = (_few(solution),) if digits is not None and digits < LEAST_DIGITS else ()
     return Finding(status, mark, sentence, (_digits(judged), *few, *_in_question(solution.notes, grave)))
+
+
+def _few(solution: Solution) -> str:
+    """Return what to do for more digits of forces: a smaller tolerance, unless they are known at the output times."""
+    at_instants = KnownErrors(solution).digits(over_time).get("forces", 0)
+    return FEW_INSTANTS if at_instants >= LEAST_DIGITS else FEW_DIGITS
 
 
 def _largest(loads: Sequence[Load]) -> str:

@@ -17,6 +17,8 @@ UNITS = {"f": "N", "t": "N m"}
 PREFIXES = ((1e6, "M"), (1e3, "k"))
 FINEST = 1e-5
 """Least bar of a shown value relative to it: a reader needs no more digits."""
+MEANS = 1e-4
+"""Least bar of a shown mean relative to it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +26,7 @@ class Load:
     """Force or torque of one element on its first body.
 
     The peak is the largest magnitude at an output instant.  Its bar is the magnitude of the components' bars, which
-    bounds the error of the vector.  It also bounds the errors of mean and root mean square.
+    bounds the error of the vector.
     """
 
     element: str
@@ -33,6 +35,7 @@ class Load:
     components: np.ndarray  # shape (n, 2), (n, 3) or (n, 1): along the ground axes
     bar: float  # bound on the error of the magnitude; nan if unknown
     unique: bool  # False if rigid bodies do not determine it
+    excess: float = 0.0  # part of the bar for peaks between output instants
 
     @property
     def magnitude(self) -> np.ndarray:
@@ -53,19 +56,30 @@ class Load:
     @property
     def mean(self) -> float:
         """Mean magnitude over time."""
-        return self._over_time(self.magnitude)
+        return self.over_time(1)[0]
 
     @property
     def rms(self) -> float:
         """Root mean square over time."""
-        return float(np.sqrt(self._over_time(np.square(self.magnitude))))
+        return self.over_time(2)[0]
 
-    def _over_time(self, values: np.ndarray) -> float:
-        known = np.isfinite(values)
-        t, found = self.time[known], values[known]
-        if len(t) < 2 or t[-1] <= t[0]:
-            return float(found[0]) if len(found) else 0.0
-        return float(np.trapezoid(found, t) / (t[-1] - t[0]))
+    def over_time(self, power: int) -> tuple[float, float]:
+        """Return the mean over time of a power of the magnitude, its root taken, and the error of the sum over the instants.
+
+        The error is the difference from the sum over every other instant.
+        """
+        known = np.isfinite(self.magnitude)
+        t, values = self.time[known], self.magnitude[known] ** power
+        every = np.arange(len(t))
+        other = np.union1d(every[::2], every[-1:])
+        whole, coarse = (_mean(t[rows], values[rows]) ** (1.0 / power) for rows in (every, other))
+        return whole, abs(whole - coarse)
+
+
+def _mean(t: np.ndarray, values: np.ndarray) -> float:
+    if len(t) < 2 or t[-1] <= t[0]:
+        return float(values[0]) if len(values) else 0.0
+    return float(np.trapezoid(values, t) / (t[-1] - t[0]))
 
 
 @np.errstate(all="ignore")  # numbers of a diverged run overflow
@@ -75,23 +89,28 @@ def loads_of(solution: Solution) -> tuple[list[Load], list[str]]:
     A torque or force without a unique value is listed even if it is zero.
     """
     components, elements = reactions_of(solution), elements_of(solution)
-    found: list[Load] = []
-    for kind, unit in UNITS.items():
-        parts = [name for name in components if name[0] == kind]
-        loads = [_load(solution, element, parts, unit) for element in elements]
-        least = LOADS.zero * max((load.peak for load in loads), default=0.0)
-        kept = [load for load in loads if load.peak > least or not load.unique]
-        found += sorted(kept, key=lambda load: -load.peak)
+    every = [
+        _load(solution, element, [name for name in components if name[0] == kind], unit)
+        for kind, unit in UNITS.items()
+        for element in elements
+    ]
+    least = LOADS.zero * max((max(load.peak, load.excess) for load in every), default=0.0)
+    kept = [load for load in every if max(load.peak, load.excess) > least or not load.unique]
+    found = sorted(kept, key=lambda load: (load.unit != UNITS["f"], -load.peak))
     carrying = {load.element for load in found}
     return found, [element for element in elements if element not in carrying]
 
 
 def _load(solution: Solution, element: str, parts: Sequence[str], unit: str) -> Load:
     names = [f"{element}.{part}" for part in parts]
-    bars = [largest_bar(solution.errors.get(name, UNKNOWN)) for name in names]
+    errors = [solution.errors.get(name, UNKNOWN) for name in names]
+    bar, excess = (
+        float(np.hypot.reduce([size(error) for error in errors]))
+        for size in (largest_bar, lambda error: max(error.sampled_least, error.sampled_greatest))
+    )
     unique = not any(name in solution.not_unique for name in names)
     values = np.column_stack([solution.channels[name] for name in names])
-    return Load(element, unit, solution.time, values, float(np.hypot.reduce(bars)), unique)
+    return Load(element, unit, solution.time, values, bar, unique, excess)
 
 
 @dataclass(frozen=True)
@@ -134,13 +153,13 @@ def load_rows(loads: Sequence[Load], column: Column, about: dict[str, str]) -> I
     largest = max((load.peak for load in loads), default=0.0)
     for load in loads:
         peak, _, bar = column.words(load.peak, load.bar).partition(" \N{PLUS-MINUS SIGN} ")
-        mean, rms = (_as_finely(value * column.factor, peak if bar else "") for value in (load.mean, load.rms))
+        mean, rms = (column.words(value, _known(value, load.bar, error)).partition(" ")[0]
+                     for value, error in (load.over_time(power) for power in (1, 2)))  # fmt: skip
         share = load.peak / largest if largest > 0 else 0.0
         at = f"{load.time[load.peak_row]:.6g}"
         yield LoadRow(load.element, about.get(load.element, ""), peak, bar, at, mean, rms, share, load.unique)
 
 
-def _as_finely(value: float, peak: str) -> str:
-    """Return a value with the decimal places of its peak, but at least two digits; without a peak with four digits."""
-    shown = f"{value:.{len(peak.partition('.')[2])}f}" if peak and "e" not in peak else f"{value:.4g}"
-    return shown if abs(value) >= 10.0 ** (1 - len(shown.partition(".")[2])) else f"{value:.2g}"
+def _known(value: float, bar: float, error: float) -> float:
+    """Return the half width of a mean's error bar: of the solver, if known, and of the sum; four digits are shown at most."""
+    return max(float(np.nan_to_num(bar)) + error, MEANS * abs(value))

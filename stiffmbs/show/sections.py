@@ -75,6 +75,9 @@ def differences_section(solution: Solution, name: str, other: Solution, origin: 
         for one in unequal[:MOST_FIGURES]
     ]  # fmt: skip
     lines = (f"Solid: this run. Dashed: {name}.",) if charts else ()
+    spans = [f"{run.time[0]:.6g} s to {run.time[-1]:.6g} s" for run in (solution, other)]
+    if spans[0] != spans[1]:
+        lines = (f"Peaks are those of {spans[0]} in this run, and of {spans[1]} in {name}.", *lines)
     shown = tuple(table for table in tables if table.rows)
     return Section(f"Differences from {name}", (head, *only, *lines), shown, drawings=tuple(charts))
 

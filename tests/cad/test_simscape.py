@@ -208,8 +208,16 @@ def test_names_without_letters_of_scenes_have_a_word(tmp_path):
 
 def test_instances_of_one_label_are_different_parts(tmp_path):
     """A slash in a name, and names with the uid of another instance."""
-    named = [("a", "1", "1 0 0"), ("a_2", "9", "2 0 0"), ("a", "2", "3 0 0"), ("s/a", "5", "4 0 0"), ("s", "6", "5 0 0")]
-    alike = "".join(instance(uid, "arm", place).replace(f'name="{uid}"', f'name="{name}"') for name, uid, place in named[:4])
+    named = [
+        ("a", "1", "1 0 0"),
+        ("a_2", "9", "2 0 0"),
+        ("a", "2", "3 0 0"),
+        ("s/a", "5", "4 0 0"),
+        ("s", "6", "5 0 0"),
+    ]
+    alike = "".join(
+        instance(uid, "arm", place).replace(f'name="{uid}"', f'name="{name}"') for name, uid, place in named[:4]
+    )
     nested = instance("s", "assembly", "5 0 0", below=instance("a", "arm"))
     scene = _read(tmp_path, document(alike + nested, parts=part("arm")))
     assert [body.position[0] for body in scene.bodies.values()] == [1, 2, 3, 4, 5]

@@ -1,11 +1,13 @@
 """Loads of a run: sorted, with peaks, means and bars; over the driving angle; and what a report says of them."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.notes import Note, Severity
 from stiffmbs.show.driving_angle import driving_angle, rotating_loads
 from stiffmbs.show.finding import finding, note_rows
@@ -48,6 +50,45 @@ def test_loads_that_are_not_unique_say_so_and_stay():
 def test_mean_and_root_mean_square_are_over_time_not_over_points():
     load = replace(load_with([[0.0], [4.0], [0.0]]), time=np.array([0.0, 3.0, 4.0]))
     assert load.mean == pytest.approx(2.0) and load.rms == pytest.approx(np.sqrt(8.0)) and load.peak == 4.0
+
+
+def test_means_have_the_digits_that_the_output_times_resolve():
+    """The mean of |sin| over whole periods is 2/pi; few instants know it less well than the peak."""
+    for count, places in ((25, 1), (4001, 4)):
+        load = load_with(np.sin(np.linspace(0.0, 6.0 * np.pi, count))[:, None] * 10.0, bar=1e-6)
+        (row,) = load_rows([load], Column.of("N", 10.0), {})
+        assert abs(float(row.mean) - 20 / np.pi) <= 10.0 ** (1 - len(row.mean.partition(".")[2])), row.mean
+        assert len(row.mean.partition(".")[2]) <= places and float(row.rms) == pytest.approx(10 / np.sqrt(2), rel=0.02)
+
+
+def test_torques_of_rounding_are_none():
+    """A pendulum about y in space: its hinge carries no torque."""
+    scene = {
+        "dimensions": 3, "gravity": [0, 0, -9.81],
+        "bodies": {"bar": {"mass": 2, "inertia": [0.1, 0.2, 0.25], "position": [0.5, 0, 0]}},
+        "joints": {"hinge": {"type": "revolute", "i": {"body": "bar", "point": [-0.5, 0, 0], "orientation": {"z": [0, 1, 0]}},
+                             "j": {"body": "ground", "orientation": {"z": [0, 1, 0]}}}},
+        "run": {"duration": 0.5, "output": 0.01},
+    }  # fmt: skip
+    run = stiffmbs.run(read_scene(json.dumps(scene)))
+    assert [(load.element, load.unit) for load in loads_of(run)[0]] == [("hinge", "N")]
+
+
+BLOW = """
+bodies: {b: {mass: 1, inertia: 0.1, position: [1, 0]}}
+joints: {d: {type: revolute, i: {body: b, point: [-1, 0]}, j: ground}}
+forces: {f: {type: force, i: b, force: [0, '1e4*exp(-((t - 0.513)/1e-3)^2)']}}
+run: {duration: 1, output: 0.05}
+"""
+
+
+def test_a_blow_between_output_instants_is_a_load_and_has_its_remedy():
+    """It is zero at all output instants; the run knows its peak from its steps."""
+    solution = stiffmbs.run(read_scene(BLOW))
+    loads, without = loads_of(solution)
+    assert {load.element for load in loads} == {"d", "f"} and not without
+    further = " ".join(finding(verdict(solution), solution, loads).further)
+    assert "smaller output interval" in further and "rtol" not in further
 
 
 def test_loads_without_values_have_no_peak():
@@ -134,3 +175,11 @@ def test_differences_begin_with_what_was_changed_and_the_loads():
     assert changed.rows == (("parameters.bar_mass", "2.4 kg", "1.2 kg"),)
     assert loads.rows[0][0] == "hinge" and loads.rows[0][3:] == ("+100 %", "N")
     assert channels.heads[0] == "channel" and len(section.drawings) == 3
+
+
+def test_differences_of_runs_of_different_lengths_state_both():
+    scene = stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml")
+    long, short = (stiffmbs.run(scene, duration=duration) for duration in (0.5, 0.2))
+    section = differences_section(long, "short", short)
+    assert "Peaks are those of 0 s to 0.5 s in this run, and of 0 s to 0.2 s in short." in section.sentences
+    assert not any("Peaks" in line for line in differences_section(long, "same", long).sentences)
