@@ -17,7 +17,7 @@ UNITS = {"f": "N", "t": "N m"}
 PREFIXES = ((1e6, "M"), (1e3, "k"))
 FINEST = 1e-5
 """Least bar of a shown value relative to it: a reader needs no more digits."""
-MEANS = 1e-4
+MEANS = 5e-4
 """Least bar of a shown mean relative to it."""
 
 
@@ -161,5 +161,5 @@ def load_rows(loads: Sequence[Load], column: Column, about: dict[str, str]) -> I
 
 
 def _known(value: float, bar: float, error: float) -> float:
-    """Return the half width of a mean's error bar: of the solver, if known, and of the sum; four digits are shown at most."""
+    """Return the half width of a mean's error bar: of the solver, if known, and of the sum, and at least `MEANS` of it."""
     return max(float(np.nan_to_num(bar)) + error, MEANS * abs(value))

@@ -159,6 +159,12 @@ def test_results_of_a_file_are_a_listing():
     assert found["rack_teeth.fx"] < 1e-9 and found["screw_sleeve.fx"] < 1e-9
 
 
+def test_results_with_the_line_ends_of_windows_are_the_same():
+    text = (DATA / "shafts.asmt").read_text()
+    one, other = stored_results(text), stored_results(text.replace("\n", "\r\n"))
+    assert one.keys() == other.keys() and all(np.array_equal(one[name], other[name]) for name in one)
+
+
 def test_the_force_between_teeth_acts_at_the_pitch_radius():
     """The torque of the mesh on wheel I is the force times its radius of 0.2 m, and the axles carry the force."""
     run = stiffmbs.run(load_cad(DATA / "shafts.asmt"), rtol=1e-9)

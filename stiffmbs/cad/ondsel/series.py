@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 
+from ...reading.files.text_file import lines
 from ..assembly import CadFault
 from .tree import RESULTS
 
@@ -22,7 +23,7 @@ def stored_results(text: str) -> dict[str, np.ndarray]:
     accelerations have those of the file: ``crank.X``, ``crank.Bryantx``; positions of a scene are those of the centre of
     mass. The times are ``time``. The first column, of the pose in the file, is left out.
     """
-    _, found, table = f"\n{text}".partition(f"\n{RESULTS}\n")
+    _, found, table = "\n".join(["", *lines(text)]).partition(f"\n{RESULTS}\n")
     rows: dict[str, list[float]] = {}
     owner = ""
     for line in table.splitlines():
