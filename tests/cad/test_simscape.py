@@ -223,6 +223,27 @@ def test_instances_of_one_label_are_different_parts(tmp_path):
     assert [body.position[0] for body in scene.bodies.values()] == [1, 2, 3, 4, 5]
 
 
+def test_parts_that_move_as_one_are_fixed_once(tmp_path):
+    """A rigid subassembly in a rigid one; and grounded parts of one group. Loops of fixed joints have no unique reactions."""
+    inner = instance("in", "I", below=instance("a", "arm") + instance("b", "arm", "0 1 0"), rigid="true")
+    nested = instance("out", "O", below=inner + instance("c", "arm", "1 0 0"), rigid="true")
+    both = {"grounded": "true", "rigidGroup": "g"}
+    grounded = instance("base", "block", **both) + instance("lid", "block", "0 0 1", **both)
+    for instances, bodies, freedoms in ((nested, 3, 6), (grounded, 2, 0)):
+        scene = _read(tmp_path, document(instances, parts=part("arm") + part("block")))
+        assert len(scene.bodies) == bodies and stiffmbs.check(scene).degrees_of_freedom == freedoms
+        assert len(scene.joints) == 2
+
+
+def test_a_path_is_that_of_an_instance_before_the_assembly(tmp_path):
+    """An instance with the uid of the assembly in which it is."""
+    instances = BASE + instance("rig", "arm")
+    scene = _read(
+        tmp_path, document(instances, joints=joint("Revolute", "j", "base", "rig"), parts=part("block") + part("arm"))
+    )
+    assert stiffmbs.check(scene).degrees_of_freedom == 1
+
+
 @pytest.mark.parametrize("text", ["true", "True", "1"])
 def test_a_grounded_instance_is_fixed_however_it_is_written(tmp_path, text):
     scene = _read(tmp_path, document(instance("base", "block", grounded=text), parts=part("block")))

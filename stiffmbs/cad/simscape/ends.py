@@ -84,9 +84,9 @@ class Ends:
     def _instance(self, where: str, node: Node) -> Instance:
         path = node.find("InstancePath")
         uids = tuple(uid.text for uid in path.findall("Uid")) if path is not None else ()
-        if uids in ((), (self.owner.entity,)):
-            return self.owner
         found = self.owner.found(uids)
+        if found is None and uids == (self.owner.entity,):
+            return self.owner
         if found is None:
             raise CadFault(f"{where}: found the path {'/'.join(uids)}, expected the uids of an instance")
         return found

@@ -127,7 +127,17 @@ def numbers(where: str, node: Node, tag: str, count: int) -> np.ndarray:
 
 
 def tied(top: Instance) -> Iterator[tuple[Instance, Instance | None]]:
-    """Yield the pairs of parts that move as one, and the parts that are fixed to ground, each with None."""
+    """Yield the pairs of parts that move as one, and the parts that are fixed to ground, each with None; no loops of them."""
+    bodies: dict[str | None, int] = {}
+    for part, other in _pairs(top):
+        ends = part.label, None if other is None else other.label
+        one, joined = (bodies.setdefault(label, len(bodies)) for label in ends)
+        if one != joined:
+            bodies |= {label: joined for label, body in bodies.items() if body == one}
+            yield part, other
+
+
+def _pairs(top: Instance) -> Iterator[tuple[Instance, Instance | None]]:
     for one in top.below():
         if one is not top and one.rigid and one.children:
             first, *others = one.leaves()
