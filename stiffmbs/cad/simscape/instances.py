@@ -77,7 +77,7 @@ def _children(node: Node, above: Instance, length: float) -> tuple[Instance, ...
         labels.add(label)
         where = f"instance {label}"
         if not uid or uid in found:
-            raise CadFault(f"{where}: found the uid '{uid}', expected one of its own")
+            raise CadFault(f"{where}: found the uid '{uid}' twice, expected a unique one")
         frame = transform(where, child, length).on(above.frame)
         one = Instance(
             (*above.uids, uid), label, child.get("entityUid") or "", frame, child.get("grounded") == "true",
@@ -88,7 +88,7 @@ def _children(node: Node, above: Instance, length: float) -> tuple[Instance, ...
 
 
 def readable(name: str | None, word: str) -> str:
-    """Return a name, after a word if it has no letters that the names of a scene have."""
+    """Return a name; if it has no letter that a scene allows in names, a word before it."""
     return name if name and re.search("[A-Za-z]", name) else f"{word}_{name or ''}"
 
 
