@@ -17,9 +17,7 @@ from .scene import CHANGES, assigned, file_beside, is_written, option, output_op
 DATASET, ASSEMBLY, AT = ".adm", ".asmt", "--at JOINT=VALUE with a number"
 
 
-@click.command(
-    short_help="Convert datasets, robots and assemblies to scenes, and scenes to datasets and assemblies."
-)
+@click.command(short_help="Convert datasets, robots and assemblies to scenes, and scenes to datasets and assemblies.")
 @click.argument("scene")
 @output_option("Scene file, dataset if it ends in .adm, or assembly if it ends in .asmt; by default standard output.")
 @option("--in-space", "Take a planar SCENE, and write it in the x-y plane of space.")
