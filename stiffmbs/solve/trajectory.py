@@ -80,7 +80,7 @@ class History:
 
 
 class Recording(NamedTuple):
-    """Bounds of the steps that are recorded: the largest work of the estimate of errors, and that of a row and of a restart."""
+    """Bounds of the recorded steps: the largest work of the estimate of errors, and the work of a row and of a restart."""
 
     most: float = 0.0
     row: float = 0.0
