@@ -102,7 +102,8 @@ def _of_position(name: str, beam: Divided, differences: Mapping[str, float]) -> 
 def discretisation(scene: Scene, found: Solution, solve: Callable[[Scene], Solution]) -> tuple[dict[str, float], str]:
     """Return the estimated discretisation errors of the results of a scene with beams, and a sentence on them.
 
-    That of a channel is the largest of all channels of its kind of the beam or element, as a single difference may be small by accident.
+    The error of a channel is the largest of all channels of its kind of the beam or element, because a single difference may
+    be small by chance.
 
     Another beam has half as many elements. It has twice as many if an interval has a single element, or if the scene refers
     to a node that the coarser beam lacks. Let r be the ratio of both numbers, and p the order. The finer of both beams has

@@ -55,7 +55,7 @@ class Integrated:
 
 
 class Check(NamedTuple):
-    """Check of a run: `notes` of a run that `has` what it checks."""
+    """Check of a run: its `notes`, computed only if `has` is true of the run."""
 
     name: str
     notes: Callable[[Integrated], Iterable[str]]

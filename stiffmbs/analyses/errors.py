@@ -95,8 +95,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     from .run import finished
 
     steps = _steps(trajectory)
-    smaller = ESTIMATE.second * job.settings.rtol >= ESTIMATE.smallest_rtol
-    part = ESTIMATE.second if smaller else 1.0 / ESTIMATE.second  # tolerance of the second run in that of the first
+    part = _part_of_second(job.settings.rtol)
     system, grid = job.dynamics.system, job.grid
     breakpoints = job.dynamics.input_features(grid.start, grid.end).breakpoints if system.has_inputs else np.empty(0)
     times, at = _with_steps(solution, trajectory, breakpoints)
@@ -116,6 +115,11 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
         times, at, solution.channels, other.channels, part**repeats, breakpoints + grid.aside, ESTIMATE.numbers_at_once
     )
     return with_bars(replace(solution, errors=found), job.settings, system.size)
+
+
+def _part_of_second(rtol: float) -> float:
+    """Return the ratio of the tolerance of the second run to that of the first, below 1 if there is a smaller tolerance."""
+    return ESTIMATE.second if ESTIMATE.second * rtol >= ESTIMATE.smallest_rtol else 1.0 / ESTIMATE.second
 
 
 def _with_steps(solution: Solution, trajectory: Trajectory, breakpoints: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -108,7 +108,7 @@ def _longest_step(missed: Sequence[Overlooked]) -> float:
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
-    """Return the missed events that output instants, or instants within steps with Python functions, show."""
+    """Return the missed events found at output times, and within steps with Python functions."""
     system, trajectory = job.dynamics.system, computed.trajectory
     if not system.has_laws:
         return None

@@ -26,7 +26,7 @@ def scene(assembly: Assembly) -> Content:
         assembly = replace(
             assembly, parts=tuple(replace(part, link=replace(part.link, mass=1.0)) for part in assembly.parts)
         )
-        notes.append("no part has a mass: each has 1 kg, so that the forces mean nothing")
+        notes.append("no part has a mass; 1 kg is used for each, so the forces have no meaning")
     masses = Masses([part.link for part in assembly.parts], [part.placed for part in assembly.parts], "part")
     markers: dict[str, Content] = {}
     ties = [(names.take(tie.name), tie) for tie in assembly.ties]
@@ -81,4 +81,4 @@ def _notes(assembly: Assembly, called: dict[str | None, str]) -> Iterator[str]:
         yield f"parts without a mate move freely: {listed(free)}"
     slight = [called[part.name] for part in assembly.parts if part.link.mass == 0]
     if slight:
-        yield f"parts without mass have a slight one, 1e-8 of the lightest other: {listed(slight)}"
+        yield f"parts without mass are given 1e-8 of the lightest mass: {listed(slight)}"

@@ -17,9 +17,7 @@ from .scene import CHANGES, assigned, file_beside, is_written, option, output_op
 DATASET, ASSEMBLY, AT = ".adm", ".asmt", "--at JOINT=VALUE with a number"
 
 
-@click.command(
-    short_help="Write a dataset, a robot, an assembly, or a planar scene, as a scene; or a scene as a dataset or assembly."
-)
+@click.command(short_help="Convert datasets, robots and assemblies to scenes, and scenes to datasets and assemblies.")
 @click.argument("scene")
 @output_option("Scene file, dataset if it ends in .adm, or assembly if it ends in .asmt; by default standard output.")
 @option("--in-space", "Take a planar SCENE, and write it in the x-y plane of space.")
@@ -124,7 +122,7 @@ def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, 
 @option("--tolerance FLOAT", "Largest relative difference that counts as equal.", default=1e-3)
 @option("--json", "Print one JSON object on one line.", "as_json")
 def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, as_json: bool) -> None:
-    """Compare RESULTS (.npz, .nc, .csv) with LISTING: a table as text, Adams' .res in XML, or results of another run.
+    """Compare RESULTS (.npz, .nc, .csv) with LISTING: a table as text, Adams' .res in XML, FreeCAD's .asmt, or results of another run.
 
     Differences are the largest over time, relative to the largest value of the column.
 

@@ -1,6 +1,6 @@
 """Tangent spaces at many nodes, most of them interpolated between a few at which the equations are linearised.
 
-Spaces that are interpolated have the same coordinates a = S e, S the matrix `left` of one of them: bases of null spaces that are
+Interpolated spaces share the coordinates a = S e, where S is the matrix `left` of one of them, because bases of null spaces that are
 computed one by one do not depend continuously on the pose.
 """
 
@@ -32,8 +32,8 @@ class Along:
 def linearised_along(dynamics: Dynamics, at: Evaluated, starts: np.ndarray, reach: float) -> Along:
     """Return the tangent spaces at the nodes of pieces, of which each begins at one of `starts`.
 
-    Intervals between nodes are halved until the space in their middle is nearly that on the line through their ends, and a parabola serves. `reach`:
-    longest time over which an error is transported with the same rates, s.
+    Intervals between nodes are halved until linear interpolation is accurate in their middle; a parabola then interpolates within
+    them. `reach`: longest time over which an error is transported with the same rates, s.
     """
     count, apart = len(at.t), ESTIMATE.apart
     bounds = np.append(starts, count)
@@ -80,7 +80,7 @@ def _interpolate(space: Linearised, t: np.ndarray, intervals: tuple[np.ndarray, 
 
 
 def _parabolas(t: np.ndarray, first: float, middle: float, last: float) -> np.ndarray:
-    """Return the weights of the values at three times in those of their parabola at other times, shape (n, 3)."""
+    """Return the weights by which a parabola through values at three times is evaluated at other times, shape (n, 3)."""
     weights = [
         (t - middle) * (t - last) / ((first - middle) * (first - last)),
         (t - first) * (t - last) / ((middle - first) * (middle - last)),
@@ -96,13 +96,13 @@ def _aligned(space: Linearised, ends: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def _with_left(space: Linearised, ends: np.ndarray, basis: np.ndarray, rates: np.ndarray) -> dict[str, np.ndarray]:
-    """Return all matrices in these coordinates by name: L with L B = 1."""
+    """Return the matrices by name, `left` in the coordinates of the others, with L B = 1."""
     left = space.left[ends]
     return {"basis": basis, "rates": rates, "left": np.linalg.solve(left @ basis, left)}
 
 
 def _are_on_a_line(basis: np.ndarray, rates: np.ndarray, left: np.ndarray, t: np.ndarray, n_pose: int) -> np.ndarray:
-    """Return a mask of the intervals in whose middle a line through the ends is near enough.
+    """Return a mask of the intervals in whose middle linear interpolation between the ends is accurate enough.
 
     An error D of the matrix M of a' = M a counts as c (c - M)^-1 D (c - M)^-1, c the inverse of the interval: the change of an
     implicit step over it. Stiff directions must be right relative to themselves, and soft ones relative to the interval.

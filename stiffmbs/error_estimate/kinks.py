@@ -1,7 +1,7 @@
 """Integrals of the equations over steps of radau in which their right-hand side is not smooth, as at the knots of a spline.
 
 The nine points of a step integrate a kink with an error of a hundredth of its jump times the square of the step. That is often
-more than the error of the step: steps over a kink are accepted if it does little harm to the points of the method.
+more than the error of the step: the error test sees only the points of the method.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ Motion = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 def not_smooth(rates: np.ndarray, sizes: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the steps over which the quadrature by their points may be too inaccurate, and the largest local error of others.
+    """Return the steps over which the quadrature by their points may be inaccurate, and the largest local error of the others.
 
-    The latter, shape (full,), is the measure of the former.
+    Errors of the quadrature are compared with this largest local error, shape (full,).
 
     The error of the quadrature is estimated from the decay of the Legendre coefficients of z', shape (steps, points, full): that
     of the first one that it does not integrate, whose degree is twice that of the last known one. `sizes` of shape (steps,):

@@ -17,11 +17,11 @@ class EstimateParameters:
     work: float = 1e6
     """Evaluations of the equations times unknowns up to which every run estimates its error, in about 0.2 s.
 
-    Each step (of radau: point of a step) may be linearised, by two of them for each degree of freedom."""
+    Linearising the equations at a step (of radau: at a point of a step) takes two of them for each degree of freedom."""
     row: float = 500.0
-    """Further work at a step (of radau: point of a step) in the same unit, some 0.1 ms, whatever the unknowns."""
+    """Work at a step (of radau: at a point of a step) that does not depend on the unknowns, in the same unit; about 0.1 ms."""
     restart: float = 2.5e4
-    """Work at a restart in the same unit, some 5 ms, whatever the unknowns."""
+    """Work at a restart, in the same unit; about 5 ms."""
     difference: float = 1e-7
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""
     beside: float = 1e-3
@@ -35,7 +35,7 @@ class EstimateParameters:
     smooth: float = 0.1
     """Error of the quadrature over a step of radau, relative to the largest local error, above which it is adaptive."""
     isolated: float = 0.25
-    """Largest part of the steps of which the quadrature is adaptive: kinks are isolated."""
+    """Largest part of the steps whose quadrature is adaptive. If more seem to have kinks, these are rounding of stiff forces."""
     halvings: int = 8
     """Largest number of halvings of the intervals between the points of a step by adaptive quadrature."""
     spectra: int = 16
@@ -47,9 +47,9 @@ class EstimateParameters:
     operations: float = 1e10
     """Largest number of multiplications of a transport step by step."""
     apart: int = 16
-    """Nodes between those at which the equations are linearised first."""
+    """Distance, in nodes, of those at which the equations are linearised first."""
     interpolated: float = 0.02
-    """Largest change of an implicit step over an interval by the curvature of the matrices in it, with which they are
+    """Largest relative change of an implicit step by the curvature of the matrices over an interval at which the matrices are
     interpolated by a parabola."""
     off_node: float = 0.13
     """Largest distance of the end of a step from a Radau node, in lengths of the block."""

@@ -38,7 +38,7 @@ def _write_csv(path: Path, solution: Solution) -> None:
 
 
 class WithoutSeeking:
-    """Binary file that is written from its begin to its end: returning to the head of each array takes longer than to write it."""
+    """Binary file without seeking, so that zipfile does not return to the header of each array."""
 
     def __init__(self, file: BinaryIO) -> None:
         self.write, self.flush = file.write, file.flush

@@ -38,8 +38,8 @@ MISSED = (
 class Overlooked:
     """Events that the steps of a run missed.
 
-    - `times`: output times that show them, s: in each step that of the largest acceleration of the first contradicting
-      pair, and with Python functions those of the largest accelerations.
+    - `times`: one time for each step with such events, s: that of the largest acceleration in the first contradicting
+      pair of output times, or, in steps with Python functions, in the step.
     - `step`: length of the first of these steps, s.
     - `velocity`: velocity that would have changed most there.
     - `element`: force law with the largest force there, or an empty string.

@@ -1,4 +1,4 @@
-"""Tables whose points a run has left, which, how far and for how long; drives whose positions follow tables.
+"""Tables whose range a run has left, with the distance and the duration; drives whose positions follow tables.
 
 The steps of integrators record the arguments of tables in force laws (`stiffmbs.solve.events.native.outside`). Arguments
 that depend on time alone are known without a run. Solvers that do not search their steps for events, and requests, are

@@ -48,8 +48,8 @@ def coarse_forces_notes(dynamics: Dynamics, trajectory: Trajectory, rows: Output
 
     There they follow from second differences of positions, which are no accelerations where the step changes (Gear,
     Hsu and Petzold 1981, Differential-algebraic equations revisited). Accelerations then differ from the mean rate of
-    velocities since the output before, at most a step earlier. The difference counts relative to the largest force, and
-    from the rounding of coordinates on: bodies without loads have no other forces.
+    velocities since the output before, at most a step earlier. The difference is relative to the largest force, and
+    differences below the rounding of coordinates are ignored: unloaded bodies have no other forces.
     """
     ends, orders = trajectory.history.t, trajectory.history.order
     if len(orders) != len(ends) or len(rows.t) < 2 or not (orders == 1).any():

@@ -21,7 +21,7 @@ DIAGRAM: Final = (236, 84)
 """Width of a polar diagram, and radius of its outer circle, pixels."""
 (WIDTH, HEIGHT), (LEFT, RIGHT, TOP, BOTTOM), (SIDE, RADIUS) = CHART, AXES, DIAGRAM
 MOST_POINTS = 800
-"""Number of places along a curve; each keeps the least and the greatest value in it, so that peaks stay."""
+"""Number of intervals along a curve. The least and the greatest value in each are drawn, so that peaks are kept."""
 MOST_STEPS = 6
 """Number of steps of an axis."""
 BOLD = 0.9

@@ -1,4 +1,4 @@
-"""Finding of a report: what a run shows, in words of a designer, and its notes by what they mean for the result."""
+"""Finding of a report: the largest load of a run and its reliability in words, and the notes by their effect on the result."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MARKS = {
     "interrupted": "\N{MULTIPLICATION SIGN} Interrupted",
 }
 MEANINGS = {
-    Severity.STOP: "ends the run", Severity.DOUBT: "the result may be wrong", Severity.WARNING: "may change the result",
+    Severity.STOP: "ends the run", Severity.DOUBT: "the result may be wrong", Severity.WARNING: "may affect the result",
     Severity.REMARK: "changes nothing",
 }  # fmt: skip
 """Meaning of a note for the result by its severity, the gravest first."""
@@ -80,7 +80,7 @@ def _largest(loads: Sequence[Load]) -> str:
 
 def _digits(judged: Verdict) -> str:
     if not judged.digits:
-        return "Not verified: errors of the computation are unknown. Run it with --verify."
+        return "Not verified: the errors of the computation are unknown. Run the scene with --verify."
     (first, count), *others = judged.digits.items()
     others_words = "".join(f", {name} to {number}" for name, number in others)
     return f"{first.capitalize()} are known to {count} digit{'s' if count != 1 else ''}{others_words}."
@@ -90,13 +90,13 @@ def _in_question(notes: Sequence[Note], grave: Sequence[Note]) -> Iterator[str]:
     if grave:
         text = note_rows(grave)[0].text
         yield f"{text[0].upper()}{text[1:]}."
-        yield f"{len(grave)} of {len(notes)} notes below may change the result."
+        yield f"{len(grave)} of the {len(notes)} notes below may affect the result."
     elif notes:
-        yield f"{len(notes)} note{'s' if len(notes) > 1 else ''} below, none of which changes the result."
+        yield f"{len(notes)} note{'s' if len(notes) > 1 else ''} below, without an effect on the result."
 
 
 def note_rows(notes: Sequence[Note]) -> list[NoteRow]:
-    """Return notes as rows, those first that change the result most."""
+    """Return notes as rows, the gravest first."""
     return [
         NoteRow(MEANINGS[note.severity], note.text.removesuffix(f"; {note.remedy}"), note.remedy or _nothing(note))
         for note in sorted(notes, key=lambda note: [*MEANINGS].index(note.severity))

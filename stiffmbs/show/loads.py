@@ -16,9 +16,9 @@ UNITS = {"f": "N", "t": "N m"}
 """Unit of the components of a reaction by their first letter: a force, a torque."""
 PREFIXES = ((1e6, "M"), (1e3, "k"))
 FINEST = 1e-5
-"""Least bar of a shown value relative to it: a reader needs no more digits."""
+"""Smallest error bar that is shown, relative to its value; smaller ones are rounded up to it."""
 MEANS = 5e-4
-"""Least bar of a shown mean relative to it."""
+"""The same for means over time."""
 
 
 @dataclass(frozen=True, eq=False)

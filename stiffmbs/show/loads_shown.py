@@ -75,7 +75,7 @@ def _bars_words(solution: Solution, loads: Sequence[Load]) -> str:
     reruns = (
         "from reruns at a smaller tolerance and with another integrator"
         if solution.verification
-        else "as the run estimated it"
+        else "as estimated with the run"
     )
     return f"The bar \N{PLUS-MINUS SIGN} bounds the error of a peak, {reruns}."
 

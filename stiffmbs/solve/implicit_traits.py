@@ -1,4 +1,4 @@
-"""Traits of the implicit solvers, apart from their files, which only a run imports."""
+"""Traits of the implicit solvers, separate from the solvers so that `check` need not import these."""
 
 from __future__ import annotations
 

@@ -46,8 +46,8 @@ class _Open:
 class StepRecorder:
     """Steps of one run.
 
-    - `bounds`: largest work of the estimate of errors, beyond which nothing is kept and `full` is True, and that of a row
-      and of a restart.
+    - `bounds`: largest work of the estimate of errors, and the work of a row and of a restart. Beyond the largest work
+      nothing is kept and `full` is True.
     - `points`: rows per step.
     - `of_a_row`: work of the estimate for a row.
     """

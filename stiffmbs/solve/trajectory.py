@@ -80,7 +80,7 @@ class History:
 
 
 class Recording(NamedTuple):
-    """Bounds of the steps that are recorded: the largest work of the estimate of errors, and that of a row and of a restart."""
+    """Bounds of the recorded steps: the largest work of the estimate of errors, and the work of a row and of a restart."""
 
     most: float = 0.0
     row: float = 0.0
@@ -168,7 +168,7 @@ class Trajectory:
     solver : str
         Solvers used, if the user did not choose them.
     whole_steps : tuple of WholeSteps
-        Steps much longer than their predecessors, with the motion within them; only if force laws have breakpoints.
+        Steps to be checked after the run, with the motion within them; only for scenes with Python functions.
     recorded : tuple of tuples of Piece
         Recorded steps of each mechanism that was solved separately; empty if they were not recorded.
     departures : tuple of Departure
@@ -247,7 +247,7 @@ def summed(parts: Sequence[Mapping[str, int | float | str]]) -> dict[str, int | 
 
 
 def in_common(parts: Sequence[Trajectory], counted: Sequence[Trajectory] | None = None) -> dict[str, Any]:
-    """Return the fields of a trajectory that parts of it, in time or in space, have together: all but times, states and outcome.
+    """Return the fields that join the parts of a trajectory, in time or in space: all but times, states and outcome.
 
     `counted`: parts of which steps are counted, all by default.
     """

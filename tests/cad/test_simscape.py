@@ -179,10 +179,10 @@ def test_instances_of_one_rigid_body_are_fixed_to_each_other(tmp_path, how):
 @pytest.mark.parametrize(
     ("mates", "joints", "words"),
     [
-        (constraint("Tangent", "cam", shape("plane", "base", "0 0 0", "0 0 1"), shape("cylinder", "bob", "0 0 0", "1 0 0")), "", "not held (Tangent of line and plane is not read): cam"),
-        ('<UnknownConstraint name="Lock3"><ConstraintGeometry geomType="Unknown"/></UnknownConstraint>', "", "not held (the export does not say what they are): Lock3"),
-        (constraint("Coincident", "own", shape("point", "bob", "0 0 0"), shape("point", "bob", "0 0 0")), "", "not held (both ends are on one rigid body): own"),
-        ("", joint("Gear", "mesh", "base", "bob"), "not held (joints Gear are not read): mesh"),
+        (constraint("Tangent", "cam", shape("plane", "base", "0 0 0", "0 0 1"), shape("cylinder", "bob", "0 0 0", "1 0 0")), "", "left out (Tangent of line and plane is not supported): cam"),
+        ('<UnknownConstraint name="Lock3"><ConstraintGeometry geomType="Unknown"/></UnknownConstraint>', "", "left out (the export does not describe them): Lock3"),
+        (constraint("Coincident", "own", shape("point", "bob", "0 0 0"), shape("point", "bob", "0 0 0")), "", "left out (both ends are on one rigid body): own"),
+        ("", joint("Gear", "mesh", "base", "bob"), "left out (Gear joints are not supported): mesh"),
     ],
 )  # fmt: skip
 def test_mates_that_are_not_held_are_noted(tmp_path, mates, joints, words):
@@ -195,7 +195,7 @@ def test_parts_without_mass_and_mates_are_left_out(tmp_path):
     text = document(BASE + instance("planes", "skeleton"), parts=part("block") + skeleton)
     scene = _read(tmp_path, text)
     assert list(scene.bodies) == ["base"]
-    assert "parts without mass and mates are left out: planes" in scene.notes
+    assert "parts with neither mass nor mates are left out: planes" in scene.notes
 
 
 def test_names_without_letters_of_scenes_have_a_word(tmp_path):
@@ -256,14 +256,14 @@ def test_a_grounded_instance_is_fixed_however_it_is_written(tmp_path, text):
         ('grounded="true"', 'grounded="yes"', "instance base: found grounded='yes', expected true or false"),
         ("</InstanceTree>", "<Instance uid='x'>" * 1500 + "</Instance>" * 1500 + "</InstanceTree>", "nested too deeply"),
         ("<Uid>bob</Uid>", "<Uid>bab</Uid>", "constraint pin: found the path bab, expected the uids of an instance"),
-        ("SimscapeMultibodyImportXML", "PhysicalModelingXMLFile", "of the first generation, expected one of the second: export it again"),
+        ("SimscapeMultibodyImportXML", "PhysicalModelingXMLFile", "of the first generation, which is not supported; export the assembly again"),
         ("<Mass>2</Mass>", "<Mass>two</Mass>", "part arm: found <Mass> 'two', expected a number"),
         ("<Mass>2</Mass>", "<Mass>-2</Mass>", "part arm: found a mass of -2 kg"),
         ("0.01 0.02 0.03 0 0 0", "-0.01 0.02 0.03 0 0 0", "part block: found the principal moments"),
         ("<Axis>-2 0 0</Axis>", "<Axis>0 0 0</Axis>", "constraint rail: found an axis of length 0"),
         ("0 -1 0 1 0 0 0 0 1", "0 1 0 1 0 0 0 0 1", "instance bob: found .* expected a rotation matrix"),
         ('length="meter"', 'length="parsec"', "the file: found the unit of length 'parsec', expected one of meter"),
-        ('uid="cart"', 'uid="bob"', "instance bob: found the uid 'bob', expected one of its own"),
+        ('uid="cart"', 'uid="bob"', "instance bob: found the uid 'bob' twice, expected a unique one"),
         ("</Parts>", "", "no well-formed XML"),
     ],
 )  # fmt: skip

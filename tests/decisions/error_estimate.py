@@ -215,7 +215,7 @@ DECISIONS = {
     "error_estimate.aim": lambda: next_rtol(100.0),
     "error_estimate.slope": lambda: next_rtol(100.0),
     "error_estimate.numbers_at_once": lambda: transport.at_once(100),
-    "error_estimate.second": lambda: of_runs._second(RunSettings(rtol=1e-6)),
+    "error_estimate.second": lambda: of_runs._part_of_second(1e-6),
     "error_estimate.restart": restarts_that_are_kept,
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
 }  # fmt: skip

@@ -246,4 +246,4 @@ def test_modes_of_a_moving_state_say_which_coordinates_they_hold_in(distant):
     angle, omega, size = float(end["b.angle"][-1]), float(end["b.omega"][-1]), max(0.5, distant)
     square = 9.81 * 0.5 / 0.35 * np.sin(angle) - 0.25 / (0.25 + size**2) * omega**2
     assert found.modes[0].eigenvalues[0] ** 2 == pytest.approx(square, rel=1e-6)
-    assert any(f"in sizes of the mechanism ({size:.3g} m)" in note for note in found.notes)
+    assert any(f"relative to the size of the mechanism, {size:.3g} m" in note for note in found.notes)

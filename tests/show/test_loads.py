@@ -162,7 +162,7 @@ def test_notes_are_sorted_by_what_they_mean_each_with_what_to_do():
         Note("the balance is broken", severity=Severity.DOUBT),
     ]
     rows = note_rows(notes)
-    assert [row.meaning for row in rows] == ["the result may be wrong", "may change the result", "changes nothing"]
+    assert [row.meaning for row in rows] == ["the result may be wrong", "may affect the result", "changes nothing"]
     assert (rows[1].text, rows[1].remedy) == ("peaks lie between", "use points: steps")
     assert rows[2].remedy == "Nothing to do."
 

@@ -29,7 +29,7 @@ def mode_rows(modes: Sequence[Mode]) -> list[tuple[str, str, str, str, str]]:
 
 
 def mode_lines(modes: Sequence[Mode], most: int | None = None) -> list[str]:
-    """Return the lines of a table with its heads; with `most`, at most so many modes, and the number of the others."""
+    """Return the lines of a table with its heads; `most` limits the modes, and a last line counts the others."""
     shown = modes[:most]
     left = len(modes) - len(shown)
     lines = [

@@ -161,10 +161,10 @@ OTHERS: dict[str, Callable[[str, Item, Ends], Iterator[Tie]]] = {
 
 
 def kind_of(item: Item) -> str:
-    """Return the kind of a joint, also of the remainder of its name that OndselSolver writes if GCC has compiled it."""
+    """Return the kind of a joint, also for the truncated name that OndselSolver writes if compiled by GCC."""
     found = [kind for kind in (*SAME, *OTHERS) if item.label == f"N3MbD{len(kind) + 4}ASMT{kind}E"[CUT:]]
     return found[0] if len(found) == 1 else item.label
 
 
 CUT = len("class MbD::ASMT")
-"""Characters that OndselSolver removes from the name of a joint's class, as MSVC writes it."""
+"""Number of characters that OndselSolver removes from a class name: the prefix that MSVC writes."""

@@ -1,7 +1,7 @@
 """Assemblies from the text files of OndselSolver, which FreeCAD's assembly workbench writes.
 
 The format is that of OndselSolver (github.com/FreeCAD/OndselSolver, classes ASMT...): parts with a principal mass marker,
-markers on reference points, joints and motions between them, gravity, and times. It states no units; numbers are taken in
+markers on reference points, joints and motions between them, gravity, and times. It states no units; numbers are read as
 m, kg, s and rad.
 """
 
@@ -48,11 +48,11 @@ def read_asmt(text: str) -> Assembly:
     parts = tuple(_part(one, world) for one in item.each("Parts") if one.label == "Part")
     frames: dict[str | None, Frame] = {None: WORLD} | {part.name: part.frame for part in parts}
     if len(frames) <= len(parts):
-        raise CadFault("found two parts of one name, expected one of each")
+        raise CadFault("found two parts with one name, expected unique names")
     seats = dict[tuple[str, ...], Seat]()
     for path, seat in _markers(item, parts, world):
         if path in seats:
-            raise CadFault(f"found two markers {'/'.join(path)}, expected one of each name")
+            raise CadFault(f"found two markers {'/'.join(path)}, expected unique names")
         seats[path] = seat
     sets = item.find("ConstraintSets")
     ties, notes, drives = [], list[str](), dict[str, tuple[str, str, str]]()
@@ -62,8 +62,8 @@ def read_asmt(text: str) -> Assembly:
         drives = _drives(sets.each("Motions"), joints, item, {tie.name for tie in ties}, notes)
     gravity = item.numbers("ConstantGravity", (3,), np.zeros(3))
     if stored:
-        notes.append("results stored in the file are not read")
-    notes.append("the file states no units; its numbers are taken in m, kg, s and rad")
+        notes.append("results in the file are not read; stiffmbs diff compares with them")
+    notes.append("the file states no units; its numbers are read as m, kg, s and rad")
     return Assembly(
         name, parts, tuple(ties), tuple(map(float, gravity)), _run(item), drives, (*notes, *unused_notes(item.fields(), REASONS))
     )  # fmt: skip
@@ -122,7 +122,7 @@ def _ties(
     for item in joints:
         (i, j), name = pairs[id(item)], item.text("Name")
         if name in known:
-            raise CadFault(f"line {item.line}: found two joints {name}, expected one of each name")
+            raise CadFault(f"line {item.line}: found two joints with the name {name}, expected unique names")
         known.add(name)
         if i.part == j.part:
             alone.append(name)
@@ -156,14 +156,14 @@ def _drives(
         name = item.text("Name")
         where = f"line {item.line}, {name}"
         if name in found:
-            raise CadFault(f"{where}: found two motions {name}, expected one of each name")
+            raise CadFault(f"{where}: found two motions {name}, expected unique names")
         if item.label not in COORDINATES:
             raise CadFault(f"{where}: found {item.label}, expected one of {', '.join(COORDINATES)}")
         of = item.text("MotionJoint").rpartition("/")[2]
         coordinate = COORDINATES[item.label].get(kinds.get(of, ""))
         if coordinate is None:
             expected = " or ".join(COORDINATES[item.label])
-            raise CadFault(f"{where}: found a motion of {of}, expected one of a {expected} of the file")
+            raise CadFault(f"{where}: found a motion of {of}, expected the name of a {expected}")
         law = _law(where, item.text(LAW[item.label]), start)
         if of in held:
             found[name] = of, coordinate, f"-({law})"

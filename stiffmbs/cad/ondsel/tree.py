@@ -82,7 +82,9 @@ class Item:
             values = np.empty(0)
         if len(values) != np.prod(shape) or not np.all(np.isfinite(values)):
             line = self.line if found is None else found.line
-            raise CadFault(f"line {line}, {label}: found '{quoted(text)}', expected {int(np.prod(shape))} numbers")
+            count = int(np.prod(shape))
+            what = f"{count} numbers" if count > 1 else "a number"
+            raise CadFault(f"line {line}, {label}: found '{quoted(text)}', expected {what}")
         return finite(f"line {self.line}, {label}", values).reshape(shape)
 
     def number(self, label: str, default: float | None = None) -> float:

@@ -25,12 +25,12 @@ KINDS = {kind: name for name, kind in SAME.items() if name != "AtPointJoint"} | 
     "planar": "PlanarJoint",
     "thread": "ScrewJoint",
 }
-"""Joints of the file by those of a scene between the same markers."""
+"""Joints of the file by the kinds of a scene's joints between the same markers."""
 ON_J = {"point_on_line": "PointInLineJoint", "point_on_plane": "PointInPlaneJoint"}
 """Joints whose marker I is the scene's marker j."""
 ROD = "SphSphJoint"
 WITHOUT = ("forces", "states", "inputs", "requests", "variables")
-"""Sections of a scene of which the file has nothing."""
+"""Sections of a scene that the file cannot contain."""
 OF_LAWS = {value: key for key, value in FUNCTIONS.items()} | {"t": "time", "pi": "pi"}
 OPERATIONS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.USub)
 
@@ -61,7 +61,7 @@ def written_assembly(scene: SpatialData, source: str = "scene") -> WrittenAssemb
     ]
     lost += [f"joint {name} ({reason})" for name, reason in writer.lost.items()]
     return WrittenAssembly(
-        "\n".join(lines) + "\n", tuple(f"not written (an .asmt file has nothing of this kind): {one}" for one in lost)
+        "\n".join(lines) + "\n", tuple(f"not written, because an .asmt file cannot contain it: {one}" for one in lost)
     )
 
 
@@ -193,7 +193,7 @@ class _Writer:
         return f"/{self.name}/{name}" if body == GROUND else f"/{self.name}/{body}/{name}"
 
     def _motion(self, name: str, drive: Any) -> Iterator[str]:
-        """Yield a motion: that of marker J relative to I is minus the coordinate, of I relative to J."""
+        """Yield a motion of marker J relative to I, which is minus the coordinate of I relative to J."""
         of = drive.joint
         joint = None if of is None else self.scene.joints[of.joint]
         coordinate = "" if joint is None else of.coordinate_of(joint)

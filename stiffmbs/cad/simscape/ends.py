@@ -15,7 +15,7 @@ SHAPES = {
     "point": POINT, "sphere": POINT, "line": LINE, "cylinder": LINE, "cone": LINE, "axis": LINE, "plane": PLANE, "circle": CIRCLE,
     "arc": CIRCLE,
 }  # fmt: skip
-"""What a geometry of the files is to a constraint: a point, a line, a plane, or a circle about a line."""
+"""Shape of each type of geometry in the files: a point, a line, a plane, or a circle about a line."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Ends:
     def frame(self, where: str, node: Node | None) -> End:
         """Return the frame of a joint."""
         if node is None:
-            raise CadFault(f"{where}: found one frame or none, expected <BaseFrame> and <FollowerFrame>")
+            raise CadFault(f"{where}: found fewer than two frames, expected <BaseFrame> and <FollowerFrame>")
         return self._end(where, node, "frame", transform(where, node, self.length))
 
     def _end(self, where: str, node: Node, shape: str, frame: Frame) -> End:
@@ -74,7 +74,7 @@ class Ends:
         part = None if one is self.top else one.carrier()
         if part is None and one is not self.top:
             raise CadFault(
-                f"{where}: found the subassembly {one.label} without a part that is fixed in it, expected one"
+                f"{where}: no part is fixed in the subassembly {one.label}; ground a part in it, or mate to one of its parts"
             )
         if part is None:
             return End(shape, Seat(None, drawn), drawn)

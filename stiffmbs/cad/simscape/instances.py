@@ -76,7 +76,7 @@ def _children(node: Node, above: Instance, length: float, labels: set[str]) -> t
         uid = child.get("uid") or ""
         label = f"{above.label}/{readable(child.get('name') or uid, 'part')}".removeprefix("/")
         if not uid or uid in found:
-            raise CadFault(f"instance {label}: found the uid '{uid}', expected one of its own")
+            raise CadFault(f"instance {label}: found the uid '{uid}' twice, expected a unique one")
         while label in labels:
             label = f"{label}_{uid}"
         labels.add(label)
@@ -99,7 +99,7 @@ def _flag(where: str, node: Node, name: str) -> bool:
 
 
 def readable(name: str | None, word: str) -> str:
-    """Return a name, after a word if it has no letters that the names of a scene have."""
+    """Return a name; if it has no letter that a scene allows in names, a word before it."""
     return name if name and re.search("[A-Za-z]", name) else f"{word}_{name or ''}"
 
 

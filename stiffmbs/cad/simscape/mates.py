@@ -1,7 +1,7 @@
-"""Joints of a scene that hold what a constraint or joint of the file holds.
+"""Joints of a scene from the constraints and joints of a file.
 
-A constraint between two shapes is the joint with its equations: coincident planes a planar joint, lines on one axis a
-cylindrical one. Angles and distances have their values in the drawn pose. Redundant equations are left to the analysis.
+A constraint between two shapes becomes the joint with the same equations: coincident planes a planar joint, lines on one
+axis a cylindrical one. Angles and distances keep their values in the drawn pose. Redundant equations are kept.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def joint(name: str, node: Node, ends: Ends) -> Iterator[Tie]:
     elif node.tag in JOINTS:
         yield Tie(name, JOINTS[node.tag], i.seat, j.seat)
     else:
-        raise Left(f"joints {node.tag} are not read")
+        raise Left(f"{node.tag} joints are not supported")
 
 
 def mate(name: str, node: Node, ends: Ends) -> Iterator[Tie]:
@@ -77,7 +77,7 @@ def mate(name: str, node: Node, ends: Ends) -> Iterator[Tie]:
     node.get("name")
     found = [ends.geometry(f"constraint {name}", one) for one in node.findall("ConstraintGeometry")]
     if node.tag == "UnknownConstraint" or len(found) != 2 or not all(end.shape for end in found):
-        raise Left("the export does not say what they are")
+        raise Left("the export does not describe them")
     i, j = sorted(found, key=lambda end: RANK.index(end.shape))
     if i.seat.part == j.seat.part:
         raise Left("both ends are on one rigid body")
@@ -92,7 +92,7 @@ def mate(name: str, node: Node, ends: Ends) -> Iterator[Tie]:
 
 
 def _unfit(tag: str, i: End, j: End) -> str:
-    return f"{tag} of {i.shape} and {j.shape} is not read"
+    return f"{tag} of {i.shape} and {j.shape} is not supported"
 
 
 def _angle(name: str, i: End, j: End) -> Iterator[Tie]:

@@ -50,7 +50,7 @@ def read_simscape(text: str) -> Assembly:
     root = parsed(text, "Simscape Multibody XML", {})
     if root.tag != ROOT:
         what = (
-            " of the first generation, expected one of the second: export it again"
+            " of the first generation, which is not supported; export the assembly again with the current plug-in"
             if root.tag == FIRST
             else f", expected <{ROOT}>"
         )
@@ -74,8 +74,8 @@ def read_simscape(text: str) -> Assembly:
     held = {seat.part for tie in ties for seat in (tie.i, tie.j)}
     empty = [part.name for part in parts if part.link.mass == 0 and part.name not in held]
     if empty:
-        notes.append(f"parts without mass and mates are left out: {listed(empty)}")
-    notes.append("gravity is 9.80665 m/s^2 along -z, which smimport sets too; the file states none")
+        notes.append(f"parts with neither mass nor mates are left out: {listed(empty)}")
+    notes.append("the file states no gravity; 9.80665 m/s^2 along -z is used, as in smimport")
     kept = tuple(part for part in parts if part.name not in empty)
     return Assembly(
         name, kept, ties, GRAVITY, dict(RUN), notes=(*notes, *unused_notes(root.fields(), REASONS))
@@ -105,7 +105,7 @@ def _links(root: Node, units: tuple[float, float] | None, length: float) -> Iter
         kg, m = units or _units(node.find("ModelUnits"), where)
         if m != length:
             raise CadFault(
-                f"{where}: found another unit of length than that of the assembly, expected one: set it in the part"
+                f"{where}: its unit of length differs from that of the assembly; change it in the CAD program and export again"
             )
         mass, centre, inertia = 0.0, np.zeros(3), np.zeros((3, 3))
         if (properties := node.find("MassProperties")) is not None:
@@ -164,4 +164,4 @@ def _mates(root: Node, assembly: Node, top: Instance, length: float, notes: list
                     yield from made(name, one, ends)
                 except Left as reason:
                     left.setdefault(str(reason), []).append(name)
-    notes += [f"mates are not held ({reason}): {listed(found)}" for reason, found in left.items()]
+    notes += [f"mates are left out ({reason}): {listed(found)}" for reason, found in left.items()]
