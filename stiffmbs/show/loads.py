@@ -17,8 +17,6 @@ UNITS = {"f": "N", "t": "N m"}
 PREFIXES = ((1e6, "M"), (1e3, "k"))
 FINEST = 1e-5
 """Smallest error bar that is shown, relative to its value; smaller ones are rounded up to it."""
-MEANS = 5e-4
-"""The same for means over time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,13 +151,8 @@ def load_rows(loads: Sequence[Load], column: Column, about: dict[str, str]) -> I
     largest = max((load.peak for load in loads), default=0.0)
     for load in loads:
         peak, _, bar = column.words(load.peak, load.bar).partition(" \N{PLUS-MINUS SIGN} ")
-        mean, rms = (column.words(value, _known(value, load.bar, error)).partition(" ")[0]
+        mean, rms = (column.words(value, float(np.nan_to_num(load.bar)) + error).partition(" ")[0]
                      for value, error in (load.over_time(power) for power in (1, 2)))  # fmt: skip
         share = load.peak / largest if largest > 0 else 0.0
         at = f"{load.time[load.peak_row]:.6g}"
         yield LoadRow(load.element, about.get(load.element, ""), peak, bar, at, mean, rms, share, load.unique)
-
-
-def _known(value: float, bar: float, error: float) -> float:
-    """Return the half width of a mean's error bar: of the solver, if known, and of the sum, and at least `MEANS` of it."""
-    return max(float(np.nan_to_num(bar)) + error, MEANS * abs(value))
