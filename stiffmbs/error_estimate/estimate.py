@@ -88,6 +88,9 @@ def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings,
     absolute = max(settings.atol or 0.0, rtol * min(1.0, size))
     errors, limits = known.relative(over_time), {}
     for name in errors:
+        bar = solution.errors[name]
+        between = np.nan_to_num(max(bar.sampled_least, bar.sampled_greatest))  # the largest value may lie between outputs
+        errors[name] *= known.sizes[name] / (known.sizes[name] + between)
         tolerance = rtol + absolute / known.sizes[name]
         is_position = known.group[name] == "positions"
         limits[name] = min(ESTIMATE.tolerances * tolerance, ESTIMATE.large) if is_position else ESTIMATE.large

@@ -44,6 +44,7 @@ def pixels(tab, selector):
     """The colors of an element on the screen, shape (height, width, 3)."""
     from PIL import Image
 
+    tab.run(f"document.querySelector('{selector}').scrollIntoView()")
     tab.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
     x, y, w, h = (
         int(v)

@@ -60,7 +60,7 @@ NAMES = (
     "-x", " ", "a b", "ünï", "日本", "\u202ex", "a\x9bb", "a\nb", "'quoted'", '"', "$(x)", "*", "~", "%s", "{x}", "a=b", "#", "x" * 200, "x" * 255,
     "CON", "..x", "\udcff", "a:b", "[1]", "<b>", "\\",
 )  # fmt: skip
-STATUSES = (0, 1, 2, 130)
+STATUSES = (0, 1, 2, 130, 143)
 LATEST = 2.5
 """Latest time of a signal, s."""
 PATIENCE = 120.0
