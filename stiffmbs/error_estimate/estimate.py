@@ -89,7 +89,7 @@ def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings,
     errors, limits = known.relative(over_time), {}
     for name in errors:
         bar = solution.errors[name]
-        between = np.nan_to_num(max(bar.sampled_least, bar.sampled_greatest))  # the largest value may lie between outputs
+        between = np.nan_to_num(max(bar.sampled_least, bar.sampled_greatest))  # where the largest value may lie
         errors[name] *= known.sizes[name] / (known.sizes[name] + between)
         tolerance = rtol + absolute / known.sizes[name]
         is_position = known.group[name] == "positions"
