@@ -90,7 +90,7 @@ def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings,
     for name in errors:
         bar = solution.errors[name]
         between = np.nan_to_num(max(bar.sampled_least, bar.sampled_greatest))  # where the largest value may lie
-        errors[name] *= known.sizes[name] / (known.sizes[name] + between)
+        errors[name] /= 1.0 + between / known.sizes[name]
         tolerance = rtol + absolute / known.sizes[name]
         is_position = known.group[name] == "positions"
         limits[name] = min(ESTIMATE.tolerances * tolerance, ESTIMATE.large) if is_position else ESTIMATE.large
