@@ -8,14 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..elements.spatial.massless import BEYOND
-from ..elements.spatial.orientation import from_matrix
+from ..elements.spatial.orientation import ROUGH, UNIT, from_matrix
 from ..reading.files.xml_nodes import FileFault
 from ..reading.files.yaml_text import Content
 from ..robots.pose import Placed
 from ..robots.robot import Link
 
-ROUGH = 1e-3
-"""Largest departure of a given rotation matrix from a rotation, for values written with few digits."""
 PARALLEL = 1e-9
 """Largest sine of the angle between directions that count as parallel."""
 LARGEST = 1e100
@@ -137,15 +135,15 @@ def finite(where: str, values: np.ndarray) -> np.ndarray:
 def rotation(where: str, values: np.ndarray) -> np.ndarray:
     """Return the rotation matrix nearest to a given one, shape (3, 3).
 
-    Raises CadFault if it departs from a rotation by more than rounding to three digits, such as a mirror image.
+    Raises CadFault if it departs from a rotation by more than rounding to four digits, such as a mirror image.
     """
-    if np.all(np.abs(values) < 2):
-        left, _, right = np.linalg.svd(values)
-        nearest: np.ndarray = left @ right
-        if np.linalg.det(nearest) > 0 and np.max(np.abs(nearest - values)) < ROUGH:
-            return nearest if np.max(np.abs(nearest - values)) > 1e-15 else values
-    rows = "; ".join(" ".join(f"{x:.4g}" for x in row) for row in values)
-    raise CadFault(f"{where}: found the rows {rows}, expected a rotation matrix")
+    is_near = np.all(np.abs(values) < 2) and np.max(np.abs(values @ values.T - np.eye(3))) <= ROUGH
+    if not is_near or np.linalg.det(values) < 0:
+        rows = "; ".join(" ".join(f"{x:.4g}" for x in row) for row in values)
+        raise CadFault(f"{where}: found the rows {rows}, expected a rotation matrix")
+    left, _, right = np.linalg.svd(values)
+    nearest: np.ndarray = left @ right
+    return nearest if np.max(np.abs(nearest - values)) > UNIT else values
 
 
 def axes_along(z: np.ndarray) -> np.ndarray:

@@ -43,6 +43,8 @@ def convert(
 
     with refusing(scene):
         refuse_own_input("-o", scene, output)
+        if coordinates and (in_space or not _is_robot(scene)):
+            raise InputError(f"{scene}: found --at, expected it with a robot alone")
         if output is not None and output.suffix.lower() in (DATASET, ASSEMBLY):
             texts = _exported(scene, output, coordinates, changes)
         else:
@@ -55,6 +57,13 @@ def convert(
             sys.exit(Status.FAILED)
 
 
+def _is_robot(path: str) -> bool:
+    from ..analyses.load_scene import ROBOTS
+    from ..cad.load import is_cad
+
+    return Path(path).suffix.lower() in ROBOTS and not is_cad(path)
+
+
 def _exported(
     path: str, output: Path, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
 ) -> dict[Path | None, str]:
@@ -62,15 +71,14 @@ def _exported(
     from ..adams.export.dataset_text import written_dataset
     from ..adams.load import COMMANDS
     from ..analyses.in_space import in_space
-    from ..analyses.load_scene import ROBOTS, load_scene
-    from ..cad.load import is_cad
+    from ..analyses.load_scene import load_scene
     from ..cad.ondsel.write import written_assembly
     from ..model.spatial_scene import SpatialScene
     from ..robots.load import load_robot
 
     commands = output.with_suffix(COMMANDS) if output.suffix.lower() == DATASET else None
     refuse_own_input("-o", path, commands)
-    if coordinates and Path(path).suffix.lower() in ROBOTS and not is_cad(path):
+    if coordinates:
         scene = load_robot(path, changes, coordinates=assigned(AT, coordinates, float))
     else:
         scene = load_scene(path, changes)
@@ -102,8 +110,6 @@ def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, 
         found = convert_cad
     elif suffix in ROBOTS:
         return convert_robot(path, coordinates=assigned(AT, coordinates, float))
-    if coordinates:
-        raise InputError(f"{path}: found --at, expected it with a robot alone")
     if suffix in (".yaml", ".yml"):
         raise InputError(
             f"{path}: found a scene, expected an Adams/Solver dataset (.adm), a robot ({', '.join(ROBOTS)}), or --in-space"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.cad.assembly import CadFault
 from stiffmbs.cad.load import load_cad
 from stiffmbs.cad.ondsel.series import stored_results
 from stiffmbs.elements.spatial.orientation import matrix
@@ -78,9 +79,10 @@ def test_a_physical_pendulum_starts_with_its_angular_acceleration(tmp_path):
     assert run["arm.x"][0] == pytest.approx(0.6)
 
 
-def test_spaces_and_comments_are_read_as_tabs_are(tmp_path):
+@pytest.mark.parametrize("step", [2, 3, 4])
+def test_spaces_and_comments_are_read_as_tabs_are(tmp_path, step):
     """MotionSim, a workbench of FreeCAD, indents by four spaces, and has no first line."""
-    spaced = "# a comment\n" + CRANK.replace("OndselSolver\n", "").replace("\t", "    ")
+    spaced = "# a comment\n" + CRANK.replace("OndselSolver\n", "").replace("\t", step * " ")
     one, other = _read(tmp_path, CRANK), _read(tmp_path, spaced)
     assert one.bodies == other.bodies and one.joints == other.joints
 
@@ -163,6 +165,18 @@ def test_results_with_the_line_ends_of_windows_are_the_same():
     text = (DATA / "shafts.asmt").read_text()
     one, other = stored_results(text), stored_results(text.replace("\n", "\r\n"))
     assert one.keys() == other.keys() and all(np.array_equal(one[name], other[name]) for name in one)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [("\t0\t", "found 8 numbers, expected 7, as there are 6 times"), ("\tx", "found '.* x', expected numbers")],
+)
+def test_a_damaged_row_of_results_is_refused(change, message):
+    """It was shifted, or left out."""
+    head, label, row = (DATA / "shafts.asmt").read_text().rpartition("\nFXonI")
+    values, end, rest = row.partition("\t\n")
+    with pytest.raises(CadFault, match=message):
+        stored_results(f"{head}{label}{values}{change}{end}{rest}")
 
 
 def test_the_force_between_teeth_acts_at_the_pitch_radius():

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 
 from stiffmbs.cad.load import load_cad
@@ -30,7 +31,11 @@ def test_a_planar_scene_is_written_in_space_with_notes(tmp_path):
     assert set(load_cad(tmp_path / "slider.asmt").joints) == {"ground_pin", "crank_pin", "wrist_pin", "guide", "motor"}
 
 
-def test_positions_of_joints_are_for_robots(tmp_path):
+@pytest.mark.parametrize(
+    ("source", "options"),
+    [("rig.xml", ()), (EXAMPLES / "heavy_top.yaml", ("-o", "top.adm")), (EXAMPLES / "four_bars.yaml", ("--in-space",))],
+)
+def test_positions_of_joints_are_for_robots(tmp_path, source, options):
     (tmp_path / "rig.xml").write_text(CART)
-    done = _run("convert", tmp_path / "rig.xml", "--at", "pin=1")
+    done = _run("convert", tmp_path / source, "--at", "pin=1", *options)
     assert done.exit_code == 2 and "expected it with a robot alone" in done.output

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Final
 
 import numpy as np
 
@@ -16,8 +15,6 @@ RESULTS = "TimeSeries"
 """Line after which the results of a run follow."""
 DEFAULTS = {"Assembly": {"Velocity3D": "0 0 0", "Omega3D": "0 0 0"}}
 """Entries without effect by kind."""
-SPACES: Final = 4
-"""Spaces that are one step of indentation; OndselSolver writes tabs."""
 
 
 @dataclass
@@ -128,5 +125,6 @@ def tree(text: str) -> tuple[Item, bool]:
 
 
 def _depth(line: str) -> int:
+    """Return the width of the indentation, which is larger for lines below another one."""
     indent = line[: len(line) - len(line.lstrip())]
-    return indent.count("\t") + indent.count(" ") // SPACES
+    return len(indent.expandtabs(4))
