@@ -106,7 +106,7 @@ def _charts(loads: Sequence[Load], column: Column, angle: DrivingAngle | None) -
     curves = [Curve(load.element, load.time, load.magnitude * column.factor) for load in loads]
     peak = f"{column.words(first.peak, first.bar).partition(' ')[0]} {column.unit}"
     charts = [Chart(curve_chart(curves, _quantity(first, column), "time, s", peak), names)]
-    if angle is not None:
+    if angle is not None and np.isfinite(first.magnitude[angle.rows]).any():
         charts.append(Chart(_over_angle(loads, angle), names))
     return charts
 
