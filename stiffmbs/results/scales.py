@@ -64,11 +64,10 @@ def scales(
     unit of the channel; for requests the largest value of their components; zero where nothing moves or acts.
     """
     own: dict[tuple[str, str], float] = {}
-    kinds = {name: _kind(name, requested) for name in channels}
+    keys = {name: (_owner(name), _kind(name, requested)) for name in channels}
     for name, values in channels.items():
-        kind = kinds[name]
-        origin = values[0] if kind in PLACES or name == "energy.potential" else 0.0
-        key = (_owner(name), kind)
+        key = keys[name]
+        origin = values[0] if key[1] in PLACES or name == "energy.potential" else 0.0
         sizes = np.abs(values - origin)
         # A request may have no value (sqrt(-1)) or a pole (1/0) at some times or at all: neither is a size.
         own[key] = max(own.get(key, 0.0), float(sizes.max(initial=0.0, where=np.isfinite(sizes))))
@@ -83,7 +82,4 @@ def scales(
         largest[kind] = max(largest.get(kind, 0.0), CROSSED * largest.get(of, 0.0) / size)
     largest["torque"] = max(largest.get("torque", 0.0), CROSSED * largest.get("force", 0.0) * size)
     parts = {kind: LITTLE_FORCE if kind in MECHANICAL else LITTLE for kind in largest} | {"": 0.0}
-    return {
-        name: max(own[_owner(name), kind], parts[kind] * largest[kind]) if kind else own[_owner(name), kind]
-        for name, kind in kinds.items()
-    }
+    return {name: max(own[key], parts[key[1]] * largest[key[1]]) if key[1] else own[key] for name, key in keys.items()}
