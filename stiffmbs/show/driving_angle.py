@@ -14,6 +14,9 @@ from ..reading.marker import GROUND
 from ..results.solution import Solution
 from .loads import Load
 
+ROUNDED = 1e-6
+"""Part of a revolution that may be missing, for durations written with six digits."""
+
 
 @dataclass(frozen=True, eq=False)
 class DrivingAngle:
@@ -45,10 +48,10 @@ def driving_angle(data: ModelData, solution: Solution) -> DrivingAngle | None:
         steps = np.diff(angle)
         if (
             np.isfinite(angle).all()
-            and abs(angle[-1] - angle[0]) >= TURN * (1 - 1e-6)
+            and abs(angle[-1] - angle[0]) >= TURN * (1 - ROUNDED)
             and (np.all(steps >= 0) or np.all(steps <= 0))
         ):
-            rows = np.flatnonzero(np.abs(angle - angle[-1]) <= TURN * (1 + 1e-9))
+            rows = np.flatnonzero(np.abs(angle - angle[-1]) <= TURN * (1 + ROUNDED))
             return DrivingAngle(joint, rows, np.degrees(angle[rows]) % 360.0)
     return None
 

@@ -10,6 +10,7 @@ from stiffmbs.analyses.linearised import modes, modes_table
 from stiffmbs.notes import Note
 from stiffmbs.show import (
     curves,
+    driving_angle,
     figure,
     finding,
     flexible_body,
@@ -373,6 +374,17 @@ def fewest_digits():
     return count_while(is_in_question, range(100))
 
 
+def missing_part_of_a_revolution():
+    """Return the quarter octaves below a revolution up to which the rest of one is too much."""
+
+    def is_too_short(missing):
+        drive = Record(kind="drive", joint=Record(joint="pin"))
+        turned = Record(channels={"pin.angle": 2 * np.pi * np.array([0.0, 1.0 - missing])})
+        return driving_angle.driving_angle(Record(joints={"motor": drive}), turned) is None
+
+    return count_while(is_too_short, BELOW)
+
+
 def finest_bar():
     return float(loads.Column("N", 1.0).words(1.0, 0.0).partition(" \N{PLUS-MINUS SIGN} ")[2])
 
@@ -450,7 +462,8 @@ DECISIONS = {
     "show.drawing.picture:WIDTH": width_of_a_picture, "show.drawing.picture:HEIGHT": highest_picture,
     "show.drawing.picture:NARROWEST": narrowest_picture, "show.curves:MOST_STEPS": steps_of_an_axis,
     "show.curves:MOST_POINTS": points_of_a_curve, "show.curves:BOLD": bold_part, "show.finding:LEAST_DIGITS": fewest_digits,
-    "show.loads:FINEST": finest_bar, "show.loads_shown:MOST_SHOWN": lambda: rows_and_curves()[0],
+    "show.loads:FINEST": finest_bar, "show.driving_angle:ROUNDED": missing_part_of_a_revolution,
+    "show.loads_shown:MOST_SHOWN": lambda: rows_and_curves()[0],
     "show.loads_shown:MOST_CURVES": lambda: rows_and_curves()[1],
     "show.drawing.picture:MOST_NAMES": lambda: count_while(lambda count: written_names(count), range(1, 200)),
     "show.drawing.picture:MANY_NAMES": lambda: written_names(20)[0],
@@ -511,7 +524,7 @@ EXPECTED = {
     "show.drawing.painted:FLOOR_DEPTH": -1000.0, "show.drawing.painted:SHADOW": 0.07, "show.drawing.painted:LONGEST_ARROW": 0.22,
     "show.drawing.painted:HEAD": 1.25, "show.drawing.picture:WIDTH": 8.0, "show.drawing.picture:HEIGHT": 6.0,
     "show.drawing.picture:NARROWEST": 3.4, "show.curves:MOST_STEPS": 5, "show.curves:MOST_POINTS": 801, "show.curves:BOLD": 11,
-    "show.finding:LEAST_DIGITS": 2, "show.loads:FINEST": 1e-5, "show.loads_shown:MOST_SHOWN": 20, "show.loads_shown:MOST_CURVES": 4,
+    "show.finding:LEAST_DIGITS": 2, "show.loads:FINEST": 1e-5, "show.driving_angle:ROUNDED": 80, "show.loads_shown:MOST_SHOWN": 20, "show.loads_shown:MOST_CURVES": 4,
     "show.drawing.picture:MOST_NAMES": 60,
     "show.drawing.picture:MANY_NAMES": 6.495190528383289, "show.drawing.picture:SMALLEST": 4.5, "show.drawing.poses:FAR": 18,
     "show.drawing.solids:ALONG": 18, "show.drawing.solids:MOST_FACES": 23, "show.drawing.solids:ROUND": 24,
