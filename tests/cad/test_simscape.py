@@ -235,6 +235,18 @@ def test_parts_that_move_as_one_are_fixed_once(tmp_path):
         assert len(scene.joints) == 2
 
 
+@pytest.mark.parametrize("how", [{"grounded": "true"}, {"rigidGroup": "g"}])
+def test_a_subassembly_without_a_fixed_part_is_not_fixed_and_said_to_be_free(tmp_path, how):
+    below = instance("a", "arm") + instance("b", "arm", "0 1 0")
+    fixed = instance("base", "arm", rigidGroup="g")
+    free, held = (
+        _read(tmp_path, document(fixed + instance("out", "O", below=below, **how, **more), parts=part("arm")))
+        for more in ({}, {"rigid": "true"})
+    )
+    assert any("no part is fixed" in note and "out" in note for note in free.notes)
+    assert not any("no part is fixed" in note for note in held.notes)
+
+
 def test_a_path_is_that_of_an_instance_before_the_assembly(tmp_path):
     """An instance with the uid of the assembly in which it is."""
     instances = BASE + instance("rig", "arm")

@@ -137,17 +137,28 @@ def tied(top: Instance) -> Iterator[tuple[Instance, Instance | None]]:
             yield part, other
 
 
+def loose(top: Instance) -> list[str]:
+    """Return the subassemblies that are grounded, or in a rigid group, without a part that is fixed in them."""
+    return [
+        one.label
+        for one in top.below()
+        if one is not top and (one.grounded or one.group) and not one.carrier() and not _is_rigid(top, one)
+    ]
+
+
 def _pairs(top: Instance) -> Iterator[tuple[Instance, Instance | None]]:
     for one in top.below():
         if one is not top and one.rigid and one.children:
             first, *others = one.leaves()
             yield from ((other, first) for other in others)
-        elif one.children and not any(one.uids[: len(above)] == above for above in _rigid(top)):
+        elif one.children and not _is_rigid(top, one):
             yield from _in_flexible(one, None if one is top else one.carrier())
 
 
-def _rigid(top: Instance) -> list[tuple[str, ...]]:
-    return [one.uids for one in top.below() if one.rigid and one.children]
+def _is_rigid(top: Instance, one: Instance) -> bool:
+    """Return True for a rigid subassembly, and for one in it."""
+    within = (above for above in top.below() if one.uids[: len(above.uids)] == above.uids)
+    return any(above.rigid and above.children for above in within)
 
 
 def _in_flexible(one: Instance, carrier: Instance | None) -> Iterator[tuple[Instance, Instance | None]]:

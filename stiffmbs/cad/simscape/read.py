@@ -18,7 +18,7 @@ from ...reading.files.xml_nodes import Node, parsed
 from ...robots.robot import Link
 from ..assembly import WORLD, Assembly, CadFault, Part, Seat, Tie
 from .ends import Ends
-from .instances import Instance, numbers, readable, tied, tree
+from .instances import Instance, loose, numbers, readable, tied, tree
 from .mates import Left, joint, mate
 
 ROOT, FIRST = "SimscapeMultibodyImportXML", "PhysicalModelingXMLFile"
@@ -75,6 +75,10 @@ def read_simscape(text: str) -> Assembly:
     empty = [part.name for part in parts if part.link.mass == 0 and part.name not in held]
     if empty:
         notes.append(f"parts with neither mass nor mates are left out: {listed(empty)}")
+    if unfixed := loose(top):
+        notes.append(
+            f"subassemblies in which no part is fixed are not fixed to ground or their group: {listed(unfixed)}"
+        )
     notes.append("the file states no gravity; 9.80665 m/s^2 along -z is used, as in smimport")
     kept = tuple(part for part in parts if part.name not in empty)
     return Assembly(
