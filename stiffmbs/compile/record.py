@@ -182,11 +182,10 @@ def in_library(kind: Kind) -> dict[str, bytes]:
 
 
 @fully_compiled()
-def compile_usual(kind: Kind) -> None:
-    """Compile and cache all kernels of a kind that solvers commonly use."""
+def compile_kind(kind: Kind) -> None:
+    """Compile and cache all kernels of a kind."""
     for term_set in TERM_SETS:
-        if term_set not in RARE:
-            kernel_of(kind, term_set)
+        kernel_of(kind, term_set)
 
 
 def _rare_source(kind: Kind, term_set: str) -> str:

@@ -145,7 +145,7 @@ def test_one_process_finishes_drafts_at_a_time(started, monkeypatch):
     monkeypatch.setattr(os, "nice", lambda _: None)
     monkeypatch.setattr(finish, "WAITS", finish.Finishing(patience=0.01))
     path = entries.cache_directory() / finish.FINISHING
-    with finish._alone(path):
+    with finish.alone(path):
         finish.finish()
     assert stored() == ["draft"]
     finish.finish()
@@ -267,7 +267,7 @@ def names(cache, kind):
 
 def is_locked(path):
     try:
-        with finish._alone(path):
+        with finish.alone(path):
             return False
     except OSError:
         return True

@@ -37,7 +37,7 @@ def finish() -> None:
     """Compile all drafts in the cache and those that are added meanwhile; do nothing if another process does so."""
     if hasattr(os, "nice"):
         os.nice(19)
-    with suppress(OSError), _alone(entries.cache_directory() / FINISHING):
+    with suppress(OSError), alone(entries.cache_directory() / FINISHING):
         seen: set[str] = set()
         last = time.monotonic()
         while time.monotonic() - last < WAITS.patience:
@@ -69,7 +69,7 @@ def _drafts() -> list[str]:
 
 
 @contextmanager
-def _alone(path: Path) -> Iterator[None]:
+def alone(path: Path) -> Iterator[None]:
     """Lock a file until the end of the context or of this process; raises OSError if another process has locked it."""
     with path.open("ab") as file:
         if sys.platform == "win32":

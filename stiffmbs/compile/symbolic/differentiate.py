@@ -90,7 +90,7 @@ class Derivatives:
         inverse = self.named(-1 / self.partial(function, symbol))
         slopes = [(self.named(inverse * self.partial(function, variable)), variable) for variable in variables]
         self._chain[symbol] = {
-            v: sp.Add(*(slope * self.partial(variable, v) for slope, variable in slopes))
+            v: total(product(slope, self.partial(variable, v)) for slope, variable in slopes)
             for v in state
             if v in self._variables[symbol]
         }
@@ -102,7 +102,7 @@ class Derivatives:
             slopes = [(self.named(self.partial(x, variable)), variable) for variable in variables]
             symbol = self._functions[x] = self._new("composed", x)
             self._chain[symbol] = {
-                v: sp.Add(*(slope * self.partial(variable, v) for slope, variable in slopes))
+                v: total(product(slope, self.partial(variable, v)) for slope, variable in slopes)
                 for v in state
                 if v in self._variables[symbol]
             }
@@ -193,9 +193,9 @@ class Derivatives:
                 return total(product(*x.args[:k], part, *x.args[k + 1 :]) for k, part in self._changed(x, v))
             case sp.Pow() if isinstance(x.base, sp.cosh) and x.exp.is_negative:
                 (argument,) = x.base.args  # sinh(a)/cosh(a)^2 would overflow to NaN
-                return x.exp * x * sp.tanh(argument) * self.partial(argument, v)
+                return product(x.exp, x, sp.tanh(argument), self.partial(argument, v))
             case sp.Pow() if not self._depends(x.exp, v):
-                return x.exp * x.base ** (x.exp - 1) * self.partial(x.base, v)
+                return product(x.exp, x.base ** (x.exp - 1), self.partial(x.base, v))
             case sp.Pow():
                 base, exponent = x.args
                 changed = self.partial(exponent, v) * sp.log(base) + exponent * self.partial(base, v) / base
