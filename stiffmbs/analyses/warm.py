@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from pathlib import Path
@@ -11,9 +9,7 @@ from typing import Any
 
 from ..compile.compile_model import kinds_of
 from ..compile.kind import Kind
-from ..compile.machine.compiler import compiled_routines
-from ..compile.machine.linking import Signatures
-from ..compile.machine.routines import Routine, fully_compiled
+from ..compile.machine.routines import compile_unit, fully_compiled, units
 from ..compile.record import compile_kind
 from ..elements.body import Body
 from ..elements.element import Joint
@@ -50,7 +46,7 @@ def warm(scenes: Sequence[Path], watch: Callable[[int, int], None]) -> list[str]
         A sentence for each scene that cannot be read or assembled.
     """
     with process_pool() as processes:
-        waiting: set[Future[Any]] = {processes.submit(compile_unit, unit) for unit in {each.unit for each in routines()}}
+        waiting: set[Future[Any]] = {processes.submit(compile_unit, unit) for unit in units()}
         known = usual_kinds()
         waiting |= {processes.submit(compile_kind, kind) for kind in known}
         of_scenes = {processes.submit(kinds_of_scene, path): path for path in scenes}
@@ -67,12 +63,6 @@ def warm(scenes: Sequence[Path], watch: Callable[[int, int], None]) -> list[str]
                 total += len(new)
             watch(total - len(waiting), total)
     return faults
-
-
-@fully_compiled()
-def compile_unit(unit: tuple[str, Signatures, bool, int]) -> None:
-    """Compile and cache routines that are compiled together."""
-    compiled_routines(*unit, "")
 
 
 @fully_compiled()
@@ -112,16 +102,6 @@ def usual_kinds() -> tuple[Kind, ...]:
     bearings = usual_bearings().data()
     spun = [ReducedModel(bearings, bearings.bodies, axes={"a": axis}) for axis in AXES]
     return tuple(dict.fromkeys(kind for model in (*models, *spun) for kind in kinds_of(model)))
-
-
-def routines() -> Iterator[Routine]:
-    """Yield every compiled routine that a module of the package declares."""
-    for name in ("compile", "dynamics", "solve", "sensitivity_equations", "results", "run_checks"):
-        package = importlib.import_module(f"stiffmbs.{name}")
-        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-            if ".native." not in f"{module.name}.":
-                found = vars(importlib.import_module(module.name)).values()
-                yield from (value for value in found if isinstance(value, Routine))
 
 
 BODIES = ("a", "b", "c")

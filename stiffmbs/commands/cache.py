@@ -77,7 +77,9 @@ def warm(scenes: tuple[Path, ...]) -> None:
     from .starting import scene_files
 
     with StatusLine() as status:
-        faults = fill(scenes or tuple(scene_files().values()), lambda done, total: status(f"{done} of {total} compiled"))
+        faults = fill(
+            scenes or tuple(scene_files().values()), lambda done, total: status(f"{done} of {total} compiled")
+        )
     own = [found for kind, found in stored(cache_directory()).items() if kind in ("record", "kernel", "routine")]
     if not any(found.entries for found in own):
         click.echo(f"stiffmbs: {cache_directory()} cannot be written to: nothing is kept", err=True)

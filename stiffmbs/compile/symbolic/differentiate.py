@@ -193,9 +193,9 @@ class Derivatives:
                 return total(product(*x.args[:k], part, *x.args[k + 1 :]) for k, part in self._changed(x, v))
             case sp.Pow() if isinstance(x.base, sp.cosh) and x.exp.is_negative:
                 (argument,) = x.base.args  # sinh(a)/cosh(a)^2 would overflow to NaN
-                return product(x.exp, x, sp.tanh(argument), self.partial(argument, v))
+                return x.exp * x * sp.tanh(argument) * self.partial(argument, v)
             case sp.Pow() if not self._depends(x.exp, v):
-                return product(x.exp, x.base ** (x.exp - 1), self.partial(x.base, v))
+                return x.exp * x.base ** (x.exp - 1) * self.partial(x.base, v)
             case sp.Pow():
                 base, exponent = x.args
                 changed = self.partial(exponent, v) * sp.log(base) + exponent * self.partial(base, v) / base
