@@ -17,11 +17,11 @@ from pathlib import Path
 from stiffmbs.cache.contents import FINISHING
 from stiffmbs.compile.machine.finish import alone
 
-from ..benchmark import Row
+from ...benchmark import Row
 from .start_up import PROGRAM, process_seconds
 
 ROUNDS = 5
-EXAMPLES = Path(__file__).parents[3] / "examples"
+EXAMPLES = Path(__file__).parents[4] / "examples"
 CART, CAR, CRANK = "cart_pendulum", "car", "flexible/flexible_slider_crank"
 SPRING = "    stiffness: 270 N/m\n"
 FORCES = "forces:\n"

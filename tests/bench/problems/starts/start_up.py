@@ -13,10 +13,10 @@ from pathlib import Path
 
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
 
-from ..benchmark import Row
-from ..drives import SCENES
-from ..processes import seconds_of_children
-from .cart_pendulum import SCENE
+from ...benchmark import Row
+from ...drives import SCENES
+from ...processes import seconds_of_children
+from ..cart_pendulum import SCENE
 
 ROUNDS = 11
 PROGRAM = (sys.executable, "-m", "stiffmbs")
