@@ -35,8 +35,8 @@ from .terms import KERNEL_SIGNATURE, TERM_SETS
 if TYPE_CHECKING:
     from .symbolic.derive import Derived
 
-RARE = ("effort", "effort_tangent", "all_levels", "all_levels_tangent")
-"""Term sets of Radau methods and of the formulation index1 only; derived on first use, as they are expensive."""
+RARE = ("all_levels", "all_levels_tangent")
+"""Term sets of the formulation index1 only; derived on first use, as they are expensive."""
 
 _INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
 

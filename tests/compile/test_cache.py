@@ -336,3 +336,12 @@ def test_warming_compiles_a_scene_with_all_its_options(tmp_path, monkeypatch):
     monkeypatch.setattr(machine, "drafted", lambda *_: pytest.fail("compiled"))
     for kind in kinds_of(stiffmbs.load_scene(scene, [("choose.held", "sprung")])):
         record.compile_kind(kind)
+
+
+def test_a_run_by_radau_after_one_by_bdf_derives_nothing(examples, monkeypatch):
+    kinds = kinds_of(stiffmbs.load_scene(examples / "half_car.yaml"))
+    for kind in kinds:
+        record.record_of(kind)
+    record.source_of.cache_clear()
+    monkeypatch.setattr(record, "_terms", lambda kind: pytest.fail("derived"))
+    assert any(record.source_of(kind, "effort_tangent") for kind in kinds)
