@@ -23,6 +23,7 @@ from ..model.parts.options import CHOOSE, OPTIONS, choices_of
 from ..presolve.reduced_model import ReducedModel
 from ..presolve.spinning_bodies import AXES
 from ..processes import process_pool
+from ..reading.files.text_file import file_text
 from ..reading.files.yaml_text import read_yaml
 from .job import prepare
 from .load_scene import load_scene
@@ -73,7 +74,11 @@ def kinds_of_scene(path: Path) -> tuple[tuple[Kind, ...], list[str]]:
     """
     kinds: dict[Kind, None] = {}
     faults: list[str] = []
-    for changes in ((), *_other_words(path)):
+    try:
+        every = ((), *_other_words(path))
+    except StiffmbsError as error:
+        return (), [str(error)]
+    for changes in every:
         try:
             scene = load_scene(path, changes)
             job = prepare(scene)
@@ -90,7 +95,7 @@ def _other_words(path: Path) -> Iterator[tuple[tuple[str, str]]]:
     """Yield changes of a scene file that choose each word of its options but the first."""
     if path.suffix.lower() not in (".yaml", ".yml"):
         return
-    found = read_yaml(path.read_text(encoding="utf-8"), str(path))
+    found = read_yaml(file_text(path), str(path))
     for name, words in choices_of(found if isinstance(found, dict) else {}, OPTIONS).items():
         for word in list(words)[1:]:
             yield ((f"{CHOOSE}.{name}", word),)

@@ -331,8 +331,11 @@ def test_warming_compiles_a_scene_with_all_its_options(tmp_path, monkeypatch):
     monkeypatch.setattr(warm, "units", tuple)
     scene, seen = tmp_path / "scene.yaml", []
     scene.write_text(OPTIONS)
-    (fault,) = warm.warm([scene], lambda *numbers: seen.append(numbers))
-    assert "forces.spring.i" in fault and seen[-1] == (4, 4)  # the scene, and its pin, spring and weight
+    other = tmp_path / "other.yaml"
+    other.write_text("bodies: [")
+    faults = sorted(warm.warm([scene, other], lambda *numbers: seen.append(numbers)))
+    assert "other.yaml, line" in faults[0] and "forces.spring.i" in faults[1] and len(faults) == 2
+    assert seen[-1] == (5, 5)  # both scenes; pin, spring and weight of the first
     monkeypatch.setattr(machine, "drafted", lambda *_: pytest.fail("compiled"))
     for kind in kinds_of(stiffmbs.load_scene(scene, [("choose.held", "sprung")])):
         record.compile_kind(kind)
