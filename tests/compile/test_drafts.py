@@ -182,6 +182,14 @@ def test_no_routine_is_kept_whose_source_changes_while_it_is_compiled(started, m
     assert not entries.folder().exists() and next(texts, "") == ""
 
 
+def test_compiling_ahead_ends_where_nothing_can_be_stored(started, monkeypatch):
+    at_once(monkeypatch, TERMS.unit, TERMS.unit)
+    tried = []
+    monkeypatch.setattr(entries, "write", lambda name, _: tried.append(name))
+    finish.finish()
+    assert len(tried) == 1
+
+
 @pytest.fixture
 def library_of(started, tmp_path, monkeypatch):
     """Make a library with given entries the one of the package."""
