@@ -35,8 +35,8 @@ from .terms import KERNEL_SIGNATURE, TERM_SETS
 if TYPE_CHECKING:
     from .symbolic.derive import Derived
 
-RARE = ("effort", "effort_tangent", "all_levels", "all_levels_tangent")
-"""Term sets of Radau methods and of the formulation index1 only; derived on first use, as they are expensive."""
+RARE = ("all_levels", "all_levels_tangent")
+"""Term sets of the formulation index1 only; derived on first use, as they are expensive."""
 
 _INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
 
@@ -182,11 +182,10 @@ def in_library(kind: Kind) -> dict[str, bytes]:
 
 
 @fully_compiled()
-def compile_usual(kind: Kind) -> None:
-    """Compile and cache all kernels of a kind that solvers commonly use."""
+def compile_kind(kind: Kind) -> None:
+    """Compile and cache all kernels of a kind."""
     for term_set in TERM_SETS:
-        if term_set not in RARE:
-            kernel_of(kind, term_set)
+        kernel_of(kind, term_set)
 
 
 def _rare_source(kind: Kind, term_set: str) -> str:

@@ -7,6 +7,7 @@ import pickle
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,8 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.analyses.warm import routines, usual_elements
+from stiffmbs.analyses import warm
+from stiffmbs.analyses.warm import usual_elements
 from stiffmbs.cache import entries as kept
 from stiffmbs.cache.contents import OTHER, PART, SECRET, clear, stored
 from stiffmbs.commands.main import main
@@ -22,6 +24,7 @@ from stiffmbs.compile import record
 from stiffmbs.compile.compile_model import kinds_of
 from stiffmbs.compile.kind import sorted_out
 from stiffmbs.compile.machine import compiler as machine
+from stiffmbs.compile.machine.routines import units
 from stiffmbs.compile.symbolic import derive
 from stiffmbs.elements.tyres.names import SAMPLE
 from stiffmbs.model import model
@@ -158,7 +161,7 @@ def test_every_kind_of_element_is_among_the_usual_ones(dimensions, described):
 
 
 def test_routines_of_all_solvers_are_found():
-    found = {(routine.module.rpartition(".")[2], routine.name) for routine in routines()}
+    found = {(module.rpartition(".")[2], name) for module, signatures, *_ in units() for name, _ in signatures}
     assert {
         ("ida_loop", "advance"),
         ("runge_kutta", "advance"),
@@ -190,9 +193,11 @@ def test_a_warm_run_imports_nothing_that_derives_or_compiles(examples, tmp_path,
 
 WARMED = """
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from stiffmbs.cache import entries
-from stiffmbs.compile.record import compile_usual
-from stiffmbs.analyses.warm import routines, usual_kinds
+from stiffmbs.compile.machine.routines import compile_unit, units
+from stiffmbs.compile.record import compile_kind
+from stiffmbs.analyses.warm import usual_kinds
 
 read = entries.read
 def noted(name):
@@ -200,9 +205,9 @@ def noted(name):
     return read(name)
 entries.read, entries.write = noted, lambda *_: sys.exit("found an entry that was not there")
 for kind in usual_kinds():
-    compile_usual(kind)
-for routine in routines():
-    routine.call
+    compile_kind(kind)
+for unit in units():
+    compile_unit(unit)
 """
 """Names every entry that warming makes, from a warm cache."""
 
@@ -211,7 +216,7 @@ for routine in routines():
 def test_after_warming_first_runs_compile_nothing(examples, tmp_path, monkeypatch):
     """In a cache that holds what warming makes and nothing else, as other tests have filled the one at hand."""
     at_hand = kept.cache_directory()
-    assert run_in_a_process(["-m", "stiffmbs", "cache", "warm"], at_hand).returncode == 0
+    assert run_in_a_process(["-m", "stiffmbs", "cache", "warm", str(examples / "chain.yaml")], at_hand).returncode == 0
     warmed = run_in_a_process(["-c", WARMED], at_hand)
     assert warmed.returncode == 0, warmed.stderr
     from_there = kept.folder()
@@ -305,3 +310,41 @@ def test_the_name_of_a_record_does_not_follow_what_was_asked_of_its_kind(example
     vars(kind).pop("has_tables", None)
     before = record._entry(kind)
     assert not kind.has_tables and record._entry(kind) == before
+
+
+OPTIONS = """
+gravity: [0, -9.81]
+bodies: {a: {mass: 1, inertia: 1, position: [1, 0], angle: 0.5}}
+joints: {pin: {type: revolute, i: {body: a, point: [-1, 0]}, j: ground}}
+options:
+  held:
+    free: {}
+    sprung: {forces: {spring: {type: torsion_spring, i: a, j: ground, stiffness: 1}}}
+    wrong: {forces: {spring: {type: torsion_spring, i: b, j: ground, stiffness: 1}}}
+"""
+
+
+def test_warming_compiles_a_scene_with_all_its_options(tmp_path, monkeypatch):
+    monkeypatch.setenv(kept.DIRECTORY_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setattr(warm, "process_pool", ThreadPoolExecutor)
+    monkeypatch.setattr(warm, "usual_kinds", tuple)
+    monkeypatch.setattr(warm, "units", tuple)
+    scene, seen = tmp_path / "scene.yaml", []
+    scene.write_text(OPTIONS)
+    other = tmp_path / "other.yaml"
+    other.write_text("bodies: [")
+    faults = sorted(warm.warm([scene, other], lambda *numbers: seen.append(numbers)))
+    assert "other.yaml, line" in faults[0] and "forces.spring.i" in faults[1] and len(faults) == 2
+    assert seen[-1] == (5, 5)  # both scenes; pin, spring and weight of the first
+    monkeypatch.setattr(machine, "drafted", lambda *_: pytest.fail("compiled"))
+    for kind in kinds_of(stiffmbs.load_scene(scene, [("choose.held", "sprung")])):
+        record.compile_kind(kind)
+
+
+def test_a_run_by_radau_after_one_by_bdf_derives_nothing(examples, monkeypatch):
+    kinds = kinds_of(stiffmbs.load_scene(examples / "half_car.yaml"))
+    for kind in kinds:
+        record.record_of(kind)
+    record.source_of.cache_clear()
+    monkeypatch.setattr(record, "_terms", lambda kind: pytest.fail("derived"))
+    assert any(record.source_of(kind, "effort_tangent") for kind in kinds)

@@ -27,3 +27,15 @@ def test_signs_are_those_of_sympy():
     for one in (*PARTS, *(a - b for a, b in combinations(PARTS[:-3], repeat=2)), x - y - z, z - x - y, 1 - x, x - 1):
         has_minus = one.could_extract_minus_sign()
         assert positive(one) == (-one if has_minus else None), one
+
+
+class Endless(sp.Function):
+    """Function that does not tell whether it is finite."""
+
+    def _eval_is_finite(self):
+        pytest.fail("asked whether a factor is finite, which takes SymPy long for functions of long sums")
+
+
+def test_products_with_zero_do_not_ask_whether_functions_are_finite():
+    assert product(sp.S.Zero, Endless(x), y) is sp.S.Zero
+    assert product(sp.S.Zero, sp.oo, x) is sp.S.NaN

@@ -1,5 +1,6 @@
 """Drafts of compiled code: used at once, finished by another process, equal to the last bit."""
 
+import functools
 import os
 import shutil
 import subprocess
@@ -17,7 +18,7 @@ from stiffmbs.cache import entries, library
 from stiffmbs.compile import record
 from stiffmbs.compile.compile_model import kinds_of
 from stiffmbs.compile.machine import compiler, drafts, finish, object_code
-from stiffmbs.compile.machine.routines import forget, fully_compiled, on_drafts, renew
+from stiffmbs.compile.machine.routines import TERMS, compile_unit, forget, fully_compiled, on_drafts, renew, units
 from stiffmbs.compile.symbolic import derive
 
 SOURCE = (
@@ -142,14 +143,51 @@ def test_drafts_of_another_form_are_removed(started, content):
 
 def test_one_process_finishes_drafts_at_a_time(started, monkeypatch):
     norm()
-    monkeypatch.setattr(os, "nice", lambda _: None)
-    monkeypatch.setattr(finish, "WAITS", finish.Finishing(patience=0.01))
+    at_once(monkeypatch)
     path = entries.cache_directory() / finish.FINISHING
-    with finish._alone(path):
+    with finish.alone(path):
         finish.finish()
     assert stored() == ["draft"]
     finish.finish()
     assert stored() == ["kernel"]
+
+
+def at_once(monkeypatch, *units):
+    """Finish drafts without waiting for others, and then compile some units of routines."""
+    entries.cache_directory().mkdir(exist_ok=True)
+    monkeypatch.setattr(os, "nice", lambda _: None)
+    monkeypatch.setattr(finish, "WAITS", finish.Finishing(patience=0.01, pause=0.0))
+    monkeypatch.setattr(finish, "units", lambda: units)
+
+
+def test_other_routines_are_compiled_when_no_draft_is_left(started, monkeypatch):
+    at_once(monkeypatch, TERMS.unit)
+    norm()
+    finish.finish()
+    assert stored() == ["kernel", "routine"]
+    monkeypatch.setattr(compiler, "drafted", lambda *_: pytest.fail("translated again"))
+    finish.finish()
+    with fully_compiled():
+        assert TERMS.address
+
+
+@pytest.mark.parametrize("digest", ["_language", "_native"])
+def test_no_routine_is_kept_whose_source_changes_while_it_is_compiled(started, monkeypatch, digest):
+    """The functions in memory and the texts of the changed files may be mixed in its code."""
+    at_once(monkeypatch, TERMS.unit, TERMS.unit)
+    texts = iter(["before", "after"])
+    changing = functools.cache(lambda *_: next(texts))
+    monkeypatch.setattr(compiler, digest, changing)
+    finish.finish()
+    assert not entries.folder().exists() and next(texts, "") == ""
+
+
+def test_compiling_ahead_ends_where_nothing_can_be_stored(started, monkeypatch):
+    at_once(monkeypatch, TERMS.unit, TERMS.unit)
+    tried = []
+    monkeypatch.setattr(entries, "write", lambda name, _: tried.append(name))
+    finish.finish()
+    assert len(tried) == 1
 
 
 @pytest.fixture
@@ -181,6 +219,15 @@ def test_code_of_the_library_is_used_at_once_and_compiled_for_this_processor_lat
         finish.finish_draft(name)
     renew()
     assert stored() == ["kernel"] and norm().address != first.address and value(norm()) == value(first)
+
+
+@has_x86
+def test_routines_of_the_library_are_not_compiled_ahead(library_of, started, monkeypatch):
+    library_of(dict([compiler.in_library(*compiler.of_routines(*TERMS.unit, ""))]))
+    monkeypatch.setattr(compiler, "drafted", lambda *_: pytest.fail("translated again"))
+    at_once(monkeypatch, TERMS.unit)
+    finish.finish()
+    assert not entries.folder().exists()
 
 
 @has_x86
@@ -242,6 +289,7 @@ def test_the_process_finishes_all_drafts_and_ends_whatever_lies_in_the_current_f
     for module in ("json", "zlib", "pickle", "llvmlite", "numpy", "stiffmbs", "subprocess"):
         (tmp_path / f"{module}.py").write_text(f"open({str(tmp_path / 'imported')!r}, 'a')\n")
     cache = tmp_path / "cache"
+    copy_routines(cache, [unit for unit in units() if ".ida." not in unit[0]])
     kept = {name: text for name, text in os.environ.items() if name != drafts.VARIABLE}
     environment = {**kept, entries.DIRECTORY_VARIABLE: str(cache), "PYTHONSAFEPATH": "1"}
     run = [sys.executable, "-m", "stiffmbs", "run", str(examples / "cart_pendulum.yaml"), "--json"]
@@ -261,13 +309,23 @@ def test_the_process_finishes_all_drafts_and_ends_whatever_lies_in_the_current_f
     assert without_time[0] == without_time[1]
 
 
+def copy_routines(cache, chosen):
+    """Copy compiled routines from the cache of the tests to an empty one."""
+    (cache / entries.ENTRIES).mkdir(mode=0o700, parents=True)
+    for unit in chosen:
+        compile_unit(unit)
+        name = entries.name_of(*compiler.of_routines(*unit, "")[0], object_code.machine())
+        shutil.copy(entries.folder() / name, cache / entries.ENTRIES / name)
+    shutil.copy(entries.cache_directory() / entries.SECRET, cache / entries.SECRET)
+
+
 def names(cache, kind):
     return [path.name for path in (cache / "entries").iterdir() if path.name.startswith(f"{kind}-")]
 
 
 def is_locked(path):
     try:
-        with finish._alone(path):
+        with finish.alone(path):
             return False
     except OSError:
         return True

@@ -32,7 +32,7 @@ def waits_for_drafts():
         now[0] += seconds
 
     with (
-        patch.multiple(finish, _alone=lambda _: nullcontext(), _drafts=list),
+        patch.multiple(finish, alone=lambda _: nullcontext(), _drafts=list, units=tuple),
         patch.multiple(finish.time, monotonic=lambda: now[0], sleep=sleep),
         patch.object(finish.os, "nice", nothing),
     ):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import importlib
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from threading import RLock
 from typing import Any
 
-from ...cache import entries
+from ...cache import entries, library
 from ...cache.contents import Kind
 from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
@@ -122,6 +122,24 @@ def of_routines(
         return vars(importlib.import_module(module))
 
     return follows_from, Source(signatures, namespace, words, unrolled=unrolled, level=level)
+
+
+def compiled_ahead(units: Iterable[tuple[str, Signatures, bool, int]]) -> Iterator[str]:
+    """Compile units of routines that neither the cache nor the library has, one in each step; yield the name of its entry.
+
+    It ends when a source has changed since this process read it: the functions in memory are of no use any more.
+    """
+    for unit in units:
+        follows_from, source = of_routines(*unit, "")
+        entry, shipped = (entries.name_of(*follows_from, of) for of in (machine(), generic_machine()))
+        if entries.read(entry) or drafts.stored(entry) or library.read(shipped):
+            continue
+        code = drafted(entry, source).finished()
+        _language.cache_clear()
+        _native.cache_clear()
+        if of_routines(*unit, "")[0] != follows_from or not entries.write(entry, sealed(entry, code)):
+            return
+        yield entry
 
 
 @cache

@@ -1,4 +1,7 @@
-"""Process of lowest priority that compiles the drafts in the cache at their full level."""
+"""Process of lowest priority that compiles the drafts in the cache at their full level, and then the routines of all solvers.
+
+A change of the solver then compiles nothing.
+"""
 
 from __future__ import annotations
 
@@ -12,17 +15,19 @@ from pathlib import Path
 
 from ...cache import entries
 from ...cache.contents import FINISHING
+from .compiler import compiled_ahead
 from .drafts import draft_in
 from .linking import sealed
 from .object_code import origin
+from .routines import Unit, units
 
 
 @dataclass(frozen=True)
 class Finishing:
     """Parameters of the process that compiles drafts.
 
-    - `patience`: time, s, without a new draft after which it ends. A run makes several; to derive the equations of one kind takes
-      about a second between two of them.
+    - `patience`: time, s, without a new draft after which it compiles the other routines, and then ends. A run makes several drafts;
+      to derive the equations of one kind takes about a second between two of them.
     - `pause`: time, s, between two looks for drafts.
     """
 
@@ -34,19 +39,27 @@ WAITS = Finishing()
 
 
 def finish() -> None:
-    """Compile all drafts in the cache and those that are added meanwhile; do nothing if another process does so."""
+    """Compile all drafts in the cache and those that are added meanwhile, then the routines that the cache does not have.
+
+    Do nothing if another process does so.
+    """
     if hasattr(os, "nice"):
         os.nice(19)
-    with suppress(OSError), _alone(entries.cache_directory() / FINISHING):
+    with suppress(OSError), alone(entries.cache_directory() / FINISHING):
         seen: set[str] = set()
-        last = time.monotonic()
-        while time.monotonic() - last < WAITS.patience:
+        last, ahead = time.monotonic(), compiled_ahead(_declared())
+        while time.monotonic() - last < WAITS.patience or next(ahead, ""):
             for name in _drafts():
                 if name not in seen:
                     seen.add(name)
                     finish_draft(name)
                     last = time.monotonic()
             time.sleep(WAITS.pause)
+
+
+def _declared() -> Iterator[Unit]:
+    """Yield all units of routines; their modules are imported at the first one."""
+    yield from units()
 
 
 def finish_draft(name: str) -> None:
@@ -69,7 +82,7 @@ def _drafts() -> list[str]:
 
 
 @contextmanager
-def _alone(path: Path) -> Iterator[None]:
+def alone(path: Path) -> Iterator[None]:
     """Lock a file until the end of the context or of this process; raises OSError if another process has locked it."""
     with path.open("ab") as file:
         if sys.platform == "win32":

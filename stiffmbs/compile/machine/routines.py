@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import importlib
+import pkgutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 from ...tuning import parameters_are_changed, values_in
 from . import drafts
 from .compiler import compiled_routines, compiled_source
 from .linking import Compiled, Signatures
 from .object_code import FULL
+
+Unit: TypeAlias = tuple[str, Signatures, bool, int]
+"""Module and functions that are compiled together, with their settings (`Routine`)."""
+_ROOMS = ("compile", "dynamics", "solve", "sensitivity_equations", "results", "run_checks")
+"""Packages whose modules declare routines."""
 
 
 @dataclass(frozen=True)
@@ -60,9 +67,22 @@ class Routine:
         return compiled_routines(*self.unit, changed)[self.name]
 
     @property
-    def unit(self) -> tuple[str, Signatures, bool, int]:
+    def unit(self) -> Unit:
         """Module and functions that are compiled together, with their settings."""
         return self.module, tuple(sorted(((self.name, self.signature), *self.others))), self.unrolled, self.level
+
+
+def units() -> tuple[Unit, ...]:
+    """Return all units of routines that modules of the package declare, which are imported."""
+    package = __package__.partition(".")[0]
+    found: dict[Unit, None] = {}
+    for room in _ROOMS:
+        folder = importlib.import_module(f"{package}.{room}").__path__
+        for module in pkgutil.walk_packages(folder, f"{package}.{room}."):
+            if ".native." not in f"{module.name}.":
+                declared = vars(importlib.import_module(module.name)).values()
+                found |= {value.unit: None for value in declared if isinstance(value, Routine)}
+    return tuple(found)
 
 
 _loaded: list[Routine] = []
@@ -76,6 +96,12 @@ def fully_compiled() -> Iterator[None]:
         if drafts.are_used():
             forget()
         yield
+
+
+@fully_compiled()
+def compile_unit(unit: Unit) -> None:
+    """Compile and cache routines that are compiled together."""
+    compiled_routines(*unit, "")
 
 
 @contextmanager

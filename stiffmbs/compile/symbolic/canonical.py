@@ -23,7 +23,10 @@ def total(parts: Iterable[sp.Expr]) -> sp.Expr:
 
 
 def product(*factors: sp.Expr) -> sp.Expr:
-    """Return ``sympy.Mul(*factors)``."""
+    """Return ``sympy.Mul(*factors)``; zero for a factor 0, without SymPy's search for infinite factors among functions."""
+    given = [factor for factor in factors if factor.is_Number]
+    if any(number is sp.S.Zero for number in given) and all(number.is_finite for number in given):
+        return sp.S.Zero
     flat = [part for factor in factors for part in (factor.args if factor.is_Mul else (factor,))]
     numbers, ordered = _apart([part for part in flat if part is not sp.S.One])
     bases = {part.base if part.is_Pow and part.exp.is_Rational else part for part in ordered}

@@ -90,7 +90,7 @@ class Derivatives:
         inverse = self.named(-1 / self.partial(function, symbol))
         slopes = [(self.named(inverse * self.partial(function, variable)), variable) for variable in variables]
         self._chain[symbol] = {
-            v: sp.Add(*(slope * self.partial(variable, v) for slope, variable in slopes))
+            v: total(product(slope, self.partial(variable, v)) for slope, variable in slopes)
             for v in state
             if v in self._variables[symbol]
         }
@@ -102,7 +102,7 @@ class Derivatives:
             slopes = [(self.named(self.partial(x, variable)), variable) for variable in variables]
             symbol = self._functions[x] = self._new("composed", x)
             self._chain[symbol] = {
-                v: sp.Add(*(slope * self.partial(variable, v) for slope, variable in slopes))
+                v: total(product(slope, self.partial(variable, v)) for slope, variable in slopes)
                 for v in state
                 if v in self._variables[symbol]
             }

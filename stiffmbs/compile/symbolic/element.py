@@ -149,14 +149,14 @@ class SymbolicElement:
         if self.depends(x, self.states) and not self.state_rates:
             raise InputError("found a state in an expression whose rate is needed, expected coordinates and time alone")
         partial = self.derivatives.partial
-        own = (rate * partial(x, symbol) for symbol, rate in zip(self.states, self.state_rates, strict=False))
+        own = (product(rate, partial(x, symbol)) for symbol, rate in zip(self.states, self.state_rates, strict=False))
         moving = (
-            rate * (part if symbol in frame.q else self.named(part))
+            product(rate, part if symbol in frame.q else self.named(part))
             for frame in self.frames
             for symbol, rate in frame.motion
             if (part := partial(x, symbol)) is not sp.S.Zero
         )
-        return sp.Add(*moving, *own) + partial(x, self.t)
+        return total((*moving, *own, partial(x, self.t)))
 
     def second_rate(self, x: sp.Expr) -> sp.Expr:
         """Return the second total time derivative of a read expression at constant velocities."""

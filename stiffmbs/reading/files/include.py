@@ -54,6 +54,21 @@ def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Call
     return found, sources.line
 
 
+@dataclass(frozen=True)
+class _Place:
+    """Key of a file; as text its file, line and path, for the beginning of a message, as to find the line takes long."""
+
+    sources: Sources
+    source: str
+    path: tuple[str, ...]
+
+    def __str__(self) -> str:
+        known = ((text, above) for name, text, above in reversed(self.sources.texts) if name == self.source)
+        text, above = next(known, ("", ()))
+        line = line_of(text, self.path[len(above) :])
+        return f"{self.source}, {f'line {line}, ' if line else ''}{'.'.join(self.path)}"
+
+
 @dataclass
 class _Including:
     sources: Sources
@@ -77,7 +92,7 @@ class _Including:
     ) -> dict[str, object]:
         if INCLUDE not in found:
             return found
-        where = f"{_place(self.sources, source, (*path, INCLUDE))}{'.'.join((*path, INCLUDE))}"
+        where = _Place(self.sources, source, (*path, INCLUDE))
         merged: dict[str, object] = {}
         owners: dict[tuple[object, ...], str] = {}
         for name in _listed(found[INCLUDE], where):
@@ -86,7 +101,7 @@ class _Including:
         _add(merged, {key: value for key, value in found.items() if key != INCLUDE}, source, owners, where)
         return merged
 
-    def _content(self, file: Path, where: str, within: tuple[Path, ...], path: tuple[str, ...]) -> dict[str, object]:
+    def _content(self, file: Path, where: _Place, within: tuple[Path, ...], path: tuple[str, ...]) -> dict[str, object]:
         if file.resolve() in within:
             raise InputError(f"{where}: found '{quoted(str(file))}', which includes itself, expected no circle")
         if len(self.sources.texts) > MOST_FILES:
@@ -102,7 +117,7 @@ class _Including:
         return self.whole(found, str(file), file.parent, (*within, file.resolve()), path)
 
 
-def _check_file(file: Path, where: str) -> None:
+def _check_file(file: Path, where: _Place) -> None:
     """Refuse anything except a regular file of moderate size; reading a device may not end."""
     try:
         if not file.is_file():
@@ -114,7 +129,7 @@ def _check_file(file: Path, where: str) -> None:
         raise InputError(f"{where}: found {size} bytes in '{quoted(str(file))}', expected at most {LARGEST}")
 
 
-def _listed(found: Any, where: str) -> list[str]:
+def _listed(found: Any, where: _Place) -> list[str]:
     names = found if isinstance(found, list) else [found]
     for name in names:
         if not isinstance(name, str) or not name or "\0" in name or name == STANDARD_INPUT:
@@ -123,7 +138,7 @@ def _listed(found: Any, where: str) -> list[str]:
 
 
 def _add(
-    merged: Content, found: dict[str, object], source: str, owners: dict[tuple[object, ...], str], where: str
+    merged: Content, found: dict[str, object], source: str, owners: dict[tuple[object, ...], str], where: _Place
 ) -> None:
     """Merge the sections of a file; a name may occur in one file only."""
     for section, value in found.items():
@@ -137,17 +152,10 @@ def _add(
 
 def _own(
     path: tuple[str, ...], place: dict[str, object], name: Any, value: object, source: str,
-    owners: dict[tuple[object, ...], str], where: str,
+    owners: dict[tuple[object, ...], str], where: _Place,
 ) -> None:  # fmt: skip
     if name in place and not (len(path) == 1 and place[name] == value):  # equal values may be repeated
         first = owners.get(path, "another file")
         raise InputError(f"{where}: found '{'.'.join(map(str, path))}' in {first} and in {source}, expected it in one")
     place[name] = value
     owners[path] = source
-
-
-def _place(sources: Sources, source: str, path: tuple[str, ...]) -> str:
-    """Return the file and line of a key, as the beginning of a message."""
-    text, above = next(((text, above) for name, text, above in reversed(sources.texts) if name == source), ("", ()))
-    line = line_of(text, path[len(above) :])
-    return f"{source}, line {line}, " if line else f"{source}, "

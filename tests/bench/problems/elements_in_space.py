@@ -16,7 +16,7 @@ from stiffmbs.cache.entries import DIRECTORY_VARIABLE
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.group import Group
 from stiffmbs.compile.kind import sorted_out
-from stiffmbs.compile.record import compile_usual
+from stiffmbs.compile.record import compile_kind
 from stiffmbs.compile.state import State
 from stiffmbs.compile.system import System
 
@@ -34,7 +34,7 @@ def compile_first(element: str) -> float:
     scene = usual_elements(3).data()
     begun = time.process_time()
     kind, _ = sorted_out(element, {**scene.joints, **scene.forces}[element].at_initial_pose(scene), scene)
-    compile_usual(kind)
+    compile_kind(kind)
     return time.process_time() - begun
 
 

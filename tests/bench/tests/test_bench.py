@@ -118,7 +118,7 @@ def test_scenes_are_those_of_the_examples(examples, example, scene):
 LONG_LOOKS = (
     "elements_in_space", "chain_scaling", "stiffness", "stepping", "half_car_gradient", "half_car_study", "bushing_fit", "car",
     "car_conditioning", "car_events",
-    "car_jobs", "start_up", "tolerances",
+    "car_jobs", "edits", "start_up", "tolerances",
 )  # fmt: skip
 MANY = (pytest.mark.long, pytest.mark.sampled(5))
 BY_ELEMENTS = {"flexible": 2e-6}
@@ -142,6 +142,7 @@ WITHOUT_YARDSTICK = (
     "elements_in_space",
     "trees_in_space",
     "axle_on_bushings",
+    "edits",
 )
 
 

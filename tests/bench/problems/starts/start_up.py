@@ -13,10 +13,10 @@ from pathlib import Path
 
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
 
-from ..benchmark import Row
-from ..drives import SCENES
-from ..processes import seconds_of_children
-from .cart_pendulum import SCENE
+from ...benchmark import Row
+from ...drives import SCENES
+from ...processes import seconds_of_children
+from ..cart_pendulum import SCENE
 
 ROUNDS = 11
 PROGRAM = (sys.executable, "-m", "stiffmbs")
@@ -39,7 +39,7 @@ def _told(*program: str, cache: str) -> str:
     return subprocess.run(program, check=True, capture_output=True, text=True, env=environment).stdout
 
 
-def _process(*program: str, cache: str) -> float:
+def process_seconds(*program: str, cache: str) -> float:
     """Processor time of a process with its children, s, from its start to its end."""
     before = seconds_of_children()
     _told(*program, cache=cache)
@@ -68,10 +68,11 @@ class Start:
                 "python": (sys.executable, "-c", "pass"),
                 "import stiffmbs": (sys.executable, "-c", "import stiffmbs"),
                 "stiffmbs --help": (*PROGRAM, "--help"),
+                "stiffmbs check cart_pendulum": (*PROGRAM, "check", str(scene)),
                 "stiffmbs run cart_pendulum": (*PROGRAM, "run", str(scene)),
             }
             for name, program in programs.items():
-                times = [_process(*program, cache=folder) for _ in range(rounds + 1)]
+                times = [process_seconds(*program, cache=folder) for _ in range(rounds + 1)]
                 yield Row(name, "from start to end", 0.0, statistics.median(times[1:]), name == "python")
 
 
@@ -116,9 +117,9 @@ class FirstRun:
             scene = Path(empty, "car.yaml")
             scene.write_text(_car(), encoding="utf-8")
             run = (sys.executable, "-c", INTEGRATE, str(scene))
-            times = {name: _process(*run, cache=empty) for name in ("from an empty cache", "again")}
+            times = {name: process_seconds(*run, cache=empty) for name in ("from an empty cache", "again")}
             scene.write_text(_car().replace(TYRE_FORCE, CHANGED), encoding="utf-8")
-            times["with a factor more in the tyres' longitudinal force"] = _process(*run, cache=empty)
+            times["with a factor more in the tyres' longitudinal force"] = process_seconds(*run, cache=empty)
         return [Row("first run", name, 0.0, seconds, False) for name, seconds in times.items()]
 
     glanced = measured
