@@ -164,7 +164,7 @@ def _integrals_of_radau(piece: Piece, rates: Rates, defects: np.ndarray, at: Mot
     local, exact = integrated(np.diff(ends), defects), rates.changes(rates.exact)[1:].reshape(defects.shape)
     missed, scale = not_smooth(exact, np.diff(ends), local)
     sizes = np.abs(local / rates.typical).max(axis=(1, 2))
-    steps = np.union1d(missed, dominant(sizes))
+    steps = np.flatnonzero(missed | dominant(sizes))
     if len(steps):
         rows = steps[:, None] * piece.points + np.arange(piece.points + 1)
         states = np.hstack([piece.q, piece.u])[rows]
@@ -172,7 +172,7 @@ def _integrals_of_radau(piece: Piece, rates: Rates, defects: np.ndarray, at: Mot
         places, most = np.append(0.0, radau(piece.points).nodes), ESTIMATE.intervals * len(piece.t)
         resolved = integrals_of_motion(curve, places, piece.q.shape[1], at, scale, most)[0]
         found = local[steps] + integrated(np.diff(ends)[steps], exact[steps]) - resolved
-        kept = np.isin(steps, missed) | (np.abs(found / rates.typical).max(axis=(1, 2)) < sizes[steps])
+        kept = missed[steps] | (np.abs(found / rates.typical).max(axis=(1, 2)) < sizes[steps])
         local[steps[kept]], defects[steps[kept]] = found[kept], np.nan
     return local
 
@@ -184,7 +184,7 @@ def _resolve_kinks(piece: Piece, rates: Rates, defects: np.ndarray, at_ends: np.
     """
     h, most = np.diff(piece.t)[:, None], ESTIMATE.intervals * len(piece.t)
     sizes, done = np.abs(h * defects[1:] / rates.typical).max(axis=1), np.zeros(len(h), dtype=bool)
-    while len(steps := np.setdiff1d(dominant(sizes), np.flatnonzero(done))) and len(steps) <= most:
+    while len(steps := np.flatnonzero(dominant(sizes) & ~done)) and len(steps) <= most:
         done[steps] = True
         scale = rates.typical * sizes[~done].max(initial=np.finfo(float).tiny)
         change, curve = rates.states[steps + 1] - rates.states[steps], curve_of_bdf(piece, rates, steps)

@@ -58,7 +58,7 @@ class Curve:
 
 
 def not_smooth(rates: np.ndarray, sizes: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the steps over which the quadrature by their points may be inaccurate, and the largest local error of the others.
+    """Return a mask of steps whose quadrature by their points may be inaccurate, and the largest local error of the others.
 
     Errors of the quadrature are compared with this largest local error, shape (full,).
 
@@ -77,12 +77,13 @@ def not_smooth(rates: np.ndarray, sizes: np.ndarray, local: np.ndarray) -> tuple
         largest = ends[~chosen].max(axis=0, initial=np.finfo(float).tiny)
         chosen = (error > ESTIMATE.smooth * largest).any(axis=1)
     are_isolated = np.count_nonzero(chosen) <= ESTIMATE.isolated * len(chosen)  # otherwise rounding of stiff forces
-    return np.flatnonzero(chosen & are_isolated), largest
+    return chosen & are_isolated, largest
 
 
 def dominant(sizes: np.ndarray) -> np.ndarray:
-    """Return the steps whose local errors, with sizes of shape (steps,), are above their mean and far above their median."""
-    return np.flatnonzero(sizes > np.maximum(sizes.mean(), np.median(sizes) / ESTIMATE.smooth))
+    """Return a mask of steps whose local errors, with sizes of shape (steps,), are above their mean and far above their median."""
+    median = np.sort(sizes)[len(sizes) // 2]
+    return np.asarray(sizes > max(sizes.mean(), median / ESTIMATE.smooth))
 
 
 def integrals_of_motion(

@@ -116,7 +116,7 @@ def is_smooth(error, kinks_of_100=1):
         np.polynomial.legendre.legval(2.0 * radau(9).nodes - 1.0, [error] * 9)
         * (np.arange(100) < kinks_of_100)[:, None]
     )
-    return not len(kinks.not_smooth(rates[..., None], np.ones(100), np.ones((100, 9, 1)))[0])
+    return not kinks.not_smooth(rates[..., None], np.ones(100), np.ones((100, 9, 1)))[0].any()
 
 
 def intervals():
