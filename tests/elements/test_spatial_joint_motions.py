@@ -142,6 +142,7 @@ REFERRING = {
 }
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "solver", [{}, {"presolve": False}, {"solver": "projected"}], ids=["bdf", "as-is", "projected"]
