@@ -12,6 +12,7 @@ MASSES = {"quarter_car": 320 + 38, "half_car_at_rest": 1200 + 2 * 40}
 """Of the axle it is that of all its bodies."""
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("name", LEVEL)
 def test_a_vehicle_stays_at_rest_on_a_level_road(name):
