@@ -10,7 +10,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as in the command; waiting
 import gc
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,8 @@ from hypothesis import HealthCheck, settings
 from scipy.integrate import solve_ivp
 
 from stiffmbs.commands.starting import scene_files
+from stiffmbs.compile import record
+from stiffmbs.compile.machine.object_code import SHORT
 from stiffmbs.error_estimate.parameters import ESTIMATE
 from stiffmbs.interrupts import NEW_OBJECTS
 from stiffmbs.tuning import parameters_of
@@ -39,6 +41,7 @@ G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("untimed")  # no test depends on the speed of a machine
 gc.set_threshold(NEW_OBJECTS)  # as the command has it: 3 % of a run
+record.OF_LOOPS = SHORT  # kernels serve a few short runs each; results of all levels are equal to the last bit
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -84,6 +87,12 @@ def estimates_where_they_are_asked_for(request: pytest.FixtureRequest) -> Iterat
     object.__setattr__(defaults, "work", 0.0)
     yield
     object.__setattr__(defaults, "work", usual)
+
+
+@pytest.fixture(scope="session")
+def every(pytestconfig: pytest.Config) -> Callable[[Sequence[int], int], Sequence[int]]:
+    """Of the seeds of one test, take every n-th, unless all tests are asked for."""
+    return lambda seeds, n: seeds if pytestconfig.getoption("all") else seeds[::n]
 
 
 @pytest.fixture(scope="session")

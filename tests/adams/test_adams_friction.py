@@ -31,6 +31,7 @@ def direction(v, slow):
     return step5(v, -slow, -1, slow, 1)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("ratio", [0.0557, 0.01, 0.03, 0.08, 0.099, 0.101, 0.11, 0.12, 0.13, 0.145, 0.16])
 def test_the_torque_of_a_ball_over_its_speed_is_that_of_a_run_of_adams(tmp_path, ratio):

@@ -58,6 +58,7 @@ def output(state, name):
     return state.values["output"][first : first + 1]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("dimensions", "n", "damping"), FORMS)
 def test_forces_follow_from_the_energy_and_derivatives_from_the_forces(dimensions, n, damping):
     state = state_with(dimensions, n, damping)

@@ -4,10 +4,10 @@ import json
 import multiprocessing
 import os
 import pickle
-import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -16,15 +16,14 @@ from click.testing import CliRunner
 import stiffmbs
 from stiffmbs import spatial
 from stiffmbs.analyses import warm
-from stiffmbs.analyses.warm import usual_elements
 from stiffmbs.cache import entries as kept
-from stiffmbs.cache.contents import OTHER, PART, SECRET, clear, stored
+from stiffmbs.cache.contents import OTHER, PART, clear, stored
 from stiffmbs.commands.main import main
 from stiffmbs.compile import record
 from stiffmbs.compile.compile_model import kinds_of
 from stiffmbs.compile.kind import sorted_out
 from stiffmbs.compile.machine import compiler as machine
-from stiffmbs.compile.machine.routines import units
+from stiffmbs.compile.machine.routines import compile_unit, forget, units
 from stiffmbs.compile.symbolic import derive
 from stiffmbs.elements.tyres.names import SAMPLE
 from stiffmbs.model import model
@@ -155,7 +154,7 @@ def test_the_command_shows_and_clears(directory):
 
 @pytest.mark.parametrize(("dimensions", "described"), [(2, model), (3, spatial_model)])
 def test_every_kind_of_element_is_among_the_usual_ones(dimensions, described):
-    found = {type(element) for _, element in usual_elements(dimensions).data().elements()}
+    found = {type(element) for _, element in warm.usual_elements(dimensions).data().elements()}
     with_forms = {kind for kind in (*described.JOINTS.values(), *described.FORCES.values()) if kind.forms}
     assert found >= with_forms and len(with_forms) >= len(described.JOINTS) + len(described.FORCES) - 1  # beam sections
 
@@ -187,53 +186,60 @@ def loaded_by_a_run(scene, solver, directory, tmp_path):
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_a_warm_run_imports_nothing_that_derives_or_compiles(examples, tmp_path, solver):
-    stiffmbs.run(examples / "cart_pendulum.yaml", duration=0.1, solver=solver)
+    loaded_by_a_run(examples / "cart_pendulum.yaml", solver, kept.cache_directory(), tmp_path)
     assert loaded_by_a_run(examples / "cart_pendulum.yaml", solver, kept.cache_directory(), tmp_path) == "[]"
 
 
-WARMED = """
-import sys
-from concurrent.futures import ThreadPoolExecutor
-from stiffmbs.cache import entries
-from stiffmbs.compile.machine.routines import compile_unit, units
-from stiffmbs.compile.record import compile_kind
-from stiffmbs.analyses.warm import usual_kinds
+@contextmanager
+def asked_for(monkeypatch):
+    """Collect the names of compiled and derived entries that are looked up within a context, by code that was never asked before."""
+    names, read = set(), kept.read
 
-read = entries.read
-def noted(name):
-    print(name)
-    return read(name)
-entries.read, entries.write = noted, lambda *_: sys.exit("found an entry that was not there")
-for kind in usual_kinds():
-    compile_kind(kind)
-for unit in units():
-    compile_unit(unit)
-"""
-"""Names every entry that warming makes, from a warm cache."""
+    def noted(name):
+        names.update({name} if name.startswith(("kernel-", "record-", "routine-")) else ())
+        return read(name)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(kept, "read", noted)
+        for known in (record._record_of, record.source_of):
+            known.cache_clear()
+        forget()
+        yield names
+    forget()
+
+
+def named_alone(follows_from, source):
+    kept.read(kept.name_of(*follows_from, machine.machine()))
+    return {name: None for name, _ in source.signatures}
 
 
 @pytest.mark.long
-def test_after_warming_first_runs_compile_nothing(examples, tmp_path, monkeypatch):
-    """In a cache that holds what warming makes and nothing else, as other tests have filled the one at hand."""
-    at_hand = kept.cache_directory()
-    assert run_in_a_process(["-m", "stiffmbs", "cache", "warm", str(examples / "chain.yaml")], at_hand).returncode == 0
-    warmed = run_in_a_process(["-c", WARMED], at_hand)
-    assert warmed.returncode == 0, warmed.stderr
-    from_there = kept.folder()
-    monkeypatch.setenv(kept.DIRECTORY_VARIABLE, str(tmp_path))
-    kept.folder().mkdir(parents=True)
-    shutil.copy(at_hand / SECRET, tmp_path / SECRET)  # entries are signed with it
-    for name in warmed.stdout.split():
-        shutil.copy(from_there / name, kept.folder() / name)
-    entries = compiled_entries()
-    for scene in ("cart_pendulum", "crank_slider", "chain", "four_bars", "stick_slip", "heavy_top", "spatial_chain"):
-        assert loaded_by_a_run(examples / f"{scene}.yaml", "auto", tmp_path, tmp_path) == "[]"
-    assert compiled_entries() == entries
+def test_after_warming_first_runs_compile_nothing(examples, monkeypatch):
+    """All that runs look up is among what warming looks up, and would compile. Kinds that no run has are left out."""
+    scenes = ("cart_pendulum", "crank_slider", "chain", "four_bars", "stick_slip", "heavy_top", "spatial_chain")
+    with asked_for(monkeypatch) as by_runs:
+        for scene in scenes:
+            stiffmbs.run(examples / f"{scene}.yaml", duration=0.1, solver="auto")
+    with asked_for(monkeypatch) as by_warming, monkeypatch.context() as patch:
+        patch.setattr(machine, "_loaded", named_alone)
+        for kind in warm.usual_kinds():
+            if record.of_installed(record._entry(kind) or "") in by_runs:
+                record.compile_kind(kind)
+        for unit in units():
+            compile_unit(unit)
+    assert len(by_runs) > 50 and by_runs <= by_warming
 
 
-def compiled_entries():
-    """Return the names of all entries but those of scenes and their files."""
-    return sorted(path.name for path in kept.folder().iterdir() if not path.name.startswith(("file-", "scene-")))
+def test_the_command_compiles_kinds_and_routines(directory, examples, monkeypatch):
+    kinds, loops = warm.usual_kinds()[:1], units()[:1]
+    monkeypatch.setattr(warm, "usual_kinds", lambda: kinds)
+    monkeypatch.setattr(warm, "units", lambda: loops)
+    monkeypatch.setattr(warm, "process_pool", ThreadPoolExecutor)
+    forget()
+    done = CliRunner().invoke(main, ["cache", "warm", str(examples / "simple_pendulum.yaml")])
+    assert done.exit_code == 0, done.output
+    made = {path.name.partition("-")[0] for path in kept.folder().iterdir()}
+    assert {"record", "kernel", "routine"} <= made
 
 
 def test_one_equation_in_the_plane_and_in_space_has_a_record_for_each(directory):

@@ -43,6 +43,7 @@ FALLING = [  # by an edge, by a corner, tumbling
 ]
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize(("force", "body"), FALLING)
 def test_energy_is_kept_over_impacts(force, body):

@@ -53,6 +53,7 @@ def test_a_universal_joint_turns_unevenly(bend):
     np.testing.assert_allclose(solution["first.wx"], 7, atol=1e-9)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("of_second", [ALONG_X, ALONG_MINUS_X], ids=["same", "opposite"])
 @pytest.mark.parametrize("bend", np.radians([0, 20, 40, 60]))
@@ -94,6 +95,7 @@ def falling_nut(*joints):
     return model
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @BOTH
 @pytest.mark.parametrize(
@@ -142,6 +144,7 @@ REFERRING = {
 }
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "solver", [{}, {"presolve": False}, {"solver": "projected"}], ids=["bdf", "as-is", "projected"]

@@ -251,12 +251,12 @@ def test_long_explicit_runs_take_no_second_run():
 
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
-def test_random_scenes(solver):
-    found = []
-    for seed in range(24):
+def test_random_scenes(solver, every):
+    found, seeds = [], every(range(24), 4)
+    for seed in seeds:
         with contextlib.suppress(stiffmbs.AssemblyError):  # some draw more equations than freedoms
             found.append(assess(*drawn(seed, solver)))
-    assert len(found) > 20
+    assert len(found) > 0.8 * len(seeds)
     print(table(found))
     for group, least in (("positions", 0.85), ("forces", 0.65)):
         ratios = np.array([one.ratios()[group] for one in found if group in one.ratios()])
@@ -286,6 +286,7 @@ def hundred_impacts():
     return stiffmbs.run(scene, solver="projected", rtol=1e-12, duration=20, points=2001, output=None)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_a_ball_after_a_hundred_impacts(solver):
     """The errors of the times of its impacts were turned into energy, which grew by 15 % with each one."""

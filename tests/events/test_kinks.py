@@ -278,14 +278,7 @@ def velocities_of_the_wheel(road):
 
         inside = times[(times > begin) & (times <= end)]
         run = solve_ivp(
-            rates,
-            (begin, end),
-            state,
-            method="Radau",
-            rtol=1e-9,
-            atol=1e-12,
-            max_step=1e-3,
-            t_eval=np.unique([*inside, end]),
+            rates, (begin, end), state, "LSODA", np.unique([*inside, end]), rtol=1e-10, atol=1e-12, max_step=1e-3
         )
         found += run.y[4][np.isin(run.t, inside)].tolist()
         state = run.y[:, -1]

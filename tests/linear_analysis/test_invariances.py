@@ -101,7 +101,7 @@ def every_change(test):
     return FEW(given(seed=SEEDS)(test))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @every_change
 def test_equilibria_modes_and_transfer_functions(seed, dimensions, name):
     content, change, units = original_and_changed(seed, dimensions, name)
@@ -139,7 +139,7 @@ def gain_of(scene, state, body, frequencies):
     )
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @every_change
 def test_sensitivities(seed, dimensions, name):
     content, change, units = original_and_changed(seed, dimensions, name)

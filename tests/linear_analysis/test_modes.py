@@ -165,6 +165,7 @@ def test_a_free_beam_has_six_rigid_modes_and_bends_as_euler_says():
     np.testing.assert_allclose(frequencies(found)[6:8], expected, rtol=1e-2)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "name, count", [("bricard", 1), ("door", 1), ("rolling_disc", 3), ("four_bar", 0), ("half_car", 9)]

@@ -14,6 +14,7 @@ from tests.stress.fuzzers import equilibria
 from tests.stress.random_statics import random_statics
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.long), 2, 4, 6])
 def test_a_random_equilibrium_is_balanced_still_and_stable(seed):

@@ -48,6 +48,7 @@ def test_a_car_with_a_steering_column_starts_in_the_steady_motion_to_which_it_pu
     assert any("turns at" in note for note in found.notes)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("manoeuvre", ["bump", "rough", "step_steer", "sine_sweep"])
 def test_manoeuvres_run_and_the_driver_keeps_the_speed(examples, manoeuvre):
     scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", manoeuvre)])

@@ -45,6 +45,7 @@ def test_a_circle_of_100_m_at_20_m_s():
 
 
 @pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("speed", "radius", "duration"), [(1, 20, 40), (5, 40, 20), (40, 600, 10), (60, 1200, 12)])
 def test_the_driver_is_stable_from_1_to_60_m_s(speed, radius, duration):
     run = driven("circle", ("V", str(speed)), ("R", str(-radius)), duration=duration, output=0.05)

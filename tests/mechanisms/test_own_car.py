@@ -63,21 +63,27 @@ def by_axles():
     )
 
 
-@pytest.mark.sampled(3)
-def test_both_tests_of_steady_cornering_have_the_gradients_of_its_axles():
+ACCELERATIONS = np.array([0.5, 1, 1.5, 2, 2.5])
+
+
+@pytest.mark.sampled(5)
+@pytest.mark.parametrize(
+    ("test", "radii"),
+    [("constant_radius", np.full(5, 100.0)), ("constant_speed", SPEED**2 / ACCELERATIONS)],
+    ids=["circle", "ramp"],
+)
+def test_both_tests_of_steady_cornering_have_the_gradients_of_its_axles(test, radii):
     """The slow ramp at 80 km/h and the circle of 100 m, without air: their turns differ in speed and radius alone."""
     vehicle, axles, steer = by_axles()
-    found = stiffmbs.handling(car(), ["constant_speed", "constant_radius"], workers=1)
+    found = stiffmbs.handling(car(), [test], workers=1)
     assert found.ratio == pytest.approx(float(steer(0.0, 1)), rel=0.01)
-    accelerations = np.array([0.5, 1, 1.5, 2, 2.5])
-    for test, radii in (("constant_speed", SPEED**2 / accelerations), ("constant_radius", np.full(5, 100.0))):
-        turns = np.array([turning(vehicle, *axles, *turn) for turn in zip(accelerations, radii, strict=True)])
-        understeer, roll = (gradient(accelerations, y) for y in (turns[:, 0] - WHEELBASE / radii, turns[:, 1]))
-        assert found[test]["understeer gradient"] == pytest.approx(1e3 * understeer, rel=0.03)
-        assert found[test]["roll gradient"] == pytest.approx(1e3 * roll, rel=0.03)
+    turns = np.array([turning(vehicle, *axles, *turn) for turn in zip(ACCELERATIONS, radii, strict=True)])
+    understeer, roll = (gradient(ACCELERATIONS, y) for y in (turns[:, 0] - WHEELBASE / radii, turns[:, 1]))
+    assert found[test]["understeer gradient"] == pytest.approx(1e3 * understeer, rel=0.03)
+    assert found[test]["roll gradient"] == pytest.approx(1e3 * roll, rel=0.03)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 def test_it_understeers_and_rolls_as_its_axles_do():
     vehicle, axles, steer = by_axles()
     accelerations, radii, racks, rolls = np.array([on_circle(a) for a in (0.5, 1, 1.5, 2, 2.5)]).T
@@ -87,7 +93,7 @@ def test_it_understeers_and_rolls_as_its_axles_do():
     assert gradient(accelerations, rolls) == pytest.approx(gradient(accelerations, turns[:, 1]), rel=0.03)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 def test_all_handling_tests_have_results():
     found = stiffmbs.handling(DATA / "own_car.yaml", workers=1)
     assert found["lane_change"]["largest lateral error"] < 0.15

@@ -42,6 +42,7 @@ def dynamic_stiffness(scene, axis, w, mass):
     return 1 / response[0, 0] + w**2 * mass
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("w", [10.0, 61.0, 300.0])
 def test_the_dynamic_stiffness_of_a_hydraulic_mount(w):
     fluid = -(w**2) * 40 + 1j * w * 1200
@@ -55,6 +56,7 @@ def test_a_hydraulic_mount_carries_on_its_rubber_alone():
     assert rest.channels["b.z"] == pytest.approx(-100 * 10 / 200e3, rel=1e-9)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("axis", ["x", "z"])
 @pytest.mark.parametrize("w", [1.0, 100.0, 1e4])
 def test_a_bushing_stiffens_with_frequency(axis, w):

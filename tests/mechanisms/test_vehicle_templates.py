@@ -59,7 +59,7 @@ def unexpected(notes):
     return [note for note in notes if not any(sentence in note for sentence in ALLOWED)]
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(7)
 @pytest.mark.long
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_three_solvers_agree(name):
@@ -77,7 +77,7 @@ def test_three_solvers_agree(name):
         assert max(np.max(np.abs(run[place] - runs[0][place])) for place in places) < 1e-5
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(7)
 @pytest.mark.long
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_it_rests_on_its_tyres_and_changes_the_lane(name):
@@ -96,7 +96,7 @@ def test_it_rests_on_its_tyres_and_changes_the_lane(name):
     assert abs(found[f"{body}.vy"][-1]) < 0.06 * found[f"{body}.vx"][-1], "it goes on along its path"
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(7)
 @pytest.mark.long
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_its_modes_are_those_of_a_vehicle_and_its_rig_is_symmetric(name):

@@ -12,6 +12,7 @@ MASSES = {"quarter_car": 320 + 38, "half_car_at_rest": 1200 + 2 * 40}
 """Of the axle it is that of all its bodies."""
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("name", LEVEL)
 def test_a_vehicle_stays_at_rest_on_a_level_road(name):
@@ -34,6 +35,7 @@ def test_the_half_car_from_its_rest_is_the_one_with_loads_by_hand():
 
 
 @pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", ["leaf_sprung_car", "bushing_axle", "truck", "hatchback", "formula_student", "motorcycle", "car"])  # fmt: skip
 def test_a_vehicle_starts_in_steady_motion(name):
     """No wheel is accelerated or braked at the start, and no body falls."""

@@ -149,6 +149,7 @@ def test_parts_are_removed():
     assert model.check().degrees_of_freedom == 1
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("path", EXAMPLE_SCENES.values(), ids=lambda path: path.stem)
 def test_a_scene_of_a_model_is_the_model(path):
     scene = stiffmbs.load_scene(path)

@@ -72,7 +72,7 @@ def test_the_car_in_a_step_steer():
         ("choose.compliance", "rigid"),
         ("vehicle", f"{{body: chassis, steering: {steering}}}"),
     ]
-    run = stiffmbs.run(stiffmbs.load_scene(EXAMPLES / "car.yaml", changes), duration=4, output=0.02)
+    run = stiffmbs.run(stiffmbs.load_scene(EXAMPLES / "car.yaml", changes), duration=2.5, output=0.02)
     for name, values in expected(run, "chassis", np.zeros(3), np.zeros(3), Rotation.identity()).items():
         assert run[f"vehicle.{name}"] == pytest.approx(values, abs=1e-9), name
     assert run["vehicle.ay"][-1] > 1 and run["vehicle.roll"][-1] > 0, "to the left, and leaning to the right"

@@ -23,6 +23,7 @@ END = 0.15
 """Duration of runs whose results are differentiated, s."""
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", [2, 1, 5, 8])
 def test_a_random_scene_has_the_accelerations_modes_and_responses_of_independent_equations(seed):
     verdict = independent.trial(seed)
@@ -38,6 +39,7 @@ def test_eighty_random_scenes(first):
     assert sum(v.outcome is Outcome.RIGHT for v in verdicts.values()) > 3
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("seed", [3, 4])
 def test_the_comparison_can_fail(seed, monkeypatch):
     """Other gravity and inertia by 1e-3 are seen."""

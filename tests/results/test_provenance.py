@@ -117,6 +117,7 @@ def test_tables_of_studies_hold_the_scene(folder, ending):
     assert found["changes"].splitlines() == ["run.rtol = 1e-7", "k is varied"]
 
 
+@pytest.mark.long
 def test_a_table_of_an_axle_and_its_figure_hold_the_scene(folder):
     pytest.importorskip("matplotlib")
     scene = str(EXAMPLES / "vehicles" / "bushing_axle.yaml")

@@ -187,7 +187,7 @@ def test_the_pulse_of_a_table_in_time() -> None:
     assert number_after(note, "continues it to ") == pytest.approx(-1800.0)
 
 
-@pytest.mark.parametrize("solver", ["bdf", "kinematic", "auto"])
+@pytest.mark.parametrize("solver", ["bdf", pytest.param("kinematic", marks=pytest.mark.long), "auto"])
 def test_the_pump_of_the_manual(solver: str) -> None:
     """A drive by a table of velocities turns at ten times its last speed after ten times its duration."""
     scene = """

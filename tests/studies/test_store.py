@@ -34,9 +34,10 @@ def killed_again_and_again(scene, store, cases, kills, chance):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.long)])
-def test_a_killed_study_ends_with_the_same_table_to_the_last_bit(examples, tmp_path, kills):
-    scene, cases = str(examples / "half_car.yaml"), 24 if kills == 2 else 400
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize(("kills", "cases"), [(3, 24), (20, 400)])
+def test_a_killed_study_ends_with_the_same_table_to_the_last_bit(examples, tmp_path, kills, cases):
+    scene = str(examples / "half_car.yaml")
     found = killed_again_and_again(scene, str(tmp_path / "rows"), cases, kills, random.Random(kills))
     expected = sweep(scene, k_b=np.logspace(5, 7, cases), outputs=["peak(front_bushing.fx)", "chassis.y"], rtol=1e-6)
     assert found.identical(expected)

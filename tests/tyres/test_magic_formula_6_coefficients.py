@@ -78,7 +78,7 @@ def difference(one, other):
 
 @pytest.mark.parametrize("turning", [False, True], ids=["straight", "turn slip"])
 @pytest.mark.parametrize("version", ["6.1", "6.2"])
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(tyre=SEEDS, at=SEEDS)
 def test_forces_torques_and_stiffnesses_of_random_tyres(version, turning, tyre, at):
     numbers, states = random_tyre(tyre), random_states(at, turning)

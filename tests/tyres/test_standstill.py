@@ -79,6 +79,7 @@ def standing(tyre, camber=0.0, gravity=(0, 0, -9.81)):
     return model
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long if name == "lagging magic" else ()) for name in TYRES]
@@ -94,6 +95,7 @@ def test_sideways_motion_beside_a_standstill(name):
     assert min(abs(value - expected) for value in found) < 1e-6 * abs(expected)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("name", TYRES)
 def test_motions_beside_creeping_are_those_beside_a_standstill(name):
@@ -105,6 +107,7 @@ def test_motions_beside_creeping_are_those_beside_a_standstill(name):
         assert np.allclose(found, at_rest, rtol=1e-4, atol=1e-4)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("name", TYRES)
 def test_a_cambered_wheel_stands(name):

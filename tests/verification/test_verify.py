@@ -206,7 +206,7 @@ def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(
 
 LONG = (
     "bricard", "bushing_axle", "car", "formula_student", "governor", "hatchback", "leaf_sprung_car", "motorcycle", "quarter_car",
-    "spatial_chain", "truck",
+    "rotor", "spatial_chain", "truck",
 )  # fmt: skip
 
 

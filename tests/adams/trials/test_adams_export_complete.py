@@ -120,6 +120,7 @@ def test_a_field_that_is_added_later_is_refused_until_it_is_written():
 FORCES = [(kind, form) for dimensions, kind, form in CASES if dimensions == 3 and issubclass(kind, Force)]
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("kind", "form"), FORCES, ids=lambda part: getattr(part, "kind", ""))

@@ -182,6 +182,7 @@ def test_a_powertrain_accelerates_by_torque_times_ratio_over_inertia(gear, ratio
     assert found["engine.engine_speed"][-1] == pytest.approx(total * found["left.wy"][-1], rel=1e-3)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(6))
 def test_engine_maps_gears_and_losses_at_random(seed):

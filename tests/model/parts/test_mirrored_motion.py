@@ -199,14 +199,14 @@ def _rotations(mirror):
     return ("wx", "wy", "wz"), [-sign for sign in _signs(mirror)]
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.long
 @pytest.mark.parametrize(("joints", "mirror"), _about_each_axis(JOINTS_IN_SPACE))
 def test_joints_in_space(joints, mirror):
     _differences(_spatial(mirror, joints), _signs(mirror), _rotations(mirror))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 @pytest.mark.long
 @pytest.mark.parametrize(("force", "mirror"), _about_each_axis(FORCES_IN_SPACE))
 def test_forces_in_space(force, mirror):

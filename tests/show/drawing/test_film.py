@@ -74,7 +74,7 @@ def test_a_gif_has_a_picture_for_each_instant(tmp_path):
 @pytest.mark.skipif(_ffmpeg() is None, reason="no ffmpeg is installed")
 def test_an_mp4_is_one(tmp_path):
     path = tmp_path / "x.mp4"
-    assert run("animate", EXAMPLES / "bricard.yaml", "-o", path, "--duration", 0.2, "--rate", 20).exit_code == 0
+    assert run("animate", EXAMPLES / "bar_pendulum.yaml", "-o", path, "--duration", 0.2, "--rate", 20).exit_code == 0
     told = subprocess.run([_ffmpeg(), "-i", path], capture_output=True, text=True).stderr
     assert "Video: h264" in told and "20 fps" in told
 

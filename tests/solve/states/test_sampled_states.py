@@ -97,6 +97,7 @@ def test_runs_and_simulations_in_pieces_take_each_sample_once(solver):
         assert [simulation["block.x"], simulation["push"]] == pytest.approx([x, push], abs=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("settings", [{"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}])
 def test_a_run_with_all_steps_keeps_no_more_memory_for_each_sample_than_its_rows(settings):
     scene = stiffmbs.read_scene(SCENE.replace("0.037", "1e-3"))

@@ -128,12 +128,19 @@ def test_an_error_of_fixed_steps_is_right_if_half_the_step_reduces_it_by_the_ord
     """A decay of 1600/s has an error of 4 % in steps of 1e-4 s by Euler and Cromer."""
     from tests.stress.fuzzers.discontinuities import kinks
 
+    truth, known = kinks.Chain.truth, []
+
+    def computed_once(chain, times):
+        known[:] = known or [truth(chain, times)]
+        return known[0]
+
+    monkeypatch.setattr(kinks.Chain, "truth", computed_once)
     assert kinks.trial(6000072).outcome is Outcome.RIGHT
     monkeypatch.setitem(kinks.OF_HALF_STEPS, "euler_cromer", 0.4)
     assert kinks.trial(6000072).outcome is Outcome.WRONG
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", sorted(set(fuzz.fuzzers()) - {"entry-points"}))
 def test_the_first_cases_of_a_fuzzer_are_not_wrong(name):
     found = [

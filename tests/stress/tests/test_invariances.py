@@ -21,9 +21,8 @@ pytestmark = pytest.mark.long  # kernels that no other test compiles, or many sc
 BDF = {"solver": "bdf"}
 
 
-@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(1, 5), marks=pytest.mark.long)])
-def test_random_scenes_move_alike(seeds):
-    for seed in seeds:
+def test_random_scenes_move_alike(every):
+    for seed in every(range(5), 3):
         verdict = invariances.trial(seed)
         assert verdict.outcome in (Outcome.RIGHT, Outcome.TOLD), verdict
 

@@ -71,11 +71,10 @@ def test_features_are_left_out():
     assert not any({"states", "use", "roads", "inputs"} & scene.keys() for scene in scenes(60, features=bare))
 
 
-@pytest.mark.parametrize("seeds", [range(2), pytest.param(range(2, 20), marks=pytest.mark.long)])
-def test_scenes_run(seeds):
+def test_scenes_run(every):
     """Nine of ten scenes run to their end; drives of others contradict their joints, which is refused."""
-    found = [outcome(random_scene(np.random.default_rng(seed))) for seed in seeds]
-    assert found.count("DONE") >= 0.9 * len(found)
+    found = [outcome(random_scene(np.random.default_rng(seed))) for seed in every(range(20), 4)]
+    assert len(found) - found.count("DONE") <= max(1, 0.1 * len(found))
 
 
 def outcome(scene):

@@ -24,7 +24,7 @@ COSTLY = ("space", "held_twice", "cars_over_lines")
 """Families whose first case compiles more kinds than others."""
 WHOLE = ("changed_files", "opposed_actuators", "own_field_names")
 """Families of which all cases are run without being asked for: no other test has their scenes."""
-MANY = (pytest.mark.long, pytest.mark.sampled(19))
+MANY = (pytest.mark.long, pytest.mark.sampled(37))
 """As many families have each case for each of four solvers, no even number: every solver has its turn."""
 QUICK = [
     pytest.param(family, case, marks=MANY if (number >= ALWAYS and family not in WHOLE) or family in COSTLY else ())
@@ -44,7 +44,7 @@ def test_case(family, case):
     assert row.verdict.outcome is case.expected, row.verdict
 
 
-@pytest.mark.sampled(23)
+@pytest.mark.sampled(41)
 @pytest.mark.parametrize(("family", "case"), LONG, ids=_label)
 def test_long_case(family, case):
     (row,) = outcomes([(family, case)])

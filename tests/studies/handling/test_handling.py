@@ -62,7 +62,7 @@ def test_the_frequency_response_is_that_of_single_sines():
     known, runs = Known(car, car.wheelbase / found.ratio, 0, 1.8, {}), found.tests["frequency_response"].runs
     responses = {name: _of_sweeps(known, runs, name) for name in ("yaw_rate", "ay")}
     amplitude = float(np.max(np.abs(runs[0][SEEN])))
-    for f in (0.3, 0.6, 1.0, 2.0):
+    for f in (0.3, 0.6):
         periods = int(np.ceil(4 * f))
         steer = f"step5(t, 0.5, 0, 1.5, {amplitude!r})*sin(2*pi*{f!r}*t)"
         run = study.solved(with_manoeuvre(scene, car, Manoeuvre(SPEED, 4 + periods / f, steer)))
@@ -85,6 +85,7 @@ def test_the_frequency_response_is_that_of_single_sines():
 
 
 @pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("name", "rear"),
     [("hatchback", "twist_beam"), ("hatchback", "five_link"), ("hatchback", "trailing_arm"), ("formula_student", "")],
@@ -132,6 +133,7 @@ def with_driveline(driver, parts=None, **entries):
     return stiffmbs.read_scene(json.dumps(content))
 
 
+@pytest.mark.long
 def test_a_driveline_spins_with_the_wheels_and_is_driven_at_its_input():
     """Its input turns as its ratio times the wheels, and carries the driver's traction by its ratio and that of the axle."""
     scene = with_driveline({"drive": "driveline", "parameters": {"target": "V", "begins": -1, "ratio": 3.15}})
@@ -267,10 +269,15 @@ forces:
 """
 
 
+@pytest.mark.long
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(
     ("axes", "back"),
-    [("{x: [1, 0, 0], z: [0, 0, -1]}", "{x: [1, 0, 0], z: [0, 0, -1]}"), pytest.param("{x: [0, 1, 0], z: [0, 0, 1]}", "{x: [0, -1, 0], z: [0, 0, 1]}", marks=pytest.mark.long)],
-)  # fmt: skip
+    [
+        ("{x: [1, 0, 0], z: [0, 0, -1]}", "{x: [1, 0, 0], z: [0, 0, -1]}"),
+        ("{x: [0, 1, 0], z: [0, 0, 1]}", "{x: [0, -1, 0], z: [0, 0, 1]}"),
+    ],
+)
 def test_a_body_with_axes_of_its_own_is_driven_as_any_other(axes, back):
     """Axes of the section `vehicle` did not apply to the driver, and its channels were not those of another --body."""
     turn = Manoeuvre(15.0, 6.0, path={"circle": 100, "entry": 10.0, "transition": 30.0})
@@ -312,27 +319,18 @@ def test_the_guide_lists_all_tests_and_their_parameters():
 
 @pytest.mark.long
 def test_changed_parameters_on_the_command_line():
-    options = ["--test", "straight_braking", "--test", "step_steer", "--workers", "1", "--json"]
-    for change in (
-        "straight_braking.speed=60 km/h",
-        "pedal=9 kN",
-        "step_steer.speed=100 km/h",
-        "lateral_acceleration=2",
-    ):
+    options = ["--test", "straight_braking", "--workers", "1", "--json"]
+    for change in ("straight_braking.speed=60 km/h", "pedal=9 kN"):
         options += ["--set-test", change]
     found = CliRunner().invoke(main, ["handling", str(CAR), *options])
     assert found.exit_code == 0, found.output
-    tests = json.loads(found.stdout)["tests"]
-    braking, step = tests["straight_braking"], tests["step_steer"]
+    braking = json.loads(found.stdout)["tests"]["straight_braking"]
     assert braking["parameters"] == {"speed": pytest.approx(60 / 3.6), "pedal": 9000}
     values = {name: one["value"] for name, one in braking["metrics"].items()}
     mass = sum(body.mass for body in stiffmbs.load_scene(CAR).bodies.values())
     deceleration = values["mean fully developed deceleration"]
     assert deceleration == pytest.approx(9000 / mass, rel=0.03), "the inertia of the wheels and drag nearly cancel"
     assert values["distance"] == pytest.approx((60 / 3.6) ** 2 / (2 * deceleration) + 0.15 * 60 / 3.6, rel=0.05)
-    values = {name: one["value"] for name, one in step["metrics"].items()}
-    assert values["lateral acceleration, steady"] == pytest.approx(2, rel=0.05)
-    assert values["lateral acceleration, steady"] == pytest.approx(100 / 3.6 * values["yaw rate, steady"], rel=0.02)
 
 
 def test_parameters_are_changed_for_one_test_or_for_all_that_have_them():

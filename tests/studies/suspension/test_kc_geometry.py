@@ -177,6 +177,7 @@ def test_measures_follow_from_the_hard_points(part):
 
 
 @pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("part", POINTS)
 @settings(max_examples=3, deadline=None, derandomize=True)
 @given(data=st.data())
