@@ -39,7 +39,10 @@ ASK = "--errors, or errors: true in run, estimates it"
 
 
 def recording(job: Job) -> Job:
-    """Return a job whose implicit steps are recorded: always if its errors are to be estimated, else up to some work."""
+    """Return a job whose implicit steps are recorded: always if its errors are to be estimated, else up to some work.
+
+    Steps between samples of states are not recorded: a second run estimates their errors.
+    """
     asked = True if job.settings.accuracy else job.settings.errors
     with in_use(job.settings.tuning):
         most = {True: np.inf, None: ESTIMATE.work, False: 0.0}[asked]
@@ -57,20 +60,13 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
             from ..error_estimate.estimate import estimated
 
             return estimated(solution, job.data, job.dynamics, job.start, job.subsystems, trajectory, job.settings)
-        if why := _without_estimate(job):
-            return _without(solution, f"not estimated for {why}; --verify compares with other runs")
+        if traits.fixed_steps:
+            return _without(solution, "not estimated for fixed steps; --verify compares with other runs")
         if _work(job, trajectory) <= job.grid.recorded.most:
             return _by_second_run(job, trajectory, solution)
     return _without(
         solution, f"not estimated: that takes some time for {_steps(trajectory)} steps of this model; {ASK}"
     )
-
-
-def _without_estimate(job: Job) -> str:
-    """Return what has no estimate of errors in a job, or an empty string."""
-    if traits_of(job.settings).fixed_steps:
-        return "fixed steps"
-    return "sampled states" if job.dynamics.system.sampled.any() else ""
 
 
 def _steps(trajectory: Trajectory) -> int:
@@ -79,16 +75,17 @@ def _steps(trajectory: Trajectory) -> int:
 
 def _work(job: Job, trajectory: Trajectory) -> float:
     """Return the work of a second run, evaluations of the equations times unknowns; infinite if recorded steps have been too many."""
-    system = job.dynamics.system
-    if trajectory.statistics.get("jacobians") and "projected" not in trajectory.solver:
-        return np.inf
-    return _steps(trajectory) * DOP853.stages * (system.n_q + system.n_u + system.n_c)
+    system, steps, found = job.dynamics.system, _steps(trajectory), trajectory.statistics
+    unknowns = system.n_q + system.n_u + system.n_c
+    if not found.get("jacobians") or "projected" in trajectory.solver:
+        return steps * DOP853.stages * unknowns
+    return steps * ESTIMATE.row + found["residuals"] * unknowns if system.sampled.any() else np.inf
 
 
 def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
     """Return the results with errors from a run at a smaller tolerance, or at a larger one if there is none.
 
-    Where breakpoints limit the steps, both runs may take the same ones; the tolerance is then smaller still.
+    Where breakpoints or samples limit the steps, both runs may take the same ones; another run then takes smaller ones.
     """
     from ..error_estimate.estimate import with_bars
     from ..results.error_bars import bars_by_difference
@@ -99,8 +96,9 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     system, grid = job.dynamics.system, job.grid
     breakpoints = job.dynamics.input_features(grid.start, grid.end).breakpoints if system.has_inputs else np.empty(0)
     times, at = _with_steps(solution, trajectory, breakpoints)
+    longest = float(np.diff(trajectory.step_times).max(initial=0.0))
     for repeats in range(1, MOST_REPEATS + 1):
-        settings = _with_errors(job.settings, part**repeats)
+        settings = _with_errors(job.settings, part**repeats, longest if repeats > 1 else 0.0)
         try:
             other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=Recording(), times=times)))
         except StiffmbsError as error:
@@ -112,7 +110,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")
     found = bars_by_difference(
-        times, at, solution.channels, other.channels, part**repeats, breakpoints + grid.aside, ESTIMATE.numbers_at_once
+        times, at, solution.channels, other.channels, part, breakpoints + grid.aside, ESTIMATE.numbers_at_once
     )
     return with_bars(replace(solution, errors=found), job.settings, system.size)
 
@@ -139,13 +137,13 @@ def _with_steps(solution: Solution, trajectory: Trajectory, breakpoints: np.ndar
     return times, np.searchsorted(times, solution.time)
 
 
-def _with_errors(settings: RunSettings, part: float) -> RunSettings:
-    """Return the settings of a run whose errors are a part of those of another one."""
+def _with_errors(settings: RunSettings, part: float, longest: float) -> RunSettings:
+    """Return the settings of a run whose errors are a part of those of another one; `longest`: step of that to reduce, s, or 0."""
     changes: dict[str, float] = {"rtol": min(part * settings.rtol, LARGEST_RTOL)}
     if settings.atol is not None:
         changes["atol"] = part * settings.atol
-    if settings.max_step:
-        changes["max_step"] = settings.max_step * part ** (1.0 / DOP853.order)
+    if longest := settings.max_step or longest:
+        changes["max_step"] = longest * part ** (1.0 / DOP853.order)
     return changed(settings, changes)
 
 
@@ -160,7 +158,7 @@ def to_accuracy(job: Job, watch: ProgressCallback | None) -> tuple[Job, Solution
 
     accuracy, traits = Accuracy(job.settings.accuracy), traits_of(job.settings)
     rtol = accuracy.first_rtol(job.dynamics.system.size)
-    for repeats in range(0 if traits.exact or _without_estimate(job) else MOST_REPEATS, -1, -1):
+    for repeats in range(0 if traits.exact or traits.fixed_steps else MOST_REPEATS, -1, -1):
         job = job.varied({"rtol": rtol}) if "rtol" in traits.reads else job
         solution = solved(job, watch)
         judged = accuracy.judged(solution, rtol)

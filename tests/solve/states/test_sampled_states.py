@@ -63,6 +63,16 @@ def test_a_sampled_controller_follows_the_exact_discrete_solution(settings, erro
     assert max(differences(stiffmbs.run(stiffmbs.read_scene(SCENE), duration=2, output=0.02, **settings))) < error
 
 
+@pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
+@pytest.mark.parametrize("rtol", [1e-3, 1e-6])
+def test_error_bars_are_those_of_the_exact_solution(solver, rtol):
+    """Explicit steps end at samples with any tolerance; bars by a run with the same steps were zero."""
+    found = stiffmbs.run(stiffmbs.read_scene(SCENE), duration=2, solver=solver, rtol=rtol, errors=True)
+    names = ("block.x", "block.vx", "push", "integral")
+    for name, true in zip(names, differences(found), strict=True):
+        assert 0.4 * true < found.errors[name].over_time < 2.5 * true + 1e-12, name
+
+
 def test_states_of_two_rates_are_sampled_at_their_own_times():
     changes = [("Ts", "0.05"), ("Tf", "0.02"), ("late", "0.005")]
     scene = stiffmbs.read_scene(SCENE, changes)
