@@ -79,7 +79,7 @@ def _work(job: Job, trajectory: Trajectory) -> float:
     unknowns = system.n_q + system.n_u + system.n_c
     if not found.get("jacobians") or "projected" in trajectory.solver:
         return steps * DOP853.stages * unknowns
-    return steps * ESTIMATE.row + found["residuals"] * unknowns if system.sampled.any() else np.inf
+    return steps * ESTIMATE.row + float(found["residuals"]) * unknowns if system.sampled.any() else np.inf
 
 
 def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:

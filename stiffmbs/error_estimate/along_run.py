@@ -10,13 +10,14 @@ import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
+from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
 from .closed import Closed, closed
 from .coordinates import displaced, displacements
-from .defects import Rates, of_bdf, of_radau, slope_weights
+from .defects import Rates, curve_of_bdf, of_bdf, of_radau, slope_weights
 from .evaluated import Evaluated, evaluated
 from .interpolated import Along, linearised_along
-from .kinks import integrals_of_motion, not_smooth
+from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
 from .linearised import Linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
@@ -135,14 +136,18 @@ def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
 
 
 def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool, rtol: float) -> _Prepared:
-    rates = Rates(dynamics.system, states)
+    rates, step = Rates(dynamics.system, states), float(np.diff(piece.t[:: piece.points]).max())
+
+    def at(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        return motion(dynamics.system, evaluated(dynamics, t, q, u, (np.full(len(t), step), rtol)))
+
     if piece.points > 1:
         defects = of_radau(piece, rates)
-        local = _integrated(dynamics, piece, states, defects, rtol)
+        blocks = blocks_of_radau(piece.t, _integrals_of_radau(piece, rates, defects, at))
         at_ends = np.vstack([np.zeros_like(defects[0, :1]), defects.reshape(-1, defects.shape[2])])
-        blocks = blocks_of_radau(piece.t, local)
     else:
         defects, at_ends = of_bdf(piece, rates, opened)
+        _resolve_kinks(piece, rates, defects, at_ends, at)
         blocks = blocks_of_bdf(piece.t, defects)
     is_node = np.zeros(len(piece.t), dtype=bool)
     for block in blocks:
@@ -150,20 +155,45 @@ def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool,
     return _Prepared(piece, states, defects, at_ends, blocks, np.flatnonzero(is_node), opened)
 
 
-def _integrated(dynamics: Dynamics, piece: Piece, states: Evaluated, defects: np.ndarray, rtol: float) -> np.ndarray:
-    """Return the integrals of the defects at the points of steps of radau, shape (steps, points, full)."""
-    sizes = np.diff(piece.t[:: piece.points])
-    local, exact = integrated(sizes, defects), motion(dynamics.system, states)
-    exact = exact[1:].reshape(defects.shape)
-    by_points = integrated(sizes, exact)
+def _integrals_of_radau(piece: Piece, rates: Rates, defects: np.ndarray, at: Motion) -> np.ndarray:
+    """Return the integrals of the defects at the points of steps of radau, shape (steps, points, full).
 
-    def at(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        return motion(dynamics.system, evaluated(dynamics, t, q, u, (np.full(len(t), sizes.max()), rtol)))
-
-    steps, scale = not_smooth(exact, sizes, local)
+    Defects in steps over kinks become NaN.
+    """
+    ends = piece.t[:: piece.points]
+    local, exact = integrated(np.diff(ends), defects), rates.changes(rates.exact)[1:].reshape(defects.shape)
+    missed, scale = not_smooth(exact, np.diff(ends), local)
+    sizes = np.abs(local / rates.typical).max(axis=(1, 2))
+    steps = np.union1d(missed, dominant(sizes))
     if len(steps):
-        local[steps] += by_points[steps] - integrals_of_motion(piece, steps, at, scale)
+        rows = steps[:, None] * piece.points + np.arange(piece.points + 1)
+        states = np.hstack([piece.q, piece.u])[rows]
+        curve = Curve.through(piece.t[rows], states, ends[steps], ends[steps + 1])
+        places, most = np.append(0.0, radau(piece.points).nodes), ESTIMATE.intervals * len(piece.t)
+        resolved = integrals_of_motion(curve, places, piece.q.shape[1], at, scale, most)[0]
+        found = local[steps] + integrated(np.diff(ends)[steps], exact[steps]) - resolved
+        kept = np.isin(steps, missed) | (np.abs(found / rates.typical).max(axis=(1, 2)) < sizes[steps])
+        local[steps[kept]], defects[steps[kept]] = found[kept], np.nan
     return local
+
+
+def _resolve_kinks(piece: Piece, rates: Rates, defects: np.ndarray, at_ends: np.ndarray, at: Motion) -> None:
+    """Integrate the defects of the steps of bdf that are far above the others; those at the ends of these steps become NaN.
+
+    Defects that it increases are left: a curve through a few states is not in balance with stiff forces.
+    """
+    h, most = np.diff(piece.t)[:, None], ESTIMATE.intervals * len(piece.t)
+    sizes, done = np.abs(h * defects[1:] / rates.typical).max(axis=1), np.zeros(len(h), dtype=bool)
+    while len(steps := np.setdiff1d(dominant(sizes), np.flatnonzero(done))) and len(steps) <= most:
+        done[steps] = True
+        scale = rates.typical * sizes[~done].max(initial=np.finfo(float).tiny)
+        change, curve = rates.states[steps + 1] - rates.states[steps], curve_of_bdf(piece, rates, steps)
+        exact, most = integrals_of_motion(curve, np.array([0.0, 1.0]), piece.q.shape[1], at, scale, most)
+        found = rates.changes(change) - exact[:, 0]
+        now = np.abs(found / rates.typical).max(axis=1)
+        kept = now < sizes[steps]
+        steps = steps[kept]
+        sizes[steps], defects[steps + 1], at_ends[steps + 1] = now[kept], found[kept] / h[steps], np.nan
 
 
 def _transported(

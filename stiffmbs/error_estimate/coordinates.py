@@ -28,6 +28,14 @@ def as_rows(system: System, dq: np.ndarray, du: np.ndarray) -> np.ndarray:
     return np.hstack([dq[:, : system.n_pose], du, dq[:, with_rates(system)]])
 
 
+def typical(system: System, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return the sizes of changes (dq, du, ds) that are large for a motion: of the mechanism, a radian, the largest velocities."""
+    scale, states = system.per_velocity(system.size, 1.0), np.abs(q[:, with_rates(system)]).max(axis=0, initial=1.0)
+    of_pose = np.ones((len(system.bodies), system.n_pose // len(system.bodies)))
+    of_pose[:, : system.of_body.dimensions] = system.size
+    return np.concatenate([of_pose.ravel(), scale * max(1.0, np.abs(u / scale).max(initial=0.0)), states])
+
+
 def displaced(system: System, q: np.ndarray, u: np.ndarray, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return q and u changed by errors, with unit quaternions."""
     n_pose, q = system.n_pose, q.copy()

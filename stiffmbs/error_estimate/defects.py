@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..compile.system import System
 from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
-from .coordinates import as_rows, width
+from .coordinates import as_rows, typical, width
 from .evaluated import Evaluated
+from .kinks import Curve
 from .parameters import ESTIMATE
 
 
@@ -18,7 +21,8 @@ class Rates:
     def __init__(self, system: System, at: Evaluated) -> None:
         self._system = system
         self.states = np.hstack([at.q, at.u])
-        self._exact = np.hstack([at.q_rates, at.acceleration])
+        self.exact = np.hstack([at.q_rates, at.acceleration])
+        self.typical = typical(system, at.q, at.u)
 
     @property
     def width(self) -> int:
@@ -27,7 +31,7 @@ class Rates:
 
     def defects(self, rates: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Return the defects of rates (q', u') at some of the states."""
-        return self.changes(rates - self._exact[rows])
+        return self.changes(rates - self.exact[rows])
 
     def changes(self, change: np.ndarray) -> np.ndarray:
         """Return changes of (q, u) as rows (dq, du, ds)."""
@@ -105,6 +109,22 @@ def _windows(h: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
         even = uneven & (sizes.max(axis=1) <= ESTIMATE.uneven * sizes.min(axis=1))
         first[even], uneven[even] = start[even], False
     return first, uneven
+
+
+def curve_of_bdf(piece: Piece, rates: Rates, steps: np.ndarray) -> Curve:
+    """Return the curve through the neighbouring states of steps, or by their two ends where steps change a lot."""
+    t, h = piece.t, np.diff(piece.t)
+    ends = steps[:, None] + np.arange(2)
+    curve = Curve.of_ends(t[ends], rates.states[ends], rates.exact[ends])
+    if len(t) < ESTIMATE.points:
+        return curve
+    first, uneven = _windows(h, ESTIMATE.points)
+    by_ends = uneven[steps]
+    window = first[steps[~by_ends], None] + np.arange(ESTIMATE.points)
+    even = Curve.through(t[window], rates.states[window], *t[ends[~by_ends]].T)
+    coefficients = np.zeros((len(steps), ESTIMATE.points, rates.states.shape[1]))
+    coefficients[:, :4], coefficients[~by_ends] = curve.coefficients, even.coefficients
+    return replace(curve, coefficients=coefficients)
 
 
 def _of_formula(piece: Piece, states: np.ndarray, n: int) -> np.ndarray:

@@ -1,24 +1,60 @@
-"""Integrals of the equations over steps of radau in which their right-hand side is not smooth, as at the knots of a spline.
+"""Integrals of the equations over steps in which their right-hand side is not smooth, as at the knots of a spline.
 
-The nine points of a step integrate a kink with an error of a hundredth of its jump times the square of the step. That is often
-more than the error of the step: the error test sees only the points of the method.
+The nine points of a step of radau integrate a kink with an error of a hundredth of its jump times the square of the step. That is
+often more than the error of the step: the error test sees only the points of the method. The defects at the ends of a step of bdf
+say even less: a polynomial through states on both sides of a kink leaves the constraints.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss, legvander
+from numpy.polynomial.legendre import legder, leggauss, legval, legvander
 
 from ..solve.radau.collocation import radau
-from ..solve.recorded_steps import Piece
 from .parameters import ESTIMATE
 
 GAUSS_NODES, GAUSS_WEIGHTS = (0.5 * (leggauss(3)[0] + 1.0), 0.5 * leggauss(3)[1])
 """Gauss quadrature of order 6 on the interval from 0 to 1."""
 Motion = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 """Rates z' as rows (dq, du, ds) from t, q and u of many states."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Polynomials through the states (q, u) of some steps.
+
+    - `start`, `size` of shape (steps,): times of the starts and lengths of the steps, s.
+    - `coefficients` of shape (steps, degree + 1, n_q + n_u): those of Legendre polynomials, from -1 to 1 over the step.
+    """
+
+    start: np.ndarray
+    size: np.ndarray
+    coefficients: np.ndarray
+
+    @classmethod
+    def through(cls, t: np.ndarray, states: np.ndarray, start: np.ndarray, end: np.ndarray) -> Curve:
+        """Return the polynomials through states, shape (steps, k, n), at times of shape (steps, k)."""
+        x = (2.0 * t - start[:, None] - end[:, None]) / (end - start)[:, None]
+        return cls(start, end - start, np.linalg.solve(legvander(x, t.shape[1] - 1), states))
+
+    @classmethod
+    def of_ends(cls, t: np.ndarray, states: np.ndarray, rates: np.ndarray) -> Curve:
+        """Return the cubic polynomials by the states and rates at both ends of steps, shape (steps, 2, n)."""
+        size = t[:, 1] - t[:, 0]
+        slopes = 0.5 * size[:, None, None] * rates
+        values = [legval([-1.0, 1.0], row) for row in np.eye(4)]
+        derivatives = [legval([-1.0, 1.0], legder(row)) for row in np.eye(4)]
+        matrix = np.vstack([np.transpose(values), np.transpose(derivatives)])
+        return cls(t[:, 0], size, np.linalg.solve(matrix, np.concatenate([states, slopes], axis=1)))
+
+    def at(self, places: np.ndarray, of_step: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return times and states at places, shape (n, m), from 0 to 1 within the steps `of_step`, one in each row."""
+        t = self.start[of_step, None] + self.size[of_step, None] * places
+        weights = legvander(2.0 * places - 1.0, self.coefficients.shape[1] - 1)
+        return t.ravel(), np.einsum("nmk,nkj->nmj", weights, self.coefficients[of_step]).reshape(t.size, -1)
 
 
 def not_smooth(rates: np.ndarray, sizes: np.ndarray, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -44,39 +80,39 @@ def not_smooth(rates: np.ndarray, sizes: np.ndarray, local: np.ndarray) -> tuple
     return np.flatnonzero(chosen & are_isolated), largest
 
 
-def integrals_of_motion(piece: Piece, steps: np.ndarray, motion: Motion, scale: np.ndarray) -> np.ndarray:
-    """Return the integrals of z' from the starts of steps to their points, shape (steps, points, full), by adaptive quadrature.
+def dominant(sizes: np.ndarray) -> np.ndarray:
+    """Return the steps whose local errors, with sizes of shape (steps,), are above their mean and far above their median."""
+    return np.flatnonzero(sizes > np.maximum(sizes.mean(), np.median(sizes) / ESTIMATE.smooth))
 
-    `scale` of shape (full,): sizes to which errors of the integrals are relative.
+
+def integrals_of_motion(
+    curve: Curve, ends: np.ndarray, n_q: int, motion: Motion, scale: np.ndarray, most: float
+) -> tuple[np.ndarray, float]:
+    """Return the integrals of z' from the starts of steps to places in them, shape (steps, places, full), by adaptive quadrature.
+
+    `ends`: 0 and the places, from 0 to 1. `n_q`: number of coordinates. `scale` of shape (full,): sizes to which errors of the
+    integrals are relative. `most`: largest number of intervals to halve; what is left of it is returned too.
     """
-    points, n_q = piece.points, piece.q.shape[1]
-    ends = np.append(0.0, radau(points).nodes)
-    rows = steps[:, None] * points + np.arange(points + 1)
-    states, start = np.hstack([piece.q, piece.u])[rows], piece.t[rows[:, 0]]
-    size = piece.t[rows[:, -1]] - start
-    to_coefficients = np.linalg.inv(legvander(2.0 * ends - 1.0, points))
+    steps, places = len(curve.start), len(ends) - 1
 
     def integrated(begin: np.ndarray, end: np.ndarray, of_step: np.ndarray) -> np.ndarray:
         at = begin[:, None] + (end - begin)[:, None] * GAUSS_NODES
-        weights = legvander(2.0 * at - 1.0, points) @ to_coefficients
-        z = np.einsum("ngp,npj->ngj", weights, states[of_step]).reshape(at.size, -1)
-        rates = motion((start[of_step, None] + size[of_step, None] * at).ravel(), z[:, :n_q], z[:, n_q:])
-        mean = np.einsum("g,ngf->nf", GAUSS_WEIGHTS, rates.reshape(*at.shape, -1))
-        return np.asarray(mean * (size[of_step] * (end - begin))[:, None])
+        t, z = curve.at(at, of_step)
+        rates = motion(t, z[:, :n_q], z[:, n_q:]).reshape(*at.shape, -1)
+        return np.asarray(np.einsum("g,ngf->nf", GAUSS_WEIGHTS, rates) * (curve.size[of_step] * (end - begin))[:, None])
 
-    owner = np.arange(len(steps) * points)
-    begin, end = (np.tile(each, len(steps)) for each in (ends[:-1], ends[1:]))
-    whole = integrated(begin, end, owner // points)
+    owner = np.arange(steps * places)
+    begin, end = (np.tile(each, steps) for each in (ends[:-1], ends[1:]))
+    whole = integrated(begin, end, owner // places)
     found = np.zeros_like(whole)
-    for _ in range(ESTIMATE.halvings):
-        middle, of_step = 0.5 * (begin + end), owner // points
+    while 0 < len(begin) <= most:
+        most -= len(begin)
+        middle, of_step = 0.5 * (begin + end), owner // places
         halves = integrated(begin, middle, of_step), integrated(middle, end, of_step)
         both = halves[0] + halves[1]
         open_ = (np.abs(both - whole) > ESTIMATE.smooth**2 * scale).any(axis=1)
         np.add.at(found, owner[~open_], both[~open_])
         begin, end = (np.concatenate(pair) for pair in ((begin[open_], middle[open_]), (middle[open_], end[open_])))
         whole, owner = np.concatenate([half[open_] for half in halves]), np.tile(owner[open_], 2)
-        if not len(begin):
-            break
     np.add.at(found, owner, whole)
-    return np.cumsum(found.reshape(len(steps), points, -1), axis=1)
+    return np.cumsum(found.reshape(steps, places, -1), axis=1), most

@@ -36,8 +36,8 @@ class EstimateParameters:
     """Error of the quadrature over a step of radau, relative to the largest local error, above which it is adaptive."""
     isolated: float = 0.25
     """Largest part of the steps whose quadrature is adaptive. If more seem to have kinks, these are rounding of stiff forces."""
-    halvings: int = 8
-    """Largest number of halvings of the intervals between the points of a step by adaptive quadrature."""
+    intervals: float = 2.0
+    """Largest number of intervals that adaptive quadrature halves, in rows of the piece."""
     spectra: int = 16
     """States of a piece at which the frequencies of the linearised motion are computed."""
     resolved: float = 1.0

@@ -119,20 +119,20 @@ def is_smooth(error, kinks_of_100=1):
     return not len(kinks.not_smooth(rates[..., None], np.ones(100), np.ones((100, 9, 1)))[0])
 
 
-def halvings():
-    """Return the number of halvings of the intervals between points for rates that jump within one."""
+def intervals():
+    """Return the number of intervals into which a step is divided for rates that are not smooth anywhere."""
     calls = []
 
-    def jumps(t, q, u):
+    def noise(t, q, u):
         calls.append(len(t))
-        return np.where(t < 0.61234, 0.0, 1.0)[:, None]
+        return np.sin(1e9 * t)[:, None]
 
-    t = np.append(0.0, radau(9).nodes)
-    zeros = np.zeros((10, 1))
-    kinks.integrals_of_motion(
-        Piece(t, zeros, zeros, zeros, zeros, t, 9, ()), np.zeros(1, dtype=int), jumps, np.full(1, 1e-9)
-    )
-    return (len(calls) - 1) // 2
+    t, zeros = np.arange(17.0), np.zeros((17, 1))
+    rates = Record(states=zeros, exact=zeros, typical=np.ones(1), changes=lambda change: change)
+    defects = np.append(np.zeros(10), np.append(1.0, np.zeros(6)))[:, None]
+    piece = Piece(t, zeros, zeros, zeros, zeros, t, 1, ())
+    along_run._resolve_kinks(piece, rates, defects, defects.copy(), noise)
+    return calls[-1] // len(kinks.GAUSS_NODES)
 
 
 def is_near(distance):
@@ -203,7 +203,7 @@ DECISIONS = {
     "error_estimate.apart": linearised_nodes,
     "error_estimate.interpolated": lambda: count_while(lambda part: is_interpolated(1e-4 * part), DOUBLES),
     "error_estimate.smooth": lambda: count_while(lambda part: is_smooth(1e-3 * part), DOUBLES),
-    "error_estimate.halvings": halvings,
+    "error_estimate.intervals": intervals,
     "error_estimate.isolated": lambda: count_while(lambda count: not is_smooth(1.0, count), range(1, 101)),
     "error_estimate.row": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.row,
     "error_estimate.off_node": lambda: count_while(lambda part: is_near(1e-3 * part), DOUBLES),
@@ -244,7 +244,7 @@ EXPECTED = {
     "error_estimate.row": 500.0,
     "error_estimate.apart": 13,
     "error_estimate.smooth": 27,
-    "error_estimate.halvings": 8,
+    "error_estimate.intervals": 16,
     "error_estimate.isolated": 25,
     "analyses.errors:MOST_REPEATS": 3,
 }  # fmt: skip

@@ -40,13 +40,13 @@ def compared(scene, channels, **how):
     "static, velocity, how",
     [
         (0.3, 0.1, {"solver": "bdf", "rtol": 1e-3}),
-        (0.5, 1, {"solver": "bdf", "rtol": 1e-3}),
+        (0.5, 1, {"solver": "bdf", "rtol": 1e-4}),
         (0.3, 1, {"solver": "radau", "rtol": 1e-3}),
         (0.3, 1, {"solver": "bdf", "rtol": 1e-6}),
     ],
 )
 def test_friction_at_a_reversal(static, velocity, how):
-    """Interpolated between the nodes of the estimate, errors of forces were 0.006, 0.3, 0.1 and 10 times the true ones."""
+    """Interpolated between the nodes of the estimate, errors of forces were 0.006, 7, 0.1 and 10 times the true ones."""
     scene = SLIDING.format(static=static, velocity=velocity, points=3001)
     ratios = compared(scene, ("m.ax", "rubbing.fx"), **how)
     assert (ratios > 0.5).all() and (ratios < 2.0).all()

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -93,8 +93,19 @@ class Assessment:
         return not self.noted and self.status == "estimated" and self.exceeds > FALSE
 
 
-def assess(scene: Scene, how: Mapping[str, Any]) -> Assessment:
-    """Return the assessment of a run; raise a StiffmbsError if it is refused."""
+def references(scene: Scene, how: Mapping[str, Any]) -> list[Solution]:
+    """Return the runs for the truth that are not refused."""
+    found = []
+    for reference in REFERENCES:
+        try:
+            found.append(run(scene, **{**how, **reference}, errors=False))
+        except StiffmbsError:
+            continue
+    return [each for each in found if each.success]
+
+
+def assess(scene: Scene, how: Mapping[str, Any], truths: Sequence[Solution] | None = None) -> Assessment:
+    """Return the assessment of a run; raise a StiffmbsError if it is refused. `truths`: `references`, if known."""
     found = run(scene, **how, errors=True)
     rtol = float(how.get("rtol", scene.run.rtol))
     noted = any(note.startswith(NOTE) or "solution is lost" in note for note in found.notes)
@@ -102,14 +113,8 @@ def assess(scene: Scene, how: Mapping[str, Any]) -> Assessment:
     nothing = Assessment("no truth", {}, {}, noted, rtol, solver)
     if not found.success or found.estimate is None:
         return nothing
-    fine = []
-    for reference in REFERENCES:
-        try:
-            other = run(scene, **{**how, **reference}, errors=False)
-        except StiffmbsError:
-            continue
-        if other.success and len(other.time) == len(found.time):
-            fine.append(errors_of(found, other))
+    others = references(scene, how) if truths is None else truths
+    fine = [errors_of(found, other) for other in others if len(other.time) == len(found.time)]
     if not fine or any(
         abs(fine[-1][group] - true) > AGREED * true for group, true in fine[0].items() if true > ROUNDING
     ):
@@ -158,23 +163,23 @@ def main() -> None:
     asked = parser.parse_args()
     found = []
     names = asked.scenes or [str(seed) for seed in range(asked.seed, asked.seed + asked.count)]
-    for name, solver, rtol in product(names, asked.solver or [""], asked.rtol or [0.0]):
-        try:
-            if asked.scenes:
-                scene, how = load_scene(name), {"solver": solver or "bdf"}
-            else:
-                scene, how = drawn(int(name), solver)
+    for name in names:
+        truths = None
+        for solver, rtol in product(asked.solver or [""], asked.rtol or [0.0]):
+            scene, how = (load_scene(name), {"solver": solver or "bdf"}) if asked.scenes else drawn(int(name), solver)
             how |= {"rtol": rtol} if rtol else {}
-            one = assess(scene, how)
-        except StiffmbsError as refusal:
-            print(name, "refused:", str(refusal)[:100])
-            continue
-        found.append(one)
-        ratios = " ".join(
-            f"{group} {true:.1e} {one.ratios().get(group, float('nan')):.2f}" for group, true in one.true.items()
-        )
-        marks = " FALSE NOTE" * one.is_false + " SILENT" * one.is_silent
-        print(f"{name} {how['solver']} {one.rtol:.0e} {one.status}: {ratios}{marks}", flush=True)
+            try:
+                truths = references(scene, how) if truths is None else truths
+                one = assess(scene, how, truths)
+            except StiffmbsError as refusal:
+                print(name, "refused:", str(refusal)[:100])
+                continue
+            found.append(one)
+            ratios = " ".join(
+                f"{group} {true:.1e} {one.ratios().get(group, float('nan')):.2f}" for group, true in one.true.items()
+            )
+            marks = " FALSE NOTE" * one.is_false + " SILENT" * one.is_silent
+            print(f"{name} {how['solver']} {one.rtol:.0e} {one.status}: {ratios}{marks}", flush=True)
     for solver in sorted({one.solver for one in found}):
         own = [one for one in found if one.solver == solver]
         print(f"\n{solver}\n{table(own)}\n{shares(own)}")
