@@ -15,8 +15,9 @@ MASSES = {"CONM1", "CONM2", "CMASS1", "CMASS2", "CMASS3", "CMASS4"}
 BULK = "BEGIN BULK"
 BULK_LINE = re.compile(r"^\s*BEGIN BULK", re.MULTILINE)
 GMSH = ".msh"
-ENDLESS = {".dat", ".tec", ".ele", ".node", ".off"}
-"""Suffixes of formats (Tecplot, TetGen, OFF) whose readers in meshio do not end at the end of an incomplete file."""
+ENDLESS = {".dat", ".tec", ".ele", ".node", ".off", ".ply", ".mdpa"}
+"""Suffixes of formats (Tecplot, TetGen, OFF, PLY, Kratos) whose readers in meshio do not end at the end of an incomplete
+file."""
 GMSH_TRIANGLES = re.compile(r"^(\*ELEMENT\s*,\s*TYPE\s*=\s*)CPS6\b", re.IGNORECASE | re.MULTILINE)
 NOT_ZERO = re.compile(r"[^EeDd]*[1-9]")
 
@@ -64,9 +65,8 @@ def sets_of_sets(path: Path) -> dict[str, list[str]]:
 
 
 def _check_nastran(text: str) -> None:
-    _, begin, bulk = text.partition(BULK)
-    if begin and not any(line.startswith("ENDDATA") for line in bulk.splitlines()):
-        raise InputError("found no line ENDDATA after BEGIN BULK, expected a complete Nastran file")
+    if not any(line.startswith("ENDDATA") for line in text.rpartition(BULK)[2].splitlines()):
+        raise InputError("found no line ENDDATA after the bulk data, expected a complete Nastran file")
     for line in text.splitlines():
         if (card := line[:8].split(",")[0].strip(" *").upper()) in MASSES:
             raise InputError(

@@ -1,12 +1,16 @@
 """Statements of Nastran and Abaqus files besides nodes and elements: sets, supports, coordinate systems, instances."""
 
+import contextlib
+import signal
 from types import SimpleNamespace
 
+import meshio
 import numpy as np
 import pytest
+from meshio._helpers import extension_to_filetypes
 
 from stiffmbs.errors import InputError
-from stiffmbs.flexible_bodies.mesh import from_mesh
+from stiffmbs.flexible_bodies.mesh import _read, from_mesh
 from stiffmbs.flexible_bodies.mesh_files import for_reader
 from tests.flexible_bodies.bars import mesh_of_bar
 
@@ -163,3 +167,28 @@ def test_elements_without_their_nodes_are_refused(monkeypatch, tmp_path, cells, 
 def test_an_incomplete_file_is_refused(tmp_path, name, text):
     with pytest.raises(InputError, match=r"found .*expected"):
         read(tmp_path / name, text)
+
+
+@pytest.mark.filterwarnings("ignore:genfromtxt")
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="a reader that does not end is interrupted by a timer")
+@pytest.mark.parametrize("suffix", sorted(extension_to_filetypes))
+def test_a_file_of_any_format_that_ends_early_is_read_or_refused(tmp_path, suffix):
+    """A truncated .ply and .mdpa were read for ever."""
+    path = tmp_path / f"a{suffix}"
+    with contextlib.suppress(Exception, SystemExit):  # formats that cannot be written, or not with these elements
+        meshio.write(path, meshio.Mesh(np.eye(4, 3), [("tetra", [[0, 1, 2, 3]])]))
+    content = path.read_bytes() if path.is_file() else b""
+
+    def interrupt(*_):
+        pytest.fail(f"{suffix} is read for ever")
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        for size in {0, 4, *(len(content) * k // 16 for k in range(16))}:
+            path.write_bytes(content[:size])
+            signal.setitimer(signal.ITIMER_REAL, 10)
+            with contextlib.suppress(InputError):
+                _read(path)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
