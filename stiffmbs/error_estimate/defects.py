@@ -149,7 +149,8 @@ def _of_formula(piece: Piece, states: np.ndarray, n: int) -> np.ndarray:
 def of_radau(piece: Piece, rates: Rates) -> np.ndarray:
     """Return the defects at the points of the steps of radau, shape (steps, points, full).
 
-    The curve is the polynomial through the states at the start of the step and at its points.
+    The curve is the polynomial through the states at the start of the step and at its points. At an event the rates may be those
+    after it.
     """
     points = piece.points
     steps = (len(piece.t) - 1) // points
@@ -159,4 +160,7 @@ def of_radau(piece: Piece, rates: Rates) -> np.ndarray:
     slopes = np.concatenate([slope_weights(nodes, k) for k in range(1, points + 1)])
     found = np.einsum("pk,nkj->npj", slopes, rates.states[rows]) / h[:, None, None]
     of_points = rows[:, 1:].ravel()
-    return rates.defects(found.reshape(steps * points, -1), of_points).reshape(steps, points, -1)
+    defects = rates.defects(found.reshape(steps * points, -1), of_points).reshape(steps, points, -1)
+    if piece.fired:
+        defects[-1, -1] = defects[-1, -2]
+    return defects

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -77,21 +78,46 @@ def _event_values(dynamics: Dynamics, fired: tuple[int, ...], t: float, q: np.nd
 
 def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.ndarray, rates: np.ndarray) -> float:
     """Return the delay of an event by the error of the state."""
-    t = float(at.t[0])
+    t, n_q = float(at.t[0]), dynamics.system.n_q
     step = ESTIMATE.difference * max(1.0, abs(t))
-
-    def values(t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        return _event_values(dynamics, fired, t, q, u)
-
-    n_q = dynamics.system.n_q
-    dq, du = step * rates[:n_q], step * rates[n_q:]
-    slope = (values(t + step, at.q[0] + dq, at.u[0] + du) - values(t - step, at.q[0] - dq, at.u[0] - du)) / (2 * step)
     size = ESTIMATE.difference / max(float(np.abs(error).max()), np.finfo(float).tiny)
-    sides = [displaced(dynamics.system, at.q, at.u, sign * size * error[None]) for sign in (1.0, -1.0)]
-    by_error = (values(t, *(each[0] for each in sides[0])) - values(t, *(each[0] for each in sides[1]))) / (2 * size)
+
+    def value(later: float, part: float) -> float:
+        q, u = displaced(dynamics.system, at.q, at.u, part * error[None])
+        return float(
+            _event_values(dynamics, fired, t + later, q[0] + later * rates[:n_q], u[0] + later * rates[n_q:])[0]
+        )
+
+    before, now, after = (value(later, 0.0) for later in (-step, 0.0, step))
+    if abs(before - 2.0 * now + after) > ESTIMATE.smooth * abs(
+        after - before
+    ):  # it jumps, by an event of another function
+        late = _crossing(lambda later: value(later, size), step) - _crossing(lambda later: value(later, -size), step)
+        return late / (2.0 * size) if np.isfinite(late) else 0.0
+    slope, by_error = (after - before) / (2.0 * step), (value(0.0, size) - value(0.0, -size)) / (2.0 * size)
     with np.errstate(divide="ignore", invalid="ignore"):
-        late = float(-(by_error / slope)[0])
+        late = float(-np.float64(by_error) / slope)
     return late if np.isfinite(late) else 0.0
+
+
+def _crossing(value: Callable[[float], float], step: float) -> float:
+    """Return the time next to 0 at which a function changes its sign, NaN if there is none; `step`: where the search begins, s."""
+    from scipy.optimize import bisect
+
+    reach = step
+    while (value(-reach) > 0.0) == (value(reach) > 0.0):
+        reach *= 2.0
+        if reach > step / ESTIMATE.difference:
+            return np.nan
+    is_after = value(reach) > 0.0
+    return float(
+        bisect(
+            lambda later: 1.0 if (value(later) > 0.0) == is_after else -1.0,
+            -reach,
+            reach,
+            xtol=step * ESTIMATE.difference,
+        )
+    )
 
 
 def _jumped(dynamics: Dynamics, at: Evaluated, t: float, error: np.ndarray) -> np.ndarray:
