@@ -1,0 +1,42 @@
+"""Errors across events whose functions jump: a tyre over the edges of a road, where the rate of its deflection changes at once."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from tests.error_estimate.test_against_truth import ratio
+
+QUARTER_CAR = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+roads:
+  hole:
+    type: table
+    profile: {table: [[-100, 0], [1.946, 0], [1.966, -0.02], [2.227, -0.02], [2.247, 0], [1000, 0]], lines: true}
+bodies:
+  body: {mass: 239.4, inertia: [30, 30, 30], position: [0, 0, 0.51701], velocity: [8.333, 0, 0]}
+  wheel: {mass: 57.46, inertia: [1, 1, 1], position: [0, 0, 0.286838], velocity: [8.333, 0, 0]}
+joints:
+  level: {type: orientation, i: body, j: ground}
+  guide: {type: prismatic, i: wheel, j: body}
+forces:
+  spring: {type: force, i: body, j: wheel, force: [0, 0, "-33632*(dz(body) - dz(wheel) - 0.3) - 1500*(vz(body) - vz(wheel))"]}
+  tyre: {type: vertical_tyre, i: wheel, road: hole, radius: 0.3, stiffness: 221288, damping: 2000}
+run: {duration: 0.5, output: 0.005}
+"""
+
+
+@pytest.fixture(scope="module")
+def truth():
+    return stiffmbs.run(stiffmbs.read_scene(QUARTER_CAR), solver="radau", rtol=1e-11, errors=False)
+
+
+@pytest.mark.parametrize("solver, rtol", [("bdf", 1e-3), ("bdf", 1e-5), ("radau", 1e-4)])
+def test_edges_of_a_road(truth, solver, rtol):
+    """The delay of an event that another one causes was that of a smooth function: errors of 190 %, or a lost solution."""
+    found = stiffmbs.run(stiffmbs.read_scene(QUARTER_CAR), solver=solver, rtol=rtol, errors=True)
+    assert not any("estimated error" in note for note in found.notes) and found.estimate.status == "estimated"
+    for channel in ("wheel.z", "wheel.vz", "body.z"):
+        assert 0.3 < ratio(found, channel, truth[channel]) < 3.0 or found.errors[channel].over_time < 1e-9 * np.ptp(
+            truth[channel]
+        )
