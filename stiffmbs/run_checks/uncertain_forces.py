@@ -96,7 +96,7 @@ def _largest_inertia(rows: OutputRows, mass: np.ndarray) -> float:
 
 
 class LostDigits(NamedTuple):
-    """Element whose force rounding changes most, that change, and the largest force on a body, N."""
+    """Element whose force rounding changes most, that change, and the largest force of an element on a body, N."""
 
     element: str
     lost: float
@@ -150,7 +150,8 @@ def lost_digits(state: State, t: float) -> LostDigits:
         of_rows = changes @ (straight & (row[:, None] == np.arange(width * group.kind.n_bodies)))
         found += zip(group.names, of_rows.max(axis=1).tolist(), strict=True)
     state.evaluate("motion", t)
-    forces = state.vector("motion", "f")[system.per_velocity(1.0, 0.0) == 1.0]
+    term, linear = system.term("motion", "f"), system.per_velocity(1.0, 0.0) == 1.0
+    forces = state.values["motion"][term.source][linear[term.row]]  # of each element: their sums vanish in equilibrium
     return LostDigits(*max(found, key=lambda each: each[1]), float(np.abs(forces).max(initial=0.0)))
 
 

@@ -50,3 +50,11 @@ def test_forces_that_fade_are_compared_with_the_largest_of_the_run():
     found = stiffmbs.run(stiffmbs.read_scene(f"{mass}{bushing}run: {{duration: 0.1}}"), solver="bdf")
     assert abs(found["mass.x"][-1] - 1) < 1e-12
     assert not [note for note in found.notes if "is known to about" in note]
+
+
+def test_forces_in_equilibrium_are_compared_with_each_other():
+    """Their sum is zero: a mass at rest on its spring had a note on 4e-11 N."""
+    mass = "gravity: [0, -9.81]\nbodies: {mass: {mass: 57, inertia: 1, position: [0, -0.00279585]}}\n"
+    spring = "forces: {spring: {type: force, i: mass, force: [0, '-2e5*mass.y']}}\n"
+    found = stiffmbs.run(stiffmbs.read_scene(f"{mass}{spring}run: {{duration: 0.1}}"), solver="bdf")
+    assert not [note for note in found.notes if "is known to about" in note]
