@@ -24,7 +24,7 @@ from ..reading.variation import Variation
 from ..results.channels import channels_of
 from ..results.solution import Solution
 from ..solve.settings import changed
-from ..solve.trajectory import Outcome
+from ..solve.trajectory import Outcome, ProgressCallback
 from .affine import is_affine
 from .outputs import Output
 
@@ -120,10 +120,10 @@ class CaseSolver:
         rows = job.dynamics.report(np.array([job.grid.start]), start.q[None], start.u[None], project=False)
         return tuple(channels_of(job.data, job.dynamics.system, rows))
 
-    def row(self, case: int, values: Sequence[object]) -> Row:
-        """Solve a case and return its outputs, or its error."""
+    def row(self, case: int, values: Sequence[object], watch: ProgressCallback | None = None) -> Row:
+        """Solve a case and return its outputs, or its error; `watch` as for `stiffmbs.run`."""
         try:
-            solution = finished(self.job(self.scene(values)))
+            solution = finished(self.job(self.scene(values)), watch)
             done = solution.outcome is Outcome.DONE
             outputs = tuple(_kept(output, solution, done) for output in self._task.outputs)
         except ChangedFileError:

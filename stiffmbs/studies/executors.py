@@ -10,10 +10,12 @@ from functools import lru_cache
 from itertools import islice
 from numbers import Integral
 from queue import Empty, LifoQueue
+from threading import Event
 from typing import Any
 
 from ..errors import InputError, SolverError, StiffmbsError
 from ..reading.files.quoted import written
+from ..solve.trajectory import ProgressCallback
 from .case_solver import CaseSolver, Row, Task
 
 Chunk = Sequence[tuple[int, tuple[Any, ...]]]
@@ -24,6 +26,27 @@ AHEAD = 3
 """Number of chunks for each worker that are running or waiting, so that no worker is idle."""
 TRIES = 3
 """Number of attempts for a chunk whose worker ended."""
+
+
+class Threads(ThreadPoolExecutor):
+    """Threads that solve cases until they are told to end, as Ctrl-C reaches the main thread alone."""
+
+    def __init__(self, workers: int) -> None:
+        super().__init__(workers)
+        self._end = Event()
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
+        """Call a function that accepts `watch` in a thread."""
+        return super().submit(function, *arguments, **named, watch=self._watch)
+
+    def _watch(self, _: float) -> None:
+        if self._end.is_set():
+            raise KeyboardInterrupt
+
+    def end(self) -> None:
+        """End the runs under way, and wait for them."""
+        self._end.set()
+        self.shutdown(wait=True, cancel_futures=True)
 
 
 def refuse_workers(workers: object) -> None:
@@ -42,11 +65,11 @@ def executor_of(workers: int | None, executor: Executor | None) -> Iterator[tupl
     if count == 1:
         yield None, 1
         return
-    threads = ThreadPoolExecutor(count)
+    threads = Threads(count)
     try:
         yield threads, count
     finally:
-        threads.shutdown(wait=True, cancel_futures=True)
+        threads.end()
 
 
 def rows_of(
@@ -103,14 +126,14 @@ def _solvers(task: bytes) -> LifoQueue[CaseSolver]:
     return LifoQueue()
 
 
-def solve_chunk(task: bytes, chunk: Chunk) -> list[Row]:
-    """Solve cases of a pickled `Task`; the row of a failed case has the reason."""
+def solve_chunk(task: bytes, chunk: Chunk, watch: ProgressCallback | None = None) -> list[Row]:
+    """Solve cases of a pickled `Task`; the row of a failed case has the reason. `watch` as for `stiffmbs.run`."""
     idle = _solvers(task)
     try:
         solver = idle.get_nowait()
     except Empty:
         found: Task = pickle.loads(task)
         solver = CaseSolver(found)
-    rows = [solver.row(case, values) for case, values in chunk]
+    rows = [solver.row(case, values, watch) for case, values in chunk]
     idle.put(solver)  # not after an interruption, which may leave the solver inconsistent
     return rows

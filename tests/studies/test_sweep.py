@@ -2,6 +2,8 @@
 
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
+from threading import Event
+from time import sleep
 
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ import pytest
 import stiffmbs
 from stiffmbs import InputError, Range, sweep
 from stiffmbs.studies.case_solver import CaseSolver
+from stiffmbs.studies.executors import executor_of
 from stiffmbs.studies.sweep import study_of
 
 SHORT = {"duration": 0.3, "rtol": 1e-6}
@@ -190,3 +193,20 @@ def test_a_case_whose_formula_has_no_value_is_a_row_with_its_message():
     assert found.status.values.tolist() == ["done", "error"]
     assert found["final(sled.vx)"].values[0] == pytest.approx(1.0)
     assert str(found.message.values[1]).startswith("push: found 'sqrt(F)' in 'sqrt(F)', which has")
+
+
+def test_an_interrupted_study_ends_the_runs_of_its_threads():
+    """Ctrl-C reaches the main thread alone; the study waited for the runs of others to their end."""
+    started = Event()
+
+    def run(watch):
+        started.set()
+        for t in range(10**4):
+            watch(t)
+            sleep(1e-3)
+
+    with pytest.raises(ValueError), executor_of(2, None) as (threads, _):
+        under_way = threads.submit(run)
+        started.wait()
+        raise ValueError
+    assert isinstance(under_way.exception(), KeyboardInterrupt)
