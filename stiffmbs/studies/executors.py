@@ -29,7 +29,7 @@ TRIES = 3
 
 
 class Threads(ThreadPoolExecutor):
-    """Threads that solve cases until they are told to end, as Ctrl-C reaches the main thread alone."""
+    """Threads that solve cases until the study ends, as Ctrl-C reaches the main thread alone."""
 
     def __init__(self, workers: int) -> None:
         super().__init__(workers)
