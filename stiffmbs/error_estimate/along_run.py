@@ -167,11 +167,9 @@ def _integrals_of_radau(piece: Piece, rates: Rates, defects: np.ndarray, at: Mot
     steps = np.flatnonzero(missed | dominant(sizes))
     if len(steps):
         rows = steps[:, None] * piece.points + np.arange(piece.points + 1)
-        states = np.hstack([piece.q, piece.u])[rows]
-        curve = Curve.through(piece.t[rows], states, ends[steps], ends[steps + 1])
+        curve = Curve.through(piece.t[rows], rates.states[rows], ends[steps], ends[steps + 1])
         places, most = np.append(0.0, radau(piece.points).nodes), ESTIMATE.intervals * len(piece.t)
-        resolved = integrals_of_motion(curve, places, piece.q.shape[1], at, scale, most)[0]
-        found = local[steps] + integrated(np.diff(ends)[steps], exact[steps]) - resolved
+        found = rates.changes_in(rows) - integrals_of_motion(curve, places, piece.q.shape[1], at, scale, most)[0]
         kept = missed[steps] | (np.abs(found / rates.typical).max(axis=(1, 2)) < sizes[steps])
         local[steps[kept]], defects[steps[kept]] = found[kept], np.nan
     return local
@@ -187,9 +185,9 @@ def _resolve_kinks(piece: Piece, rates: Rates, defects: np.ndarray, at_ends: np.
     while len(steps := np.flatnonzero(dominant(sizes) & ~done)) and len(steps) <= most:
         done[steps] = True
         scale = rates.typical * sizes[~done].max(initial=np.finfo(float).tiny)
-        change, curve = rates.states[steps + 1] - rates.states[steps], curve_of_bdf(piece, rates, steps)
-        exact, most = integrals_of_motion(curve, np.array([0.0, 1.0]), piece.q.shape[1], at, scale, most)
-        found = rates.changes(change) - exact[:, 0]
+        curve, places = curve_of_bdf(piece, rates, steps), np.array([0.0, 1.0])
+        exact, most = integrals_of_motion(curve, places, piece.q.shape[1], at, scale, most)
+        found = (rates.changes_in(steps[:, None] + np.arange(2)) - exact)[:, 0]
         now = np.abs(found / rates.typical).max(axis=1)
         kept = now < sizes[steps]
         steps = steps[kept]

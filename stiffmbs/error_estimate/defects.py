@@ -38,6 +38,11 @@ class Rates:
         n_q = self._system.n_q
         return as_rows(self._system, change[:, :n_q], change[:, n_q:])
 
+    def changes_in(self, rows: np.ndarray) -> np.ndarray:
+        """Return the changes of the states since the first of each `rows`, shape (steps, places, full); `rows` has one place more."""
+        change = self.states[rows[:, 1:]] - self.states[rows[:, :1]]
+        return self.changes(change.reshape(-1, change.shape[2])).reshape(*change.shape[:2], -1)
+
 
 def slope_weights(nodes: np.ndarray, at: int | np.ndarray) -> np.ndarray:
     """Return the weights of values at nodes in the derivative of their polynomial at one of these nodes.

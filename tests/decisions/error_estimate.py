@@ -128,7 +128,7 @@ def intervals():
         return np.sin(1e9 * t)[:, None]
 
     t, zeros = np.arange(17.0), np.zeros((17, 1))
-    rates = Record(states=zeros, exact=zeros, typical=np.ones(1), changes=lambda change: change)
+    rates = Record(states=zeros, exact=zeros, typical=np.ones(1), changes_in=lambda rows: np.zeros((1, 1, 1)))
     defects = np.append(np.zeros(10), np.append(1.0, np.zeros(6)))[:, None]
     piece = Piece(t, zeros, zeros, zeros, zeros, t, 1, ())
     along_run._resolve_kinks(piece, rates, defects, defects.copy(), noise)
