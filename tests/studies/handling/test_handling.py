@@ -150,7 +150,7 @@ def test_a_driveline_spins_with_the_wheels_and_is_driven_at_its_input():
 
 @pytest.mark.long
 def test_a_steering_wheel_steers_the_lane_change():
-    """Its angle is the travel of the rack over the pinion's radius, apart from the twist of the torsion bar."""
+    """The driver turns the wheel, and the rack has no drive."""
     column = {
         "use": "steering_column",
         "on": "chassis",
@@ -160,8 +160,6 @@ def test_a_steering_wheel_steers_the_lane_change():
     found = stiffmbs.handling(scene, ["lane_change"], steering="column.bearing", workers=1)
     assert found.car.angular and not found.tests["lane_change"].message
     assert found["lane_change"]["largest lateral error"] < 0.2
-    travel = found["lane_change"]["largest steering"] * 0.05 / (2 * np.pi)
-    assert 1e-3 < travel < 0.03, "that of a rack, m"
 
 
 def test_drives_of_the_steering_alone_are_left_out():
