@@ -86,10 +86,11 @@ def _demands(element: Element, model: Compilable) -> Iterator[tuple[MarkerRefere
                 seen = {"w": coordinate[1:], "q": REFUSED}.get(coordinate[0], BODY)  # wx requires the spin axis x
                 yield MarkerReference(body=owner), seen, False
         for measure, (i, j, *axes) in formula.measures():
-            # an angle forbids spin, and an angular velocity needs no point
+            # an angle forbids spin, and an angular velocity needs no point, nor an axis across the spin
             seen = {"a": REFUSED, "w": BODY}.get(measure[0], POINT)
             yield from ((marker, seen, False) for marker in (i, j))
-            yield from ((marker, REFUSED, False) for marker in axes)
+            along = ALONG + measure[-1] if measure[0] == "w" else REFUSED
+            yield from ((marker, along, False) for marker in axes)
     for joint in referred:
         yield from ((marker, REFUSED, False) for _, marker in model.joints[joint].parts(MarkerReference))
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from stiffmbs import load_scene, run
+from stiffmbs import load_scene, read_scene, run
 from stiffmbs.analyses.warm import usual_kinds
 from stiffmbs.compile.compile_model import kinds_of
 from stiffmbs.presolve.reduced_model import ReducedModel
@@ -29,6 +29,7 @@ from stiffmbs.spatial import (
 AXLE = {"z": (0, 1, 0)}
 WHEEL = {"mass": 20, "inertia": (0.7, 1.2, 0.7)}
 DRIVEN = "60*sin(3*t) - 5*wy(wheel, fork)"
+IN_ITS_AXES = "60*sin(3*t) - 5*wy(wheel, fork, wheel)"
 
 
 def hub(body, along=0.0):
@@ -93,7 +94,7 @@ def with_torque_off_the_axle():
 
 @pytest.mark.parametrize(
     "model",
-    [rolling(15, DRIVEN), rolling(15, DRIVEN, inertia=(0.7, 0.7, 0.7)), top(80), with_torque_off_the_axle()],
+    [rolling(15, DRIVEN), rolling(15, IN_ITS_AXES, inertia=(0.7, 0.7, 0.7)), top(80), with_torque_off_the_axle()],
     ids=["wheel", "ball", "top", "torque off the axle"],
 )
 def test_the_numbers_are_those_of_the_plain_body(model):
@@ -142,6 +143,7 @@ def test_rigid_parts_spin_as_one_body():
         ("across", AppliedForce(i="fork", force=("wheel.wx", 0, 0))),
         ("angle", AppliedForce(i="fork", force=("sin(ay(wheel, fork))", 0, 0))),
         ("axes", AppliedForce(i="fork", force=("vx(fork, ground, wheel)", 0, 0))),
+        ("axis_across", AppliedForce(i="fork", force=("wx(wheel, fork, wheel)", 0, 0))),
         ("spring", TorsionSpring(i=hub("wheel"), j=hub("fork"), stiffness=1)),
         ("motor", Drive(joint="pin", velocity="30")),
         ("reaction", AppliedForce(i="fork", force=("0.01*fx(pin)", 0, 0))),
@@ -152,6 +154,23 @@ def test_what_sees_the_angle_of_the_spin_keeps_the_plain_body(name, element):
     assert spins(model) == {"wheel": "y"}
     model.add(name, element)
     assert spins(model) == {}
+
+
+def test_the_shafts_of_a_driveline_spin_apart(examples):
+    """Their rates are about their own axes."""
+    content = (examples / "car.yaml").read_text()
+    entry = """\
+  driveline:
+    use: driveline
+    on: chassis
+    drive: all
+    position: [0, 0, -height]
+    mounts: {front_left: front.left.wheel, front_right: front.right.wheel, rear_left: rear.left.wheel, rear_right: rear.right.wheel}
+"""
+    scene = read_scene(content.replace("\nforces:", f"\n{entry}forces:"), file=examples / "car.yaml")
+    shafts = {f"driveline.{name}.input": "y" for name in ("main", "front", "rear")}
+    wheels = {f"{end}.{side}.wheel": "y" for end in ("front", "rear") for side in ("left", "right")}
+    assert spinning(scene, {}) == shafts | wheels
 
 
 def test_a_wobbling_wheel_is_a_plain_body():
