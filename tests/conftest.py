@@ -19,8 +19,7 @@ from hypothesis import HealthCheck, settings
 from scipy.integrate import solve_ivp
 
 from stiffmbs.commands.starting import scene_files
-from stiffmbs.compile import record
-from stiffmbs.compile.machine.object_code import SHORT
+from stiffmbs.compile.machine import drafts, object_code
 from stiffmbs.error_estimate.parameters import ESTIMATE
 from stiffmbs.interrupts import NEW_OBJECTS
 from stiffmbs.tuning import parameters_of
@@ -41,7 +40,15 @@ G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("untimed")  # no test depends on the speed of a machine
 gc.set_threshold(NEW_OBJECTS)  # as the command has it: 3 % of a run
-record.OF_LOOPS = SHORT  # kernels serve a few short runs each; results of all levels are equal to the last bit
+
+
+def quickly_compiled(assembly: str, level: int, unrolled: bool) -> bytes:
+    """Kernels and routines serve a few short runs each; results of all levels are equal to the last bit."""
+    less = {object_code.FULL: object_code.SHORT, object_code.SHORT: object_code.DRAFT}
+    return object_code.object_code(assembly, less[level], unrolled)
+
+
+drafts.object_code = quickly_compiled
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -50,9 +57,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(trylast=True)  # of what -k and -m leave
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Of the tests of a file that are marked sampled(n), keep every n-th, unless all are asked for."""
-    if config.getoption("all"):
-        return
+    """Leave out what is not sampled, unless all are asked for, and begin with the longest tests."""
+    if not config.getoption("all"):
+        _sample(config, items)
+    items.sort(key=_seconds, reverse=True)  # the others keep their order
+
+
+def _sample(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Of the tests of a file that are marked sampled(n), keep every n-th."""
     seen: Counter[tuple[Path, int]] = Counter()
     kept, left = [], []
     for item in items:
@@ -62,6 +74,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         seen.update([sort] if sort else [])
     config.hook.pytest_deselected(items=left)
     items[:] = kept
+
+
+def _seconds(item: pytest.Item) -> float:
+    """Return about how long a test that is marked long(seconds) takes, s: one that runs last would keep one processor busy."""
+    mark = item.get_closest_marker("long")
+    return mark.args[0] if mark and mark.args else 0.0
 
 
 def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:

@@ -17,6 +17,7 @@ def double_pendulum(length, how):
     return stiffmbs.run(model, duration=2 * length**0.5, points=51, rtol=1e-8, **how)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("how", HOW, ids=str)
 @pytest.mark.parametrize("length", [1e-6, 1e-3, 1e4, 1e6])
 def test_a_double_pendulum_of_any_size_swings_alike(length, how):

@@ -35,6 +35,7 @@ PRINCETON = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("n", [2, 3, 8, 16])
 @pytest.mark.parametrize("turns", [0.5, 1.0])
 def test_an_end_moment_rolls_a_beam_up_to_a_circle_with_any_number_of_elements(n, turns):
@@ -44,6 +45,7 @@ def test_an_end_moment_rolls_a_beam_up_to_a_circle_with_any_number_of_elements(n
     assert found["strip.end.y"] == pytest.approx((1 - math.cos(angle)) / angle, abs=1e-9)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("load", ELASTICA)
 def test_a_dead_load_bends_a_beam_to_the_elastica(load):
     angle, short, up = ELASTICA[load]
@@ -86,6 +88,7 @@ def test_different_stiffness_in_bending_and_torsion_gives_second_order():
     assert np.max(np.abs(fine + (fine - coarse) / 3 - expected)) < 1.5e-4
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("load", "degrees"), PRINCETON)
 def test_the_princeton_beam(load, degrees):
     coarse, fine = (at_rest(princeton(n, load, degrees)) for n in (8, 16))

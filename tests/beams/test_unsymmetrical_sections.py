@@ -179,6 +179,7 @@ def by_superposition(constants, force, torque, at):
     return moved, rotation
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("seed", range(6))
 @WAYS
 def test_random_sections_under_random_loads(seed, interpolation):

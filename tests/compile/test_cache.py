@@ -213,7 +213,7 @@ def named_alone(follows_from, source):
     return {name: None for name, _ in source.signatures}
 
 
-@pytest.mark.long
+@pytest.mark.long(60)
 def test_after_warming_first_runs_compile_nothing(examples, monkeypatch):
     """All that runs look up is among what warming looks up, and would compile. Kinds that no run has are left out."""
     scenes = ("cart_pendulum", "crank_slider", "chain", "four_bars", "stick_slip", "heavy_top", "spatial_chain")

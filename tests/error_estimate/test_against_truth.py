@@ -249,7 +249,7 @@ def test_long_explicit_runs_take_no_second_run():
     assert not found.errors and "--errors" in found.estimate.sentence
 
 
-@pytest.mark.long
+@pytest.mark.long(200)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_random_scenes(solver, every):
     found, seeds = [], every(range(24), 4)

@@ -28,6 +28,7 @@ def turning_over(t):
     return solve_ivp(rates, (0, t[-1]), start, "DOP853", t, rtol=1e-13, atol=1e-13).y
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "solver, rtol", [("bdf", 1e-4), ("bdf", 1e-6), ("bdf", 1e-8), ("radau", 1e-3), ("radau", 1e-6), ("radau", 1e-8)]
 )

@@ -67,6 +67,7 @@ KINKS = {
 }
 
 
+@pytest.mark.sampled(4)
 @EVERY
 @pytest.mark.parametrize("kink", KINKS)
 def test_a_drive_with_a_kink_pushes_the_body_that_carries_it(kink, how):
@@ -121,6 +122,7 @@ def test_steps_of_a_simulation_end_before_a_kink_and_begin_after_it(kink, name):
         assert simulation["platform.omega"] == pytest.approx(expected, abs=1e-5)
 
 
+@pytest.mark.sampled(4)
 @EVERY
 def test_the_end_does_not_depend_on_output_points(how):
     """Two drives with kinks at the same time, and a force that jumps then, between and at output points."""
@@ -149,6 +151,7 @@ def test_the_end_does_not_depend_on_output_points(how):
     )
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("how", [*SOLVERS.values(), {"solver": "kinematic"}], ids=[*SOLVERS, "kinematic"])
 def test_a_velocity_jump_is_measured_by_the_velocities_of_the_run(how):
     def notes(position):
@@ -285,6 +288,7 @@ def velocities_of_the_wheel(road):
     return {duration: np.array(found)[np.isin(times, np.linspace(0, duration, 41))] for duration in DURATIONS}
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("duration", DURATIONS)
 @pytest.mark.parametrize("road", ROADS)
 def test_a_state_at_the_edge_of_a_road_is_that_before_it(road, duration):

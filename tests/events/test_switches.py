@@ -45,6 +45,7 @@ def speed_after_many_changes():
     return 1 + 0.5 * (8 - 1 - 0.1 * 20 / 0.2 * pressed)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("law", [None, "-0.1*(abs(fy(j)) + abs(tz(j))/0.2)*tanh(b.vx/1e-4)"])
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_moment_of_a_guide_that_changes_sign_64_times(solver, law):
@@ -139,6 +140,7 @@ def test_radau_starts_where_an_algebraic_state_is_zero(stages, rtol):
     assert found["b.vx"][-1] == pytest.approx(1.38481745, abs=10 * rtol)  # by SciPy, piecewise
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6])
 @pytest.mark.parametrize("points", [2, 3, 6, 11, 101])
 def test_no_touch_of_a_window_is_left_out_however_long_the_steps_are(points, rtol):

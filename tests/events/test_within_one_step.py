@@ -239,6 +239,7 @@ def test_a_periodic_table_of_few_zones_turns(intervals, turns):
 TEETH = "{lines: true, ends: periodic, table: [[0, 0], [0.7, 0], [0.85, 1], [1, 0]]}"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("how", "rtol", "allowed"),
     [({"solver": "projected", "scheme": scheme}, rtol, 0.1 * rtol) for scheme in ("dop853", "dopri5") for rtol in (1e-3, 1e-4, 1e-6)] + [({"solver": "bdf"}, 1e-4, 1e-2)],

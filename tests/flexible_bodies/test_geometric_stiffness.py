@@ -73,6 +73,7 @@ def lowest(model):
     return 2 * np.pi * min(mode.natural_frequency for mode in modes(model, start_from=at_rest).modes)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["rigid", "average"])
 @pytest.mark.parametrize("part", [0.2, 0.5, 0.8, -5.0])
 def test_a_column_under_a_force_at_its_end(folder, part, kind):

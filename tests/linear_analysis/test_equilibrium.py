@@ -113,6 +113,7 @@ def test_what_falls_for_ever_has_no_equilibrium(few_moves):
         equilibrium(stiffmbs.read_scene("gravity: [0, -9.81]\nbodies: {stone: {mass: 2, inertia: 1}}"))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "seed", [pytest.param(seed, marks=pytest.mark.long if seed in (23, 25) else ()) for seed in range(30)]
 )

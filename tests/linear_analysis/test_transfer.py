@@ -201,6 +201,7 @@ bodies:
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("omega", ["[0, 0, 0]", "[0.5, -2, 3]"], ids=["at rest", "spinning"])
 @pytest.mark.parametrize("inertia", ["[0.3, 0.4, 0.5]", "[[0.3, 0.02, 0.05], [0.02, 0.4, -0.03], [0.05, -0.03, 0.5]]"])
 @pytest.mark.parametrize("at", ["b", "b.tip"])

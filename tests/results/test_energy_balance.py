@@ -114,6 +114,7 @@ def work_of_vibration(t_end):
     return found.y[2, -1]
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("solver", ["bdf", "radau", "projected", "auto"])
 @pytest.mark.parametrize("points", [2, 5, 33, 1001])
 def test_the_work_does_not_depend_on_output_times(solver, points):

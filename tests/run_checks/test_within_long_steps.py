@@ -50,7 +50,7 @@ def test_a_python_function_that_no_output_meets(how, monkeypatch):
     assert found["ball.vx"][-1] == pytest.approx(behind(5e-3), abs=2e-3)
 
 
-@pytest.mark.long
+@pytest.mark.long(40)
 @pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
 @pytest.mark.parametrize("width", [1e-4, 3e-4, 1e-3, 3e-3, 1e-2])
 @pytest.mark.parametrize("places", [(0.777,), (5.0031,), (3.777, 9.66)])

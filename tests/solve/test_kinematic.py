@@ -213,6 +213,7 @@ DRIVES = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("solver", ["kinematic", "bdf", "radau"])
 @pytest.mark.parametrize("what", sorted(DRIVES))
 def test_a_drive_along_a_rail_never_locks(what, solver):

@@ -60,7 +60,7 @@ def test_standard_errors_are_those_of_linear_theory():
     assert found.residuals["sled.x"] == pytest.approx(np.sqrt(np.mean(off**2)), rel=1e-3)
 
 
-@pytest.mark.long
+@pytest.mark.long(60)
 def test_intervals_hold_the_truth_in_95_of_100_data_sets(every):
     scene, held = stiffmbs.read_scene(SLED), []
     for seed in every(range(100), 5):

@@ -14,6 +14,7 @@ from tests.studies.oscillator import SLED, oscillation, slope
 BY_BOTH = pytest.mark.parametrize("solver", ["bdf", "radau"])
 
 
+@pytest.mark.sampled(3)
 @BY_BOTH
 @pytest.mark.parametrize("of", ["sled.x", "rms(sled.x)", "final(3*sled.x^2 + sin(sled.x))", "integral(abs(sled.x))/2"])
 def test_those_of_a_damped_oscillation(of, solver):

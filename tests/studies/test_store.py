@@ -33,7 +33,7 @@ def killed_again_and_again(scene, store, cases, kills, chance):
     )
 
 
-@pytest.mark.long
+@pytest.mark.long(40)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(("kills", "cases"), [(3, 24), (20, 400)])
 def test_a_killed_study_ends_with_the_same_table_to_the_last_bit(examples, tmp_path, kills, cases):

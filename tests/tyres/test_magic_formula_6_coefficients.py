@@ -76,6 +76,7 @@ def difference(one, other):
     return max((np.abs(one[name] - x) / np.abs(x).max()).max() for name, x in other.items())
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("turning", [False, True], ids=["straight", "turn slip"])
 @pytest.mark.parametrize("version", ["6.1", "6.2"])
 @settings(max_examples=20, deadline=None)

@@ -54,6 +54,7 @@ def scene(seed):
     return read_scene("\n".join([*head, *links(random, n), *connections(random, n), *run]) + "\n")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", [0, *range(2, 8), 28, 43, 76])
 def test_motion_is_that_with_pivots(seed):
     by_blocks, pivoted = (prepare(scene(seed), solver="bdf", rtol=1e-6) for _ in range(2))

@@ -70,6 +70,7 @@ def test_faults_are_told_in_a_sentence(inputs, message):
         stiffmbs.run(stiffmbs.read_scene(SCENE), inputs=inputs)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("law", "push"),
     [

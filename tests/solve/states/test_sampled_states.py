@@ -63,6 +63,7 @@ def test_a_sampled_controller_follows_the_exact_discrete_solution(settings, erro
     assert max(differences(stiffmbs.run(stiffmbs.read_scene(SCENE), duration=2, output=0.02, **settings))) < error
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6])
 def test_error_bars_are_those_of_the_exact_solution(solver, rtol):

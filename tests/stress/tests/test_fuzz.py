@@ -123,7 +123,7 @@ def test_inputs_do_not_stop_runs(seed):
     assert inputs.trial(seed).outcome is Outcome.RIGHT
 
 
-@pytest.mark.long
+@pytest.mark.long(40)
 def test_an_error_of_fixed_steps_is_right_if_half_the_step_reduces_it_by_the_order(monkeypatch):
     """A decay of 1600/s has an error of 4 % in steps of 1e-4 s by Euler and Cromer."""
     from tests.stress.fuzzers.discontinuities import kinks

@@ -148,7 +148,7 @@ def test_a_driveline_spins_with_the_wheels_and_is_driven_at_its_input():
     assert rest["handling_driver.drive"] > 100, "drag and rolling resistance"
 
 
-@pytest.mark.long
+@pytest.mark.long(50)
 def test_a_steering_wheel_steers_the_lane_change():
     """The driver turns the wheel, and the rack has no drive."""
     column = {

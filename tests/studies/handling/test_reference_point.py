@@ -105,7 +105,7 @@ def test_kinematics_and_compliance_do_not_depend_on_the_origin():
                 )
 
 
-@pytest.mark.long
+@pytest.mark.long(100)
 @pytest.mark.sampled(11)
 @pytest.mark.parametrize("test", [name for name in sorted(TESTS) if name not in ("obstacle_avoidance", "ride")])
 def test_no_metric_of_any_test_depends_on_the_origin(test):
