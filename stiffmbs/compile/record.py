@@ -37,8 +37,6 @@ if TYPE_CHECKING:
 
 RARE = ("all_levels", "all_levels_tangent")
 """Term sets of the formulation index1 only; derived on first use, as they are expensive."""
-OF_LOOPS = FULL
-"""Level of compilation of kernels with loops."""
 
 _INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
 
@@ -164,7 +162,7 @@ def kernel_of(kind: Kind, term_set: str, place: str = "") -> Compiled | None:
 
 def _level(kind: Kind, source: str) -> int:
     has_loops = hasattr(kind.element, "compiled_terms") or any(call in source for call in CALLS_WITH_LOOPS)
-    return OF_LOOPS if has_loops else SHORT
+    return FULL if has_loops else SHORT
 
 
 def in_library(kind: Kind) -> dict[str, bytes]:

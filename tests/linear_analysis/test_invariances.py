@@ -155,7 +155,7 @@ def test_sensitivities(seed, dimensions, name):
     assert changed / units.factor((-1, 1, 2)) == pytest.approx(slope, rel=1e-5)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_results_do_not_depend_on_what_was_computed_before(dimensions, solver):
