@@ -16,8 +16,8 @@ READ_BY_FIXED_STEPS = ("scheme", "step", "projection")
 READ_BY_ADAPTIVE_STEPS = ("scheme", "rtol", "atol", "max_step", "projection")
 
 
-def _fixed(name: str) -> Traits:
-    return Traits(name, READ_BY_FIXED_STEPS, fixed_steps=True, locates_events=False)
+def _fixed(name: str, order: int) -> Traits:
+    return Traits(name, READ_BY_FIXED_STEPS, fixed_steps=True, order=order, locates_events=False)
 
 
 def _adaptive(name: str) -> Traits:
@@ -25,8 +25,8 @@ def _adaptive(name: str) -> Traits:
 
 
 TRAITS = {
-    EULER_CROMER: _fixed(EULER_CROMER),
-    **{name: _adaptive(name) if scheme.adaptive else _fixed(name) for name, scheme in SCHEMES.items()},
+    EULER_CROMER: _fixed(EULER_CROMER, 1),
+    **{name: _adaptive(name) if scheme.adaptive else _fixed(name, scheme.order) for name, scheme in SCHEMES.items()},
 }
 """Traits by scheme."""
 
