@@ -1,5 +1,6 @@
 """`stiffmbs handling` on the example car, against relations of the bicycle model, and its messages."""
 
+import functools
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -31,9 +32,25 @@ EXAMPLES = Path(stiffmbs.__file__).parents[1] / "examples"
 CAR = EXAMPLES / "car.yaml"
 
 
+@functools.cache
+def preliminary():
+    """Return what the preliminary runs of the example car give."""
+    scene = stiffmbs.load_scene(CAR)
+    car = car_of(scene)
+    return study._preliminary(scene, car, car.track + study.WIDER, (1 + study.OVERHANGS) * car.wheelbase)
+
+
+@pytest.fixture(scope="module")
+def found():
+    tests = ["constant_speed", "constant_radius", "step_steer", "lane_change", "frequency_response"]
+    known = preliminary()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study, "_preliminary", lambda *_: known)
+        return stiffmbs.handling(CAR, tests, workers=1)
+
+
 @pytest.mark.long
-def test_the_metrics_of_the_car_agree_with_each_other():
-    found = stiffmbs.handling(CAR, ["constant_speed", "constant_radius", "step_steer", "lane_change"], workers=1)
+def test_the_metrics_of_the_car_agree_with_each_other(found):
     assert not any(one.message for one in found.tests.values())
     ramp, circle, step = (found[name] for name in ("constant_speed", "constant_radius", "step_steer"))
     gradient = ramp["understeer gradient"]
@@ -54,11 +71,10 @@ def test_the_metrics_of_the_car_agree_with_each_other():
 
 
 @pytest.mark.long
-def test_the_frequency_response_is_that_of_single_sines():
+def test_the_frequency_response_is_that_of_single_sines(found):
     """Segments of a sweep of 10 s gave 4.5 % more gain at 0.3 Hz, and 2.5 deg more phase at 0.6 Hz."""
     scene = stiffmbs.load_scene(CAR)
     car = car_of(scene)
-    found = stiffmbs.handling(scene, ["frequency_response"], workers=1)
     known, runs = Known(car, car.wheelbase / found.ratio, 0, 1.8, {}), found.tests["frequency_response"].runs
     responses = {name: _of_sweeps(known, runs, name) for name in ("yaw_rate", "ay")}
     amplitude = float(np.max(np.abs(runs[0][SEEN])))
@@ -315,7 +331,9 @@ def test_the_guide_lists_all_tests_and_their_parameters():
 
 
 @pytest.mark.long
-def test_changed_parameters_on_the_command_line():
+def test_changed_parameters_on_the_command_line(monkeypatch):
+    known = preliminary()
+    monkeypatch.setattr(study, "_preliminary", lambda *_: known)
     options = ["--test", "straight_braking", "--workers", "1", "--json"]
     for change in ("straight_braking.speed=60 km/h", "pedal=9 kN"):
         options += ["--set-test", change]
