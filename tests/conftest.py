@@ -45,7 +45,7 @@ gc.set_threshold(NEW_OBJECTS)  # as the command has it: 3 % of a run
 def quickly_compiled(assembly: str, level: int, unrolled: bool) -> bytes:
     """Kernels and routines serve a few short runs each; results of all levels are equal to the last bit."""
     less = {object_code.FULL: object_code.SHORT, object_code.SHORT: object_code.DRAFT}
-    return object_code.object_code(assembly, less[level], unrolled)
+    return object_code.object_code(assembly, less.get(level, level), unrolled)
 
 
 drafts.object_code = quickly_compiled
