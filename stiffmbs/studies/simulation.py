@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Any, TypeAlias, Unpack
 
 import numpy as np
 
@@ -14,13 +15,14 @@ from ..analyses.rerun import DRIFTED, exactly, relaxed
 from ..analyses.start_from import StartFrom, in_pose_of, started_from, state_to_start_from
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
+from ..elements.turns import TURN
 from ..errors import AssemblyError, ChannelError, InputError, SolverError
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.channels import channels_of, turns_of
 from ..results.files import written_whole
 from ..results.frames import own_are_principal
 from ..results.instant import Instant
-from ..results.joint_angles import joint_angles
+from ..results.joint_coordinates import JointCoordinates
 from ..results.provenance import PROVENANCE, provenance_of
 from ..results.saved_state import TURNS, SavedState
 from ..run_checks.tables import may_refuse, refuse_departure
@@ -30,9 +32,11 @@ from ..solve.settings import changed
 from ..solve.stiff_rows import with_stiff_forces
 from ..tuning import in_use
 from .case_solver import CaseSolver, Task, written_scene
-from .input_numbers import FollowedTurns, InputNumbers
-from .stepping import Stepper, stepper_of
+from .input_numbers import InputNumbers
+from .stepping import FixedSteps, Stepper, stepper_of
 
+Inputs: TypeAlias = Mapping[str, float] | Sequence[float] | np.ndarray
+"""Values of inputs by name, or of all of them in their order."""
 OWN_INPUTS = "inputs"
 """Section of a scene with its inputs."""
 QUATERNION = ("q0", "q1", "q2", "q3")
@@ -102,6 +106,12 @@ class Simulation:
         self._first = dict(inputs)
         self._bounded = may_refuse(self._job.dynamics.system)
         self._inputs = InputNumbers(self._job, solver, self._first)
+        self._joints = joints = JointCoordinates(self._job.dynamics.system, self._job.data.joints)
+        self._places_of_joints = {
+            name + ending: (values, k)
+            for values, ending in ((joints.coordinates, ""), (joints.rates, "_rate"))
+            for k, name in enumerate(joints.names)
+        }
         self.reset()
 
     def reset(self) -> None:
@@ -112,67 +122,142 @@ class Simulation:
         self.t = job.settings.start
         with in_use(job.settings.tuning):
             self._stepper = stepper_of(job, job.start, job.grid.start)
-        self._steps, self._relaxed = 0, relaxed(job)
-        self._places = self._places_of_bodies()
-        self._follow_from(self.t, {})
+        self._steps = 0
+        self._go_on_with(self._stepper, relaxed(job))
+        self._follow_from({})
         self._instant = Instant(job.data, job.dynamics.system, self._row, self._angle)
         self._known: dict[str, float] | None = None
 
-    def _follow_from(self, t: float, known: Mapping[str, float]) -> None:
-        """Count the turns of joint angles from a time and known channels on."""
-        self._turns = FollowedTurns(self._job, t, self._stepper.q, self._stepper.u, known)
+    def _follow_from(self, known: Mapping[str, float]) -> None:
+        """Count the turns of joint angles from the current time and known channels on."""
+        self._joints.begin(self.t, known)
+        self._followed = True
 
     @property
     def q(self) -> np.ndarray:
-        """Return the current coordinates of all bodies."""
+        """Return the current coordinates: those of each body in the order of the scene, then counters of turns and states.
+
+        A body has ``x y angle`` in the plane and ``x y z q0 q1 q2 q3`` in space, of its centre of mass and principal axes.
+        """
         return self._stepper.q.copy()
 
     @property
     def u(self) -> np.ndarray:
-        """Return the current velocities of all bodies."""
+        """Return the current velocities of all bodies: ``vx vy omega``, or ``vx vy vz`` and ``wx wy wz`` in body axes."""
         return self._stepper.u.copy()
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Return the channels of all coordinates of joints, in the order of the scene, such as ``hinge.angle``."""
+        return self._joints.names
+
+    @property
+    def joint_coordinates(self) -> np.ndarray:
+        """Return the current coordinates of joints in the order of `joints`, m or rad; angles count their turns."""
+        return self._current_joints().coordinates.copy()
+
+    @property
+    def joint_rates(self) -> np.ndarray:
+        """Return the current rates of the coordinates of joints in the order of `joints`, m/s or rad/s."""
+        return self._current_joints().rates.copy()
+
+    def _current_joints(self) -> JointCoordinates:
+        """Return the coordinates of joints at the current state."""
+        if not self._followed:
+            self._joints.follow(self._stepper.time)
+            self._followed = True
+        return self._joints
 
     @property
     def inputs(self) -> dict[str, float]:
         """Return the current values of the inputs."""
         return dict(self._inputs.values)
 
-    def step(self, dt: float, inputs: Mapping[str, float] | None = None) -> None:
+    def step(self, dt: float, inputs: Inputs | None = None) -> None:
         """Advance by a time step, with inputs that are constant from now on.
 
-        If no input changes, the integrator keeps its history, as in one run; otherwise it restarts.
+        If no input changes, `bdf` and `radau` keep their history, as in one run; otherwise they restart.
 
         Parameters
         ----------
         dt : float
             Time step, s, greater than 0.
-        inputs : mapping of str to float, optional
-            New values; other inputs keep theirs.
+        inputs : mapping of str to float, or sequence of float, optional
+            New values by name, where other inputs keep theirs, or of all inputs in the order of `inputs`.
 
         Raises
         ------
         InputError
-            If dt is not positive, or an input is unknown.
+            If dt is not positive, or an input is unknown or not finite.
         SolverError
             If the solver fails; the state is then the previous one.
         """
-        if not 0 < dt < np.inf:
+        if not 0 < dt < math.inf:
             raise InputError(f"step: found dt = {dt}, expected a time greater than 0 s")
-        if inputs:
+        if inputs is not None:
             self.set_inputs(inputs)
         end, before = self.t + dt, (self.q, self.u) if self._bounded else None
         self._steps += 1
-        with in_use(self._job.settings.tuning):
-            if self._relaxed and (self._steps % DRIFT_CHECK_INTERVAL == 0 or self._steps & (self._steps - 1) == 0):
+        if self._relaxed and (self._steps % DRIFT_CHECK_INTERVAL == 0 or self._steps & (self._steps - 1) == 0):
+            with in_use(self._job.settings.tuning):
                 self._advance_without_drift(end)
-            else:
-                self._advance(end)
+        else:
+            self._advance(end)
         if before:
             self._stay_within_tables(end, *before)
         self.t = end
-        if self._turns.any:
-            self._turns.note(end, self._stepper.q, self._stepper.u)
+        self._followed = self._joints.any_followed
+        if self._followed:
+            self._joints.follow(end)
         self._forget()
+
+    def steps(self, n: int, inputs: Inputs | np.ndarray | None = None, dt: float | None = None) -> None:
+        """Advance by several steps; schemes of fixed steps take them in one compiled call.
+
+        Parameters
+        ----------
+        n : int
+            Number of steps.
+        inputs : mapping of str to float, or array of shape (inputs,) or (n, inputs), optional
+            Inputs of all steps, or one row for each of them, in the order of `inputs`.
+        dt : float, optional
+            Time step, s; by default `step` of the run.
+
+        Raises
+        ------
+        InputError
+            If n or dt is not positive, or inputs have another shape, are unknown or not finite; nothing is changed.
+        SolverError
+            If a step fails; the state is then that before this step.
+        """
+        dt = self._job.settings.step if dt is None else dt
+        if n < 1 or not 0 < dt < math.inf:
+            raise InputError(f"steps: found n = {n} and dt = {dt}, expected a number and a time greater than 0")
+        rows = None
+        if inputs is not None and not isinstance(inputs, Mapping) and np.ndim(inputs) == 2:
+            self._inputs.check_shape(inputs, (n,))
+            rows = np.ascontiguousarray(inputs, dtype=float)
+            self._inputs.check_finite(rows)
+        elif inputs is not None:
+            self.set_inputs(inputs)
+        if rows is None:
+            rows = np.tile(self._inputs.held.values, (n, 1))
+        done = 0
+        if self._inputs.affine and not (self._bounded or self._relaxed):
+            done = self._taken_together(dt, rows)
+        for row in rows[done:]:
+            self.step(dt, row)
+
+    def _taken_together(self, dt: float, rows: np.ndarray) -> int:
+        """Take steps in one compiled call if the stepper can; return their number."""
+        if not isinstance(self._stepper, FixedSteps):
+            return 0
+        try:
+            return self._stepper.advance_many(self.t, dt, rows, self._inputs.held, self._joints)
+        finally:
+            self._followed = self._followed and self._stepper.time == self.t
+            self.t = self._stepper.time
+            self._forget()
 
     def _stay_within_tables(self, end: float, q: np.ndarray, u: np.ndarray) -> None:
         """Return to a state, and raise a SolverError, if the current one is outside a table with ``beyond: error``."""
@@ -219,18 +304,18 @@ class Simulation:
     def _go_on_with(self, stepper: Stepper, relaxed: bool) -> None:
         self._stepper, self._relaxed = stepper, relaxed
         self._places = self._places_of_bodies()
+        self._joints.watch(stepper.q, stepper.u)
 
-    def set_inputs(self, inputs: Mapping[str, float]) -> None:
-        """Set inputs from now on; other inputs keep their values.
+    def set_inputs(self, inputs: Inputs) -> None:
+        """Set inputs from now on, by name, where others keep their values, or all in the order of `inputs`.
 
         Raises
         ------
         InputError
             If an input is unknown, or its value is invalid.
         """
-        if inputs and self._inputs.set(inputs):
-            with in_use(self._job.settings.tuning):
-                self._stepper.jump()
+        if self._inputs.set(inputs):
+            self._stepper.jump()
             self._forget()
 
     @property
@@ -252,6 +337,11 @@ class Simulation:
         if place:
             values, number = place
             return values.item(number)
+        place = self._places_of_joints.get(channel)
+        if place:
+            self._current_joints()
+            values, number = place
+            return values.item(number)
         try:
             return self._instant.value(channel)
         except ChannelError as error:
@@ -268,8 +358,7 @@ class Simulation:
         """Return the current channels and revolution counters, one value each."""
         job, system, rows = self._job, self._job.dynamics.system, self._instant.rows
         channels = channels_of(job.data, system, rows)
-        if self._turns.any:
-            channels |= {name: np.array([angle]) for name, angle in self._turns.angles(rows).items()}
+        channels |= {name: np.array([self._angle(rows, name)]) for name in self._joints.angles}
         return channels, turns_of(system, rows.q)
 
     def _row(self) -> OutputRows:
@@ -277,7 +366,7 @@ class Simulation:
         dynamics = self._job.dynamics
         with dynamics.state.unchanged():
             q, u = self.q[None], self.u[None]
-            rows = dynamics.report(np.array([self._stepper.time]), q, u, project=True)
+            rows = dynamics.report(np.array([self._stepper.time]), q, u, project=self._job.on_constraints)
             lengths, rtol = np.array([self._stepper.length]), self._job.settings.rtol
             rows = with_stiff_forces(dynamics, (q, u), rows, lengths, rtol)
         if not len(rows.t):
@@ -288,12 +377,9 @@ class Simulation:
 
     def _angle(self, rows: OutputRows, channel: str) -> float:
         """Return a continuous angle of a joint."""
-        followed = self._turns.angles(rows) if self._turns.any else {}
-        if channel in followed:
-            return followed[channel]
-        angles = joint_angles(self._job.dynamics.system)
-        assert angles is not None
-        return angles.continuous(rows)[channel].item(0)
+        angle = rows.values.item(0, self._job.dynamics.system.reported[channel])
+        near = self._current_joints().coordinates.item(self._joints.names.index(channel))
+        return angle + TURN * round((near - angle) / TURN)
 
     def save(self, path: str | Path) -> None:
         """Write the current state and inputs to a file .npz, which `load` and ``stiffmbs run --from`` read.
@@ -332,10 +418,9 @@ class Simulation:
                 self._inputs.set(
                     {k.removeprefix(INPUT): float(archive[k]) for k in archive.files if k.startswith(INPUT)}
                 )
-        with in_use(job.settings.tuning):
-            self._stepper.restart(found.t, placed.q, placed.u)
+        self._stepper.restart(found.t, placed.q, placed.u)
         self.t = found.t
-        self._follow_from(self.t, found.channels)
+        self._follow_from(found.channels)
         self._forget()
 
     def _places_of_bodies(self) -> dict[str, tuple[np.ndarray, int]]:

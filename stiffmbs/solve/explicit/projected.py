@@ -9,9 +9,11 @@ from ..solver import Traits
 from ..trajectory import Grid, ProgressCallback, Trajectory
 from . import SCHEMES
 from .adaptive import AdaptiveRun
-from .fixed import euler_cromer, runge_kutta, solve_with_fixed_steps
+from .euler_cromer import EULER_CROMER
+from .fixed import solve_with_fixed_steps
+from .integration import Integration
+from .scheme import Scheme
 
-EULER_CROMER = "euler_cromer"
 READ_BY_FIXED_STEPS = ("scheme", "step", "projection")
 READ_BY_ADAPTIVE_STEPS = ("scheme", "rtol", "atol", "max_step", "projection")
 
@@ -25,7 +27,7 @@ def _adaptive(name: str) -> Traits:
 
 
 TRAITS = {
-    EULER_CROMER: _fixed(EULER_CROMER),
+    EULER_CROMER.name: _fixed(EULER_CROMER.name),
     **{name: _adaptive(name) if scheme.adaptive else _fixed(name) for name, scheme in SCHEMES.items()},
 }
 """Traits by scheme."""
@@ -33,7 +35,13 @@ TRAITS = {
 
 def traits(settings: RunSettings) -> Traits:
     """Return the traits of the scheme in the settings; by default `dop853`, or `euler_cromer` if a step is given."""
-    return TRAITS[settings.scheme or (EULER_CROMER if "step" in settings.model_fields_set else "dop853")]
+    return TRAITS[settings.scheme or (EULER_CROMER.name if "step" in settings.model_fields_set else "dop853")]
+
+
+def scheme_of(settings: RunSettings) -> Scheme:
+    """Return the scheme that the settings choose."""
+    chosen = traits(settings).name
+    return EULER_CROMER if chosen == EULER_CROMER.name else SCHEMES[chosen]
 
 
 def solve(
@@ -46,10 +54,7 @@ def solve(
     methods".
     """
     dynamics.forget_pivots()
-    chosen = traits(settings).name
-    if chosen == EULER_CROMER:
-        return solve_with_fixed_steps(dynamics, euler_cromer(dynamics, start, settings), grid, settings, watch)
-    scheme = SCHEMES[chosen]
+    scheme = scheme_of(settings)
     if scheme.adaptive:
         return AdaptiveRun(scheme, dynamics, start, grid, settings, watch).integrate()
-    return solve_with_fixed_steps(dynamics, runge_kutta(scheme, dynamics, start, grid, settings), grid, settings, watch)
+    return solve_with_fixed_steps(dynamics, Integration(scheme, dynamics, start, grid, settings), grid, settings, watch)
