@@ -61,15 +61,10 @@ class InputNumbers:
         changed, if there is no such input, or a value is invalid or changes more than numbers of forces and states.
         """
         wanted = self.held.wanted
-        if isinstance(values, Mapping):
-            wanted[:] = self.held.values
-            for name, value in values.items():
-                if name not in self._places:
-                    raise InputError(f"input '{name}': found no such input{instead_of(name, self._places)}")
-                wanted[self._places[name]] = value
-        else:
-            self.check_shape(values, ())
-            wanted[:] = values
+        try:
+            self._fill(wanted, values)
+        except (TypeError, ValueError):
+            raise InputError(f"inputs: found {values!r}, expected numbers") from None
         if self.affine:
             changed = self.held.hold()
             if changed < 0:
@@ -85,6 +80,20 @@ class InputNumbers:
             self._write(changed)
             self.held.values[:] = wanted
         return bool(changed)
+
+    def _fill(self, wanted: np.ndarray, values: Mapping[str, float] | Sequence[float] | np.ndarray) -> None:
+        """Fill an array with all inputs; those that are not given keep their values."""
+        if isinstance(values, np.ndarray) and values.shape == wanted.shape:
+            wanted[:] = values
+        elif isinstance(values, Mapping):
+            wanted[:] = self.held.values
+            for name, value in values.items():
+                if name not in self._places:
+                    raise InputError(f"input '{name}': found no such input{instead_of(name, self._places)}")
+                wanted[self._places[name]] = value
+        else:
+            self.check_shape(values, ())
+            wanted[:] = values
 
     def check_shape(self, values: object, rows: tuple[int, ...]) -> None:
         """Raise an InputError if values are no array of numbers, one for each input, with these rows."""

@@ -33,6 +33,7 @@ from ..solve.stiff_rows import with_stiff_forces
 from ..tuning import in_use
 from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import InputNumbers
+from .joint_pose import JointPose, named_coordinates
 from .stepping import FixedSteps, Stepper, stepper_of
 
 Inputs: TypeAlias = Mapping[str, float] | Sequence[float] | np.ndarray
@@ -114,8 +115,30 @@ class Simulation:
         }
         self.reset()
 
-    def reset(self) -> None:
-        """Return to the start, with the initial values of the inputs."""
+    def reset(
+        self,
+        state: StartFrom | None = None,
+        joints: Mapping[str, float] | None = None,
+        rates: Mapping[str, float] | None = None,
+    ) -> None:
+        """Return to the start, with the initial values of the inputs, or to another state.
+
+        Parameters
+        ----------
+        state : SavedState, Solution, str or Path, optional
+            State to continue from, as by `load`.
+        joints : mapping of str to float, optional
+            Coordinates of joints, m or rad, by channel (``hinge.angle``), or by joint if it has one. The others are
+            those of the start, unless loops move them.
+        rates : mapping of str to float, optional
+            Rates of coordinates, m/s or rad/s, by the names of `joints`. With either of both, all others are zero.
+
+        Raises
+        ------
+        InputError
+            If the state cannot be read or belongs to another model, or if the joints cannot have these coordinates or
+            rates; the simulation is then at its start.
+        """
         job = self._job
         self._inputs.set(self._first)
         job.dynamics.forget_pivots()
@@ -127,6 +150,25 @@ class Simulation:
         self._follow_from({})
         self._instant = Instant(job.data, job.dynamics.system, self._row, self._angle)
         self._known: dict[str, float] | None = None
+        if state is not None:
+            self.load(state)
+        elif joints is not None or rates is not None:
+            self._pose(joints or {}, rates or {})
+
+    def _pose(self, joints: Mapping[str, float], rates: Mapping[str, float]) -> None:
+        """Take coordinates and rates of joints at the start."""
+        dynamics, names = self._job.dynamics, self._joints.names
+        wanted = named_coordinates(self._joints, joints, "reset: joint")
+        rates_wanted = named_coordinates(self._joints, rates, "reset: rate of joint")
+        pose = JointPose(dynamics, self._joints, self.t, self._stepper.q)
+        try:
+            with dynamics.state.unchanged():
+                pose.move_to(wanted)
+                u = pose.velocities(self._stepper.u, rates_wanted)
+            self._stepper.restart(self.t, pose.q, u)
+        finally:
+            self._joints.watch(self._stepper.q, self._stepper.u)
+            self._follow_from({names[k]: value for k, value in wanted.items()})
 
     def _follow_from(self, known: Mapping[str, float]) -> None:
         """Count the turns of joint angles from the current time and known channels on."""
@@ -194,8 +236,9 @@ class Simulation:
         """
         if not 0 < dt < math.inf:
             raise InputError(f"step: found dt = {dt}, expected a time greater than 0 s")
-        if inputs is not None:
-            self.set_inputs(inputs)
+        self._forget()
+        if inputs is not None and self._inputs.set(inputs):
+            self._stepper.jump()
         end, before = self.t + dt, (self.q, self.u) if self._bounded else None
         self._steps += 1
         if self._relaxed and (self._steps % DRIFT_CHECK_INTERVAL == 0 or self._steps & (self._steps - 1) == 0):
@@ -209,7 +252,6 @@ class Simulation:
         self._followed = self._joints.any_followed
         if self._followed:
             self._joints.follow(end)
-        self._forget()
 
     def steps(self, n: int, inputs: Inputs | np.ndarray | None = None, dt: float | None = None) -> None:
         """Advance by several steps; schemes of fixed steps take them in one compiled call.
