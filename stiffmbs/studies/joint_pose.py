@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Final
 
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics
-from ..dynamics.native.parameters import CONSISTENCY
+from ..dynamics.native.parameters import CONSISTENCY, ELIMINATION
 from ..elements.turns import TURN
 from ..errors import InputError
 from ..reading.did_you_mean import instead_of
@@ -17,8 +17,6 @@ from ..results.joint_coordinates import JointCoordinates
 
 PART: Final = 0.5
 """Largest change of a joint coordinate between two poses that Newton's iteration follows, rad, or sizes of the mechanism."""
-MOST_MOVES: Final = 20
-"""Largest number of moves to a pose."""
 KEPT: Final = 1e-3
 """Weight of coordinates that are not given, which stay where they are if no loop moves them."""
 
@@ -41,6 +39,18 @@ def named_coordinates(joints: JointCoordinates, given: Mapping[str, float], what
     return {places[name]: float(value) for name, value in given.items()}
 
 
+def weights(count: int, given: Collection[int]) -> np.ndarray:
+    """Return the weights of joint coordinates in least squares: 1 for those that are given."""
+    found = np.full(count, KEPT)
+    found[list(given)] = 1.0
+    return found
+
+
+def parts_of(change: float) -> int:
+    """Return the number of poses to which Newton's iteration follows a change of a coordinate, rad or sizes."""
+    return max(1, math.ceil(change / PART))
+
+
 class JointPose:
     """Poses near a given one, and the linear equations of their small changes.
 
@@ -58,47 +68,43 @@ class JointPose:
 
         Raises InputError if the joints cannot have these coordinates.
         """
-        first, weight = self._coordinates(), np.full(len(self._joints.names), KEPT)
+        first, weight = self._coordinates(), weights(len(self._joints.names), given)
         goal = first.copy()
-        goal[list(given)], weight[list(given)] = [*given.values()], 1.0
-        length = self._dynamics.system.size
-        change = np.abs(goal - first) / np.where(self._turning, 1.0, max(length, np.finfo(float).tiny))
-        parts = max(1, math.ceil(change.max(initial=0.0) / PART))
+        goal[list(given)] = [*given.values()]
+        unit = np.where(self._turning, 1.0, self._dynamics.system.size or 1.0)
+        parts = parts_of(np.abs((goal - first) / unit).max(initial=0.0))
         for part in range(1, parts + 1):
             self._solve(first + (goal - first) * part / parts, weight)
         weight[weight < 1.0] = 0.0
         if not self._solve(goal, weight) <= CONSISTENCY.position_tolerance:
-            names = ", ".join(f"{self._joints.names[k]} = {value:g}" for k, value in given.items())
-            raise InputError(
-                f"reset: no pose of the mechanism has the joint coordinates {names}; expected ones that its joints allow together"
-            )
+            raise self._refused("pose", "coordinates", given)
 
     def velocities(self, u: np.ndarray, given: Mapping[int, float]) -> np.ndarray:
         """Return velocities on the constraints, near given ones, with rates of joints, 0 where none is given if no loop moves them.
 
         Raises InputError if the joints cannot have the given rates.
         """
-        goal, weight = np.zeros(len(self._joints.names)), np.full(len(self._joints.names), KEPT)
-        goal[list(given)], weight[list(given)] = [*given.values()], 1.0
-        found = u.copy()
-        for factor in (weight, np.where(weight < 1.0, 0.0, weight)):
-            matrix, rates = self._matrix(), self._rate_matrix()
+        goal, weight = np.zeros(len(self._joints.names)), weights(len(self._joints.names), given)
+        goal[list(given)] = [*given.values()]
+        matrix, rates, found = self._matrix(), self._rate_matrix(), u.copy()
+        for factor in (weight, np.where(weight < 1.0, 0.0, 1.0)):
             left = np.concatenate([self._rate_violation(found), factor * (rates @ found - goal)])
             found -= _least_squares(np.vstack([matrix, factor[:, None] * rates]), left)
         left = np.concatenate([self._rate_violation(found), factor * (rates @ found - goal)])
-        if not np.abs(left).max(initial=0.0) <= KEPT * CONSISTENCY.position_tolerance**0.5 * max(
-            1.0, np.abs(found).max(initial=0.0)
-        ):
-            names = ", ".join(f"{self._joints.names[k]} = {value:g}" for k, value in given.items())
-            raise InputError(
-                f"reset: no motion of the mechanism has the joint rates {names}; expected rates that its joints allow together"
-            )
+        if not np.abs(left).max(initial=0.0) <= ELIMINATION.least_residual * max(1.0, np.abs(found).max(initial=0.0)):
+            raise self._refused("motion", "rates", given)
         return found
+
+    def _refused(self, what: str, values: str, given: Mapping[int, float]) -> InputError:
+        named = ", ".join(f"{self._joints.names[k]} = {value:g}" for k, value in given.items())
+        return InputError(
+            f"reset: no {what} of the mechanism has the joint {values} {named}; expected {values} that its joints allow together"
+        )
 
     def _solve(self, goal: np.ndarray, weight: np.ndarray) -> float:
         """Move to coordinates by Newton's iteration; return the largest equation that is left."""
         left = np.inf
-        for _ in range(MOST_MOVES):
+        for _ in range(CONSISTENCY.most_assembly_moves):
             away = self._coordinates() - goal
             away[self._turning] -= TURN * np.round(away[self._turning] / TURN)
             violations = np.concatenate([self._violation(), weight * away])

@@ -44,6 +44,8 @@ QUATERNION = ("q0", "q1", "q2", "q3")
 """Channels that are normalised, unlike the coordinates of an integrator."""
 INPUT = "simulation/input/"
 """Prefix of the names of inputs in files of saved simulations."""
+EXACT = "simulation/state"
+"""Name of the coordinates and velocities in such files."""
 DRIFT_CHECK_INTERVAL = 64
 """Number of steps between checks for drift of relaxed constraints, in addition to those at steps 1, 2, 4, 8, ..."""
 
@@ -394,7 +396,7 @@ class Simulation:
         """Return the current state, from which a run may start: ``stiffmbs.run(model, start_from=sim.state)``."""
         channels, turns = self._report()
         known, counted = ({name: float(values[0]) for name, values in part.items()} for part in (channels, turns))
-        return SavedState("the simulation", self.t, known, counted)
+        return SavedState("the simulation", self.t, known, counted, exact=np.concatenate([self.q, self.u]))
 
     def _report(self) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
         """Return the current channels and revolution counters, one value each."""
@@ -438,6 +440,7 @@ class Simulation:
         content: dict[str, Any] = {name: np.array([value]) for name, value in state.channels.items()}
         content |= {TURNS + name: np.array([value]) for name, value in state.turns.items()}
         content |= {INPUT + name: np.array(value) for name, value in self._inputs.values.items()}
+        content[EXACT] = state.exact
         content[PROVENANCE] = np.array(
             provenance_of(self._job.data, self._job.settings, state=self._job.start_from).as_json()
         )
@@ -455,12 +458,14 @@ class Simulation:
         assert found is not None
         job = self._job
         placed = started_from(job.dynamics.system, in_pose_of(found, job.data), found)
+        exact = found.exact
         if isinstance(path, str | Path) and Path(path).suffix == ".npz":
             with np.load(path) as archive:
                 self._inputs.set(
                     {k.removeprefix(INPUT): float(archive[k]) for k in archive.files if k.startswith(INPUT)}
                 )
-        self._stepper.restart(found.t, placed.q, placed.u)
+                exact = archive.get(EXACT)
+        self._stepper.restart(found.t, *_exactly(placed.q, placed.u, exact))
         self.t = found.t
         self._follow_from(found.channels)
         self._forget()
@@ -478,3 +483,11 @@ class Simulation:
             for n, label in enumerate(labels)
             if label not in QUATERNION
         }
+
+
+def _exactly(q: np.ndarray, u: np.ndarray, exact: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    """Return saved coordinates and velocities if they are those of the channels, which rounding has changed, else these."""
+    by_channels = np.concatenate([q, u])
+    if exact is None or exact.shape != by_channels.shape or not np.allclose(exact, by_channels, rtol=1e-6, atol=1e-6):
+        return q, u
+    return exact[: len(q)], exact[len(q) :]

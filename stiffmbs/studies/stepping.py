@@ -297,7 +297,7 @@ class FixedSteps:
             self._begin(self._t, self.q.copy(), self.u.copy())
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """See `Stepper`. A state that satisfies the constraints is not changed."""
+        """See `Stepper`. A state that satisfies the constraints is not changed; the next step closes small violations."""
         self._t = self.time = self._dynamics.sides(t)[1]
         if self._has_events or self._is_off_constraints(q, u):
             self._begin(self._t, q, u)
@@ -310,8 +310,12 @@ class FixedSteps:
             return False
         state.q[:], state.u[:] = q, u
         state.evaluate("motion", self._t)
-        violations = state.values["motion"][: 2 * system.n_c].reshape(2, -1)[:, system.active]
-        return not np.abs(violations).max(initial=0.0) <= CONSISTENCY.position_tolerance
+        of_positions, of_velocities = np.abs(state.values["motion"][: 2 * system.n_c].reshape(2, -1)[:, system.active])
+        allowed = self._settings.rtol * max(1.0, np.abs(u).max(initial=0.0))
+        return not (
+            of_positions.max(initial=0.0) <= CONSISTENCY.position_tolerance
+            and of_velocities.max(initial=0.0) <= allowed
+        )
 
 
 class ShortRuns:

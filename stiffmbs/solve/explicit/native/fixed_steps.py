@@ -3,13 +3,22 @@
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, POSITION, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.compile.machine.native.statuses import NOT_FINITE
-from stiffmbs.dynamics.native.block_systems import to_position_constraints, to_velocity_constraints
+from stiffmbs.dynamics.elimination.native.by_blocks import blocks_view, factor_by_blocks
+from stiffmbs.dynamics.elimination.native.eliminated import smallest_move
+from stiffmbs.dynamics.native.block_systems import (
+    ROUNDING,
+    largest_of,
+    largest_open,
+    to_position_constraints,
+    to_velocity_constraints,
+)
 from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.projection import back_to_constraints
-from stiffmbs.dynamics.native.views import dynamics_view
+from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view
 from stiffmbs.solve.explicit.native.attempt import attempt
 from stiffmbs.solve.explicit.native.stages import (
     accelerated,
@@ -72,8 +81,47 @@ def _keep(x, s):
 
 
 @compiled
+def _factored(r, m, t):
+    """Factor J M^-1 J^T at the current pose; return True if all pivots are accurate."""
+    r.ready = factor_by_blocks(r, blocks_view(r.lists), evaluate(state_view(m.constraining), ACCELERATION, t))
+    return r.ready
+
+
+@compiled
+def _by_factors(r, s, m, t, tolerance):
+    """Move q by the factors of the pose, then u by those of the pose on the constraints; return True if they are satisfied."""
+    if not _factored(r, m, t):
+        return False
+    violations = evaluate(s, POSITION, t)
+    close = max(tolerance, ROUNDING * largest_of(s.q, s.n_pose))
+    moves = 0
+    while not largest_open(s, violations) <= close:
+        if moves == CONSISTENCY.most_frozen_moves:
+            return False
+        smallest_move(r, s, violations)
+        add_rates(s, r.a, 1.0, s.q)
+        take_unit_length(s)
+        violations = evaluate(s, POSITION, t)
+        moves += 1
+    if moves > 0 and not _factored(r, m, t):
+        return False
+    violations = evaluate(s, MOTION, t)
+    smallest_move(r, s, shifted(violations, s.n_c))
+    for k in range(s.n_u):
+        s.u[k] += r.a[k]
+    return True
+
+
+@compiled
 def _newton_projection(x, s, m, t):
-    """Project q and u by Newton's iteration; frozen factors would change velocities by an error of second order."""
+    """Project q and u by Newton's iteration; factors of the step's start would change velocities by an error of second order.
+
+    In space the factors are those of the elimination; in the plane the LU is as fast, and its moves of q have the smallest norm.
+    """
+    if s.n_c == 0:
+        return 0
+    if x.eliminates and s.spatial and _by_factors(eliminated_view(x.eliminated), s, m, t, x.tolerance):
+        return 0
     status = to_position_constraints(s, m, t, x.tolerance, CONSISTENCY.most_moves)
     return status if status < 0 else to_velocity_constraints(s, m, t)
 
