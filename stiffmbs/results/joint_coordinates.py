@@ -24,8 +24,8 @@ FOLLOW = Routine(
 class JointCoordinates:
     """Coordinates of joints and their rates, in the order of the joints; angles with their full turns.
 
-    Turns that the integration does not count follow from the mean rate since the last state, so that an angle may change
-    by up to half a turn otherwise than by its rates at both ends.
+    Turns that the integration does not count follow from the mean of the rates at the last state and now. The change of
+    an angle may differ from that by up to half a turn.
 
     - `names`: channels of the coordinates. `coordinates`, `rates`: their values, m or rad, and rates, at the last state.
     - `angles`: channels among these whose turns are counted, by the integration or here.

@@ -323,7 +323,8 @@ class Simulation:
         except SolverError:
             if self._relaxed or not relaxed(self._job):
                 raise
-            self._go_on_with(self._steps_of(self._job, self.q, self.u), relaxed=True)
+            with in_use(self._job.settings.tuning):
+                self._go_on_with(self._steps_of(self._job, self.q, self.u), relaxed=True)
             self._stepper.advance(end)
 
     def _advance_without_drift(self, end: float) -> None:

@@ -225,7 +225,7 @@ class FixedSteps:
         self._work = Integration(scheme_of(settings), dynamics, start, grid, settings)
         self.q, self.u, self.time, self.length = self._work.q, self._work.u, t, 0.0
         self._t, self._at = t, self._work.at
-        self._one, self._many = ONE_IN_LOOP.short_call, MANY_IN_LOOP.call
+        self._one, self._one_long, self._many = ONE_IN_LOOP.short_call, ONE_IN_LOOP.call, MANY_IN_LOOP.call
         system = dynamics.system
         self._has_events, self._has_inputs = system.n_event_functions > 0, system.has_inputs
         self._has_limits = system.first_limit < system.n_event_functions
@@ -236,7 +236,9 @@ class FixedSteps:
             self._run(t)
             return
         start = self._t
-        status = self._one(start, t, steps_between(start, t, self._step), self._at)
+        steps = steps_between(start, t, self._step)
+        one = self._one if steps <= self._work.capacity else self._one_long
+        status = one(start, t, steps, self._at)
         if status < 0:
             raise failed(start, status)
         self._t = self.time = t
@@ -247,17 +249,18 @@ class FixedSteps:
         Returns the number of these steps; 0 if they must be taken one by one. Raises SolverError if a step fails, with the
         state before it.
         """
-        count, end = len(values), t + len(values) * dt
-        if self._t != t or self._has_events or (self._has_inputs and self._breaks(end)):
+        if self._t != t or self._has_events or (self._has_inputs and self._breaks(t + len(values) * dt)):
             return 0
         steps = steps_between(t, t + dt, self._step)
-        done = self._many(t, dt, steps, count, *addresses(values, held.table, joints.table), self._at)
-        for _ in range(done):
-            self._t += dt
-        self.time = self._t
-        if done < count:
-            raise failed(self._t, self._dynamics.status)
-        return done
+        for first in range(0, len(values), self._work.capacity):  # an interrupt is noticed between calls
+            rows = values[first : first + self._work.capacity]
+            done = self._many(self._t, dt, steps, len(rows), *addresses(rows, held.table, joints.table), self._at)
+            for _ in range(done):
+                self._t += dt
+            self.time = self._t
+            if done < len(rows):
+                raise failed(self._t, self._dynamics.status)
+        return len(values)
 
     def _breaks(self, end: float) -> bool:
         """Return True if an input has a breakpoint up to a time, s; determine the features of inputs if they are not known."""

@@ -56,7 +56,7 @@ JOINT_COORDINATES = Layout({
     "state": INTS, "n": INT, "place": INTS, "rate_place": INTS, "counter": INTS,
     "t": FLOAT_CELL, "coordinate": FLOATS, "rate": FLOATS,
 })  # fmt: skip
-"""Coordinates of joints and their rates at a time, and their places among the output terms of a state of their own, whose set
-``output`` has the terms of joints alone.  `counter` is the coordinate that counts the turns of an angle, `FOLLOWED` for an angle
+"""Coordinates of joints and their rates at a time, and their places among the output terms.  `state` is a table of its own, whose
+set ``output`` has the terms of joints alone.  `counter` is the coordinate that counts the turns of an angle, `FOLLOWED` for an angle
 without one, and `WITHOUT_TURNS` for other coordinates."""
 FOLLOWED, WITHOUT_TURNS = -1, -2
