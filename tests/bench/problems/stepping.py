@@ -9,8 +9,8 @@ import numpy as np
 from stiffmbs.model.read_scene import read_scene
 
 from ..by_hand import cart_pendulum as hand
-from ..in_the_loop import InTheLoop
-from ..stepping import Stepping
+from ..stepping.controlled import Stepping
+from ..stepping.in_the_loop import InTheLoop
 from .cart_pendulum import SCENE as FREE
 
 SCENE = FREE.replace("gravity:", "parameters: {F: 0 N}\ngravity:").replace(

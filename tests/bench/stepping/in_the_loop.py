@@ -16,7 +16,7 @@ import stiffmbs
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.studies.simulation import Simulation
 
-from .benchmark import Row
+from ..benchmark import Row
 
 SCHEMES: dict[str, dict[str, Any]] = {
     "rk4": {"solver": "projected", "scheme": "rk4"},
