@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 NOT_REACHED = NoteKind(
     "accuracy-not-reached",
-    "the requested accuracy was not reached: {found} at rtol {rtol:.2g}",
-    "use a smaller rtol, or --verify",
+    "the requested accuracy was not reached: {found} {how}",
+    "use a smaller {setting}, or --verify",
 )
 EXACT = NoteKind(
     "accuracy-exact",
@@ -60,8 +60,6 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
             from ..error_estimate.estimate import estimated
 
             return estimated(solution, job.data, job.dynamics, job.start, job.subsystems, trajectory, job.settings)
-        if traits.fixed_steps:
-            return _without(solution, "not estimated for fixed steps; --verify compares with other runs")
         if _work(job, trajectory) <= job.grid.recorded.most:
             return _by_second_run(job, trajectory, solution)
     return _without(
@@ -77,13 +75,15 @@ def _work(job: Job, trajectory: Trajectory) -> float:
     """Return the work of a second run, evaluations of the equations times unknowns; infinite if recorded steps have been too many."""
     system, steps, found = job.dynamics.system, _steps(trajectory), trajectory.statistics
     unknowns = system.n_q + system.n_u + system.n_c
+    if traits_of(job.settings).fixed_steps:
+        return 2.0 * float(found["accelerations"]) * unknowns
     if not found.get("jacobians") or "projected" in trajectory.solver:
         return steps * DOP853.stages * unknowns
     return steps * ESTIMATE.row + float(found["residuals"]) * unknowns if system.sampled.any() else np.inf
 
 
 def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
-    """Return the results with errors from a run at a smaller tolerance, or at a larger one if there is none.
+    """Return the results with errors from a run at a smaller tolerance, or at a larger one if there is none, or with half the step.
 
     Where breakpoints or samples limit the steps, both runs may take the same ones; another run then takes smaller ones.
     """
@@ -91,24 +91,34 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     from ..results.error_bars import bars_by_difference
     from .run import finished
 
-    steps = _steps(trajectory)
+    steps, traits = _steps(trajectory), traits_of(job.settings)
     part = _part_of_second(job.settings.rtol)
     system, grid = job.dynamics.system, job.grid
     breakpoints = job.dynamics.input_features(grid.start, grid.end).breakpoints if system.has_inputs else np.empty(0)
     times, at = _with_steps(solution, trajectory, breakpoints)
     longest = float(np.diff(trajectory.step_times).max(initial=0.0))
     for repeats in range(1, MOST_REPEATS + 1):
-        settings = _with_errors(job.settings, part**repeats, longest if repeats > 1 else 0.0)
+        if traits.fixed_steps:
+            settings, how = (
+                changed(job.settings, {"step": float(np.ptp(solution.time)) / (2 * steps)}),
+                "with half the step",
+            )
+        else:
+            settings = _with_errors(job.settings, part**repeats, longest if repeats > 1 else 0.0)
+            how = f"at rtol {settings.rtol:.0e}"
         try:
             other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=Recording(), times=times)))
         except StiffmbsError as error:
-            return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} failed: {error}; use --verify")
+            return _without(solution, f"not estimated: a run {how} failed: {error}; use --verify")
+        if traits.fixed_steps:
+            part = (steps / _steps(other.trajectory)) ** traits.order
+            break
         if part > 1.0 or _steps(other.trajectory) > steps * part ** (-0.5 / DOP853.order):
             break
         if part * settings.rtol < ESTIMATE.smallest_rtol:
             break
     if len(other.time) != len(times):
-        return _without(solution, f"not estimated: a run at rtol {settings.rtol:.0e} ended early; use --verify")
+        return _without(solution, f"not estimated: a run {how} ended early; use --verify")
     found = bars_by_difference(
         times, at, solution.channels, other.channels, part, breakpoints + grid.aside, ESTIMATE.numbers_at_once
     )
@@ -177,11 +187,12 @@ def _with_accuracy(solution: Solution, judged: Judged, settings: RunSettings) ->
         return solution
     elif estimate.status == "none":
         note = NOT_JUDGED(why=estimate.sentence)
-    elif judged.reached:
-        reached = f"{judged.sentence} at rtol {settings.rtol:.2g}"
-        return replace(solution, estimate=estimate.with_accuracy(reached))
     else:
-        note = NOT_REACHED(found=judged.sentence, rtol=settings.rtol)
+        fixed = traits.fixed_steps
+        how = f"with steps of at most {settings.step:.2g} s" if fixed else f"at rtol {settings.rtol:.2g}"
+        if judged.reached:
+            return replace(solution, estimate=estimate.with_accuracy(f"{judged.sentence} {how}"))
+        note = NOT_REACHED(found=judged.sentence, how=how, setting="step" if fixed else "rtol")
     return replace(solution, notes=(*solution.notes, note))
 
 

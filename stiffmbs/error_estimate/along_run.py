@@ -223,15 +223,14 @@ def _step_by_step(
     dynamics: Dynamics, each: _Prepared, along: Along, steps: slice, error: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the errors at all rows of some steps of a piece, from that at their start, and these rows."""
-    everywhere = np.arange(steps.start, steps.stop)
-    nodes, t = each.rows[(each.rows >= steps.start) & (each.rows < steps.stop)], each.piece.t
-    if along.computed.all():
-        nodes, at = everywhere, each.states.at(each.within(everywhere))
-        along = linearised_along(dynamics, at, np.zeros(1, dtype=int), float(np.diff(t[steps]).max()))
+    rows, t = np.arange(steps.start, steps.stop), each.piece.t[steps]
+    nodes = each.rows[(each.rows >= steps.start) & (each.rows < steps.stop)]
+    if (along.computed[1:] & along.computed[:-1]).any():  # matrices between nodes are not near a line
+        at = each.states.at(each.within(rows))
+        nodes, along = rows, linearised_along(dynamics, at, np.zeros(1, dtype=int), float(np.diff(t).max()))
     knots = along.computed.copy()
     knots[[0, -1]] = True
-    found = step_by_step(t[steps], each.defects[steps], along.space.at(knots), nodes[knots] - steps.start, error)
-    return found, everywhere
+    return step_by_step(t, each.defects[steps], along.space.at(knots), nodes[knots] - steps.start, error), rows
 
 
 def _without_errors(dynamics: Dynamics, found: _Found) -> Closed:

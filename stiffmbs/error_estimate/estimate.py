@@ -16,7 +16,7 @@ from ..notes import Note, NoteKind
 from ..results.digits import KnownErrors, over_time
 from ..results.error_bars import UNKNOWN, ErrorEstimate, bars
 from ..results.solution import Solution
-from ..solve.settings import near_constraints
+from ..solve.settings import near_constraints, traits_of
 from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors, state_errors
@@ -25,7 +25,6 @@ from .evaluated import evaluated
 from .linearised import nearly_singular
 from .parameters import ESTIMATE
 
-REMEDY = "use a smaller rtol, or accuracy: to choose it by the estimate"
 LOST = NoteKind(
     "solution-lost",
     "the solution is lost from t = {t:.3g} s on: its estimated error exceeds {limit:g} rad or as large a part of the "
@@ -33,7 +32,9 @@ LOST = NoteKind(
     "use a smaller rtol",
 )
 LARGE = NoteKind(
-    "large-error", "the estimated error of {element} is {error}, {percent:.2g} % of its largest value", REMEDY
+    "large-error",
+    "the estimated error of {element} is {error}, {percent:.2g} % of its largest value",
+    "use a smaller {setting}",
 )
 
 
@@ -84,7 +85,7 @@ def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solutio
 
 def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings, size: float) -> Iterator[Note]:
     """Yield a note on the largest error, if a position is wrong by many tolerances or any channel by much."""
-    rtol = max(settings.rtol, DEFAULT_RTOL)
+    rtol, fixed = max(settings.rtol, DEFAULT_RTOL), traits_of(settings).fixed_steps
     absolute = max(settings.atol or 0.0, rtol * min(1.0, size))
     errors, limits = known.relative(over_time), {}
     for name in errors:
@@ -92,12 +93,13 @@ def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings,
         between = np.nan_to_num(max(bar.sampled_least, bar.sampled_greatest))  # where the largest value may lie
         errors[name] /= 1.0 + between / known.sizes[name]
         tolerance = rtol + absolute / known.sizes[name]
-        is_position = known.group[name] == "positions"
-        limits[name] = min(ESTIMATE.tolerances * tolerance, ESTIMATE.large) if is_position else ESTIMATE.large
+        has_tolerance = known.group[name] == "positions" and not fixed
+        limits[name] = min(ESTIMATE.tolerances * tolerance, ESTIMATE.large) if has_tolerance else ESTIMATE.large
     worst = max(limits, key=lambda name: errors[name] / limits[name], default="")
     if worst and errors[worst] > limits[worst]:
         error = f"{solution.errors[worst].over_time:.2g} {solution.unit(worst)}".strip()
-        yield LARGE(worst, error=error, percent=100 * errors[worst])
+        setting = "step" if fixed else "rtol, or accuracy: to choose it by the estimate"
+        yield LARGE(worst, error=error, percent=100 * errors[worst], setting=setting)
 
 
 def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .linearised import Linearised
 from .parameters import ESTIMATE
-from .transport import Block, at_once
+from .transport import RADAU_NODES, Block, at_once, integrals
 
 
 def are_affordable(steps: int, size: int) -> bool:
@@ -49,10 +49,9 @@ def step_by_step(
 ) -> np.ndarray:
     """Return the errors at the ends of the steps of a piece, shape (rows, full), from that at its start.
 
-    Each step takes the stability function of the Radau method of three stages with the matrix M of its middle: a+ = D(Z)^-1
-    (N(Z) a + (1 - Z/10 + Z^2/60) h d), Z = h M. The coordinates a and M are those of the tangent space at the next node: a mean of
-    stiff matrices of two spaces is not stable. `defects`: of the steps that end at each row. `space`: tangent spaces at the rows
-    `nodes`.
+    Each step of a' = M a + d is one of the Radau method of three stages, with M linear in time between nodes: stiff directions
+    turn with their bodies. The coordinates a and M are those of the tangent space at the next node. `defects`: of the steps that end at
+    each row. `space`: tangent spaces at the rows `nodes`.
     """
     errors = np.zeros((len(t), len(start)))
     errors[0] = start
@@ -60,14 +59,15 @@ def step_by_step(
         return errors
     coordinates, onto, before, after = _in_next_space(space)
     a, next_node = coordinates[0] @ start, np.searchsorted(nodes, np.arange(len(t)))
-    count = at_once(space.n)
+    count = at_once(len(RADAU_NODES) * space.n)
     for first in range(1, len(t), count):
         rows = np.arange(first, min(first + count, len(t)))
         k, h = next_node[rows], t[rows] - t[rows - 1]
-        part = (t[rows] - 0.5 * h - t[nodes[k - 1]]) / (t[nodes[k]] - t[nodes[k - 1]])
-        matrices = before[k - 1] + part[:, None, None] * (after[k - 1] - before[k - 1])
-        sources = h[:, None] * np.einsum("kif,kf->ki", coordinates[k], defects[rows])
-        for n, node, step in zip(rows, k, _steps(h[:, None, None] * matrices, sources), strict=True):
+        at = t[rows - 1, None] + h[:, None] * RADAU_NODES
+        part = (at - t[nodes[k - 1], None]) / (t[nodes[k]] - t[nodes[k - 1]])[:, None]
+        matrices = before[k - 1, None] + part[..., None, None] * (after[k - 1] - before[k - 1])[:, None]
+        sources = np.einsum("kif,kf->ki", coordinates[k], defects[rows])
+        for n, node, step in zip(rows, k, _steps(h, matrices, sources), strict=True):
             if n == nodes[node - 1] + 1:
                 a = onto[node - 1] @ a
             a = step[:, :-1] @ a + step[:, -1]
@@ -80,17 +80,28 @@ def _in_next_space(space: Linearised) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
     `coordinates` of shape (nodes, n, full): from variations to coordinates in the tangent space. `onto` of shape
     (nodes - 1, n, n): from coordinates in one space to those in the next. `before`, `after`: matrices M at both nodes, in the
-    coordinates of the second.
+    coordinates a = C e of the second: a' = C R (C B)^-1 a.
     """
     coordinates = np.linalg.solve(space.left @ space.basis, space.left)
-    matrices = coordinates @ space.rates
     onto = coordinates[1:] @ space.basis[:-1]
-    return coordinates, onto, onto @ matrices[:-1] @ np.linalg.inv(onto), matrices[1:]
+    before = coordinates[1:] @ space.rates[:-1] @ np.linalg.inv(onto)  # rates leave the tangent space, which turns
+    return coordinates, onto, before, coordinates[1:] @ space.rates[1:]
 
 
-def _steps(z: np.ndarray, sources: np.ndarray) -> np.ndarray:
-    """Return the matrices of some steps, with a last column for their sources."""
-    square, one = z @ z, np.eye(z.shape[1])
-    below = one - 0.6 * z + 0.15 * square - z @ square / 60.0
-    source = (one - 0.1 * z + square / 60.0) @ sources[..., None]
-    return np.linalg.solve(below, np.concatenate([one + 0.4 * z + 0.05 * square, source], axis=2))
+def _steps(h: np.ndarray, matrices: np.ndarray, sources: np.ndarray) -> np.ndarray:
+    """Return the matrices of some steps of lengths h, with a last column for their sources, shape (steps, n, n + 1).
+
+    `matrices` of shape (steps, 3, n, n): M_i at the Radau nodes. `sources` d of shape (steps, n).
+
+    With the inverse W of the matrix of weights, (W_ii - h M_i) a_i + sum_j W_ij a_j = w_i a + h d; a_1 and a_2 are eliminated.
+    """
+    w, one, h = np.linalg.inv(integrals(RADAU_NODES)), np.eye(matrices.shape[2]), h[:, None, None]
+    sums = w.sum(axis=1)
+    diagonal = np.diagonal(w)[:, None, None] * one - h[:, None] * matrices
+    first = np.linalg.inv(diagonal[:, 0])
+    second = (w[2, 1] * one - w[2, 0] * w[0, 1] * first) @ np.linalg.inv(diagonal[:, 1] - w[1, 0] * w[0, 1] * first)
+    both = second @ first
+    below = diagonal[:, 2] - w[2, 0] * w[0, 2] * first - w[1, 2] * second + w[1, 0] * w[0, 2] * both
+    step = sums[2] * one - sums[0] * w[2, 0] * first - sums[1] * second + sums[0] * w[1, 0] * both
+    source = h * (one - w[2, 0] * first - second + w[1, 0] * both) @ sources[..., None]
+    return np.asarray(np.linalg.solve(below, np.concatenate([step, source], axis=2)))

@@ -25,7 +25,7 @@ class Traits:
     - `name`: name in messages.
     - `reads`: settings that it reads, in addition to those for all solvers.
     - `implicit`: true if it takes implicit steps; dependent coordinates are then eliminated from the dynamics.
-    - `fixed_steps`: true if all steps have the length `step`, without error control.
+    - `fixed_steps`: true if all steps have the length `step`, without error control; then `order` is that of the method.
     - `exact`: true if states follow from drives alone, exact apart from rounding.
     - `locates_events`: true if it stops at events of force laws, or does not need to.
     - `switches`: true if it switches between integrators during a run.
@@ -35,6 +35,7 @@ class Traits:
     reads: tuple[str, ...] = ()
     implicit: bool = False
     fixed_steps: bool = False
+    order: int = 0
     exact: bool = False
     locates_events: bool = True
     switches: bool = False

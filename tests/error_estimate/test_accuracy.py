@@ -74,12 +74,14 @@ def test_a_scene_without_forces_has_any_accuracy_of_these(asked):
     assert "reached velocities" in found.estimate.sentence and not any("accuracy" in note for note in found.notes)
 
 
-def test_an_accuracy_without_an_estimate_is_not_judged():
+@pytest.mark.parametrize("scheme, reached", [("rk4", True), ("euler_cromer", False)])
+def test_fixed_steps_are_judged_and_not_repeated(scheme, reached):
     """Three runs said 'nan', with a note on an rtol that nobody set."""
-    rk4 = {"solver": "projected", "scheme": "rk4"}
-    found = stiffmbs.run(stiffmbs.read_scene(TUMBLING), accuracy={"positions": "0.1 mm"}, **rk4)
-    (note,) = (note for note in found.notes if "accuracy" in note or "rtol" in note)
-    assert note.startswith("the requested accuracy cannot be judged: errors are not estimated for fixed steps")
+    how = {"solver": "projected", "scheme": scheme, "step": "1 ms"}
+    found = stiffmbs.run(stiffmbs.read_scene(DOUBLE), accuracy={"positions": "0.1 mm"}, duration=2, **how)
+    sentences = [found.estimate.sentence] if reached else [note for note in found.notes if "accuracy" in note]
+    assert ["with steps of at most 0.001 s" in each for each in sentences] == [True]
+    assert not any("rtol" in note for note in found.notes)
 
 
 def test_a_lost_solution_has_unknown_errors():

@@ -334,3 +334,21 @@ def test_a_transport_may_begin_within_a_piece():
     blocks = [Block(first + np.arange(3), rng.normal(size=(2, 3)), times) for first in (0, 2)]
     whole = transported(blocks, space, place, basis[0] @ np.ones(2))
     np.testing.assert_allclose(transported(blocks[1:], space, place, whole[2])[3:], whole[3:])
+
+
+@pytest.mark.parametrize("scheme, step", [("euler_cromer", 1e-3), ("rk4", 6e-3)])
+def test_fixed_steps_are_compared_with_half_of_them(scheme, step):
+    """The step, reduced to divide the output interval, is halved: a half of the given one could be the same."""
+    scene = stiffmbs.read_scene("""
+        gravity: [0, -9.81]
+        bodies: {a: {mass: 1, inertia: 0.1, position: [1, 0]}, b: {mass: 1, inertia: 0.1, position: [3, 0]}}
+        joints:
+          p: {type: revolute, i: {body: a, point: [-1, 0]}, j: ground}
+          q: {type: revolute, i: {body: b, point: [-1, 0]}, j: {body: a, point: [1, 0]}}
+        run: {duration: 1, output: 10 ms}
+    """)
+    truth = stiffmbs.run(scene, solver="radau", rtol=1e-12, errors=False)
+    for given in (step, 0.05):
+        found = stiffmbs.run(scene, solver="projected", scheme=scheme, step=given)
+        for name in ("a.x", "b.y", "b.omega", "p.fy"):
+            assert 0.8 < ratio(found, name, truth[name]) < 1.25, (name, given)

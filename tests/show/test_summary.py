@@ -26,7 +26,9 @@ def chain():
     }
     scene = {"gravity": [0, -9.81], "bodies": bodies, "joints": joints}
     model = stiffmbs.read_scene(str(scene))
-    return stiffmbs.run(model, duration=0.1, points=3, solver="projected", scheme="rk4", step=0.01, rtol=1e-5)
+    return stiffmbs.run(
+        model, duration=0.1, points=3, solver="projected", scheme="rk4", step=0.01, rtol=1e-5, errors=False
+    )
 
 
 def printed(solution, width, all=False):

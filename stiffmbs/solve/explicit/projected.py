@@ -18,18 +18,13 @@ READ_BY_FIXED_STEPS = ("scheme", "step", "projection")
 READ_BY_ADAPTIVE_STEPS = ("scheme", "rtol", "atol", "max_step", "projection")
 
 
-def _fixed(name: str) -> Traits:
-    return Traits(name, READ_BY_FIXED_STEPS, fixed_steps=True, locates_events=False)
+def _traits(scheme: Scheme) -> Traits:
+    if scheme.adaptive:
+        return Traits(scheme.name, READ_BY_ADAPTIVE_STEPS)
+    return Traits(scheme.name, READ_BY_FIXED_STEPS, fixed_steps=True, order=scheme.order, locates_events=False)
 
 
-def _adaptive(name: str) -> Traits:
-    return Traits(name, READ_BY_ADAPTIVE_STEPS)
-
-
-TRAITS = {
-    EULER_CROMER.name: _fixed(EULER_CROMER.name),
-    **{name: _adaptive(name) if scheme.adaptive else _fixed(name) for name, scheme in SCHEMES.items()},
-}
+TRAITS = {scheme.name: _traits(scheme) for scheme in (EULER_CROMER, *SCHEMES.values())}
 """Traits by scheme."""
 
 
