@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from ..model.scene import Scene
 from ..reading.did_you_mean import instead_of
 from .case_solver import CaseSolver
 
+Inputs: TypeAlias = Mapping[str, float] | Sequence[float] | np.ndarray
+"""Values of inputs by name, or of all of them in their order."""
 TRIED: Final = (0.0, *(sign * 10.0**k for k in (0, -1, 3) for sign in (1, -1)))
 """Values at which the linearity of force parameters in an input is tested."""
 SAME_NUMBER = 8 * float(np.finfo(float).eps)
@@ -54,23 +56,20 @@ class InputNumbers:
         """Return the current values by name."""
         return dict(zip(self.names, self.held.values.tolist(), strict=True))
 
-    def set(self, values: Mapping[str, float] | Sequence[float] | np.ndarray) -> bool:
+    def set(self, values: Inputs) -> bool:
         """Change inputs; return True if any of them has a new value.
 
         `values`: by name, others keep theirs; or all of them, in the order of `names`. Raises InputError, with nothing
         changed, if there is no such input, or a value is invalid or changes more than numbers of forces and states.
         """
         wanted = self.held.wanted
-        try:
-            self._fill(wanted, values)
-        except (TypeError, ValueError):
-            raise InputError(f"inputs: found {values!r}, expected numbers") from None
+        self._fill(wanted, values)
         if self.affine:
-            changed = self.held.hold()
-            if changed < 0:
-                self.check_finite(wanted)
-            return changed > 0
-        self.check_finite(wanted)
+            status = self.held.hold()
+            if status < 0:
+                self._check_finite(wanted)
+            return status > 0
+        self._check_finite(wanted)
         changed = {
             name: new
             for name, new, old in zip(self.names, wanted.tolist(), self.held.values.tolist(), strict=True)
@@ -81,29 +80,46 @@ class InputNumbers:
             self.held.values[:] = wanted
         return bool(changed)
 
-    def _fill(self, wanted: np.ndarray, values: Mapping[str, float] | Sequence[float] | np.ndarray) -> None:
+    def rows(self, values: Inputs | None, n: int) -> np.ndarray:
+        """Return the inputs of n steps, one row for each: given rows, or equal ones of given or of the current values.
+
+        Raises InputError if there is no such input, or if values are invalid.
+        """
+        if values is None or isinstance(values, Mapping) or np.ndim(_numbers(values)) < 2:
+            first = self.held.values.copy()
+            if values is not None:
+                self._fill(first, values)
+            found = np.tile(first, (n, 1))
+        else:
+            found = np.ascontiguousarray(_numbers(values))
+            self._check_shape(found, (n,))
+        self._check_finite(found)
+        return found
+
+    def _fill(self, wanted: np.ndarray, values: Inputs) -> None:
         """Fill an array with all inputs; those that are not given keep their values."""
-        if isinstance(values, np.ndarray) and values.shape == wanted.shape:
+        if isinstance(values, np.ndarray) and values.shape == wanted.shape and values.dtype.kind == "f":
             wanted[:] = values
         elif isinstance(values, Mapping):
             wanted[:] = self.held.values
             for name, value in values.items():
                 if name not in self._places:
                     raise InputError(f"input '{name}': found no such input{instead_of(name, self._places)}")
-                wanted[self._places[name]] = value
+                wanted[self._places[name]] = _number(value)
         else:
-            self.check_shape(values, ())
-            wanted[:] = values
+            numbers = _numbers(values)
+            self._check_shape(numbers, ())
+            wanted[:] = numbers
 
-    def check_shape(self, values: object, rows: tuple[int, ...]) -> None:
-        """Raise an InputError if values are no array of numbers, one for each input, with these rows."""
-        shape, expected = np.shape(values), (*rows, len(self.names))  # type: ignore[arg-type]
+    def _check_shape(self, values: np.ndarray, rows: tuple[int, ...]) -> None:
+        """Raise an InputError if an array has not one column for each input, and these rows."""
+        shape, expected = values.shape, (*rows, len(self.names))
         if shape != expected:
             raise InputError(
                 f"inputs: found an array of shape {shape}, expected {expected}, one column for each of {', '.join(self.names) or 'no inputs'}"
             )
 
-    def check_finite(self, values: np.ndarray) -> None:
+    def _check_finite(self, values: np.ndarray) -> None:
         """Raise an InputError that names the first input without a finite value."""
         bad = np.argwhere(~np.isfinite(values))
         if len(bad):
@@ -170,3 +186,18 @@ class InputNumbers:
         except InputError:
             return None
         return None if found is None else {(id(change.group), change.number): change for change in found}
+
+
+def _numbers(values: Any) -> np.ndarray:
+    """Return values as an array of numbers; raise an InputError if they are none."""
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"inputs: found {values!r}, expected numbers") from None
+
+
+def _number(value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"inputs: found {value!r}, expected a number") from None

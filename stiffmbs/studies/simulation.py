@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeAlias, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -32,12 +32,10 @@ from ..solve.settings import changed
 from ..solve.stiff_rows import with_stiff_forces
 from ..tuning import in_use
 from .case_solver import CaseSolver, Task, written_scene
-from .input_numbers import InputNumbers
+from .input_numbers import InputNumbers, Inputs
 from .joint_pose import JointPose, named_coordinates
 from .stepping import FixedSteps, Stepper, stepper_of
 
-Inputs: TypeAlias = Mapping[str, float] | Sequence[float] | np.ndarray
-"""Values of inputs by name, or of all of them in their order."""
 OWN_INPUTS = "inputs"
 """Section of a scene with its inputs."""
 QUATERNION = ("q0", "q1", "q2", "q3")
@@ -255,7 +253,7 @@ class Simulation:
         if self._followed:
             self._joints.follow(end)
 
-    def steps(self, n: int, inputs: Inputs | np.ndarray | None = None, dt: float | None = None) -> None:
+    def steps(self, n: int, inputs: Inputs | None = None, dt: float | None = None) -> None:
         """Advance by several steps; schemes of fixed steps take them in one compiled call.
 
         Parameters
@@ -277,16 +275,7 @@ class Simulation:
         dt = self._job.settings.step if dt is None else dt
         if n < 1 or not 0 < dt < math.inf:
             raise InputError(f"steps: found n = {n} and dt = {dt}, expected a number and a time greater than 0")
-        rows = None
-        if inputs is not None and not isinstance(inputs, Mapping) and np.ndim(inputs) == 2:
-            self._inputs.check_shape(inputs, (n,))
-            rows = np.ascontiguousarray(inputs, dtype=float)
-            self._inputs.check_finite(rows)
-        elif inputs is not None:
-            self.set_inputs(inputs)
-        if rows is None:
-            rows = np.tile(self._inputs.held.values, (n, 1))
-        done = 0
+        rows, done = self._inputs.rows(inputs, n), 0
         if self._inputs.affine and not (self._bounded or self._relaxed):
             done = self._taken_together(dt, rows)
         for row in rows[done:]:

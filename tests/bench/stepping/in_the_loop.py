@@ -93,7 +93,7 @@ class InTheLoop:
         return self.size * np.random.default_rng(0).random((self.steps, len(self.inputs)))
 
     def _simulation(self, model: ModelData | Path, settings: dict[str, Any]) -> Simulation:
-        fixed = {"step": self.step} if settings.get("scheme") in ("rk4", "euler_cromer") else {}
+        fixed: dict[str, Any] = {"step": self.step} if settings.get("scheme") in ("rk4", "euler_cromer") else {}
         return stiffmbs.simulation(model, inputs=dict.fromkeys(self.inputs, 0.0), **settings, **fixed)
 
     def _after(self, sim: Simulation, values: np.ndarray) -> np.ndarray:
