@@ -6,6 +6,7 @@ import statistics
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -63,22 +64,12 @@ class InTheLoop:
             off = float(np.abs(self._after(sim, values) - exact).max())
             rows += [
                 self._row(
-                    scheme,
-                    "a call for each step, arrays of joints read",
-                    off,
-                    lambda sim=sim: _arrays(sim, self.step, values),
+                    scheme, "a call for each step, arrays of joints read", off, partial(_arrays, sim, self.step, values)
                 ),
-                self._row(scheme, "ten channels read by name", off, lambda sim=sim: _by_name(sim, self.step, values)),
+                self._row(scheme, "ten channels read by name", off, partial(_by_name, sim, self.step, values)),
             ]
         together = self._simulation(model, SCHEMES["rk4"])
-        rows.append(
-            self._row(
-                "rk4",
-                "all steps in one call",
-                0.0,
-                lambda: (together.reset(), together.steps(len(values), values, self.step)),
-            )
-        )
+        rows.append(self._row("rk4", "all steps in one call", 0.0, partial(_together, together, self.step, values)))
         if isinstance(model, Path) and find_spec("mujoco"):
             rows.append(
                 self._row("mujoco rk4", "a call for each step, arrays read", *_mujoco(model, values, exact), peer=True)
@@ -125,6 +116,11 @@ def _by_name(sim: Simulation, step: float, values: np.ndarray) -> None:
         sim.step(step, row)
         for name in names:
             sim[name]
+
+
+def _together(sim: Simulation, step: float, values: np.ndarray) -> None:
+    sim.reset()
+    sim.steps(len(values), values, step)
 
 
 def _mujoco(path: Path, values: np.ndarray, exact: np.ndarray) -> tuple[float, Callable[[], object]]:
