@@ -113,6 +113,8 @@ class Simulation:
             for values, ending in ((joints.coordinates, ""), (joints.rates, "_rate"))
             for k, name in enumerate(joints.names)
         }
+        self._instant = Instant(self._job.data, self._job.dynamics.system, self._row, self._angle)
+        self._known: dict[str, float] | None = None
         self.reset()
 
     def reset(
@@ -148,8 +150,7 @@ class Simulation:
         self._steps = 0
         self._go_on_with(self._stepper, relaxed(job))
         self._follow_from({})
-        self._instant = Instant(job.data, job.dynamics.system, self._row, self._angle)
-        self._known: dict[str, float] | None = None
+        self._forget()
         if state is not None:
             self.load(state)
         elif joints is not None or rates is not None:
