@@ -30,6 +30,8 @@ OF_WEIGHT = 1000.0
 """Force of any elastic element at the start, in the weight of all bodies, above which it is noted, or a mount's if no equilibrium is found."""
 STIFF = 1e-3
 """Deflection of a mount by the weight of all bodies, in sizes of the mechanism, above which it is a spring, and stretched on purpose."""
+MOST_MOVES = 100
+"""Moves towards the static equilibrium after which it counts as not found: only a note depends on it."""
 STANDARD_GRAVITY: Final = 9.80665
 """Gravity by which bodies are weighed in scenes without, or with less, m/s^2."""
 
@@ -200,7 +202,7 @@ def _in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> list[
 
     try:
         dynamics.state.q[:] = start.q
-        found = find_equilibrium(dynamics, t)
+        found = find_equilibrium(dynamics, t, most=MOST_MOVES)
         rows = dynamics.report(np.array([t]), found.q[None], found.u[None], False)
     except (StiffmbsError, ArithmeticError, ValueError):
         return []

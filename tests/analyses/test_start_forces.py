@@ -6,6 +6,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import read_scene, run
+from stiffmbs.equilibria import equilibrium
 from tests.conftest import EXAMPLES
 
 LEVER = """
@@ -101,11 +102,15 @@ def test_assembly_that_opens_a_mount_is_named() -> None:
     assert "assembly considers joints only, and has stretched it by 67.2 mm" in note
 
 
-def test_without_an_equilibrium_the_weight_decides() -> None:
+def test_without_an_equilibrium_the_weight_decides(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search for one ends soon: only a note depends on it, and half a minute passed for a single body."""
+    moves, moved_on = [], equilibrium.moved_on
+    monkeypatch.setattr(equilibrium, "moved_on", lambda *args: moves.append(1) or moved_on(*args))
     pushed = LEVER.replace("forces:", "forces:\n  push: {{type: force, i: lever, force: [0, -20]}}")
     free = "spring_damper, i: lever.foot, j: {{body: ground, point: [0, -1]}}, stiffness: 1e7, free_length: {length}"
     (note,) = starts(run(read_scene(pushed.format(off=0, mount=free.format(length=0.98)))).notes)
     assert "'mount' starts with 2e+05 N" in note
+    assert 50 < len(moves) < 150
 
 
 @pytest.mark.parametrize(
