@@ -150,6 +150,11 @@ class Dynamics:
         )  # fmt: skip
         self._at, self._cells = self.table.ctypes.data, self.table.view(DYNAMICS.cells)[0]
 
+    @property
+    def status(self) -> int:
+        """Return the last failure of output rows or of steps (`stiffmbs.compile.machine.native.statuses`)."""
+        return int(self._cells["status"])
+
     def kept(self, name: str, settings: object, make: Callable[[], T]) -> T:
         """Return the object that a solver keeps under a name for these settings, or make it."""
         key = (settings, self.coordinates)
@@ -285,4 +290,4 @@ class Dynamics:
                 break
         q, u, acceleration, lam, values = (column[:, :done].T for column in columns[:5])
         judged = dict(zip(JUDGED, columns[5][:, :done], strict=True))
-        return OutputRows(t[:done], q, u, acceleration, lam, values, status=int(self._cells["status"]), **judged)
+        return OutputRows(t[:done], q, u, acceleration, lam, values, status=self.status, **judged)

@@ -82,6 +82,8 @@ class SavedState:
         rotations were reduced in elements that were added during the motion: ``bushing/set_up0``.
     elements : frozenset of str, optional
         Joints and forces of the saved run, if known: the counters of other elements start again.
+    exact : ndarray, optional
+        Coordinates and velocities of a simulation, which continues from them to the last bit.
     """
 
     source: str
@@ -89,6 +91,7 @@ class SavedState:
     channels: Mapping[str, float]
     turns: Mapping[str, float] = field(default_factory=dict)
     elements: frozenset[str] | None = None
+    exact: np.ndarray | None = field(default=None, compare=False)
 
     def turn(self, element: str, k: int = 0) -> float | None:
         """Return the angle at an element's counter of revolutions, or that of a request, rad; None if not known."""

@@ -1,78 +1,26 @@
-"""Inputs of a simulation, whose values in forces and states change between steps, and its continuous angles."""
+"""Inputs of a simulation, whose values in forces and states change between steps."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
 from ..analyses.job import Job
 from ..analyses.renumber import Change, changes_of_numbers, write_numbers
-from ..dynamics.dynamics import OutputRows
-from ..elements.turns import TURN
+from ..dynamics.held_inputs import AffineNumber, HeldInputs
 from ..errors import InputError
 from ..model.scene import Scene
 from ..reading.did_you_mean import instead_of
-from ..results.joint_angles import joint_angles
 from .case_solver import CaseSolver
 
-MOST_KEPT = 1000
-"""Number of states that are kept before their angles are computed."""
-
-
-class FollowedTurns:
-    """Continuous angles of the spatial joints whose turns the integration does not count.
-
-    They follow from the rates at the ends of all steps, as in a run with these output times. `t`: start, s. `known`:
-    channels at the start, with angles in their turns.
-    """
-
-    def __init__(self, job: Job, t: float, q: np.ndarray, u: np.ndarray, known: Mapping[str, float]) -> None:
-        self._dynamics = job.dynamics
-        self._angles = joint_angles(job.dynamics.system)
-        self._known = dict(known)
-        self.any = self._angles is not None and bool(self._angles.followed)
-        self._states = [(t, q.copy(), u.copy())]
-        self._last: list[OutputRows] = []  # row of the state up to which turns are counted
-
-    def note(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Keep the state at the end of a step."""
-        self._states.append((t, q.copy(), u.copy()))
-        if len(self._states) > MOST_KEPT:
-            self.angles()
-
-    def angles(self, row: OutputRows | None = None) -> dict[str, float]:
-        """Return the angles at the last state, rad, by channel; `row` is its output row if it is known."""
-        assert self._angles is not None
-        between = self._states if row is None else self._states[:-1]
-        parts = [*self._last, *([self._reported(between)] if between else []), *([row] if row is not None else [])]
-        parts = [part for part in parts if len(part.t)]
-        if self._states and parts:
-            t, q, values = (np.concatenate([getattr(part, name) for part in parts]) for name in ("t", "q", "values"))
-            found = self._angles.continuous(replace(parts[-1], t=t, q=q, values=values))
-            self._known = {
-                name: found[name].item(-1) + TURN * round((self._known.get(name, first) - first) / TURN)
-                for name, first in ((name, found[name].item(0)) for name in self._angles.followed)
-            }
-            self._states, self._last = [], [replace(parts[-1], t=t[-1:], q=q[-1:], values=values[-1:])]
-        return self._known
-
-    def _reported(self, states: Sequence[tuple[float, np.ndarray, np.ndarray]]) -> OutputRows:
-        t, q, u = (np.array(each) for each in zip(*states, strict=True))
-        with self._dynamics.state.unchanged():
-            return self._dynamics.report(t, q, u, project=False)
-
-
+Inputs: TypeAlias = Mapping[str, float] | Sequence[float] | np.ndarray
+"""Values of inputs by name, or of all of them in their order."""
 TRIED: Final = (0.0, *(sign * 10.0**k for k in (0, -1, 3) for sign in (1, -1)))
 """Values at which the linearity of force parameters in an input is tested."""
 SAME_NUMBER = 8 * float(np.finfo(float).eps)
-
-
-Linear = list[tuple[np.ndarray, int, float, float]]
-"""Numbers of forces that depend on an input: numbers[place] = offset + slope * value."""
 
 
 class InputNumbers:
@@ -81,44 +29,103 @@ class InputNumbers:
     `job`: job whose forces have the inputs. `solver`: solver of the scene with these inputs. `values`: inputs,
     parameters or paths of the scene, with their initial values. Raises InputError if an input changes more than numbers
     of forces and states.
+
+    - `names`: names of the inputs, in their order.
+    - `held`: their values, and the numbers that are affine functions of one.
+    - `affine`: true if these are all numbers that depend on inputs; otherwise the scene is read again at each change.
     """
 
     def __init__(self, job: Job, solver: CaseSolver, values: Mapping[str, float]) -> None:
-        self._job, self._solver, self._names = job, solver, tuple(values)
-        self.values = dict(values)
-        for name in self._names:
-            if not changes_of_numbers(job, self._scene({**self.values, name: self.values[name] + 1.0})):
+        self._job, self._solver, self.names = job, solver, tuple(values)
+        self._places = {name: k for k, name in enumerate(values)}
+        for name in self.names:
+            if not changes_of_numbers(job, self._scene({**values, name: values[name] + 1.0})):
                 raise InputError(
                     f"input '{name}': found an input that affects more than numbers of forces and states, expected one "
                     "that affects only these"
                 )
-        self._quick = self._linear()
+        found = self._affine_numbers(values)
+        self.affine = found is not None
+        self.held = HeldInputs([*values.values()], found or ())
 
     def _scene(self, values: Mapping[str, float]) -> Scene:
-        return self._solver.scene([float(values[name]) for name in self._names])
+        return self._solver.scene([float(values[name]) for name in self.names])
 
-    def set(self, values: Mapping[str, float]) -> bool:
+    @property
+    def values(self) -> dict[str, float]:
+        """Return the current values by name."""
+        return dict(zip(self.names, self.held.values.tolist(), strict=True))
+
+    def set(self, values: Inputs) -> bool:
         """Change inputs; return True if any of them has a new value.
 
-        Raises InputError, with nothing changed, if there is no such input, or its value is invalid or changes more
-        than numbers of forces and states.
+        `values`: by name, others keep theirs; or all of them, in the order of `names`. Raises InputError, with nothing
+        changed, if there is no such input, or a value is invalid or changes more than numbers of forces and states.
         """
-        changed = {name: value for name, value in values.items() if self.values.get(name) != value}
-        if not changed:
-            return False
-        for name, value in changed.items():
-            if name not in self.values:
-                raise InputError(f"input '{name}': found no such input{instead_of(name, self.values)}")
-            if not math.isfinite(value):
-                raise InputError(f"input '{name}': found {value}, expected a finite number")
-        if self._quick is None:
+        wanted = self.held.wanted
+        self._fill(wanted, values)
+        if self.affine:
+            status = self.held.hold()
+            if status < 0:
+                self._check_finite(wanted)
+            return status > 0
+        self._check_finite(wanted)
+        changed = {
+            name: new
+            for name, new, old in zip(self.names, wanted.tolist(), self.held.values.tolist(), strict=True)
+            if new != old
+        }
+        if changed:
             self._write(changed)
+            self.held.values[:] = wanted
+        return bool(changed)
+
+    def rows(self, values: Inputs | None, n: int) -> np.ndarray:
+        """Return the inputs of n steps, one row for each: given rows, or equal ones of given or of the current values.
+
+        Raises InputError if there is no such input, or if values are invalid.
+        """
+        if values is None or isinstance(values, Mapping) or np.ndim(_numbers(values)) < 2:
+            first = self.held.values.copy()
+            if values is not None:
+                self._fill(first, values)
+            found = np.tile(first, (n, 1))
         else:
-            for name, value in changed.items():
-                for numbers, place, offset, slope in self._quick[name]:  # few: a loop is faster than numpy
-                    numbers[place] = offset + slope * value
-        self.values.update(changed)
-        return True
+            found = np.ascontiguousarray(_numbers(values))
+            self._check_shape(found, (n,))
+        self._check_finite(found)
+        return found
+
+    def _fill(self, wanted: np.ndarray, values: Inputs) -> None:
+        """Fill an array with all inputs; those that are not given keep their values."""
+        if isinstance(values, np.ndarray) and values.shape == wanted.shape and values.dtype.kind == "f":
+            wanted[:] = values
+        elif isinstance(values, Mapping):
+            wanted[:] = self.held.values
+            for name, value in values.items():
+                if name not in self._places:
+                    raise InputError(f"input '{name}': found no such input{instead_of(name, self._places)}")
+                wanted[self._places[name]] = _number(value)
+        else:
+            numbers = _numbers(values)
+            self._check_shape(numbers, ())
+            wanted[:] = numbers
+
+    def _check_shape(self, values: np.ndarray, rows: tuple[int, ...]) -> None:
+        """Raise an InputError if an array has not one column for each input, and these rows."""
+        shape, expected = values.shape, (*rows, len(self.names))
+        if shape != expected:
+            raise InputError(
+                f"inputs: found an array of shape {shape}, expected {expected}, one column for each of {', '.join(self.names) or 'no inputs'}"
+            )
+
+    def _check_finite(self, values: np.ndarray) -> None:
+        """Raise an InputError that names the first input without a finite value."""
+        bad = np.argwhere(~np.isfinite(values))
+        if len(bad):
+            at = tuple(bad[0].tolist())
+            row = f" in row {at[0]}" if len(at) > 1 else ""
+            raise InputError(f"input '{self.names[at[-1]]}': found {values[at]}{row}, expected a finite number")
 
     def _write(self, changed: Mapping[str, float]) -> None:
         """Write the numbers of the scene with changed inputs; later changes are found against this scene."""
@@ -131,31 +138,32 @@ class InputNumbers:
             )
         self._job = replace(self._job, data=scene)
 
-    def _linear(self) -> dict[str, Linear] | None:
-        """Return the numbers that depend on each input alone and linearly, or None if forces must be read again.
+    def _affine_numbers(self, values: Mapping[str, float]) -> list[AffineNumber] | None:
+        """Return the numbers that depend on one input each, as affine functions, or None if forces must be read again.
 
         The formulas of the scene must show that all are affine; values at some points find the numbers.
         """
-        if not all(self._solver.is_affine(k) for k in range(len(self._names))):
+        if not all(self._solver.is_affine(k) for k in range(len(self.names))):
             return None
-        found: dict[str, Linear] = {}
+        found: list[AffineNumber] = []
         taken: set[tuple[int, int]] = set()
-        for name in self._names:
-            parts = self._linear_parts(name)
-            places = {(id(numbers), place) for numbers, place, _, _ in parts or ()}
+        for number, name in enumerate(self.names):
+            parts = self._numbers_of(number, {at: self._changes({**values, name: at}) for at in TRIED})
+            places = {(id(each.numbers), each.place) for each in parts or ()}
             if parts is None or places & taken:
                 return None
             taken |= places
-            found[name] = parts
+            found += parts
         return found
 
-    def _linear_parts(self, name: str) -> Linear | None:
-        """Return the numbers that equal offset + slope * value at all tested values, or None if any does not."""
-        tried = {value: self._changes(name, value) for value in TRIED}
+    def _numbers_of(
+        self, number: int, tried: Mapping[float, dict[tuple[int, int], Change] | None]
+    ) -> list[AffineNumber] | None:
+        """Return the numbers that equal offset + slope * value at all tested values of an input, or None if any does not."""
         known = {value: changes for value, changes in tried.items() if changes is not None}
         if len(known) < len(tried):
             return None
-        parts: Linear = []
+        parts: list[AffineNumber] = []
         for at, force in {at: change for changes in known.values() for at, change in changes.items()}.items():
             if force.of_inputs:
                 return None
@@ -166,15 +174,30 @@ class InputNumbers:
                 if not np.allclose(numbers, offset + slope * value, rtol=SAME_NUMBER, atol=SAME_NUMBER * abs(value)):
                     return None
             parts += [
-                (force.group.numbers, force.first + int(k), float(offset[k]), float(slope[k]))
+                AffineNumber(force.group.numbers, force.first + int(k), number, float(offset[k]), float(slope[k]))
                 for k in np.flatnonzero(slope)
             ]
         return parts
 
-    def _changes(self, name: str, value: float) -> dict[tuple[int, int], Change] | None:
-        """Return the forces, by their places, that differ from the current ones for a value of an input."""
+    def _changes(self, values: Mapping[str, float]) -> dict[tuple[int, int], Change] | None:
+        """Return the forces, by their places, that differ from the current ones for some values of the inputs."""
         try:
-            found = changes_of_numbers(self._job, self._scene({**self.values, name: value}))
+            found = changes_of_numbers(self._job, self._scene(values))
         except InputError:
             return None
         return None if found is None else {(id(change.group), change.number): change for change in found}
+
+
+def _numbers(values: Any) -> np.ndarray:
+    """Return values as an array of numbers; raise an InputError if they are none."""
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"inputs: found {values!r}, expected numbers") from None
+
+
+def _number(value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InputError(f"inputs: found {value!r}, expected a number") from None

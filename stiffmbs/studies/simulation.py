@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -14,13 +15,14 @@ from ..analyses.rerun import DRIFTED, exactly, relaxed
 from ..analyses.start_from import StartFrom, in_pose_of, started_from, state_to_start_from
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
+from ..elements.turns import TURN
 from ..errors import AssemblyError, ChannelError, InputError, SolverError
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.channels import channels_of, turns_of
 from ..results.files import written_whole
 from ..results.frames import own_are_principal
 from ..results.instant import Instant
-from ..results.joint_angles import joint_angles
+from ..results.joint_coordinates import JointCoordinates
 from ..results.provenance import PROVENANCE, provenance_of
 from ..results.saved_state import TURNS, SavedState
 from ..run_checks.tables import may_refuse, refuse_departure
@@ -30,8 +32,9 @@ from ..solve.settings import changed
 from ..solve.stiff_rows import with_stiff_forces
 from ..tuning import in_use
 from .case_solver import CaseSolver, Task, written_scene
-from .input_numbers import FollowedTurns, InputNumbers
-from .stepping import Stepper, stepper_of
+from .input_numbers import InputNumbers, Inputs
+from .joint_pose import JointPose, named_coordinates
+from .stepping import FixedSteps, Stepper, stepper_of
 
 OWN_INPUTS = "inputs"
 """Section of a scene with its inputs."""
@@ -39,6 +42,8 @@ QUATERNION = ("q0", "q1", "q2", "q3")
 """Channels that are normalised, unlike the coordinates of an integrator."""
 INPUT = "simulation/input/"
 """Prefix of the names of inputs in files of saved simulations."""
+EXACT = "simulation/state"
+"""Name of the coordinates and velocities in such files."""
 DRIFT_CHECK_INTERVAL = 64
 """Number of steps between checks for drift of relaxed constraints, in addition to those at steps 1, 2, 4, 8, ..."""
 
@@ -102,77 +107,191 @@ class Simulation:
         self._first = dict(inputs)
         self._bounded = may_refuse(self._job.dynamics.system)
         self._inputs = InputNumbers(self._job, solver, self._first)
+        self._joints = joints = JointCoordinates(self._job.dynamics.system, self._job.data.joints)
+        self._places_of_joints = {
+            name + ending: (values, k)
+            for values, ending in ((joints.coordinates, ""), (joints.rates, "_rate"))
+            for k, name in enumerate(joints.names)
+        }
+        self._instant = Instant(self._job.data, self._job.dynamics.system, self._row, self._angle)
+        self._known: dict[str, float] | None = None
         self.reset()
 
-    def reset(self) -> None:
-        """Return to the start, with the initial values of the inputs."""
+    def reset(
+        self,
+        state: StartFrom | None = None,
+        joints: Mapping[str, float] | None = None,
+        rates: Mapping[str, float] | None = None,
+    ) -> None:
+        """Return to the start, with the initial values of the inputs, or to another state.
+
+        Parameters
+        ----------
+        state : SavedState, Solution, str or Path, optional
+            State to continue from, as by `load`.
+        joints : mapping of str to float, optional
+            Coordinates of joints, m or rad, by channel (``hinge.angle``), or by joint if it has one. The others are
+            those of the start, unless loops move them.
+        rates : mapping of str to float, optional
+            Rates of coordinates, m/s or rad/s, by the names of `joints`. With either of both, all others are zero.
+
+        Raises
+        ------
+        InputError
+            If the state cannot be read or belongs to another model, or if the joints cannot have these coordinates or
+            rates; the simulation is then at its start.
+        """
         job = self._job
         self._inputs.set(self._first)
         job.dynamics.forget_pivots()
         self.t = job.settings.start
         with in_use(job.settings.tuning):
             self._stepper = stepper_of(job, job.start, job.grid.start)
-        self._steps, self._relaxed = 0, relaxed(job)
-        self._places = self._places_of_bodies()
-        self._follow_from(self.t, {})
-        self._instant = Instant(job.data, job.dynamics.system, self._row, self._angle)
-        self._known: dict[str, float] | None = None
+        self._steps = 0
+        self._go_on_with(self._stepper, relaxed(job))
+        self._follow_from({})
+        self._forget()
+        if state is not None:
+            self.load(state)
+        elif joints is not None or rates is not None:
+            self._pose(joints or {}, rates or {})
 
-    def _follow_from(self, t: float, known: Mapping[str, float]) -> None:
-        """Count the turns of joint angles from a time and known channels on."""
-        self._turns = FollowedTurns(self._job, t, self._stepper.q, self._stepper.u, known)
+    def _pose(self, joints: Mapping[str, float], rates: Mapping[str, float]) -> None:
+        """Take coordinates and rates of joints at the start."""
+        dynamics, names = self._job.dynamics, self._joints.names
+        wanted = named_coordinates(self._joints, joints, "reset: joint")
+        rates_wanted = named_coordinates(self._joints, rates, "reset: rate of joint")
+        pose = JointPose(dynamics, self._joints, self.t, self._stepper.q)
+        try:
+            with dynamics.state.unchanged():
+                pose.move_to(wanted)
+                u = pose.velocities(self._stepper.u, rates_wanted)
+            self._stepper.restart(self.t, pose.q, u)
+        finally:
+            self._joints.watch(self._stepper.q, self._stepper.u)
+            self._follow_from({names[k]: value for k, value in wanted.items()})
+
+    def _follow_from(self, known: Mapping[str, float]) -> None:
+        """Count the turns of joint angles from the current time and known channels on."""
+        self._joints.begin(self.t, known)
+        self._followed = True
 
     @property
     def q(self) -> np.ndarray:
-        """Return the current coordinates of all bodies."""
+        """Return the current coordinates: those of each body in the order of the scene, then counters of turns and states.
+
+        A body has ``x y angle`` in the plane and ``x y z q0 q1 q2 q3`` in space, of its centre of mass and principal axes.
+        """
         return self._stepper.q.copy()
 
     @property
     def u(self) -> np.ndarray:
-        """Return the current velocities of all bodies."""
+        """Return the current velocities of all bodies: ``vx vy omega``, or ``vx vy vz`` and ``wx wy wz`` in body axes."""
         return self._stepper.u.copy()
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Return the channels of all coordinates of joints, in the order of the scene, such as ``hinge.angle``."""
+        return self._joints.names
+
+    @property
+    def joint_coordinates(self) -> np.ndarray:
+        """Return the current coordinates of joints in the order of `joints`, m or rad; angles count their turns."""
+        return self._current_joints().coordinates.copy()
+
+    @property
+    def joint_rates(self) -> np.ndarray:
+        """Return the current rates of the coordinates of joints in the order of `joints`, m/s or rad/s."""
+        return self._current_joints().rates.copy()
+
+    def _current_joints(self) -> JointCoordinates:
+        """Return the coordinates of joints at the current state."""
+        if not self._followed:
+            self._joints.follow(self._stepper.time)
+            self._followed = True
+        return self._joints
 
     @property
     def inputs(self) -> dict[str, float]:
         """Return the current values of the inputs."""
         return dict(self._inputs.values)
 
-    def step(self, dt: float, inputs: Mapping[str, float] | None = None) -> None:
+    def step(self, dt: float, inputs: Inputs | None = None) -> None:
         """Advance by a time step, with inputs that are constant from now on.
 
-        If no input changes, the integrator keeps its history, as in one run; otherwise it restarts.
+        If no input changes, `bdf` and `radau` keep their history, as in one run; otherwise they restart.
 
         Parameters
         ----------
         dt : float
             Time step, s, greater than 0.
-        inputs : mapping of str to float, optional
-            New values; other inputs keep theirs.
+        inputs : mapping of str to float, or sequence of float, optional
+            New values by name, where other inputs keep theirs, or of all inputs in the order of `inputs`.
 
         Raises
         ------
         InputError
-            If dt is not positive, or an input is unknown.
+            If dt is not positive, or an input is unknown or not finite.
         SolverError
             If the solver fails; the state is then the previous one.
         """
-        if not 0 < dt < np.inf:
+        if not 0 < dt < math.inf:
             raise InputError(f"step: found dt = {dt}, expected a time greater than 0 s")
-        if inputs:
-            self.set_inputs(inputs)
+        self._forget()
+        if inputs is not None and self._inputs.set(inputs):
+            self._stepper.jump()
         end, before = self.t + dt, (self.q, self.u) if self._bounded else None
         self._steps += 1
-        with in_use(self._job.settings.tuning):
-            if self._relaxed and (self._steps % DRIFT_CHECK_INTERVAL == 0 or self._steps & (self._steps - 1) == 0):
+        if self._relaxed and (self._steps % DRIFT_CHECK_INTERVAL == 0 or self._steps & (self._steps - 1) == 0):
+            with in_use(self._job.settings.tuning):
                 self._advance_without_drift(end)
-            else:
-                self._advance(end)
+        else:
+            self._advance(end)
         if before:
             self._stay_within_tables(end, *before)
         self.t = end
-        if self._turns.any:
-            self._turns.note(end, self._stepper.q, self._stepper.u)
-        self._forget()
+        self._followed = self._joints.any_followed
+        if self._followed:
+            self._joints.follow(end)
+
+    def steps(self, n: int, inputs: Inputs | None = None, dt: float | None = None) -> None:
+        """Advance by several steps; schemes of fixed steps take them in one compiled call.
+
+        Parameters
+        ----------
+        n : int
+            Number of steps.
+        inputs : mapping of str to float, or array of shape (inputs,) or (n, inputs), optional
+            Inputs of all steps, or one row for each of them, in the order of `inputs`.
+        dt : float, optional
+            Time step, s; by default `step` of the run.
+
+        Raises
+        ------
+        InputError
+            If n or dt is not positive, or inputs have another shape, are unknown or not finite; nothing is changed.
+        SolverError
+            If a step fails; the state is then that before this step.
+        """
+        dt = self._job.settings.step if dt is None else dt
+        if n < 1 or not 0 < dt < math.inf:
+            raise InputError(f"steps: found n = {n} and dt = {dt}, expected a number and a time greater than 0")
+        rows, done = self._inputs.rows(inputs, n), 0
+        if self._inputs.affine and not (self._bounded or self._relaxed):
+            done = self._taken_together(dt, rows)
+        for row in rows[done:]:
+            self.step(dt, row)
+
+    def _taken_together(self, dt: float, rows: np.ndarray) -> int:
+        """Take steps in one compiled call if the stepper can; return their number."""
+        if not isinstance(self._stepper, FixedSteps):
+            return 0
+        try:
+            return self._stepper.advance_many(self.t, dt, rows, self._inputs.held, self._joints)
+        finally:
+            self._followed = self._followed and self._stepper.time == self.t
+            self.t = self._stepper.time
+            self._forget()
 
     def _stay_within_tables(self, end: float, q: np.ndarray, u: np.ndarray) -> None:
         """Return to a state, and raise a SolverError, if the current one is outside a table with ``beyond: error``."""
@@ -194,7 +313,8 @@ class Simulation:
         except SolverError:
             if self._relaxed or not relaxed(self._job):
                 raise
-            self._go_on_with(self._steps_of(self._job, self.q, self.u), relaxed=True)
+            with in_use(self._job.settings.tuning):
+                self._go_on_with(self._steps_of(self._job, self.q, self.u), relaxed=True)
             self._stepper.advance(end)
 
     def _advance_without_drift(self, end: float) -> None:
@@ -219,18 +339,18 @@ class Simulation:
     def _go_on_with(self, stepper: Stepper, relaxed: bool) -> None:
         self._stepper, self._relaxed = stepper, relaxed
         self._places = self._places_of_bodies()
+        self._joints.watch(stepper.q, stepper.u)
 
-    def set_inputs(self, inputs: Mapping[str, float]) -> None:
-        """Set inputs from now on; other inputs keep their values.
+    def set_inputs(self, inputs: Inputs) -> None:
+        """Set inputs from now on, by name, where others keep their values, or all in the order of `inputs`.
 
         Raises
         ------
         InputError
             If an input is unknown, or its value is invalid.
         """
-        if inputs and self._inputs.set(inputs):
-            with in_use(self._job.settings.tuning):
-                self._stepper.jump()
+        if self._inputs.set(inputs):
+            self._stepper.jump()
             self._forget()
 
     @property
@@ -252,6 +372,11 @@ class Simulation:
         if place:
             values, number = place
             return values.item(number)
+        place = self._places_of_joints.get(channel)
+        if place:
+            self._current_joints()
+            values, number = place
+            return values.item(number)
         try:
             return self._instant.value(channel)
         except ChannelError as error:
@@ -262,14 +387,13 @@ class Simulation:
         """Return the current state, from which a run may start: ``stiffmbs.run(model, start_from=sim.state)``."""
         channels, turns = self._report()
         known, counted = ({name: float(values[0]) for name, values in part.items()} for part in (channels, turns))
-        return SavedState("the simulation", self.t, known, counted)
+        return SavedState("the simulation", self.t, known, counted, exact=np.concatenate([self.q, self.u]))
 
     def _report(self) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
         """Return the current channels and revolution counters, one value each."""
         job, system, rows = self._job, self._job.dynamics.system, self._instant.rows
         channels = channels_of(job.data, system, rows)
-        if self._turns.any:
-            channels |= {name: np.array([angle]) for name, angle in self._turns.angles(rows).items()}
+        channels |= {name: np.array([self._angle(rows, name)]) for name in self._joints.angles}
         return channels, turns_of(system, rows.q)
 
     def _row(self) -> OutputRows:
@@ -277,7 +401,7 @@ class Simulation:
         dynamics = self._job.dynamics
         with dynamics.state.unchanged():
             q, u = self.q[None], self.u[None]
-            rows = dynamics.report(np.array([self._stepper.time]), q, u, project=True)
+            rows = dynamics.report(np.array([self._stepper.time]), q, u, project=self._job.on_constraints)
             lengths, rtol = np.array([self._stepper.length]), self._job.settings.rtol
             rows = with_stiff_forces(dynamics, (q, u), rows, lengths, rtol)
         if not len(rows.t):
@@ -288,12 +412,9 @@ class Simulation:
 
     def _angle(self, rows: OutputRows, channel: str) -> float:
         """Return a continuous angle of a joint."""
-        followed = self._turns.angles(rows) if self._turns.any else {}
-        if channel in followed:
-            return followed[channel]
-        angles = joint_angles(self._job.dynamics.system)
-        assert angles is not None
-        return angles.continuous(rows)[channel].item(0)
+        angle = rows.values.item(0, self._job.dynamics.system.reported[channel])
+        near = self._current_joints().coordinates.item(self._joints.names.index(channel))
+        return angle + TURN * round((near - angle) / TURN)
 
     def save(self, path: str | Path) -> None:
         """Write the current state and inputs to a file .npz, which `load` and ``stiffmbs run --from`` read.
@@ -310,6 +431,7 @@ class Simulation:
         content: dict[str, Any] = {name: np.array([value]) for name, value in state.channels.items()}
         content |= {TURNS + name: np.array([value]) for name, value in state.turns.items()}
         content |= {INPUT + name: np.array(value) for name, value in self._inputs.values.items()}
+        content[EXACT] = state.exact
         content[PROVENANCE] = np.array(
             provenance_of(self._job.data, self._job.settings, state=self._job.start_from).as_json()
         )
@@ -327,15 +449,16 @@ class Simulation:
         assert found is not None
         job = self._job
         placed = started_from(job.dynamics.system, in_pose_of(found, job.data), found)
+        exact = found.exact
         if isinstance(path, str | Path) and Path(path).suffix == ".npz":
             with np.load(path) as archive:
                 self._inputs.set(
                     {k.removeprefix(INPUT): float(archive[k]) for k in archive.files if k.startswith(INPUT)}
                 )
-        with in_use(job.settings.tuning):
-            self._stepper.restart(found.t, placed.q, placed.u)
+                exact = archive.get(EXACT)
+        self._stepper.restart(found.t, *_exactly(placed.q, placed.u, exact))
         self.t = found.t
-        self._follow_from(self.t, found.channels)
+        self._follow_from(found.channels)
         self._forget()
 
     def _places_of_bodies(self) -> dict[str, tuple[np.ndarray, int]]:
@@ -351,3 +474,11 @@ class Simulation:
             for n, label in enumerate(labels)
             if label not in QUATERNION
         }
+
+
+def _exactly(q: np.ndarray, u: np.ndarray, exact: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    """Return saved coordinates and velocities if they are those of the channels, which rounding has changed, else these."""
+    by_channels = np.concatenate([q, u])
+    if exact is None or exact.shape != by_channels.shape or not np.allclose(exact, by_channels, rtol=1e-6, atol=1e-6):
+        return q, u
+    return exact[: len(q)], exact[len(q) :]

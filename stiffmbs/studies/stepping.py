@@ -1,4 +1,4 @@
-"""Steppers of a simulation: the steps of an implicit solver, or short runs."""
+"""Steppers of a simulation: the steps of an implicit solver, explicit steps of fixed length, or short runs."""
 
 from __future__ import annotations
 
@@ -10,17 +10,25 @@ import numpy as np
 
 from ..analyses.job import Job
 from ..compile.inputs.features import InputFeatures
+from ..compile.machine.layout import addresses
+from ..dynamics.held_inputs import HeldInputs
 from ..dynamics.initial import InitialValues
+from ..dynamics.native.parameters import CONSISTENCY
 from ..errors import SolverError
 from ..model.settings import RunSettings
+from ..results.joint_coordinates import JointCoordinates
 from ..solve import SOLVERS
 from ..solve.events.restart import restarted
+from ..solve.explicit.fixed import MANY_IN_LOOP, ONE_IN_LOOP, failed, solve_with_fixed_steps, steps_between
+from ..solve.explicit.integration import Integration
+from ..solve.explicit.projected import scheme_of
 from ..solve.ida.native_engine import Reached
 from ..solve.integrator import Integrator
 from ..solve.radau.radau import radau_integrator
-from ..solve.settings import changed
+from ..solve.settings import changed, traits_of
 from ..solve.stiff_rows import lengths_of_steps, projected
 from ..solve.trajectory import Grid, Outcome, just_after, just_before
+from ..tuning import in_use
 
 PART, FINEST = 0.01, 1e-12
 """Part of the tolerance that restarts get, and the finest tolerance; errors of restarts accumulate."""
@@ -52,8 +60,7 @@ class StartedSteps:
         if self._features is not features:
             self._engine.ida.see_inputs(features, end - t)
             self._features = features
-        between = features.breakpoints
-        return not len(between) or not np.any((between >= just_before(t)) & (between <= just_after(end)))
+        return not _breaks(features, t, end)
 
     def _run(self, t: float, end: float) -> None:
         self._features = None  # the run has the inputs up to its end only
@@ -70,6 +77,12 @@ def sound(integrator: Integrator, reached: Reached) -> Reached:
     if reached.failure:
         raise SolverError(f"stopped at t = {reached.t:.9g} s: {reached.failure}")
     return reached
+
+
+def _breaks(features: InputFeatures, t: float, end: float) -> bool:
+    """Return True if an input has a breakpoint between two times, s."""
+    between = features.breakpoints
+    return len(between) > 0 and bool(np.any((between >= just_before(t)) & (between <= just_after(end))))
 
 
 def _finer(settings: RunSettings) -> RunSettings:
@@ -103,11 +116,13 @@ class Stepper(Protocol):
 
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
-    """Return a stepper: by the steps of bdf or radau without sampled states, otherwise by short runs."""
+    """Return a stepper: by the steps of bdf, radau or a scheme of fixed steps; by short runs otherwise, or with sampled states."""
     made = {"bdf": Integrator, "radau": radau_integrator}.get(job.settings.solver)
-    if made is not None and not job.dynamics.system.sampled.any():
+    if job.dynamics.system.sampled.any():
+        return ShortRuns(job, start, t)
+    if made is not None:
         return ImplicitSteps(job, made(job.dynamics, job.settings), start, t)
-    return ShortRuns(job, start, t)
+    return FixedSteps(job, start, t) if traits_of(job.settings).fixed_steps else ShortRuns(job, start, t)
 
 
 class ImplicitSteps:
@@ -148,6 +163,10 @@ class ImplicitSteps:
 
     def advance(self, t: float) -> None:
         """See `Stepper`."""
+        with in_use(self._job.settings.tuning):
+            self._advance(t)
+
+    def _advance(self, t: float) -> None:
         place = self._dynamics.sides(t)[0]
         if self._jumped or self._ended:
             self._look_through(self._t)
@@ -191,6 +210,117 @@ class ImplicitSteps:
         self.q[:], self.u[:], self.length = q, u, 0.0
 
 
+class FixedSteps:
+    """Explicit steps of fixed length, which depend on time, state and inputs alone. `t`: time, s.
+
+    A step of the simulation is one compiled call. It is a short run if an input has a breakpoint in it, or if a force has
+    limits. Event functions are not located, but a start at the zero of one, after a jump, is that of a run.
+    """
+
+    def __init__(self, job: Job, start: InitialValues, t: float) -> None:
+        dynamics, settings = job.dynamics, job.settings
+        self._dynamics, self._settings, self._step = dynamics, settings, settings.step
+        self._end, self._changes = t, dynamics.input_changes
+        grid = Grid(t, t + settings.duration, None)
+        self._work = Integration(scheme_of(settings), dynamics, start, grid, settings)
+        self.q, self.u, self.time, self.length = self._work.q, self._work.u, t, 0.0
+        self._t, self._at = t, self._work.at
+        self._one, self._one_long, self._many = ONE_IN_LOOP.short_call, ONE_IN_LOOP.call, MANY_IN_LOOP.call
+        system = dynamics.system
+        self._has_events, self._has_inputs = system.n_event_functions > 0, system.has_inputs
+        self._has_limits = system.first_limit < system.n_event_functions
+
+    def advance(self, t: float) -> None:
+        """See `Stepper`."""
+        if self._has_limits or (self._has_inputs and self._breaks(t)):
+            self._run(t)
+            return
+        start = self._t
+        steps = steps_between(start, t, self._step)
+        one = self._one if steps <= self._work.capacity else self._one_long
+        status = one(start, t, steps, self._at)
+        if status < 0:
+            raise failed(start, status)
+        self._t = self.time = t
+
+    def advance_many(self, t: float, dt: float, values: np.ndarray, held: HeldInputs, joints: JointCoordinates) -> int:
+        """Advance by as many steps of dt as there are rows of inputs, if none has a breakpoint.
+
+        Returns the number of these steps; 0 if they must be taken one by one. Raises SolverError if a step fails, with the
+        state before it.
+        """
+        if self._t != t or self._has_events or (self._has_inputs and self._breaks(t + len(values) * dt)):
+            return 0
+        steps = steps_between(t, t + dt, self._step)
+        for first in range(0, len(values), self._work.capacity):  # an interrupt is noticed between calls
+            rows = values[first : first + self._work.capacity]
+            done = self._many(self._t, dt, steps, len(rows), *addresses(rows, held.table, joints.table), self._at)
+            for _ in range(done):
+                self._t += dt
+            self.time = self._t
+            if done < len(rows):
+                raise failed(self._t, self._dynamics.status)
+        return len(values)
+
+    def _breaks(self, end: float) -> bool:
+        """Return True if an input has a breakpoint up to a time, s; determine the features of inputs if they are not known."""
+        if not end <= self._end or self._changes != self._dynamics.input_changes:
+            self._end, self._changes = end + self._settings.duration, self._dynamics.input_changes
+            self._features = self._dynamics.input_features(self._t, self._end)
+        return self._t != self.time or _breaks(self._features, self._t, end)
+
+    def _run(self, t: float) -> None:
+        """Advance by a short run, which restarts at breakpoints of inputs; the state is kept if it fails."""
+        dynamics, kept = self._dynamics, (self.q.copy(), self.u.copy())
+        if self._t != self.time:  # just after a breakpoint
+            self._begin(self._t, *kept)
+        dynamics.forget_pivots()
+        self._work.forget_rates()
+        place = dynamics.sides(t)[0]
+        try:
+            grid = Grid(self._t, place, np.array([self._t, place]))
+            with in_use(self._settings.tuning):
+                found = solve_with_fixed_steps(dynamics, self._work, grid, self._settings, lambda _: None)
+            if found.outcome is Outcome.INTERRUPTED:
+                raise KeyboardInterrupt
+        except (SolverError, KeyboardInterrupt):
+            self.q[:], self.u[:] = kept
+            raise
+        self._t, self.time = dynamics.sides(t)[1], place
+
+    def _begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Start from consistent values near given ones at a time, s."""
+        self._work.t = t
+        with in_use(self._settings.tuning):
+            self._work.begin(restarted(self._dynamics, t, q, u, self._settings.projection))
+
+    def jump(self) -> None:
+        """See `Stepper`."""
+        if self._has_events:
+            self._begin(self._t, self.q.copy(), self.u.copy())
+
+    def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """See `Stepper`. A state that satisfies the constraints is not changed; the next step closes small violations."""
+        self._t = self.time = self._dynamics.sides(t)[1]
+        if self._has_events or self._is_off_constraints(q, u):
+            self._begin(self._t, q, u)
+        else:
+            self.q[:], self.u[:] = q, u
+
+    def _is_off_constraints(self, q: np.ndarray, u: np.ndarray) -> bool:
+        system, state = self._dynamics.system, self._dynamics.state
+        if not (system.n_c and self._settings.projection):
+            return False
+        state.q[:], state.u[:] = q, u
+        state.evaluate("motion", self._t)
+        of_positions, of_velocities = np.abs(state.values["motion"][: 2 * system.n_c].reshape(2, -1)[:, system.active])
+        allowed = self._settings.rtol * max(1.0, np.abs(u).max(initial=0.0))
+        return not (
+            of_positions.max(initial=0.0) <= CONSISTENCY.position_tolerance
+            and of_velocities.max(initial=0.0) <= allowed
+        )
+
+
 class ShortRuns:
     """Runs from each instant to the next, by a solver without history. `t`: time, s."""
 
@@ -201,6 +331,10 @@ class ShortRuns:
 
     def advance(self, t: float) -> None:
         """See `Stepper`."""
+        with in_use(self._settings.tuning):
+            self._advance(t)
+
+    def _advance(self, t: float) -> None:
         if t > self._t:
             if t > self._end:  # input features are determined once for all following steps
                 self._end = t + self._settings.duration
@@ -226,5 +360,6 @@ class ShortRuns:
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """See `Stepper`."""
         self._t = self.time = self._job.dynamics.sides(t)[1]
-        self._start = restarted(self._job.dynamics, self._t, q, u)
+        with in_use(self._settings.tuning):
+            self._start = restarted(self._job.dynamics, self._t, q, u)
         self.q[:], self.u[:] = self._start.q, self._start.u

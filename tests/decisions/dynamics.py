@@ -317,9 +317,9 @@ def largest_residual(sizes, first):
     return count_while(lambda residual: satisfies(first * residual), DOUBLES)
 
 
-def digits_of(part, kept=1.0, most_kept=0.0, trees=True):
+def digits_of(part, kept=1.0, most_kept=0.0, trees=True, by_pins=True):
     """Return whether a pivot keeps digits, and the loss of all so far."""
-    r = Record(kept=kept, most_kept=most_kept, trees=trees)
+    r = Record(kept=kept, most_kept=most_kept, trees=trees, by_pins=by_pins)
     return digits.keeps_digits(r, part, 1.0), r.kept
 
 

@@ -11,7 +11,7 @@ import pytest
 from stiffmbs.compile.inputs.features import NO_FEATURES
 from stiffmbs.errors import SolverError
 from stiffmbs.solve.trajectory import Grid, Outcome
-from stiffmbs.studies import case_solver, executors, input_numbers, measured, optimise, simulation, stepping
+from stiffmbs.studies import case_solver, executors, joint_pose, measured, optimise, simulation, stepping
 from stiffmbs.studies.fmu import build
 from stiffmbs.studies.sensitivities import formulas
 from tests.decisions.common import Record, executed, module, nothing, reach, reached, refused
@@ -128,16 +128,6 @@ def reports_of_a_run():
 """Car whose centre of mass is above its rear axle."""
 
 
-def states_before_angles():
-    turns = Record(_states=[], angles=lambda: reach(len(turns._states)))
-
-    def note_all():
-        while True:
-            input_numbers.FollowedTurns.note(turns, 0.0, np.zeros(1), np.zeros(1))
-
-    return reached(note_all)
-
-
 def estimates_of_noise():
     inverses = []
 
@@ -212,7 +202,7 @@ def checks_of_drift():
     """Return the number of checks in 1000 steps."""
     checks = []
     running = Record(
-        t=0.0, _steps=0, _job=Record(settings=Record(tuning={})), _relaxed=True, _bounded=False, _turns=Record(any=False), _forget=nothing,
+        t=0.0, _steps=0, _job=Record(settings=Record(tuning={})), _relaxed=True, _bounded=False, _joints=Record(any_followed=False), _forget=nothing,
         _advance=nothing, _advance_without_drift=checks.append,
     )  # fmt: skip
     for _ in range(1000):
@@ -251,7 +241,8 @@ DECISIONS = {
     "studies.fmu.build:LONGEST_NAME": lambda: len(build.model_name(500 * "a")),
     "studies.fmu.slave:AT_ONE_TIME": largest_difference_of_times,
     "studies.follow:SHARE": reports_of_a_run,
-    "studies.input_numbers:MOST_KEPT": states_before_angles,
+    "studies.joint_pose:PART": lambda: joint_pose.parts_of(6.2),
+    "studies.joint_pose:KEPT": lambda: joint_pose.weights(2, [0])[1],
     "studies.measured:ROUNDS": estimates_of_noise,
     "studies.optimise:STEP": step_of_differences,
     "studies.sensitivities.formulas:SAME": lambda: formulas._rounding(np.ones(1)),
@@ -272,7 +263,7 @@ EXPECTED = {
     "studies.case_solver:MOST_STRUCTURES": 8, "studies.case_solver:MOST_WORDS": 1000, "studies.executors:STUDIES": 2,
     "studies.executors:AHEAD": 3, "studies.executors:TRIES": 3, "studies.fit:CONFIDENCE": 1.959963986912325,
     "studies.fit:ROUNDS": 3, "studies.fit:INSIDE": 1e-06, "studies.fit:FAR": 1000.0, "studies.fmu.build:LONGEST_NAME": 60,
-    "studies.fmu.slave:AT_ONE_TIME": 27, "studies.follow:SHARE": 21, "studies.input_numbers:MOST_KEPT": 1001,
+    "studies.fmu.slave:AT_ONE_TIME": 27, "studies.follow:SHARE": 21, "studies.joint_pose:PART": 13, "studies.joint_pose:KEPT": 1e-3,
     "studies.measured:ROUNDS": 4, "studies.optimise:STEP": 0.001, "studies.sensitivities.formulas:SAME": 1e-12,
     "studies.sensitivities.formulas:ZERO": 1e-14, "studies.sensitivities.formulas:ALIKE": 27,
     "studies.sensitivities.parameters:STEP": 0.0001, "studies.sensitivities.parameters:ALMOST_ZERO": 1e-300,

@@ -16,7 +16,7 @@ DYNAMICS = Layout({
     "n_potential": INT, "potential": INTS, "n_power": INT, "power": INTS, "n_kinetic": INT, "kinetic": INTS,
 })  # fmt: skip
 """Tables of a state and its three block systems.  `constraining` is a table of the same state whose sets ``motion`` and
-``acceleration`` have the terms of joints alone.  `status` receives the reason of a failure in output rows.  `trailing`
+``acceleration`` have the terms of joints alone.  `status` receives the reason of a failure in output rows, or in a row of steps.  `trailing`
 lists the rates of revolution counters and states among the acceleration terms; `by_reactions` is 1 if any depends on
 multipliers, `switches_by_reactions` if event functions may.  `algebraic` lists the algebraic states among the coordinates, with their scales and last values, and
 `turned_for_output` the first coordinates of bodies whose orientation only output terms need.  `eliminates` is 1 if
@@ -45,3 +45,18 @@ sizes of their pivots now and at most; then the scale of each pivot, its diagona
 end of a step of the run: an equation may vanish at a pose.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
 state; residuals of J u' = gamma, sizes of their terms, the least allowed residual, and log det M; entries of J and gamma in solved
 equations among the acceleration terms."""
+
+HELD_INPUTS = Layout({
+    "n": INT, "value": FLOATS,
+    "n_numbers": INT, "number": INTS, "input": INTS, "offset": FLOATS, "slope": FLOATS,
+})  # fmt: skip
+"""Inputs that are constant over a step, and the numbers of forces that are affine in one: *number = offset + slope * value of the input."""
+
+JOINT_COORDINATES = Layout({
+    "state": INTS, "n": INT, "place": INTS, "rate_place": INTS, "counter": INTS,
+    "t": FLOAT_CELL, "coordinate": FLOATS, "rate": FLOATS,
+})  # fmt: skip
+"""Coordinates of joints and their rates at a time, and their places among the output terms.  `state` is a table of its own, whose
+set ``output`` has the terms of joints alone.  `counter` is the coordinate that counts the turns of an angle, `FOLLOWED` for an angle
+without one, and `WITHOUT_TURNS` for other coordinates."""
+FOLLOWED, WITHOUT_TURNS = -1, -2

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -79,7 +80,9 @@ class _Around:
     def change(self, size: float, of_velocities: bool = False) -> np.ndarray:
         """Return the median of three changes: a jump, where another function vanishes, is in one of them."""
         values = [self.values(place * size, of_velocities) for place in (-2.0, -1.0, 1.0, 2.0)]
-        found: np.ndarray = np.median(np.abs(np.diff(values, axis=0)) * [[2.0], [1.0], [2.0]], axis=0)
+        before, here, after = (abs(there - behind) for behind, there in pairwise(values))
+        before, after = 2.0 * before, 2.0 * after
+        found: np.ndarray = np.maximum(np.minimum(before, here), np.minimum(np.maximum(before, here), after))
         return found
 
     def side(self, size: float) -> _Side:

@@ -42,6 +42,7 @@ class _Cell(Generic[T]):
 class Integration:
     """State, stages and counters of one integration, and memory for the rows that one call stores.
 
+    - `scheme`: Runge-Kutta scheme.
     - `capacity`: largest number of steps, and of rows, of one call.
     - `step_times`: ends of the steps of each call.
     - `watch`: event functions, and what the search for events has found.
@@ -58,6 +59,7 @@ class Integration:
     def __init__(
         self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
     ) -> None:
+        self.scheme = scheme
         n_q, n_times = len(start.q), 0 if grid.times is None else len(grid.times)
         self._memory = memory = dynamics.kept(
             f"steps of {scheme.name}", n_times, lambda: StepMemory(scheme, dynamics, n_times)
@@ -92,6 +94,10 @@ class Integration:
         cells["started"], cells["last_error"], cells["at_event"] = 0, 0.0, 0
         cells["uncertain"], cells["distance"], cells["distance_of_end"] = 0, np.inf, np.inf
         self.watch.begin()
+
+    def forget_rates(self) -> None:
+        """Compute the rates at the current state again."""
+        self._cells["rates_known"] = 0
 
     def fired(self) -> list[int]:
         """Return the event functions of the event that ended the last step."""

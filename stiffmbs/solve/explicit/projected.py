@@ -9,31 +9,34 @@ from ..solver import Traits
 from ..trajectory import Grid, ProgressCallback, Trajectory
 from . import SCHEMES
 from .adaptive import AdaptiveRun
-from .fixed import euler_cromer, runge_kutta, solve_with_fixed_steps
+from .euler_cromer import EULER_CROMER
+from .fixed import solve_with_fixed_steps
+from .integration import Integration
+from .scheme import Scheme
 
-EULER_CROMER = "euler_cromer"
 READ_BY_FIXED_STEPS = ("scheme", "step", "projection")
 READ_BY_ADAPTIVE_STEPS = ("scheme", "rtol", "atol", "max_step", "projection")
 
 
-def _fixed(name: str, order: int) -> Traits:
-    return Traits(name, READ_BY_FIXED_STEPS, fixed_steps=True, order=order, locates_events=False)
+def _traits(scheme: Scheme) -> Traits:
+    if scheme.adaptive:
+        return Traits(scheme.name, READ_BY_ADAPTIVE_STEPS)
+    return Traits(scheme.name, READ_BY_FIXED_STEPS, fixed_steps=True, order=scheme.order, locates_events=False)
 
 
-def _adaptive(name: str) -> Traits:
-    return Traits(name, READ_BY_ADAPTIVE_STEPS)
-
-
-TRAITS = {
-    EULER_CROMER: _fixed(EULER_CROMER, 1),
-    **{name: _adaptive(name) if scheme.adaptive else _fixed(name, scheme.order) for name, scheme in SCHEMES.items()},
-}
+TRAITS = {scheme.name: _traits(scheme) for scheme in (EULER_CROMER, *SCHEMES.values())}
 """Traits by scheme."""
 
 
 def traits(settings: RunSettings) -> Traits:
     """Return the traits of the scheme in the settings; by default `dop853`, or `euler_cromer` if a step is given."""
-    return TRAITS[settings.scheme or (EULER_CROMER if "step" in settings.model_fields_set else "dop853")]
+    return TRAITS[settings.scheme or (EULER_CROMER.name if "step" in settings.model_fields_set else "dop853")]
+
+
+def scheme_of(settings: RunSettings) -> Scheme:
+    """Return the scheme that the settings choose."""
+    chosen = traits(settings).name
+    return EULER_CROMER if chosen == EULER_CROMER.name else SCHEMES[chosen]
 
 
 def solve(
@@ -46,10 +49,7 @@ def solve(
     methods".
     """
     dynamics.forget_pivots()
-    chosen = traits(settings).name
-    if chosen == EULER_CROMER:
-        return solve_with_fixed_steps(dynamics, euler_cromer(dynamics, start, settings), grid, settings, watch)
-    scheme = SCHEMES[chosen]
+    scheme = scheme_of(settings)
     if scheme.adaptive:
         return AdaptiveRun(scheme, dynamics, start, grid, settings, watch).integrate()
-    return solve_with_fixed_steps(dynamics, runge_kutta(scheme, dynamics, start, grid, settings), grid, settings, watch)
+    return solve_with_fixed_steps(dynamics, Integration(scheme, dynamics, start, grid, settings), grid, settings, watch)

@@ -38,6 +38,7 @@ class Scheme:
     - `free_error`: error bound of that interpolant: a sum of stages that vanishes to its order, times the step.
     - `exponent`, `memory`: of the step control: the next step is 0.9 h error^(-exponent + 0.75 memory)
       last_error^memory.
+    - `semi_implicit`: true if the new velocities move the positions, as in `euler_cromer`, which has one stage.
     - `stability`: |h lambda| above which stability, not accuracy, limits the step.
     """
 
@@ -53,6 +54,7 @@ class Scheme:
     exponent: float = 0.0
     memory: float = 0.0
     stability: float = field(default=float("inf"))
+    semi_implicit: bool = False
 
     @property
     def extended(self) -> int:
@@ -73,7 +75,7 @@ class Scheme:
     def _arrays(self) -> dict[str, Any]:
         return {
             "order": self.order, "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
-            "n_dense": len(self.dense), "n_free": len(self.free), "error_needs_end": self.error_needs_end,
+            "n_dense": len(self.dense), "n_free": len(self.free), "error_needs_end": self.error_needs_end, "semi_implicit": self.semi_implicit,
             "c": np.array(self.c, dtype=float), "a": self.matrix(self.a),
             "errors": self.matrix(self.errors), "dense": self.matrix(self.dense),
             "free": self.matrix(self.free), "free_error": self.matrix((self.free_error,)),
@@ -133,7 +135,7 @@ class StepMemory:
             "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
             "tolerance": CONSISTENCY.position_tolerance, "atol": self.atol,
             "n_event_functions": events, "end_at_event": END_AT_EVENT.address if searched else 0,
-            "lam": self.lam, "y": self.y, "y_before": np.zeros(n), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
+            "lam": self.lam, "y": self.y, "y_before": np.zeros(n), "y_first": np.zeros(n), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "n_times": n_times, "times": self.times,
             "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,

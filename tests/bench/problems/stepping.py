@@ -1,11 +1,16 @@
-"""The cart-pendulum under a PD controller, 10 000 steps of 1 ms."""
+"""The cart-pendulum under a PD controller, 10 000 steps of 1 ms; it and two arms with new inputs at each step."""
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
+from stiffmbs.model.read_scene import read_scene
+
 from ..by_hand import cart_pendulum as hand
-from ..stepping import Stepping
+from ..stepping.controlled import Stepping
+from ..stepping.in_the_loop import InTheLoop
 from .cart_pendulum import SCENE as FREE
 
 SCENE = FREE.replace("gravity:", "parameters: {F: 0 N}\ngravity:").replace(
@@ -36,4 +41,12 @@ def reference(dt: float, steps: int) -> np.ndarray:
     return places
 
 
-BENCHMARKS = (Stepping("stepping", SCENE, "F", control, ("cart.x", "cart.vx"), reference),)
+SCENES = Path(__file__).parents[1] / "scenes"
+BENCHMARKS = (
+    Stepping("stepping", SCENE, "F", control, ("cart.x", "cart.vx"), reference),
+    InTheLoop("cart_in_the_loop", lambda: read_scene(SCENE), ("F",), 10.0),
+    InTheLoop("arm_in_the_loop", lambda: SCENES / "arm.xml", tuple(f"m{k}_input" for k in range(1, 6)), 0.1),
+    InTheLoop(
+        "seven_joints_in_the_loop", lambda: SCENES / "seven_joints.xml", tuple(f"m{k}_input" for k in range(1, 8)), 0.1
+    ),
+)

@@ -17,6 +17,7 @@ from stiffmbs.solve.explicit import fixed, rounding, stable_step
 from stiffmbs.solve.explicit.adaptive import AdaptiveRun
 from stiffmbs.solve.explicit.native import attempt, explicit_events, fastest_rate, interpolant, runge_kutta
 from stiffmbs.solve.explicit.native import start as explicit_start
+from stiffmbs.solve.explicit.rk4 import RK4
 from stiffmbs.solve.trajectory import Grid
 from tests.decisions.common import Reached, Record, always, never, nothing, parameters, searched
 from tests.interpreted import interpreted
@@ -240,13 +241,17 @@ def smallest_rounding():
 def checks_of_fixed_steps():
     count = []
     dynamics = Record(input_features=lambda *_: NO_FEATURES)
-    stepper = fixed.Stepper("rk4", np.zeros(1), np.zeros(1), nothing, nothing, 4)
+    work = Record(q=np.zeros(1), u=np.zeros(1), at=0, scheme=RK4)
     settings = RunSettings(duration=1.0)
     jumps = Record(sentence=lambda: "")
     with patch.multiple(
-        fixed, refuse_beyond_limits=nothing, _jumps=lambda *_: count.append(1) and "", Jumps=lambda *_: jumps
+        fixed,
+        refuse_beyond_limits=nothing,
+        _jumps=lambda *_: count.append(1) and "",
+        Jumps=lambda *_: jumps,
+        FIXED_STEPS=Record(call=lambda *_: 0),
     ):
-        fixed.solve_with_fixed_steps(dynamics, stepper, Grid(0.0, 1.0, np.linspace(0.0, 1.0, 1001)), settings, nothing)
+        fixed.solve_with_fixed_steps(dynamics, work, Grid(0.0, 1.0, np.linspace(0.0, 1.0, 1001)), settings, nothing)
     return len(count)
 
 

@@ -9,6 +9,7 @@ from typing import Final
 from stiffmbs.compile.machine.native.access import compiled, state_view
 from stiffmbs.compile.machine.native.calls import int32
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
+from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.dynamics.elimination.native.by_blocks import (
     accelerate_by_blocks,
     blocks_view,
@@ -16,6 +17,7 @@ from stiffmbs.dynamics.elimination.native.by_blocks import (
     move_by_blocks,
 )
 from stiffmbs.dynamics.elimination.native.by_pins import accelerate_by_pins, move_by_pins, pins_view
+from stiffmbs.dynamics.native.parameters import ELIMINATION
 from stiffmbs.dynamics.native.views import eliminated_view
 
 SMALL_PRODUCT: Final = 1e-100
@@ -42,7 +44,26 @@ def eliminated_accelerations(r, s, t):
     _scale(r)
     r.ready = accelerate_by_blocks(r, blocks_view(r.lists), s, values)
     _scale(r)
+    if r.ready and r.trees and r.kept <= ELIMINATION.lost:
+        _correct(r, blocks_view(r.lists), s, values)
     return r.ready
+
+
+@compiled
+def _correct(r, b, s, values):
+    """Correct accelerations and multipliers once by the residual of J u' = gamma, which squares their relative error."""
+    for row in range(s.n_c):
+        r.left[row] = 0.0
+    for k in range(r.n_gamma):
+        r.left[r.gamma_row[k]] -= values[r.gamma_source[k]]
+    for k in range(r.n_j):
+        r.left[r.j_row[k]] += values[r.j_source[k]] * r.a[r.j_column[k]]
+    copied(r.u_before, r.a, r.n_u)
+    smallest_move(r, s, r.left)
+    for k in range(r.n_u):
+        r.a[k] += r.u_before[k]
+    for k in range(s.n_c):
+        s.lam[k] += b.x[b.place[k]] if b.place[k] >= 0 else 0.0
 
 
 @compiled

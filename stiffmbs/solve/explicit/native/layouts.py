@@ -6,7 +6,7 @@ Letters of these tables in native functions: docs/project/notation.md.
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
 SCHEME = Layout({
-    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "n_free": INT, "error_needs_end": INT,
+    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "n_free": INT, "error_needs_end": INT, "semi_implicit": INT,
     "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS, "free": FLOATS, "free_error": FLOATS,
     "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
 })  # fmt: skip
@@ -17,7 +17,7 @@ EXPLICIT = Layout({
     "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "stable": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
     "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
     "n_event_functions": INT, "end_at_event": INT, "at_event": INT_CELL, "uncertain": INT_CELL, "distance": FLOAT_CELL, "distance_of_end": FLOAT_CELL, "watch": INTS,
-    "started": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
+    "started": INT_CELL, "rates_known": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_first": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
     "whole_steps": INTS, "repeats": FLOAT_CELL,
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
@@ -26,4 +26,5 @@ EXPLICIT = Layout({
 """Explicit integration between two calls: the state y = (q, u) now and before the last step of length `span`; its event
 functions; the stages k; inverse tolerances of the last attempt; the number of polynomials of the last step (0 if not
 computed); counters; output times (none for every step); memory for the rows and ends of steps in one call.  `started`
-is 0 before a restart: the state, its accelerations in the last stage, and `lam` are then consistent.  `repeats` is the number of periods of laws that end a step in each."""
+is 0 before a restart: the state, its accelerations in the last stage, and `lam` are then consistent.
+Fixed steps return to `y_first` if they fail; `rates_known` is 1 if the last stage has the rates at their start.  `repeats` is the number of periods of laws that end a step in each."""

@@ -1,4 +1,4 @@
-"""Explicit Runge-Kutta steps with projection, of fixed size or with error control."""
+"""Explicit Runge-Kutta steps with error control and projection."""
 
 from math import isfinite
 
@@ -25,7 +25,7 @@ from stiffmbs.solve.explicit.native.parameters import CONTROL, ENDS
 from stiffmbs.solve.explicit.native.stages import explicit_view, scheme_view
 from stiffmbs.solve.explicit.native.start import first_step, start_steps
 
-__all__ = ["advance", "end_at_event", "fixed_steps"]
+__all__ = ["advance", "end_at_event"]
 
 
 @compiled
@@ -214,23 +214,3 @@ def advance(end, steps, held, own_steps, explicit):
         if x.steps >= CONTROL.enough_steps and _is_hopeless(x, end):
             return STIFF
     return PAUSED
-
-
-def fixed_steps(start, h, steps, explicit):
-    """Take `steps` steps of length h from the time `start`; 0 or a negative status."""
-    x = explicit_view(explicit)
-    c = scheme_view(x.scheme)
-    m = dynamics_view(x.dynamics)
-    s = state_view(m.state)
-    if not x.started:
-        start_steps(x, c, s, m)
-    for step in range(steps):
-        x.t = start + step * h
-        _depart(x, c)
-        status = attempt(x, c, s, m, h)
-        if status < 0:
-            return status
-        status = arrive(x, c, s, m, start + (step + 1) * h)
-        if status < 0:
-            return status
-    return 0

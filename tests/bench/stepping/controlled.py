@@ -18,7 +18,7 @@ from stiffmbs.studies.case_solver import CaseSolver, Task, written_scene
 from stiffmbs.studies.simulation import Simulation, simulation
 from stiffmbs.studies.stepping import StartedSteps
 
-from .benchmark import Row
+from ..benchmark import Row
 
 IN_A_ROW = Routine("tests.bench.native.restarts", "restarts_in_a_row", "int64(int64, float64, float64*, float64*, int64*)")  # fmt: skip
 
