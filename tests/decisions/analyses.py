@@ -18,6 +18,8 @@ from stiffmbs.analyses import (
     staged,
     start_forces,
 )
+from stiffmbs.equilibria import equilibrium
+from stiffmbs.errors import SolverError
 from tests.decisions.common import BELOW, Record, nothing, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
@@ -219,6 +221,20 @@ def softest_mount():
     return count_while(lambda soft: force_at_start("bushing", 0.5e-5 * soft, settled=at_rest) < 10, DOUBLES)
 
 
+def moves_to_an_equilibrium():
+    """Return the number of moves after which the search for the equilibrium ends."""
+    asked = []
+
+    def search(dynamics, t, most):
+        asked.append(most)
+        raise SolverError("not found")
+
+    dynamics = Record(state=Record(q=np.zeros(1)))
+    with patch.object(equilibrium, "find_equilibrium", search):
+        assert start_forces._in_equilibrium(dynamics, Record(q=np.zeros(1)), 0.0) == []
+    return asked[0]
+
+
 def within_steps(record):
     """Record the nodes of the quadratures of a balance that stays broken, or the steps that it examines."""
     rows = Record(t=np.array([0.0, 1.0]), values=np.zeros((1, 1)))
@@ -243,6 +259,7 @@ DECISIONS = {
         "bushing", settled=[start_forces.Stretched("e", "bushing", True, 3.0)]
     ),
     "analyses.start_forces:STIFF": softest_mount,
+    "analyses.start_forces:MOST_MOVES": moves_to_an_equilibrium,
     "analyses.balance_within_steps:NODES": lambda: within_steps("nodes"),
     "analyses.balance_within_steps:MOST_NUMBERS": lambda: within_steps("steps"),
     "analyses.beam_elements:MOST": most_elements_of_a_beam,
@@ -275,6 +292,7 @@ DECISIONS = {
 }  # fmt: skip
 EXPECTED = {
     "analyses.start_forces:OF_WEIGHT": 40, "analyses.start_forces:OF_EQUILIBRIUM": 20, "analyses.start_forces:STIFF": 27,
+    "analyses.start_forces:MOST_MOVES": 100,
     "analyses.balance_within_steps:NODES": 115, "analyses.balance_within_steps:MOST_NUMBERS": 200,
     "analyses.beam_elements:MOST": 512, "analyses.check:MOST_MOVES": 50, "analyses.given_inputs:FEWEST": 513,
     "analyses.given_inputs:MOST": 65579, "analyses.given_inputs:FOLLOWED": 27, "analyses.given_inputs:JUMP": 4,
