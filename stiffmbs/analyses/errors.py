@@ -35,6 +35,9 @@ EXACT = NoteKind(
 NOT_JUDGED = NoteKind("accuracy-not-judged", "the requested accuracy cannot be judged: errors are {why}")
 MOST_REPEATS = 2
 """Runs with another tolerance after the first one, in search of an accuracy, or of errors where steps do not change."""
+UNLOCATED = (
+    "does not locate breakpoints of forces (contacts, step, abs, tables), at which half a step may have the same error"
+)
 ASK = "--errors, or errors: true in run, estimates it"
 
 
@@ -60,6 +63,8 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
             from ..error_estimate.estimate import estimated
 
             return estimated(solution, job.data, job.dynamics, job.start, job.subsystems, trajectory, job.settings)
+        if traits.fixed_steps and job.dynamics.system.n_values("event_function"):
+            return _without(solution, f"not estimated: {traits.name} {UNLOCATED}; --verify compares with other runs")
         if _work(job, trajectory) <= job.grid.recorded.most:
             return _by_second_run(job, trajectory, solution)
     return _without(

@@ -189,6 +189,7 @@ def _outside(t: np.ndarray, x: np.ndarray, table: Table) -> tuple[float, float]:
     duration, first = 0.0, np.inf
     for sense, end in ((-1.0, table.table[0][0]), (1.0, table.table[-1][0])):
         over = sense * (x - end)
+        first = float(t[0]) if over[0] > 0 else first
         a, b, h = over[:-1], over[1:], np.diff(t)
         with np.errstate(all="ignore"):
             crossing = np.where((a > 0) == (b > 0), 0.0, a / (a - b))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import numbers
 from collections.abc import Collection, Mapping
 from typing import Final
 
@@ -17,6 +18,8 @@ from ..results.joint_coordinates import JointCoordinates
 
 PART: Final = 0.5
 """Largest change of a joint coordinate between two poses that Newton's iteration follows, rad, or sizes of the mechanism."""
+MOST_PARTS: Final = 400
+"""Largest number of such poses: 200 rad, or sizes of the mechanism."""
 KEPT: Final = 1e-3
 """Weight of coordinates that are not given, which stay where they are if no loop moves them."""
 
@@ -34,8 +37,8 @@ def named_coordinates(joints: JointCoordinates, given: Mapping[str, float], what
     for name, value in given.items():
         if name not in places:
             raise InputError(f"{what} '{name}': found no such joint coordinate{instead_of(name, joints.names)}")
-        if not math.isfinite(value):
-            raise InputError(f"{what} '{name}': found {value}, expected a finite number")
+        if not isinstance(value, numbers.Real) or not math.isfinite(value):
+            raise InputError(f"{what} '{name}': found {value!r}, expected a finite number")
     return {places[name]: float(value) for name, value in given.items()}
 
 
@@ -47,8 +50,16 @@ def weights(count: int, given: Collection[int]) -> np.ndarray:
 
 
 def parts_of(change: float) -> int:
-    """Return the number of poses to which Newton's iteration follows a change of a coordinate, rad or sizes."""
-    return max(1, math.ceil(change / PART))
+    """Return the number of poses to which Newton's iteration follows a change of a coordinate, rad or sizes.
+
+    Raises InputError if they are too many.
+    """
+    parts = max(1, math.ceil(change / PART))
+    if parts > MOST_PARTS:
+        raise InputError(
+            f"reset: found a joint coordinate {change:.3g} rad (or sizes of the mechanism) from its start, expected at most {MOST_PARTS * PART:g}"
+        )
+    return parts
 
 
 class JointPose:
@@ -61,6 +72,7 @@ class JointPose:
         self._dynamics, self._joints, self._t, self.q = dynamics, joints, t, q.copy()
         self._u, self._active = np.zeros(dynamics.system.n_u), dynamics.system.active
         self._turning = np.array([name in joints.angles for name in joints.names], dtype=bool)
+        self._unit = dynamics.system.per_velocity(dynamics.system.size or 1.0, 1.0)
         joints.watch(self.q, self._u)
 
     def move_to(self, given: Mapping[int, float]) -> None:
@@ -71,7 +83,8 @@ class JointPose:
         first, weight = self._coordinates(), weights(len(self._joints.names), given)
         goal = first.copy()
         goal[list(given)] = [*given.values()]
-        unit = np.where(self._turning, 1.0, self._dynamics.system.size or 1.0)
+        of_angles = [name.rpartition(".")[2].startswith("angle") for name in self._joints.names]
+        unit = np.where(of_angles, 1.0, self._dynamics.system.size or 1.0)
         parts = parts_of(np.abs((goal - first) / unit).max(initial=0.0))
         for part in range(1, parts + 1):
             self._solve(first + (goal - first) * part / parts, weight)
@@ -112,10 +125,16 @@ class JointPose:
             if left <= CONSISTENCY.position_tolerance:
                 break
             matrix = np.vstack([self._matrix(), weight[:, None] * self._rate_matrix()])
-            self.q[:] = self._dynamics.system.of_body.moved(self.q, -_least_squares(matrix, violations))
+            move = -_least_squares(matrix, violations)
+            longest = np.abs(move / self._unit).max(initial=0.0) / PART  # a longer move leaves the linear range
+            self.q[:] = self._dynamics.system.of_body.moved(self.q, move / max(1.0, longest))
         return left
 
     def _coordinates(self) -> np.ndarray:
+        state = self._dynamics.state
+        state.q[:] = self.q
+        state.restart_counters(self._t)  # to the turns nearest to those before the move
+        self.q[:] = state.q
         self._joints.follow(self._t)
         return self._joints.coordinates.copy()
 

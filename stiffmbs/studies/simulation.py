@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import numbers
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -84,7 +85,8 @@ def simulation(
     """
     data = data_of(model)
     own = {name: float(value) for name, value in data.inputs.items() if isinstance(value, float)}
-    given = own | dict(inputs or {})
+    given = dict(inputs or {})
+    given |= {name: value for name, value in own.items() if name not in given}
     paths = (f"{OWN_INPUTS}.{name}" if name in own else name for name in given)
     solver = CaseSolver(Task(written_scene(data), tuple(paths), {}, ()))
     scene = solver.scene([float(value) for value in given.values()])
@@ -141,6 +143,8 @@ class Simulation:
             If the state cannot be read or belongs to another model, or if the joints cannot have these coordinates or
             rates; the simulation is then at its start.
         """
+        if state is not None and (joints is not None or rates is not None):
+            raise InputError("reset: found a state and coordinates or rates of joints, expected one of both")
         job = self._job
         self._inputs.set(self._first)
         job.dynamics.forget_pivots()
@@ -235,12 +239,25 @@ class Simulation:
         SolverError
             If the solver fails; the state is then the previous one.
         """
-        if not 0 < dt < math.inf:
-            raise InputError(f"step: found dt = {dt}, expected a time greater than 0 s")
+        if not isinstance(dt, numbers.Real) or not 0 < dt < math.inf:
+            raise InputError(f"step: found dt = {dt!r}, expected a time greater than 0 s")
         self._forget()
+        held, end = self._inputs.held.values.copy(), self.t + float(dt)
         if inputs is not None and self._inputs.set(inputs):
             self._stepper.jump()
-        end, before = self.t + dt, (self.q, self.u) if self._bounded else None
+        try:
+            self._step_to(end)
+        except SolverError:
+            self.set_inputs(held)
+            raise
+        self.t = end
+        self._followed = self._joints.any_followed
+        if self._followed:
+            self._joints.follow(end)
+
+    def _step_to(self, end: float) -> None:
+        """Advance the stepper to a later time, s."""
+        before = (self.q, self.u) if self._bounded else None
         self._steps += 1
         if self._relaxed and (self._steps % DRIFT_CHECK_INTERVAL == 0 or self._steps & (self._steps - 1) == 0):
             with in_use(self._job.settings.tuning):
@@ -249,10 +266,6 @@ class Simulation:
             self._advance(end)
         if before:
             self._stay_within_tables(end, *before)
-        self.t = end
-        self._followed = self._joints.any_followed
-        if self._followed:
-            self._joints.follow(end)
 
     def steps(self, n: int, inputs: Inputs | None = None, dt: float | None = None) -> None:
         """Advance by several steps; schemes of fixed steps take them in one compiled call.
@@ -274,8 +287,9 @@ class Simulation:
             If a step fails; the state is then that before this step.
         """
         dt = self._job.settings.step if dt is None else dt
-        if n < 1 or not 0 < dt < math.inf:
-            raise InputError(f"steps: found n = {n} and dt = {dt}, expected a number and a time greater than 0")
+        valid = isinstance(n, numbers.Integral) and isinstance(dt, numbers.Real)
+        if not valid or n < 1 or not 0 < dt < math.inf:
+            raise InputError(f"steps: found n = {n!r} and dt = {dt!r}, expected a number and a time greater than 0")
         rows, done = self._inputs.rows(inputs, n), 0
         if self._inputs.affine and not (self._bounded or self._relaxed):
             done = self._taken_together(dt, rows)
@@ -286,8 +300,13 @@ class Simulation:
         """Take steps in one compiled call if the stepper can; return their number."""
         if not isinstance(self._stepper, FixedSteps):
             return 0
+        held = self._inputs.held.values.copy()
         try:
             return self._stepper.advance_many(self.t, dt, rows, self._inputs.held, self._joints)
+        except SolverError:
+            taken = round((self._stepper.time - self.t) / dt)
+            self.set_inputs(rows[taken - 1] if taken else held)
+            raise
         finally:
             self._followed = self._followed and self._stepper.time == self.t
             self.t = self._stepper.time
@@ -446,7 +465,8 @@ class Simulation:
             If the file cannot be read, or belongs to another model.
         """
         found = state_to_start_from(path)
-        assert found is not None
+        if found is None:
+            raise InputError("load: found None, expected a file of results, a Solution, or a state of one")
         job = self._job
         placed = started_from(job.dynamics.system, in_pose_of(found, job.data), found)
         exact = found.exact

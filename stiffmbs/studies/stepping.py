@@ -220,7 +220,7 @@ class FixedSteps:
     def __init__(self, job: Job, start: InitialValues, t: float) -> None:
         dynamics, settings = job.dynamics, job.settings
         self._dynamics, self._settings, self._step = dynamics, settings, settings.step
-        self._end, self._changes = t, dynamics.input_changes
+        self._first, self._end, self._changes = t, t, dynamics.input_changes
         grid = Grid(t, t + settings.duration, None)
         self._work = Integration(scheme_of(settings), dynamics, start, grid, settings)
         self.q, self.u, self.time, self.length = self._work.q, self._work.u, t, 0.0
@@ -264,9 +264,10 @@ class FixedSteps:
 
     def _breaks(self, end: float) -> bool:
         """Return True if an input has a breakpoint up to a time, s; determine the features of inputs if they are not known."""
-        if not end <= self._end or self._changes != self._dynamics.input_changes:
-            self._end, self._changes = end + self._settings.duration, self._dynamics.input_changes
-            self._features = self._dynamics.input_features(self._t, self._end)
+        if not self._first <= self._t < end <= self._end or self._changes != self._dynamics.input_changes:
+            self._first, self._end = self._t, end + self._settings.duration
+            self._changes = self._dynamics.input_changes
+            self._features = self._dynamics.input_features(self._first, self._end)
         return self._t != self.time or _breaks(self._features, self._t, end)
 
     def _run(self, t: float) -> None:

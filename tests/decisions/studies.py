@@ -242,6 +242,9 @@ DECISIONS = {
     "studies.fmu.slave:AT_ONE_TIME": largest_difference_of_times,
     "studies.follow:SHARE": reports_of_a_run,
     "studies.joint_pose:PART": lambda: joint_pose.parts_of(6.2),
+    "studies.joint_pose:MOST_PARTS": lambda: count_while(
+        lambda turns: not refused(lambda: joint_pose.parts_of(10.0 * turns)), DOUBLES
+    ),
     "studies.joint_pose:KEPT": lambda: joint_pose.weights(2, [0])[1],
     "studies.measured:ROUNDS": estimates_of_noise,
     "studies.optimise:STEP": step_of_differences,
@@ -264,6 +267,7 @@ EXPECTED = {
     "studies.executors:AHEAD": 3, "studies.executors:TRIES": 3, "studies.fit:CONFIDENCE": 1.959963986912325,
     "studies.fit:ROUNDS": 3, "studies.fit:INSIDE": 1e-06, "studies.fit:FAR": 1000.0, "studies.fmu.build:LONGEST_NAME": 60,
     "studies.fmu.slave:AT_ONE_TIME": 27, "studies.follow:SHARE": 21, "studies.joint_pose:PART": 13, "studies.joint_pose:KEPT": 1e-3,
+    "studies.joint_pose:MOST_PARTS": 18,
     "studies.measured:ROUNDS": 4, "studies.optimise:STEP": 0.001, "studies.sensitivities.formulas:SAME": 1e-12,
     "studies.sensitivities.formulas:ZERO": 1e-14, "studies.sensitivities.formulas:ALIKE": 27,
     "studies.sensitivities.parameters:STEP": 0.0001, "studies.sensitivities.parameters:ALMOST_ZERO": 1e-300,

@@ -207,3 +207,73 @@ def test_a_reset_to_a_state_is_a_load():
     sim.steps(5)
     sim.reset(kept)
     np.testing.assert_allclose(state(sim), expected, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("settings", [RK4, {"solver": "bdf"}], ids=["rk4", "bdf"])
+@pytest.mark.parametrize("angle", [4.0, -30.0])
+def test_a_reset_moves_counters_of_turns_too(settings, angle):
+    """Angles that a force reads stayed within half a turn, and a screw further away was refused."""
+    sim = simulation(
+        stiffmbs.read_scene("""
+            dimensions: 3
+            bodies: {b: {mass: 2, inertia: [0.1, 0.2, 0.3]}, n: {mass: 1, inertia: [1, 1, 1]}}
+            joints: {c: {type: revolute, i: b, j: ground}, s: {type: screw, i: n, j: ground, pitch: 0.1}}
+            forces: {spring: {type: torque, i: b, torque: [0, 0, -2*c.angle]}}
+        """),
+        **settings,
+    )
+    sim.reset(joints={"c": angle, "s.angle": angle})
+    assert sim["spring.tz"] == pytest.approx(-2 * angle, rel=1e-9)
+    assert sim.joint_coordinates == pytest.approx([angle, 0.1 * angle / (2 * np.pi), angle], rel=1e-9)
+
+
+def test_a_reset_of_a_straight_loop_makes_no_turns_that_the_loop_cannot_make():
+    """Newton's first move was far too long in the singular pose: the eye had turned by 12 rad, of at most 0.5."""
+    sim = simulation(stiffmbs.read_scene(LOOP), **RK4)
+    sim.reset(joints={"rail": 0.5})
+    shaft, _, eye, _ = sim.joint_coordinates
+    assert abs(shaft) == pytest.approx(np.arccos((0.5**2 + 0.2**2 - 0.4**2) / (2 * 0.5 * 0.2)), rel=1e-9)
+    assert abs(eye) == pytest.approx(np.arcsin(0.2 * np.sin(abs(shaft)) / 0.4), rel=1e-9)
+    with pytest.raises(InputError, match="expected at most 200"):
+        sim.reset(joints={"shaft": 1e9})
+
+
+def test_a_load_of_an_earlier_time_meets_breakpoints_again():
+    """Features of inputs began at a later time: the step of a force within a step was smeared."""
+    scene = stiffmbs.read_scene("""
+        bodies: {sled: {mass: 1, inertia: 1}}
+        joints: {rail: {type: prismatic, i: sled, j: ground}}
+        forces: {push: {type: force, i: sled, force: ["10*branch(t - 0.1333, 0, 0, 1)", 0]}}
+        run: {duration: 0.1}
+    """)
+    sim = simulation(scene, **RK4 | {"step": 0.02})
+    sim.step(0.02)
+    early = sim.state
+    for _ in range(30):
+        sim.step(0.02)
+    sim.load(early)
+    sim.steps(10)
+    assert sim["sled.vx"] == pytest.approx(10 * (0.22 - 0.1333), rel=1e-9)
+
+
+def test_inputs_have_the_order_in_which_they_are_given_and_fail_with_their_step():
+    scene = stiffmbs.read_scene("""
+        inputs: {A: 1, B: 0}
+        bodies: {sled: {mass: 1, inertia: 1}}
+        joints: {rail: {type: prismatic, i: sled, j: ground}}
+        tables: {T: {table: [[-1, 0], [1, 1]], beyond: error}}
+        forces: {push: {type: force, i: sled, force: ["A + B + 0*T(sled.x)", 0]}}
+    """)
+    sim = simulation(scene, inputs={"B": 0, "A": 0}, **RK4)
+    assert list(sim.inputs) == ["B", "A"]
+    with pytest.raises(SolverError, match="stopped at t = 5 s"):
+        sim.step(5, [2.0, 0.0])
+    assert sim.inputs == {"B": 0.0, "A": 0.0} and sim["sled.ax"] == 0.0
+    for invalid in (
+        lambda: sim.step("a"),
+        lambda: sim.steps(2.5),
+        lambda: sim.load(None),
+        lambda: sim.reset(sim.state, {"rail": 0.1}),
+    ):
+        with pytest.raises(InputError):
+            invalid()
