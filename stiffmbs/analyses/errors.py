@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from ..model.settings import LARGEST_RTOL, RunSettings
 from ..notes import NoteKind, Severity
 from ..results.error_bars import ErrorEstimate
 from ..solve.explicit import DOP853
-from ..solve.settings import changed, traits_of
+from ..solve.settings import changed, misses_breakpoints, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback, Recording, Trajectory
 from ..tuning import in_use
 
@@ -35,9 +36,6 @@ EXACT = NoteKind(
 NOT_JUDGED = NoteKind("accuracy-not-judged", "the requested accuracy cannot be judged: errors are {why}")
 MOST_REPEATS = 2
 """Runs with another tolerance after the first one, in search of an accuracy, or of errors where steps do not change."""
-UNLOCATED = (
-    "does not locate breakpoints of forces (contacts, step, abs, tables), at which half a step may have the same error"
-)
 ASK = "--errors, or errors: true in run, estimates it"
 
 
@@ -63,8 +61,9 @@ def assessed(job: Job, trajectory: Trajectory, solution: Solution) -> Solution:
             from ..error_estimate.estimate import estimated
 
             return estimated(solution, job.data, job.dynamics, job.start, job.subsystems, trajectory, job.settings)
-        if traits.fixed_steps and job.dynamics.system.n_values("event_function"):
-            return _without(solution, f"not estimated: {traits.name} {UNLOCATED}; --verify compares with other runs")
+        if misses_breakpoints(job.settings, job.dynamics.system):
+            why = f"{traits.name} does not locate breakpoints of forces, where half a step may have the same error"
+            return _without(solution, f"not estimated: {why}; --verify compares with other runs")
         if _work(job, trajectory) <= job.grid.recorded.most:
             return _by_second_run(job, trajectory, solution)
     return _without(
@@ -96,31 +95,15 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     from ..results.error_bars import bars_by_difference
     from .run import finished
 
-    steps, traits = _steps(trajectory), traits_of(job.settings)
-    part = _part_of_second(job.settings.rtol)
-    system, grid = job.dynamics.system, job.grid
+    steps, system, grid = _steps(trajectory), job.dynamics.system, job.grid
     breakpoints = job.dynamics.input_features(grid.start, grid.end).breakpoints if system.has_inputs else np.empty(0)
     times, at = _with_steps(solution, trajectory, breakpoints)
-    longest = float(np.diff(trajectory.step_times).max(initial=0.0))
-    for repeats in range(1, MOST_REPEATS + 1):
-        if traits.fixed_steps:
-            settings, how = (
-                changed(job.settings, {"step": float(np.ptp(solution.time)) / (2 * steps)}),
-                "with half the step",
-            )
-        else:
-            settings = _with_errors(job.settings, part**repeats, longest if repeats > 1 else 0.0)
-            how = f"at rtol {settings.rtol:.0e}"
+    for settings, part, how in _of_second_runs(job.settings, trajectory):
         try:
             other = finished(replace(job, settings=settings, grid=replace(job.grid, recorded=Recording(), times=times)))
         except StiffmbsError as error:
             return _without(solution, f"not estimated: a run {how} failed: {error}; use --verify")
-        if traits.fixed_steps:
-            part = (steps / _steps(other.trajectory)) ** traits.order
-            break
-        if part > 1.0 or _steps(other.trajectory) > steps * part ** (-0.5 / DOP853.order):
-            break
-        if part * settings.rtol < ESTIMATE.smallest_rtol:
+        if _steps(other.trajectory) > steps * part ** (-0.5 / DOP853.order):
             break
     if len(other.time) != len(times):
         return _without(solution, f"not estimated: a run {how} ended early; use --verify")
@@ -128,6 +111,20 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
         times, at, solution.channels, other.channels, part, breakpoints + grid.aside, ESTIMATE.numbers_at_once
     )
     return with_bars(replace(solution, errors=found), job.settings, system.size)
+
+
+def _of_second_runs(settings: RunSettings, trajectory: Trajectory) -> Iterator[tuple[RunSettings, float, str]]:
+    """Yield the settings of second runs, the expected part of their errors in those of the first run, and how they are run."""
+    if order := traits_of(settings).order:
+        taken = float(np.ptp(trajectory.t)) / _steps(trajectory)  # reduced to divide output intervals
+        yield changed(settings, {"step": 0.5 * taken}), 0.5**order, "with half the step"
+        return
+    part, longest = _part_of_second(settings.rtol), float(np.diff(trajectory.step_times).max(initial=0.0))
+    for repeats in range(1, MOST_REPEATS + 1):
+        found = _with_errors(settings, part**repeats, longest if repeats > 1 else 0.0)
+        yield found, part, f"at rtol {found.rtol:.0e}"
+        if part > 1.0 or part * found.rtol < ESTIMATE.smallest_rtol:
+            return
 
 
 def _part_of_second(rtol: float) -> float:

@@ -76,8 +76,13 @@ def settings_notes(settings: RunSettings, system: System) -> Iterator[Note]:
     yield from _ignored(settings, traits)
     if changes := ", ".join(changes_in_use()):
         yield TUNED(changes=changes)
-    if not traits.locates_events and system.n_values("event_function"):
+    if misses_breakpoints(settings, system):
         yield NOT_LOCATED(solver=traits.name, step=settings.step)
+
+
+def misses_breakpoints(settings: RunSettings, system: System) -> bool:
+    """Return True if a system has breakpoints of forces which the solver's steps do not locate."""
+    return not traits_of(settings).locates_events and system.n_values("event_function") > 0
 
 
 def _ignored(settings: RunSettings, traits: Traits) -> Iterator[Note]:

@@ -17,7 +17,7 @@ from ..analyses.start_from import StartFrom, in_pose_of, started_from, state_to_
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
 from ..elements.turns import TURN
-from ..errors import AssemblyError, ChannelError, InputError, SolverError
+from ..errors import AssemblyError, ChannelError, InputError, SolverError, StiffmbsError
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.channels import channels_of, turns_of
 from ..results.files import written_whole
@@ -243,11 +243,11 @@ class Simulation:
             raise InputError(f"step: found dt = {dt!r}, expected a time greater than 0 s")
         self._forget()
         held, end = self._inputs.held.values.copy(), self.t + float(dt)
-        if inputs is not None and self._inputs.set(inputs):
-            self._stepper.jump()
         try:
+            if inputs is not None:
+                self.set_inputs(inputs)
             self._step_to(end)
-        except SolverError:
+        except StiffmbsError:
             self.set_inputs(held)
             raise
         self.t = end
@@ -499,6 +499,6 @@ class Simulation:
 def _exactly(q: np.ndarray, u: np.ndarray, exact: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
     """Return saved coordinates and velocities if they are those of the channels, which rounding has changed, else these."""
     by_channels = np.concatenate([q, u])
-    if exact is None or exact.shape != by_channels.shape or not np.allclose(exact, by_channels, rtol=1e-6, atol=1e-6):
+    if exact is None or exact.shape != by_channels.shape or not np.allclose(exact, by_channels, rtol=1e-9, atol=1e-9):
         return q, u
     return exact[: len(q)], exact[len(q) :]
