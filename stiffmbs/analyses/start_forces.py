@@ -31,7 +31,8 @@ OF_WEIGHT = 1000.0
 STIFF = 1e-3
 """Deflection of a mount by the weight of all bodies, in sizes of the mechanism, above which it is a spring, and stretched on purpose."""
 MOST_MOVES = 100
-"""Moves towards the static equilibrium after which it counts as not found: only a note depends on it."""
+"""Moves towards the static equilibrium after which it counts as not found: only a note depends on it. Searches that find one take less than half as many
+(``tests/analyses/test_start_forces.py``)."""
 STANDARD_GRAVITY: Final = 9.80665
 """Gravity by which bodies are weighed in scenes without, or with less, m/s^2."""
 
