@@ -18,11 +18,12 @@ from ..linear_solvers.sparse_lu import SparseLU
 from .native_engine import NativeEngine
 
 
-def chosen(equations: Equations) -> LinearSolver:
-    """Return the linear solver of the least estimated cost."""
+def chosen(equations: Equations) -> tuple[LinearSolver, float]:
+    """Return the linear solver of the least estimated cost, and that cost, ns, with what blocks must save to be compiled."""
     order = elimination_order(equations)
     blocks, sparse = BlockLU.of(equations, order), SparseLU(equations.n, *equations.pattern, order)
-    return sparse if sparse.cost <= blocks.cost + COSTS.worth_compiling else blocks
+    of_blocks = blocks.cost + COSTS.worth_compiling
+    return (sparse, sparse.cost) if sparse.cost <= of_blocks else (blocks, of_blocks)
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,8 @@ class Driven:
 def driven_natively(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> Driven:
     """Return the equations with their engine."""
     equations = natural(dynamics, settings)
-    matrix = chosen(equations)
-    return Driven(equations, matrix.cost, partial(NativeEngine, equations, dynamics, matrix, settings, control))
+    matrix, cost = chosen(equations)
+    return Driven(equations, cost, partial(NativeEngine, equations, dynamics, matrix, settings, control))
 
 
 def natural(dynamics: Dynamics, settings: RunSettings) -> Equations:

@@ -60,8 +60,8 @@ class BlockLU(LinearSolver):
         if MOST_STORED * self.order.fill > np.iinfo(np.int32).max:
             return np.inf
         update, entry, unknown, node = COSTS.blocks
-        of_nodes = node * len(self.nodes) + COSTS.far_node * max(len(self.nodes) - COSTS.cached_nodes, 0)
-        return update * self.order.updates + entry * self.order.fill + unknown * self.n + of_nodes
+        n_nodes, far = len(self.nodes), COSTS.far_node * max(len(self.nodes) - COSTS.cached_nodes, 0)
+        return update * self.order.updates + entry * self.order.fill + unknown * self.n + node * n_nodes + far
 
     @cached_property
     def blocks(self) -> Blocks:

@@ -80,16 +80,16 @@ def of_radau(dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
 def driven_by_radau(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> Driven:
     """Return the equations with their engine, and the mean cost of a real and two complex linear systems."""
     equations = natural(dynamics, settings)
-    matrix = chosen(equations)
+    matrix, cost = chosen(equations)
 
     def engine() -> NativeEngine:
         """Return the engine; its formula weighs residuals by `RESIDUAL`."""
         stages = None if settings.stages == "auto" else settings.stages
-        of_bdf = ImplicitCost.of(dynamics, 1e-3 * matrix.cost)
+        of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
         of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)
         rounding = min(NEWTON.loosest, float(np.sqrt(NEWTON.precision / settings.rtol)))  # small remainders drown in it
         parameters = replace(parameters_of(RADAU), remainder=max(RADAU.remainder, rounding))
         formula = Radau(equations, matrix, dynamics.state, stages, of_steps, parameters)
         return NativeEngine(equations, dynamics, matrix, settings, control, formula)
 
-    return Driven(equations, matrix.cost * (1 + 2 * pair_cost(matrix)) / 3, engine)
+    return Driven(equations, cost * (1 + 2 * pair_cost(matrix)) / 3, engine)

@@ -56,7 +56,7 @@ def residual_by_which_radau_chooses():
     """Return the cost of a residual, in that of bdf, by which radau chooses the number of stages."""
     costs = []
     replaced = {
-        "chosen": lambda _: Record(cost=1000.0), "natural": nothing, "NativeEngine": nothing, "pair_cost": lambda _: 1.0,
+        "chosen": lambda _: (None, 1000.0), "natural": nothing, "NativeEngine": nothing, "pair_cost": lambda _: 1.0,
         "Radau": lambda *given: costs.append(given[4]),
     }  # fmt: skip
     with patch.multiple(radau, **replaced):
