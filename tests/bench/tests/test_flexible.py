@@ -10,6 +10,7 @@ from tests.bench.problems.flexible import BEAMS, BENCHMARKS, of_beam, of_element
 ERROR = 1e-3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", BEAMS)
 def test_a_beam_has_about_the_error_that_is_asked_for(name):
     reference = of_elements(BEAMS[name], 32)()

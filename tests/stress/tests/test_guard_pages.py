@@ -54,6 +54,7 @@ def test_an_array_that_is_one_number_too_short_is_found(array):
     assert done.returncode == -signal.SIGSEGV
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("offset", "status"), [(0, 0), (11, 0), (12, 70), (-1, 70)])
 def test_bytes_beside_an_array_are_looked_at(offset, status):
     assert python("-c", PATTERN.format(offset=offset)).returncode == status
