@@ -159,7 +159,7 @@ def runs_to_a_condition(crosses):
     """Return the points of the runs that find a condition, which is met in the first interval or never."""
     points = []
 
-    def run(**changes):
+    def run(*monitor, **changes):
         points.append(changes.get("points"))
         return Record(time=np.arange(2.0), state=nothing_of, success=False)
 
@@ -167,8 +167,8 @@ def runs_to_a_condition(crosses):
         return at
 
     crossing = Record(t=0.5, before=0, name="c") if crosses else None
-    with patch.multiple(staged, _first=lambda *_: crossing, _margin_of=lambda *_: lambda _: [-1.0]):
-        staged._up_to_the_first(run, {"c": Record(then="on")}, None, True)
+    with patch.multiple(staged, first_crossing=lambda *_: crossing, margin_of=lambda *_: lambda _: [-1.0]):
+        staged._up_to_the_first(staged.Runs(run, run), {"c": Record(then="on")}, 1.0, None, True)
     return points
 
 
@@ -179,7 +179,7 @@ def most_conditions():
         staged, _up_to_the_first=lambda *_, **__: met.append(1) or (part, "c", 1.0), replace=lambda *_, **__: None
     ):
         condition = Record(then="on", sets={}, output=None)
-        assert refused(lambda: staged.run_until(None, {"c": condition}, None, None))
+        assert refused(lambda: staged.run_until(None, {"c": condition}, 1.0, None, None))
     return len(met)
 
 
@@ -189,8 +189,8 @@ def smallest_distance_from_a_bound():
 
     def is_armed(distance):
         whole = Record(time=np.arange(2.0))
-        with patch.object(staged, "_channel", lambda *_: np.array([1.0, -distance])):
-            return np.isfinite(staged._margin_of("c", condition, whole, False).armed)
+        with patch.object(conditions, "channel_of", lambda *_: np.array([1.0, -distance])):
+            return np.isfinite(conditions.margin_of("c", condition, whole, False).armed)
 
     return count_while(is_armed, BELOW)
 
