@@ -11,6 +11,7 @@ from stiffmbs.analyses import (
     balance_within_steps,
     beam_elements,
     check,
+    conditions,
     given_inputs,
     job,
     long_runs,
@@ -195,6 +196,19 @@ def smallest_distance_from_a_bound():
     return count_while(is_armed, BELOW)
 
 
+def rows_before_a_look(apart):
+    """Return the number of rows, at a distance from each other in a run of 1 s, at which a monitor looks first."""
+    start = Record(q=np.zeros(1), u=np.zeros(1), lam=np.zeros(0))
+    monitored = Record(dynamics=Record(system=None), start=start, grid=Record(start=0.0, end=1.0))
+    looked = []
+    with (
+        patch.object(conditions, "Dynamics", lambda _: Record(place=nothing)),
+        patch.object(conditions.Monitor, "_is_met", lambda _: looked.append(1)),
+    ):
+        monitor, row = conditions.Monitor({}, True, monitored), np.zeros((1, 1))
+        return 1 + count_while(lambda k: monitor.look(np.array([k * apart]), row, row) or not looked, range(1, 1000))
+
+
 def force_at_start(kind, energy=0.0, **equilibrium):
     """Return the force of an element, in quarter octaves of the weight, up to which it has no note."""
     mass = np.array([1.0 / start_forces.STANDARD_GRAVITY, 0.0, 0.0])
@@ -288,7 +302,9 @@ DECISIONS = {
     "analyses.staged:LEVELS": lambda: len(runs_to_a_condition(True)) - 3,
     "analyses.staged:LEAST": lambda: runs_to_a_condition(False)[1],
     "analyses.staged:MOST": most_conditions,
-    "analyses.staged:SAME": smallest_distance_from_a_bound,
+    "analyses.conditions:SAME": smallest_distance_from_a_bound,
+    "analyses.conditions:LOOKS": lambda: rows_before_a_look(1 / 640),
+    "analyses.conditions:ROWS": lambda: rows_before_a_look(1e-6),
 }  # fmt: skip
 EXPECTED = {
     "analyses.start_forces:OF_WEIGHT": 40, "analyses.start_forces:OF_EQUILIBRIUM": 20, "analyses.start_forces:STIFF": 27,
@@ -299,5 +315,6 @@ EXPECTED = {
     "analyses.given_inputs:ROUNDINGS": 9.094947017729282e-13, "analyses.job:DEPENDENT": 120, "analyses.long_runs:Drafted.patience": 14, "analyses.long_runs:Drafted.least": 40, "analyses.rerun:ROUNDS": 4,
     "analyses.rerun:PART_OF_A_FEATURE": 0.0625, "analyses.rerun:MOST_STEPS": 40, "analyses.rerun:STARTS": 14,
     "analyses.rerun:DRIFTED": 14, "analyses.rerun:LESS": 4, "analyses.staged:POINTS": 33, "analyses.staged:LEVELS": 3,
-    "analyses.staged:LEAST": 1001, "analyses.staged:MOST": 500, "analyses.staged:SAME": 119,
+    "analyses.staged:LEAST": 1001, "analyses.staged:MOST": 500, "analyses.conditions:SAME": 119,
+    "analyses.conditions:LOOKS": 10, "analyses.conditions:ROWS": 99,
 }  # fmt: skip
