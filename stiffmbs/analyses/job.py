@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -44,6 +44,9 @@ from .driven_turns import in_turns_of_new_drives, note_on_turns, turns_of_drives
 from .found_before import FoundBefore
 from .load_scene import load_scene
 from .start_from import StartFrom, in_pose_of, started_from, starting_at, state_to_start_from
+
+if TYPE_CHECKING:
+    from .conditions import Monitor
 
 Data = TypeVar("Data", bound=ModelData)
 DEPENDENT = 1e-9
@@ -135,6 +138,7 @@ class Job:
     subsystems: tuple[Subsystem, ...] = ()
     turns: Mapping[str, int] = field(default_factory=dict)
     start_from: SavedState | None = None
+    monitor: Callable[[Job], Monitor] | None = None  # makes the monitor of an integration
 
     def placed(self, data: Data) -> Data:
         """Return a model of the same bodies in the pose in which the elements of the job were set up."""
@@ -174,13 +178,17 @@ class Job:
                 return solve_subsystems(solve, self.subsystems, self.start, grid, self.settings, watch)
             return solve(self.dynamics, self.start, grid, self.settings, watch)
 
+        monitor = self.monitor(self) if self.monitor else None
+        grid = replace(self.grid, monitor=monitor.look) if monitor else self.grid
         with in_use(self.settings.tuning):
             if LOGGER.isEnabledFor(logging.DEBUG):
                 for line in described():
                     LOGGER.debug("%s", line)
             if not self.dynamics.system.has_inputs:
-                return over(self.grid)
-            return solve_up_to_the_inputs_end(self.dynamics, self.grid, over)
+                found = over(grid)
+            else:
+                found = solve_up_to_the_inputs_end(self.dynamics, grid, over)
+        return replace(found, outcome=Outcome.DONE, message=Outcome.DONE.value) if monitor and monitor.met else found
 
 
 Runnable: TypeAlias = ModelBuilder | ModelData | str | Path

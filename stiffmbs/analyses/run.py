@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Unpack
@@ -35,6 +35,7 @@ from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory, unwatched
 from ..tuning import in_use
 from .checks import Integrated, notes_on
+from .conditions import Monitor
 from .errors import assessed, recording, to_accuracy
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare, settings_of, up_to_a_fault, with_elements
@@ -89,15 +90,28 @@ def run(
 
         found = run_stages(data, settings, watch, start_from, inputs, **changes)
         return replace(found, provenance=provenance_of(data, settings_of(data, settings, changes)))
+    return run_monitored(data, None, settings, watch, start_from, inputs, **changes)
+
+
+def run_monitored(
+    data: ModelData,
+    monitor: Callable[[Job], Monitor] | None,
+    settings: RunSettings | None = None,
+    watch: ProgressCallback | None = None,
+    start_from: StartFrom | None = None,
+    inputs: Mapping[str, Given] | None = None,
+    **changes: Unpack[Settings],
+) -> Solution:
+    """Simulate a model without stages, up to where a monitor ends the run; other parameters and errors as for `run`."""
     data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
         data = with_inputs(data, inputs, settings_of(data, settings, changes))
     try:
         with on_drafts():
-            return _prepared_and_solved(data, settings, watch, start_from, changes)
+            return _prepared_and_solved(data, settings, watch, start_from, changes, monitor)
     except TakesLongError:
         with fully_compiled():
-            return _prepared_and_solved(data, settings, watch, start_from, changes)
+            return _prepared_and_solved(data, settings, watch, start_from, changes, monitor)
 
 
 def _prepared_and_solved(
@@ -106,9 +120,10 @@ def _prepared_and_solved(
     watch: ProgressCallback | None,
     start_from: StartFrom | None,
     changes: Settings,
+    monitor: Callable[[Job], Monitor] | None,
 ) -> Solution:
     """Prepare a job and solve it; raise TakesLongError if it takes long on drafts of compiled code."""
-    job = prepare(data, settings, start_from, **changes)
+    job = replace(prepare(data, settings, start_from, **changes), monitor=monitor)
     if drafts.tier() == drafts.Tier.DRAFT and drafts.quick_ones_are_used():
         watch = Predicted(job.grid.end, watch or unwatched)
     if job.settings.errors is not False or job.settings.accuracy:

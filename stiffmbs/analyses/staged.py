@@ -1,8 +1,8 @@
 """Runs in stages, which end or change where a request reaches a value.
 
-The whole time span is solved once, with the solver's own steps as output, or with even points if the steps are few.  The
-first interval in which a condition becomes true is solved again on finer points, until linear interpolation gives the
-instant.  Then the run is solved up to it.
+A run with the solver's own steps as output, or with even points if the steps are few, ends soon after a condition becomes
+true.  The first interval in which it does is solved again on finer points, until linear interpolation gives the instant.
+Then the run is solved up to it.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,21 +25,25 @@ from ..results.saved_state import SavedState
 from ..results.solution import Solution
 from ..solve.settings import changed, output_grid
 from ..solve.trajectory import IN_DOUBT, ProgressCallback
+from .conditions import SAME, Crossing, Margin, Monitor, channel_of, first_crossing, margin_of
 from .equilibrium import equilibrium
 from .given_inputs import Given
-from .run import run
+from .run import run, run_monitored
 from .start_from import StartFrom, state_to_start_from
 
 POINTS, LEVELS = 33, 3
 """Points in a refined step, and number of refinements: the last points are 1/32768 of the step apart."""
 LEAST = 1000
-"""Number of intervals below which a condition might hold only within one of them."""
+"""Number of intervals over the whole time below which a condition might hold only within one of them."""
 MOST = 500
 """Number of times that conditions may become true in one stage."""
-SAME = 1e-9
-"""Default part of a bound by which a value has to go back before its condition counts again."""
-Run = Callable[..., Solution]
-"""`stiffmbs.analyses.run.run` of one scene: takes changes of settings, ``start_from`` and ``inputs``."""
+
+
+class Runs(NamedTuple):
+    """Runs of one scene with changes of settings, ``start_from`` and ``inputs``; `monitored` takes the monitor first."""
+
+    run: Callable[..., Solution]
+    monitored: Callable[..., Solution]
 
 
 @dataclass(frozen=True)
@@ -50,57 +55,34 @@ class Ended:
     inputs: Mapping[str, Given] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class Margin:
-    """Margin, negative before a condition becomes true: ``factor (value - bound) + near``, from `armed` on."""
-
-    channel: str
-    factor: float
-    bound: float
-    near: float
-    armed: float
-
-    def __call__(self, solution: Solution) -> np.ndarray:
-        values = self.factor * (solution[self.channel] - self.bound) + self.near
-        return np.where(solution.time >= self.armed, values, np.nan)
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """Time at which a condition becomes true, after the row `before` of a solution."""
-
-    name: str
-    before: int
-    t: float
-
-
 def run_until(
-    run: Run,
+    runs: Runs,
     conditions: Mapping[str, Until],
+    span: float,
     interval: float | None,
     inputs: Mapping[str, Given] | None,
     **changes: object,
 ) -> Ended:
     """Solve up to the condition that ends the stage, or over the whole time, with changes of settings and ``start_from``.
 
-    `interval` is the time between output points, s; None for the solver's own steps. Raises InputError if a condition
-    names no request, is true at the start, or becomes true more than `MOST` times.
+    `span` is the whole time, s; `interval` the time between output points, s, or None for the solver's own steps.
+    Raises InputError if a condition names no request, is true at the start, or becomes true more than `MOST` times.
     """
     given, ended_by = dict(inputs or {}), ""
     parts: list[Solution] = []
     for _ in range(MOST):
-        part, name, rest = _up_to_the_first(run, conditions, interval, not parts, inputs=given, **changes)
+        part, name, rest = _up_to_the_first(runs, conditions, span, interval, not parts, inputs=given, **changes)
         parts.append(part)
         if not name:
             break
         condition = conditions[name]
-        given |= {key: float(_channel(name, request, part)[-1]) for key, request in condition.sets.items()}
+        given |= {key: float(channel_of(name, request, part)[-1]) for key, request in condition.sets.items()}
         if condition.then != "on":
             ended_by = name
             break
         if rest <= 0:
             break
-        interval = condition.output or interval
+        interval, span = condition.output or interval, rest
         state = replace(part.state(), source=f"'{name}'")
         changes = {**changes, "start_from": state, "start": float(part.time[-1]), "duration": rest}
     else:
@@ -114,30 +96,21 @@ CONDITION = NoteKind("condition", "{what} at t = {t:.9g} s by '{element}'", seve
 
 
 def _up_to_the_first(
-    run: Run, conditions: Mapping[str, Until], interval: float | None, fresh: bool, **changes: object
+    runs: Runs, conditions: Mapping[str, Until], span: float, interval: float | None, fresh: bool, **changes: object
 ) -> tuple[Solution, str, float]:
     """Return the run up to the first condition, the name of the condition (empty for none), and the remaining time."""
-    whole = run(**{**changes, "points": "steps", "output": None})
-    if len(whole.time) <= LEAST:
-        whole = run(**{**changes, "points": LEAST + 1, "output": None})
-    margins = {name: _margin_of(name, condition, whole, fresh) for name, condition in conditions.items()}
-    for name, margin in margins.items():
-        if fresh and margin(whole)[0] >= 0:
-            raise InputError(
-                f"'{name}': found its condition true at the start, t = {whole.time[0]:.9g} s, expected it to become true "
-                "during the run"
-            )
-    grid = {"output": interval, "points": None} if interval else {}
-    crossing = _first(margins, whole)
-    if crossing is None:
+    run, grid = runs.run, {"output": interval, "points": None} if interval else {}
+    searched = _searched(runs, conditions, span, fresh, changes)
+    if searched is None:
         return run(**{**changes, **grid}), "", 0.0
+    whole, margins, crossing = searched
     start, found = float(whole.time[0]), whole
     end, name = crossing.t, crossing.name
     for _ in range(LEVELS):
         a, b = (float(found.time[k]) for k in (crossing.before, crossing.before + 1))
         step = {"start": a, "duration": b - a, "points": POINTS, "output": None}
         fine = run(**{**changes, "start_from": found.state(at=a), **step})
-        nearer = _first({name: margins[name]}, fine)
+        nearer = first_crossing({name: margins[name]}, fine)
         if nearer is None:  # the condition is true only in the last digits of the longer run
             break
         found, crossing, end = fine, nearer, nearer.t
@@ -146,48 +119,51 @@ def _up_to_the_first(
         return solution, "", 0.0
     note = CONDITION(name, what="ended" if conditions[name].then != "on" else "changed", t=end)
     solution = replace(solution, message=str(note), notes=(*solution.notes, note))
-    return solution, name, float(whole.time[-1]) - end
+    return solution, name, start + span - end
 
 
-def _channel(name: str, request: str, solution: Solution) -> np.ndarray:
-    if request not in solution:
-        raise InputError(f"'{name}': found request = {request}, expected the name of a request")
-    return solution[request]
+class Searched(NamedTuple):
+    """Run on fine points up to a condition at least, margins of the conditions, and the first of them."""
+
+    solution: Solution
+    margins: Mapping[str, Margin]
+    crossing: Crossing
 
 
-def _margin_of(name: str, condition: Until, whole: Solution, fresh: bool) -> Margin:
-    """Return the margin of a condition in a run; in a continued run, from where the value has gone back far enough."""
-    values = _channel(name, condition.request, whole)
-    bound = next(b for b in (condition.at_least, condition.at_most, condition.equals) if b is not None)
-    away = values - bound
-    back = max(condition.within, SAME * max(1.0, abs(bound)))
-    factor = 1.0 if condition.at_least is not None else -1.0
-    far = np.abs(away) > back if condition.equals is not None else factor * away < -back
-    rows = np.flatnonzero(far)
-    first = 0 if fresh else int(rows[0]) if len(rows) else len(away)
-    armed = float(whole.time[first]) if first < len(away) else np.inf
-    near = 0.0
-    if condition.equals is not None and first < len(away):
-        factor = -1.0 if away[first] > 0 else 1.0
-        past = factor * away[first:]
-        near = condition.within if np.nanmax(past) < 0 or past[0] >= -condition.within else 0.0
-    return Margin(condition.request, factor, bound, near, armed)
+def _searched(
+    runs: Runs, conditions: Mapping[str, Until], span: float, fresh: bool, changes: Mapping[str, object]
+) -> Searched | None:
+    """Return where the first condition becomes true, or None if none does.
+
+    Conditions of the results may differ from those of the rows at which a monitor ended the run; it is then repeated without.
+    """
+    for monitor in (partial(Monitor, conditions, fresh), None):
+        found: list[Searched] = []
+        points: str | int = "steps"
+        while points:
+            whole = runs.monitored(monitor, **{**changes, "points": points, "output": None})
+            margins = {name: margin_of(name, condition, whole, fresh) for name, condition in conditions.items()}
+            _refuse_true_ones(margins if fresh else {}, whole)
+            if crossing := first_crossing(margins, whole):
+                found.append(Searched(whole, margins, crossing))
+            reached = float(np.ptp(whole.time))
+            few = points == "steps" and len(whole.time) * span <= LEAST * reached
+            points = LEAST + 1 if few else 0
+        if found:
+            return min(found, key=lambda each: each.crossing.t)
+        if not whole.success or reached > (1 - SAME) * span:
+            return None
+    return None
 
 
-def _first(margins: Mapping[str, Margin], solution: Solution) -> Crossing | None:
-    """Return the first condition that becomes true, with its time by linear interpolation between the rows."""
-    found = None
+def _refuse_true_ones(margins: Mapping[str, Margin], whole: Solution) -> None:
+    """Raise an InputError if a condition is true at the start."""
     for name, margin in margins.items():
-        values = margin(solution)
-        holds = np.flatnonzero((values[:-1] < 0) & (values[1:] >= 0) & (np.diff(solution.time) > 0))
-        if not len(holds):
-            continue
-        k = int(holds[0])
-        part = -values[k] / (values[k + 1] - values[k])
-        t = float(solution.time[k] + part * (solution.time[k + 1] - solution.time[k]))
-        if found is None or t < found.t:
-            found = Crossing(name, k, t)
-    return found
+        if margin(whole)[0] >= 0:
+            raise InputError(
+                f"'{name}': found its condition true at the start, t = {whole.time[0]:.9g} s, expected it to become true "
+                "during the run"
+            )
 
 
 def run_stages(
@@ -249,8 +225,9 @@ def _solved(
     if stage.analysis == "dynamic":
         if not stage.until:
             return Ended(run(scene, watch=watch, inputs=inputs, start_from=state, **changes))
-        runner = partial(run, scene, watch=watch)
-        return run_until(runner, stage.until, _interval(scene, changes), inputs, start_from=state, **changes)
+        runs = Runs(*(partial(each, scene, watch=watch) for each in (run, run_monitored)))
+        span = changed(scene.run, changes).duration
+        return run_until(runs, stage.until, span, _interval(scene, changes), inputs, start_from=state, **changes)
     if not stage.over_time:
         return Ended(equilibrium(scene, start_from=state, **changes).solution)
     grid = output_grid(changed(scene.run, {**changes, "start": state.t if state else scene.run.start}))

@@ -76,6 +76,7 @@ def integrated(
             if is_logged() and (step := integrator.engine.last_step()):
                 log_step(reached.t, *step)
             watch(reached.t)
+            grid.look(rows)
             integrator.engine.ida.watch.refuse_departures(reached.t)
             integrator.reached = reached
             if failure := _failure(integrator, reached, grid):

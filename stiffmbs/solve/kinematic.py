@@ -78,6 +78,7 @@ def solve(
             refuse_beyond_limits(dynamics, t, motion.q, motion.u)
             rows.append(t, motion.q, motion.u)
             watch(t)
+            grid.look(rows)
     statistics = {"steps": motion.steps, "moves": motion.moves, "seconds": ending.seconds}
     narrow = narrower_than_output(features, float(np.max(np.diff(times), initial=0.0)))
     hidden = narrow or hidden_peak(inputs_of(system), features, times)

@@ -37,7 +37,7 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool, rtol: fl
         parts += [_unknown(parts[0], t[done], pose, u[done]), following]
         notes.append(MISSING(t=t[done], reason=FAILURES[status]))
         done += 1 + len(following.t)
-    return with_stiff_forces(dynamics, (q, u), _joined(parts), lengths_of_steps(trajectory), rtol), notes
+    return with_stiff_forces(dynamics, (q, u), joined_rows(parts), lengths_of_steps(trajectory), rtol), notes
 
 
 def _unknown(like: OutputRows, t: float, q: np.ndarray, u: np.ndarray) -> OutputRows:
@@ -48,7 +48,8 @@ def _unknown(like: OutputRows, t: float, q: np.ndarray, u: np.ndarray) -> Output
     return OutputRows(**known)
 
 
-def _joined(parts: list[OutputRows]) -> OutputRows:
+def joined_rows(parts: list[OutputRows]) -> OutputRows:
+    """Return the rows of several reports as one."""
     if len(parts) == 1:
         return parts[0]
     names = [field.name for field in fields(OutputRows) if field.name != "status"]

@@ -68,7 +68,8 @@ def solved_between_samples(
             values = next_values(dynamics, left[0], start.q, start.u)
             now, t = _restarted(dynamics, left.pop(0).t, start.q, start.u, values, settings)
         while left:
-            ahead = left[: min(max(idle, 1), LOOP.most_passed) if grid.times is not None else 1]
+            passes = grid.times is not None and grid.monitor is None  # rows past a sample do not have its values yet
+            ahead = left[: min(max(idle, 1), LOOP.most_passed) if passes else 1]
             found = solve(dynamics, now, _up_to(grid, t, [sample.t for sample in ahead]), settings, watch)
             row, values = 0, now.q[own]
             for number, sample in enumerate(ahead, 1):
@@ -171,9 +172,9 @@ def _up_to(grid: Grid, start: float, ends: Sequence[float]) -> Grid:
     end = ends[-1]
     inside = grid.stops[(grid.stops > start) & (grid.stops < end)]
     if grid.times is None:
-        return Grid(start, end, None, inside)
+        return Grid(start, end, None, inside, monitor=grid.monitor)
     between = grid.times[(grid.times > start) & (grid.times < end)]
-    return Grid(start, end, np.union1d([start, *ends], between), inside)
+    return Grid(start, end, np.union1d([start, *ends], between), inside, monitor=grid.monitor)
 
 
 def _up_to_row(part: Trajectory, row: int) -> Trajectory:

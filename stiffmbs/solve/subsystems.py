@@ -7,6 +7,8 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
+import numpy as np
+
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..dynamics.storage import allocated
@@ -16,7 +18,7 @@ from ..presolve.presolve import Part, parts_of
 from ..presolve.relations import independent_coordinates
 from .events.restart import restarted
 from .settings import may_presolve, traits_of
-from .trajectory import Grid, Outcome, ProgressCallback, Solver, Trajectory, in_common
+from .trajectory import Grid, Look, Outcome, ProgressCallback, Solver, Trajectory, in_common
 
 
 class Subsystem(NamedTuple):
@@ -96,12 +98,16 @@ def solve_subsystems(
     """Solve the mechanisms one after the other; the contract is in `stiffmbs.solve.trajectory`.
 
     If one stops early or is interrupted, the whole run ends there. The following ones are solved up to that time.
+    The monitor of a grid sees the motion of a single mechanism only: that of several is known when all are solved.
     `solve`: for each of them. `start`: of the whole system.
     """
     found: list[Trajectory] = []
     rows = None if grid.times is None else len(grid.times)
     for k, subsystem in enumerate(subsystems):
         within = grid if rows is None else _up_to(grid, rows)
+        if grid.monitor:
+            alone = len(subsystems) == 1
+            within = replace(within, monitor=_of_the_whole(grid.monitor, subsystem, start) if alone else None)
         found.append(
             solve(subsystem.dynamics, subsystem.start, within, settings, _share(watch, grid, k, len(subsystems)))
         )
@@ -109,6 +115,17 @@ def solve_subsystems(
         if rows < 2:
             break
     return _together(subsystems, found, start)
+
+
+def _of_the_whole(monitor: Look, subsystem: Subsystem, start: InitialValues) -> Look:
+    """Return a monitor that shows the motion of a subsystem as that of the whole system."""
+
+    def look(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> None:
+        whole = np.tile(start.q, (len(t), 1)), np.tile(start.u, (len(t), 1))
+        subsystem.part.put(q, u, *whole)
+        monitor(t, *whole)
+
+    return look
 
 
 def _up_to(grid: Grid, rows: int) -> Grid:

@@ -5,8 +5,8 @@ packages read its traits (`stiffmbs.solve.solver`).
 
 1. It starts from consistent initial values and works on the dynamics' state; it knows no kinds of element.
 2. It returns the state at every time of `grid`, or at its own steps if the grid's `times` is None.
-3. It calls `watch(t)` at least a few times a second.
-4. If it fails or is interrupted, it returns the rows so far with the outcome: its loop is in a
+3. It calls `watch(t)` and `grid.look(rows)` at least a few times a second.
+4. If it fails, is interrupted, or ended by the monitor of the grid, it returns the rows so far with the outcome: its loop is in a
    ``with Ending()``.
 """
 
@@ -79,6 +79,14 @@ class History:
     order: np.ndarray
 
 
+class ConditionMet(Exception):
+    """Raised by a monitor where the rows suffice."""
+
+
+Look = Callable[[np.ndarray, np.ndarray, np.ndarray], None]
+"""Called with the times, positions and velocities of new rows, in order; raises ConditionMet to end the run."""
+
+
 class Recording(NamedTuple):
     """Bounds of the recorded steps: the largest work of the estimate of errors, and the work of a row and of a restart."""
 
@@ -94,7 +102,7 @@ class Grid:
     Solvers restart at `stops`, as at input breakpoints: a step ends just before a breakpoint, where every formula has
     its earlier side, and the next one begins just after it. Output at a breakpoint is the state just before it, output at
     the start of a run that just after it. `recorded`: work of an estimate of the errors up to which implicit
-    solvers record their steps for it.
+    solvers record their steps for it. `monitor`: sees the rows during the run, and may end it.
     """
 
     start: float
@@ -102,6 +110,12 @@ class Grid:
     times: np.ndarray | None
     stops: np.ndarray = field(default_factory=lambda: np.empty(0))
     recorded: Recording = Recording()
+    monitor: Look | None = None
+
+    def look(self, rows: Rows) -> None:
+        """Show new rows to the monitor."""
+        if self.monitor:
+            self.monitor(*rows.unseen())
 
     @property
     def aside(self) -> float:
@@ -200,7 +214,9 @@ class Trajectory:
 
 
 class Ending:
-    """Context manager that records how a run ends: by a `SolverError`, an interruption, or normally.
+    """Context manager that records how a run ends: by a `SolverError`, an interruption, its monitor, or normally.
+
+    A run that its monitor ends counts as interrupted, up to `stiffmbs.analyses.job.Job.integrate`.
 
     `message`: one sentence. `seconds`: time spent in the block.
     """
@@ -218,9 +234,9 @@ class Ending:
             reason = Reason.CHATTERING if isinstance(error, ChatteringError) else Reason.OTHER
             message = error.args[0]
             self.stop(message if isinstance(message, Note) else reason.of(str(error)))
-        elif isinstance(error, KeyboardInterrupt):
+        elif isinstance(error, KeyboardInterrupt | ConditionMet):
             self.outcome, self.message = Outcome.INTERRUPTED, Outcome.INTERRUPTED.value
-        return isinstance(error, SolverError | KeyboardInterrupt)
+        return isinstance(error, SolverError | KeyboardInterrupt | ConditionMet)
 
     def stop(self, message: str) -> None:
         """Record an early stop and its reason."""
@@ -274,6 +290,7 @@ class Rows:
     def __init__(self, n_q: int, n_u: int, expected: int) -> None:
         self._t, self._q, self._u = allocated(expected), allocated(expected, n_q), allocated(expected, n_u)
         self._count = self._released = 0
+        self._seen = 1
 
     @classmethod
     def of(cls, system: System, grid: Grid) -> Rows:
@@ -299,6 +316,12 @@ class Rows:
     def _enlarge(self, count: int) -> None:
         while self._count + count > len(self._t):
             self._t, self._q, self._u = (_doubled(array) for array in (self._t, self._q, self._u))
+
+    def unseen(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the states stored since the last call, without the first of all, at which the integration starts."""
+        t, q, u = (array[self._seen :] for array in self.stored)
+        self._seen = max(self._seen, self._count)
+        return t, q, u
 
     @property
     def stored(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

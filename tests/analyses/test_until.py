@@ -49,6 +49,57 @@ def test_a_condition_that_never_holds_changes_nothing():
     assert found.time[8] == 2.0 and found["ball.vy"][-1] == pytest.approx(-14)
 
 
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"solver": "bdf", "max_step": 1e-3},
+        {"solver": "radau", "max_step": 1e-3},
+        {"solver": "auto", "max_step": 1e-3},
+        {"solver": "projected", "scheme": "rk4", "step": 1e-3},
+    ],
+)
+@pytest.mark.parametrize(
+    ("condition", "t"), [("speed, at_most: 0", 0.6), ("sampled, at_most: 0.05", 0.6), ("speed, at_least: 1", 0.0)]
+)
+def test_the_time_after_a_condition_is_not_solved(settings, condition, t):
+    """A stage was solved over its whole time before its conditions were looked at."""
+    scene = THROWN.replace("duration: 2", "duration: 20").replace("end: 3", "end: 21")
+    scene = scene.replace(
+        "requests: {", "states: {seen: {update: ball.vy, period: 0.1, start: 9}}\nrequests: {sampled: seen, "
+    )
+    if "sampled" not in condition:
+        scene = "\n".join(line for line in scene.split("\n") if "states" not in line).replace("sampled: seen, ", "")
+    reached = []
+    try:
+        found = ran(condition + ", then: stop", scene, watch=reached.append, **settings)
+    except stiffmbs.InputError as error:
+        assert not t and "true at the start" in str(error)
+    else:
+        assert found.success and found.time[-1] == pytest.approx(t, abs=1e-2 if "sampled" in condition else 1e-7)
+    assert max(reached) < 5
+
+
+def test_mechanisms_that_are_solved_apart_end_together():
+    scene = THROWN.replace("speed: ball.vy", "speed: ball.vy + 0*disc.vx").replace(
+        "bodies: {", "bodies: {disc: {mass: 1, inertia: 1, velocity: [1, 0]}, "
+    )
+    for settings in ({"solver": "bdf"}, {"solver": "radau"}, {"solver": "projected"}):
+        found = ran("speed, at_most: 0, then: stop", scene, **settings)
+        assert found.time[-1] == pytest.approx(0.6, abs=1e-7)
+        np.testing.assert_allclose(found["disc.x"], found.time, atol=1e-7)
+
+
+def test_a_near_miss_does_not_count_if_the_value_is_reached_later():
+    """An extremum within the tolerance counts only if the bound itself is never met, also where another condition is."""
+    near = "height, equals: 2, within: 0.35}, low: {request: height, at_most: -3, then: stop"
+    assert ran(near).time[3] == pytest.approx(0.6 - np.sqrt(0.03), abs=1e-6)
+    rising = THROWN.replace("bodies: {", "bodies: {rocket: {mass: 1, inertia: 1, position: [0, 0.5]}, ").replace(
+        "height: ball.y", "height: 'ball.y + 100*max(t - 1.2, 0)^2'"
+    )
+    later = ran("height, equals: 2, within: 0.35}, slow: {request: speed, at_most: -1, then: stop", rising)
+    assert later.time[-1] == pytest.approx(0.7, abs=1e-6)
+
+
 def test_no_stage_follows_where_the_condition_says_so():
     found = ran("speed, at_most: 0, then: stop")
     assert found.time[-1] == pytest.approx(0.6, abs=1e-8) and found.success

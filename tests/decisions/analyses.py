@@ -11,6 +11,7 @@ from stiffmbs.analyses import (
     balance_within_steps,
     beam_elements,
     check,
+    conditions,
     given_inputs,
     job,
     long_runs,
@@ -159,7 +160,7 @@ def runs_to_a_condition(crosses):
     """Return the points of the runs that find a condition, which is met in the first interval or never."""
     points = []
 
-    def run(**changes):
+    def run(*monitor, **changes):
         points.append(changes.get("points"))
         return Record(time=np.arange(2.0), state=nothing_of, success=False)
 
@@ -167,8 +168,8 @@ def runs_to_a_condition(crosses):
         return at
 
     crossing = Record(t=0.5, before=0, name="c") if crosses else None
-    with patch.multiple(staged, _first=lambda *_: crossing, _margin_of=lambda *_: lambda _: [-1.0]):
-        staged._up_to_the_first(run, {"c": Record(then="on")}, None, True)
+    with patch.multiple(staged, first_crossing=lambda *_: crossing, margin_of=lambda *_: lambda _: [-1.0]):
+        staged._up_to_the_first(staged.Runs(run, run), {"c": Record(then="on")}, 1.0, None, True)
     return points
 
 
@@ -179,7 +180,7 @@ def most_conditions():
         staged, _up_to_the_first=lambda *_, **__: met.append(1) or (part, "c", 1.0), replace=lambda *_, **__: None
     ):
         condition = Record(then="on", sets={}, output=None)
-        assert refused(lambda: staged.run_until(None, {"c": condition}, None, None))
+        assert refused(lambda: staged.run_until(None, {"c": condition}, 1.0, None, None))
     return len(met)
 
 
@@ -189,10 +190,23 @@ def smallest_distance_from_a_bound():
 
     def is_armed(distance):
         whole = Record(time=np.arange(2.0))
-        with patch.object(staged, "_channel", lambda *_: np.array([1.0, -distance])):
-            return np.isfinite(staged._margin_of("c", condition, whole, False).armed)
+        with patch.object(conditions, "channel_of", lambda *_: np.array([1.0, -distance])):
+            return np.isfinite(conditions.margin_of("c", condition, whole, False).armed)
 
     return count_while(is_armed, BELOW)
+
+
+def rows_before_a_look(apart):
+    """Return the number of rows, at a distance from each other in a run of 1 s, at which a monitor looks first."""
+    start = Record(q=np.zeros(1), u=np.zeros(1), lam=np.zeros(0))
+    monitored = Record(dynamics=Record(system=None), start=start, grid=Record(start=0.0, end=1.0))
+    looked = []
+    with (
+        patch.object(conditions, "Dynamics", lambda _: Record(place=nothing)),
+        patch.object(conditions.Monitor, "_is_met", lambda _: looked.append(1)),
+    ):
+        monitor, row = conditions.Monitor({}, True, monitored), np.zeros((1, 1))
+        return 1 + count_while(lambda k: monitor.look(np.array([k * apart]), row, row) or not looked, range(1, 1000))
 
 
 def force_at_start(kind, energy=0.0, **equilibrium):
@@ -288,7 +302,9 @@ DECISIONS = {
     "analyses.staged:LEVELS": lambda: len(runs_to_a_condition(True)) - 3,
     "analyses.staged:LEAST": lambda: runs_to_a_condition(False)[1],
     "analyses.staged:MOST": most_conditions,
-    "analyses.staged:SAME": smallest_distance_from_a_bound,
+    "analyses.conditions:SAME": smallest_distance_from_a_bound,
+    "analyses.conditions:LOOKS": lambda: rows_before_a_look(1 / 640),
+    "analyses.conditions:ROWS": lambda: rows_before_a_look(1e-6),
 }  # fmt: skip
 EXPECTED = {
     "analyses.start_forces:OF_WEIGHT": 40, "analyses.start_forces:OF_EQUILIBRIUM": 20, "analyses.start_forces:STIFF": 27,
@@ -299,5 +315,6 @@ EXPECTED = {
     "analyses.given_inputs:ROUNDINGS": 9.094947017729282e-13, "analyses.job:DEPENDENT": 120, "analyses.long_runs:Drafted.patience": 14, "analyses.long_runs:Drafted.least": 40, "analyses.rerun:ROUNDS": 4,
     "analyses.rerun:PART_OF_A_FEATURE": 0.0625, "analyses.rerun:MOST_STEPS": 40, "analyses.rerun:STARTS": 14,
     "analyses.rerun:DRIFTED": 14, "analyses.rerun:LESS": 4, "analyses.staged:POINTS": 33, "analyses.staged:LEVELS": 3,
-    "analyses.staged:LEAST": 1001, "analyses.staged:MOST": 500, "analyses.staged:SAME": 119,
+    "analyses.staged:LEAST": 1001, "analyses.staged:MOST": 500, "analyses.conditions:SAME": 119,
+    "analyses.conditions:LOOKS": 10, "analyses.conditions:ROWS": 99,
 }  # fmt: skip

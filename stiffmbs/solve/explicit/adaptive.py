@@ -136,6 +136,7 @@ class AdaptiveRun:
             if is_logged():
                 log_step(work.t, work.h)
             self._watch(work.t)
+            self._grid.look(self._rows)
             if work.t < self._grid.end and work.count("steps") >= DIVERGENCE.followed_steps:
                 refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u)
             if status == UNSTABLE:

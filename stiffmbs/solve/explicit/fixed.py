@@ -90,6 +90,7 @@ def solve_with_fixed_steps(
                 work.t = t
                 work.begin(start)
             watch(t)
+            grid.look(rows)
     statistics: dict[str, int | float | str] = {
         "scheme": work.scheme.name, "steps": steps, "accelerations": work.scheme.stages * steps, "seconds": ending.seconds,
     }  # fmt: skip
