@@ -49,7 +49,7 @@ def weights(count: int, given: Collection[int]) -> np.ndarray:
     return found
 
 
-def parts_of(change: float) -> int:
+def parts_of(change: float, what: str = "reset") -> int:
     """Return the number of poses to which Newton's iteration follows a change of a coordinate, rad or sizes.
 
     Raises InputError if they are too many.
@@ -57,7 +57,7 @@ def parts_of(change: float) -> int:
     parts = max(1, math.ceil(change / PART))
     if parts > MOST_PARTS:
         raise InputError(
-            f"reset: found a joint coordinate {change:.3g} rad (or sizes of the mechanism) from its start, expected at most {MOST_PARTS * PART:g}"
+            f"{what}: found a joint coordinate {change:.3g} rad (or sizes of the mechanism) from its start, expected at most {MOST_PARTS * PART:g}"
         )
     return parts
 
