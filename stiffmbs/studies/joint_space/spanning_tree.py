@@ -25,6 +25,8 @@ from ..joint_pose import JointPose
 
 DEPENDENT: Final = 1e-8
 """Singular value of dependent equations of a joint, lengths in sizes of the mechanism."""
+ROUNDING: Final = 1e-13
+"""Part of a screw that is rounding, such as the rotation of a slider, relative to the largest, lengths in sizes of the mechanism."""
 TRIED: Final = 0.7
 """Largest change of a coordinate in a trial, rad or sizes of the mechanism."""
 SATISFIED: Final = 1e-7
@@ -117,8 +119,9 @@ class SpanningTree:
             return None
         right = np.zeros((len(matrix), len(chosen)))
         right[len(matrix) - len(chosen) :] = np.eye(len(chosen))
-        moves = unit[:, None] * np.linalg.lstsq(matrix, right, rcond=None)[0]
-        found = [(k, self._twist(child, move)) for k, move in zip(chosen, moves.T, strict=True)]
+        moves = np.linalg.lstsq(matrix, right, rcond=None)[0]
+        moves[np.abs(moves) <= ROUNDING * np.abs(moves).max(axis=0, initial=0.0)] = 0.0
+        found = [(k, self._twist(child, unit * move)) for k, move in zip(chosen, moves.T, strict=True)]
         return found[::-1] if backwards else found
 
     def _twist(self, body: int, u: np.ndarray) -> np.ndarray:

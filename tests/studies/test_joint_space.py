@@ -1,0 +1,303 @@
+"""Models in joint coordinates: against MuJoCo, Pinocchio, closed forms and invariances."""
+
+import math
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import Body, InputError, Marker, Model, Prismatic, Revolute, SolverError, spatial
+
+from tests.random_trees import free_tree_in_mjcf, tree_in_mjcf, tree_in_urdf
+from tests.spatial_loops import slider_crank
+
+SEEDS = range(3)
+
+
+def of_text(tmp_path, text, name="robot.xml", **options):
+    path = tmp_path / name
+    path.write_text(text)
+    return stiffmbs.joint_space(path, **options)
+
+
+def by_mujoco(text, q, v):
+    """MuJoCo's data at a state, its mass matrix, and its bias without damping."""
+    mujoco = pytest.importorskip("mujoco")
+    m = mujoco.MjModel.from_xml_string(text)
+    m.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    d = mujoco.MjData(m)
+    d.qpos[:], d.qvel[:] = q, v
+    mujoco.mj_forward(m, d)
+    M = np.zeros((m.nv, m.nv))
+    mujoco.mj_fullM(m, d, M)
+    return m, d, M, d.qfrc_bias - d.qfrc_passive
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_trees_are_those_of_mujoco(tmp_path, seed):
+    rng = np.random.default_rng(seed)
+    text = tree_in_mjcf(rng)
+    space = of_text(tmp_path, text)
+    n = len(space.rates)
+    q, v, a = rng.uniform(-2, 2, (3, n))
+    m, d, M, h = by_mujoco(text, q, v)
+    import mujoco
+
+    assert [f"{m.joint(k).name}" for k in range(n)] == [name.rpartition(".")[0] for name in space.coordinates]
+    np.testing.assert_allclose(space.mass_matrix(q), M, rtol=1e-10, atol=1e-10 * abs(M).max())
+    np.testing.assert_allclose(space.bias(q, v), h, rtol=1e-10, atol=1e-10 * abs(h).max())
+    np.testing.assert_allclose(space.inverse_dynamics(q, v, a), M @ a + h, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(space.forward_dynamics(q, v, M @ a + h), a, rtol=1e-9, atol=1e-9)
+    for body in range(1, m.nbody):
+        name = m.body(body).name
+        pose = space.pose(name, q)
+        np.testing.assert_allclose(pose.position, d.xpos[body], atol=1e-10)
+        np.testing.assert_allclose(pose.rotation, d.xmat[body].reshape(3, 3), atol=1e-10)
+        both, rate = np.zeros((6, n)), np.zeros((6, n))
+        mujoco.mj_jac(m, d, both[:3], both[3:], d.xpos[body], body)
+        mujoco.mj_jacDot(m, d, rate[:3], rate[3:], d.xpos[body], body)
+        np.testing.assert_allclose(space.jacobian(name, q), both, atol=1e-10)
+        np.testing.assert_allclose(space.jacobian_bias(name, q, v), rate @ v, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_floating_trees_are_those_of_mujoco(tmp_path, seed):
+    """MuJoCo's linear velocity of a free joint is that of the body's origin, here of its centre of mass."""
+    rng = np.random.default_rng(seed)
+    text, centre = free_tree_in_mjcf(rng)
+    space = of_text(tmp_path, text)
+    joints = rng.uniform(-1, 1, len(space.rates) - 6)
+    p = rng.normal(size=4)
+    p /= np.linalg.norm(p)
+    v, place = rng.normal(size=len(space.rates)), rng.normal(size=3)
+    R = np.array(spatial_matrix(p))
+    n = len(joints)
+    own = np.array([[0, -centre[2], centre[1]], [centre[2], 0, -centre[0]], [-centre[1], centre[0], 0]])
+    T = np.zeros((n + 6, n + 6))  # rates here by those of MuJoCo
+    T[:n, 6:] = np.eye(n)
+    T[n : n + 3, :3], T[n : n + 3, 3:6], T[n + 3 :, 3:6] = np.eye(3), -R @ own, np.eye(3)
+    theirs = np.linalg.solve(T, v)
+    w = theirs[3:6]
+    drift = np.zeros(n + 6)
+    drift[n : n + 3] = R @ np.cross(w, np.cross(w, centre))
+    _, _, M, h = by_mujoco(text, [*(place - R @ centre), *p, *joints], theirs)
+    q = np.array([*joints, *place, *p])
+    found = space.mass_matrix(q)
+    np.testing.assert_allclose(T.T @ found @ T, M, atol=1e-10 * abs(M).max())
+    np.testing.assert_allclose(T.T @ (space.bias(q, v) + found @ drift), h, atol=1e-10 * abs(h).max())
+
+
+def spatial_matrix(p):
+    w, x, y, z = p
+    return (
+        (w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z),
+    )
+
+
+@pytest.mark.skipif(find_spec("pinocchio") is None, reason="needs Pinocchio")
+@pytest.mark.parametrize("seed", SEEDS)
+def test_trees_are_those_of_pinocchio(tmp_path, seed):
+    import pinocchio
+
+    rng = np.random.default_rng(seed)
+    text = tree_in_urdf(rng)
+    space = of_text(tmp_path, text, "robot.urdf")
+    model = pinocchio.buildModelFromXML(text)
+    data = model.createData()
+    order = [model.joints[model.getJointId(name.rpartition(".")[0])].idx_v for name in space.coordinates]
+    q, v, a = rng.uniform(-2, 2, (3, len(order)))
+    theirs = [own[np.argsort(order)] for own in (q, v, a)]
+    M = pinocchio.crba(model, data, theirs[0])
+    M = np.triu(M) + np.triu(M, 1).T
+    np.testing.assert_allclose(space.mass_matrix(q), M[np.ix_(order, order)], atol=1e-10 * abs(M).max())
+    tau = pinocchio.rnea(model, data, *theirs)[order]
+    np.testing.assert_allclose(space.inverse_dynamics(q, v, a), tau, atol=1e-10 * abs(tau).max())
+    link = f"link{len(order) - 1}"
+    J = pinocchio.computeFrameJacobian(
+        model, data, theirs[0], model.getFrameId(link), pinocchio.LOCAL_WORLD_ALIGNED
+    )
+    np.testing.assert_allclose(space.jacobian(link, q), J[:, order], atol=1e-10)
+
+
+CRANK, ROD = 0.2, 0.5
+
+
+def crank_slider(drive=False, **inputs):
+    """A crank about the origin, a rod and a slider along x in the plane, without gravity."""
+    model = Model("crank-slider", gravity=(0, 0), **inputs)
+    angle = 0.4
+    pin = np.array([CRANK * math.cos(angle), CRANK * math.sin(angle)])
+    end = np.array([pin[0] + math.sqrt(ROD**2 - pin[1] ** 2), 0.0])
+    crank = model.add("crank", Body(mass=1.5, inertia=0.02, position=tuple(pin / 2), angle=angle))
+    tilt = math.atan2(-pin[1], end[0] - pin[0])
+    rod = model.add("rod", Body(mass=0.8, inertia=0.03, position=tuple((pin + end) / 2), angle=tilt))
+    model.add("slider", Body(mass=2.0, inertia=1.0, position=tuple(end)))
+    model.add("bearing", Revolute(i=crank.at(-CRANK / 2, 0), j="ground"))
+    model.add("pin", Revolute(i=rod.at(-ROD / 2, 0), j=crank.at(CRANK / 2, 0)))
+    model.add("wrist", Revolute(i="slider", j=rod.at(ROD / 2, 0)))
+    model.add("guide", Prismatic(i="slider", j="ground"))
+    if drive:
+        model.add("motor", stiffmbs.Drive(joint="bearing", position="0.4 + 3*t + 2*t^2"))
+    return model
+
+
+def closed_form(angle):
+    """Inertia of the crank-slider about its crank: sums of m v^2 + I w^2 at unit rate."""
+    s, c = math.sin(angle), math.cos(angle)
+    tilt = -math.asin(CRANK * s / ROD)
+    rate = -CRANK * c / (ROD * math.cos(tilt))
+    slider = -CRANK * s - ROD * math.sin(tilt) * rate
+    rod = (-CRANK * s - ROD / 2 * math.sin(tilt) * rate, CRANK * c + ROD / 2 * math.cos(tilt) * rate)
+    crank = 1.5 * (CRANK / 2) ** 2 + 0.02
+    return crank + 0.8 * (rod[0] ** 2 + rod[1] ** 2) + 0.03 * rate**2 + 2.0 * slider**2
+
+
+def test_loop_is_that_of_its_closed_form():
+    """Generalised inertia I(q), bias I' v^2 / 2 (Eksergian's equation)."""
+    space = stiffmbs.joint_space(crank_slider(), independent=["bearing.angle"])
+    assert space.coordinates == ("bearing.angle",)
+    for angle in (0.4, 2.0, 3.9, 7.0):
+        np.testing.assert_allclose(space.mass_matrix([angle]), [[closed_form(angle)]], rtol=1e-10)
+        step = 1e-5
+        slope = (closed_form(angle + step) - closed_form(angle - step)) / (2 * step)
+        np.testing.assert_allclose(space.bias([angle], [1.7]), [0.5 * slope * 1.7**2], rtol=1e-6, atol=1e-9)
+        place = CRANK * math.cos(angle) + math.sqrt(ROD**2 - (CRANK * math.sin(angle)) ** 2)
+        np.testing.assert_allclose(space.pose("slider", [angle]).position, [place, 0.0], atol=1e-10)
+
+
+def test_effort_of_a_drive_is_that_of_a_run():
+    run = stiffmbs.run(crank_slider(drive=True), duration=0.5, rtol=1e-10)
+    space = stiffmbs.joint_space(crank_slider(drive=True), independent=["bearing.angle"])
+    for row in (0, len(run.t) // 3, -1):
+        q, v, a = ([run[f"bearing.angle{order}"][row]] for order in ("", "_rate", "_acceleration"))
+        found = space.actuator_efforts(q, v, a)
+        assert found.actuators == ("motor",)
+        assert found.redundant == 0
+        np.testing.assert_allclose(found.values, run["motor.effort"][row], rtol=1e-7)
+
+
+def test_redundant_actuators_share_the_least_efforts():
+    space = stiffmbs.joint_space(crank_slider(), independent=["bearing.angle"])
+    q, v, a = [1.1], [2.0], [5.0]
+    needed = space.inverse_dynamics(q, v, a)
+    found = space.actuator_efforts(q, v, a, ["bearing.angle", "pin.angle"])
+    alone = space.actuator_efforts(q, v, a, ["pin.angle"])
+    ratio = needed[0] / alone.values[0]  # rate of the pin by that of the crank
+    np.testing.assert_allclose(found.values, needed * np.array([1.0, ratio]) / (1 + ratio**2), rtol=1e-10)
+    assert found.redundant == 1
+    assert "least norm" in repr(found)
+
+
+def chain_in_space(rng):
+    """A tree in space with revolute, prismatic, cylindrical, universal and spherical joints, and springs."""
+    model = spatial.Model("chain", gravity=(0.3, -0.5, -9.81))
+    place, before = np.zeros(3), None
+    kinds = [spatial.Revolute, spatial.Universal, spatial.Cylindrical, spatial.Spherical, spatial.Prismatic]
+    for k in rng.permutation(len(kinds)):
+        turn = rng.normal(size=4)
+        turn /= np.linalg.norm(turn)
+        arm = rng.uniform(0.2, 0.5, 3)
+        place = place + arm
+        body = model.add(
+            f"b{k}", spatial.Body(mass=rng.uniform(1, 2), inertia=tuple(rng.uniform(0.09, 0.11, 3)), position=tuple(place))
+        )
+        at = spatial.Marker(body="ground" if before is None else before[0], point=tuple(place - arm / 2 - (before[1] if before else 0)))
+        i = body.at(*(-arm / 2))
+        if kinds[k] is spatial.Universal:
+            i = body.at(*(-arm / 2), {"z": (1, 0, 0)})
+        model.add(f"j{k}", kinds[k](i=i, j=at))
+        before = (f"b{k}", place)
+    model.add("spring", spatial.SpringDamper(i="ground", j=before[0], stiffness=40.0, free_length=0.3))
+    return model
+
+
+def energy(space, q, v):
+    channels = space.state(q, v).channels
+    return channels["energy.kinetic"] + channels["energy.potential"]
+
+
+def random_pose(space, rng, size=0.6):
+    return space.moved(space.q, rng.uniform(-size, size, len(space.rates)))
+
+
+MODELS = {
+    "chain": chain_in_space,
+    "slider_crank": lambda rng: slider_crank(0.7, cross=True),
+    "balls": lambda rng: slider_crank(0.7),
+    "plane": lambda rng: crank_slider(),
+    "free": lambda rng: free_body(),
+}
+
+
+def free_body():
+    model = spatial.Model("free", gravity=(0, 0, -9.81))
+    body = model.add("b", spatial.Body(mass=2, inertia=(0.1, 0.2, 0.25), center_of_mass=(0.1, 0.0, 0.2)))
+    arm = model.add("arm", spatial.Body(mass=1, inertia=(0.1, 0.1, 0.05), position=(0.4, 0, 0)))
+    model.add("hinge", spatial.Revolute(i=arm.at(-0.2, 0, 0), j=body.at(0.2, 0, 0)))
+    model.add("spring", spatial.SpringDamper(i="ground", j=arm.at(0.2, 0.1, 0), stiffness=40.0, free_length=0.3))
+    return model
+
+
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("seed", SEEDS)
+def test_power_of_efforts_is_the_rate_of_energy(name, seed):
+    """v^T (M a + h) = dE/dt; M is symmetric and positive; kinetic energy is v^T M v / 2."""
+    rng = np.random.default_rng(seed)
+    space = stiffmbs.joint_space(MODELS[name](rng))
+    q = random_pose(space, rng)
+    v, a = rng.normal(size=(2, len(space.rates)))
+    M = space.mass_matrix(q)
+    np.testing.assert_allclose(M, M.T, atol=1e-12 * abs(M).max())
+    assert np.linalg.eigvalsh(M)[0] > 0
+    np.testing.assert_allclose(space.state(q, v).channels["energy.kinetic"], 0.5 * v @ M @ v, rtol=1e-9)
+    tau, h = space.inverse_dynamics(q, v, a), 1e-4
+    before, after = (
+        energy(space, space.moved(q, sign * h * v + 0.5 * h**2 * a), v + sign * h * a) for sign in (-1.0, 1.0)
+    )
+    np.testing.assert_allclose((after - before) / (2 * h), v @ tau, rtol=1e-5, atol=1e-5 * abs(tau).max())
+    np.testing.assert_allclose(space.forward_dynamics(q, v, tau), a, rtol=1e-8, atol=1e-8)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_jacobians_are_derivatives_of_poses(name):
+    rng = np.random.default_rng(4)
+    space = stiffmbs.joint_space(MODELS[name](rng))
+    q, v, h = random_pose(space, rng), rng.normal(size=len(space.rates)), 1e-5
+    body = space._data.bodies and list(space._data.bodies)[-1]
+    n = space._data.dimensions
+    sides = [space.moved(q, sign * h * v) for sign in (-1.0, 1.0)]
+    before, after = (space.pose(body, side) for side in sides)
+    J = space.jacobian(body, q)
+    np.testing.assert_allclose((after.position - before.position) / (2 * h), (J @ v)[:n], atol=1e-8)
+    turned = after.rotation @ before.rotation.T / (4 * h)
+    spin = [turned[1, 0] - turned[0, 1]]
+    if n == 3:
+        spin = [turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], *spin]
+    np.testing.assert_allclose(spin, (J @ v)[n:], atol=1e-8)
+    rates = [space.jacobian(body, side) @ v for side in sides]
+    np.testing.assert_allclose((rates[1] - rates[0]) / (2 * h), space.jacobian_bias(body, q, v), atol=1e-6)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_linearisation_is_that_of_forward_dynamics(name):
+    rng = np.random.default_rng(5)
+    space = stiffmbs.joint_space(MODELS[name](rng))
+    n = len(space.rates)
+    q, h = random_pose(space, rng, 0.3), 1e-5
+    v, tau = rng.normal(size=(2, n))
+    found = space.linearise(q, v, tau)
+    by_q, by_v = np.zeros((n, n)), np.zeros((n, n))
+    for k, e in enumerate(h * np.eye(n)):
+        by_q[:, k] = (
+            space.forward_dynamics(space.moved(q, e), v, tau) - space.forward_dynamics(space.moved(q, -e), v, tau)
+        ) / (2 * h)
+        by_v[:, k] = (space.forward_dynamics(q, v + e, tau) - space.forward_dynamics(q, v - e, tau)) / (2 * h)
+    scale = max(abs(by_q).max(), abs(by_v).max(), 1.0)
+    np.testing.assert_allclose(found.a[n:, :n], by_q, atol=2e-6 * scale)
+    np.testing.assert_allclose(found.a[n:, n:], by_v, atol=2e-6 * scale)
+    np.testing.assert_allclose(found.a[:n, n:], np.eye(n), atol=1e-7)
+    np.testing.assert_allclose(found.b[n:] @ space.mass_matrix(q), np.eye(n), atol=1e-8)
+    np.testing.assert_allclose(found.c, np.eye(2 * n))
