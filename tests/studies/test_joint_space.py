@@ -301,3 +301,163 @@ def test_linearisation_is_that_of_forward_dynamics(name):
     np.testing.assert_allclose(found.a[:n, n:], np.eye(n), atol=1e-7)
     np.testing.assert_allclose(found.b[n:] @ space.mass_matrix(q), np.eye(n), atol=1e-8)
     np.testing.assert_allclose(found.c, np.eye(2 * n))
+
+
+def test_coordinates_are_those_of_a_simulation():
+    space = stiffmbs.joint_space("examples/cart_pendulum.yaml")
+    sim = stiffmbs.simulation("examples/cart_pendulum.yaml")
+    assert space.coordinates == sim.joints
+    q, v = np.array([0.1, 7.0]), np.array([0.2, -1.0])
+    sim.reset(space.state(q, v))
+    np.testing.assert_allclose(sim.joint_coordinates, q, atol=1e-12)
+    np.testing.assert_allclose(sim.joint_rates, v, atol=1e-12)
+
+
+DOUBLE_PENDULUM = """
+gravity: [0, -9.81]
+inputs: {F: 0}
+bodies:
+  cart: {mass: 1 kg, inertia: 0.1 kg m^2}
+  lower: {mass: 0.3 kg, inertia: 0.01 kg m^2, position: [0, 0.25], angle: 90 deg}
+  upper: {mass: 0.2 kg, inertia: 0.005 kg m^2, position: [0, 0.7], angle: 90 deg}
+states:
+  lag: {rate: 5*(F - lag)}
+joints:
+  rail: {type: prismatic, i: cart, j: ground}
+  hinge: {type: revolute, i: {body: lower, point: [-0.25, 0]}, j: cart}
+  knee: {type: revolute, i: {body: upper, point: [-0.2, 0]}, j: {body: lower, point: [0.25, 0]}}
+forces:
+  push: {type: force, i: cart, force: [F, 0]}
+"""
+
+
+def test_regulator_from_the_linearisation_holds_a_double_pendulum_upright():
+    from scipy.linalg import solve_continuous_are
+
+    scene = stiffmbs.read_scene(DOUBLE_PENDULUM.replace("states:\n  lag: {rate: 5*(F - lag)}\n", ""))
+    space = stiffmbs.joint_space(scene)
+    linear = space.linearise()
+    assert linear.inputs == ("F",)
+    riccati = solve_continuous_are(linear.a, linear.b, np.diag([10.0, 10, 10, 1, 1, 1]), np.eye(1))
+    sim = stiffmbs.simulation(scene, solver="projected", scheme="rk4", step=1e-3)
+    sim.reset(joints={"hinge": space.q[1] + 0.1, "knee": space.q[2] - 0.15})
+    for _ in range(6000):
+        x = np.concatenate([sim.joint_coordinates - space.q, sim.joint_rates])
+        sim.step(1e-3, -(linear.b.T @ riccati) @ x)
+    assert np.abs(x).max() < 0.01
+
+
+def test_inputs_and_states_of_a_scene_are_in_the_linearisation():
+    """The effect of a force on the cart is that of an effort along the rail; a lag follows it."""
+    space = stiffmbs.joint_space(stiffmbs.read_scene(DOUBLE_PENDULUM))
+    found = space.linearise(inputs=["F", "rail.displacement"], outputs=["upper.x", "lag"])
+    assert found.a.shape == (7, 7)
+    np.testing.assert_allclose(found.b[:6, 0], found.b[:6, 1], atol=1e-7)
+    np.testing.assert_allclose(found.a[6], [0, 0, 0, 0, 0, 0, -5], atol=1e-7)
+    np.testing.assert_allclose(found.b[6], [5.0, 0.0], atol=1e-7)
+    np.testing.assert_allclose(found.c[0], [1.0, -0.7, -0.2, 0, 0, 0, 0], atol=1e-7)
+    np.testing.assert_allclose(found.c[1], [0, 0, 0, 0, 0, 0, 1], atol=1e-7)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_inverse_kinematics_is_the_inverse_of_the_pose(tmp_path, seed):
+    rng = np.random.default_rng(seed)
+    space = of_text(tmp_path, tree_in_mjcf(rng, 8))
+    goal = space.pose("link7", rng.uniform(-0.5, 0.5, 8))
+    q = space.inverse_kinematics("link7", goal.position, goal.rotation if seed else None)
+    found = space.pose("link7", q)
+    np.testing.assert_allclose(found.position, goal.position, atol=1e-8)
+    if seed:
+        np.testing.assert_allclose(found.rotation, goal.rotation, atol=1e-8)
+
+
+def test_inverse_kinematics_of_a_loop():
+    space = stiffmbs.joint_space(crank_slider(), independent=["bearing.angle"])
+    place = space.pose("rod", [1.3]).position
+    np.testing.assert_allclose(space.inverse_kinematics("rod", place), [1.3], atol=1e-8)
+
+
+def test_results_depend_on_their_arguments_alone():
+    one, other = (stiffmbs.joint_space(crank_slider(), independent=["bearing.angle"]) for _ in range(2))
+    other.bias([-3.0], [5.0])
+    assert np.array_equal(one.bias([1.3], [2.0]), other.bias([1.3], [2.0]))
+
+
+def test_driven_coordinates_may_be_independent_and_guides_too():
+    space = stiffmbs.joint_space(crank_slider(), independent=["guide.displacement"])
+    q = space.q - 0.01
+    angle = stiffmbs.joint_space(crank_slider(), independent=["bearing.angle"])
+    found = angle.inverse_kinematics("slider", space.pose("slider", q).position)
+    rate = angle.jacobian("slider", found)[0, 0]
+    np.testing.assert_allclose(space.mass_matrix(q) * rate**2, angle.mass_matrix(found), rtol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda s: s.mass_matrix([1, 2]), r"q: found an array of shape \(2,\), expected \(1,\), one number for each of bearing"),
+        (lambda s: s.bias([1.0], [np.nan]), "v: found nan for bearing.angle_rate, expected a finite number"),
+        (lambda s: s.bias([1.0], "fast"), "v: found 'fast', expected numbers"),
+        (lambda s: s.mass_matrix([500.0]), "q: found a joint coordinate 500 rad"),
+        (lambda s: s.pose("rood", [1.0]), "unknown body 'rood'.*did you mean 'rod'"),
+        (lambda s: s.jacobian(7, [1.0]), "marker: found 7, expected a body"),
+        (lambda s: s.actuator_efforts([1.0], [0.0], [1.0], ["engine"]), "actuator 'engine': found no such coordinate"),
+        (lambda s: s.actuator_efforts([1.0], [0.0], [1.0], []), "cannot give these accelerations"),
+        (lambda s: s.inverse_kinematics("slider", [3.0, 0.0]), r"the nearest pose of 'slider' is 2\.3 m away"),
+        (lambda s: s.inverse_kinematics("slider"), "found no position and no rotation"),
+        (lambda s: s.inverse_kinematics("slider", [1.0]), r"position: found \[1\.\], expected finite numbers"),
+        (lambda s: s.inverse_kinematics("slider", rotation=2 * np.eye(2)), "a matrix that is no rotation"),
+        (lambda s: s.linearise(inputs=["engine"]), "input 'engine': found no such force"),
+        (lambda s: s.linearise(outputs=["pin.fx"]), "output 'pin.fx': found no coordinate"),
+    ],
+)  # fmt: skip
+def test_invalid_arguments_are_refused(call, sentence):
+    with pytest.raises(InputError, match=sentence):
+        call(stiffmbs.joint_space(crank_slider(), independent=["bearing.angle"]))
+
+
+def test_invalid_coordinates_are_refused():
+    for given, sentence in (
+        (["crank"], "independent: found 'crank'"),
+        (["bearing.angle", "pin.angle"], "found 2 coordinates, expected 1"),
+        ("bearing.angle", "expected a list of names"),
+    ):
+        with pytest.raises(InputError, match=sentence):
+            stiffmbs.joint_space(crank_slider(), independent=given)
+
+
+def test_dead_point_and_open_loop_are_reported():
+    space = stiffmbs.joint_space(crank_slider(), independent=["guide.displacement"])
+    to_the_end = CRANK + ROD - space.pose("slider", space.q).position[0]
+    with pytest.raises(SolverError, match=r"guide\.displacement do not determine the motion in this pose"):
+        space.mass_matrix(space.q + to_the_end)
+    with pytest.raises((InputError, SolverError)):
+        space.mass_matrix(space.q + to_the_end + 0.2)
+
+
+def test_quaternion_of_length_zero_is_refused():
+    space = stiffmbs.joint_space(free_body())
+    with pytest.raises(InputError, match=r"a quaternion of length 0 at b\.q0"):
+        space.mass_matrix(np.zeros(8))
+
+
+def test_motion_without_mass_is_reported():
+    model = Model("massless", gravity=(0, 0))
+    model.add("b", Body(mass=1, inertia=1))
+    space = stiffmbs.joint_space(model)
+    assert space.coordinates == ("b.x", "b.y", "b.angle")
+    space._tree._lists["mass"][2] = 0.0
+    with pytest.raises(SolverError, match=r"along b\.omega has no mass"):
+        space.forward_dynamics(space.q, space.v)
+
+
+def test_friction_by_reactions_is_refused():
+    model = crank_slider()
+    model.add("rub", stiffmbs.JointFriction(joint="bearing", friction=0.1, radius=0.02))
+    with pytest.raises(InputError, match=r"forces\.rub: its forces depend on reactions"):
+        stiffmbs.joint_space(model)
+
+
+def test_rolling_is_refused():
+    with pytest.raises(InputError, match="constrain velocities only"):
+        stiffmbs.joint_space("examples/rolling_disc.yaml")

@@ -16,7 +16,7 @@ from ...errors import InputError
 from ...linear_analysis.transfer import Transfer
 from ...model.model_data import ModelData
 from ...model.settings import RunSettings
-from ...reading.did_you_mean import instead_of
+from ...reading.did_you_mean import did_you_mean
 from ...results.saved_state import SavedState
 
 LABELS = {
@@ -81,8 +81,8 @@ def refuse_reactions(outputs: Sequence[str], known: Sequence[str]) -> None:
     for name in outputs:
         if name not in known:
             raise InputError(
-                f"output '{name}'{instead_of(name, known)}, as accelerations and reactions depend on how an effort acts; or choose inputs of "
-                "the scene"
+                f"output '{name}': found no coordinate, rate, or position or velocity of a body{did_you_mean(name, known)}; accelerations and "
+                "reactions depend on how an effort acts, so choose inputs of the scene for them"
             )
 
 

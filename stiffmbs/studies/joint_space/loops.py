@@ -11,8 +11,9 @@ from ...dynamics.joint_tree import Frame, JointTree
 from ...dynamics.native.parameters import CONSISTENCY
 from ...errors import InputError, SolverError
 
-SINGULAR: Final = 1e-8
-"""Smallest singular value of the equations of the dependent rates, relative to the largest, below which a pose is singular."""
+SINGULAR: Final = 1e-5
+"""Smallest singular value of the equations of the dependent rates, relative to the largest, below which a pose is singular. Near a dead
+point, coordinates are known to the root of the tolerance of positions, 1e-6."""
 WORTH_CHOOSING: Final = 1e-2
 """Part of a rate outside those that follow already, from which on it may follow, too."""
 CLOSED: Final = 1e-14

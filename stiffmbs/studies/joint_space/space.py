@@ -407,7 +407,9 @@ class JointSpace:
         if outputs is not None and (tau.any() or len(chosen.of_scene) < len(chosen.names)):
             kind, bodies = self._job.dynamics.system.of_body, self._job.dynamics.system.bodies
             of_bodies = [f"{body}.{label}" for body in bodies for label in (*kind.positions, *kind.velocities)]
-            refuse_reactions(outputs, [*self._all.coordinates, *self._all.rates, *of_bodies])
+            refuse_reactions(
+                outputs, [*self._all.coordinates, *self._all.rates, *of_bodies, *self._job.dynamics.system.states]
+            )
         inverse = _solved(self.mass_matrix(here), np.eye(len(tau)), self.rates)
         found = joint_equations(
             self._data, self._settings, self.state(here, moving), self.rates, chosen, outputs, inverse
@@ -466,7 +468,7 @@ class JointSpace:
         try:
             found = np.asarray(values, dtype=float)
         except (TypeError, ValueError):
-            raise InputError(f"{what}: found {values!r}, expected {len(names)} numbers") from None
+            raise InputError(f"{what}: found {values!r}, expected numbers for {', '.join(names)}") from None
         if found.shape != (len(names),):
             raise InputError(
                 f"{what}: found an array of shape {found.shape}, expected ({len(names)},), one number for each of {', '.join(names)}"
