@@ -50,7 +50,9 @@ def free_tree_in_mjcf(rng, n=4):
     parents = _parents(rng, n)
     bodies = "".join(_subtree(rng, k, n, parents) for k in range(n) if parents[k] < 0)
     centre, inertial = _inertia_mjcf(rng)
-    return f'<mujoco><worldbody><body name="base"><freejoint/>{inertial}{bodies}</body></worldbody></mujoco>', np.round(centre, 6)
+    return f'<mujoco><worldbody><body name="base"><freejoint/>{inertial}{bodies}</body></worldbody></mujoco>', np.round(
+        centre, 6
+    )
 
 
 def tree_in_urdf(rng, n=6):

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs import Body, InputError, Marker, Model, Prismatic, Revolute, SolverError, spatial
-
+from stiffmbs import Body, InputError, Model, Prismatic, Revolute, SolverError, spatial
 from tests.random_trees import free_tree_in_mjcf, tree_in_mjcf, tree_in_urdf
 from tests.spatial_loops import slider_crank
 
@@ -116,9 +115,7 @@ def test_trees_are_those_of_pinocchio(tmp_path, seed):
     tau = pinocchio.rnea(model, data, *theirs)[order]
     np.testing.assert_allclose(space.inverse_dynamics(q, v, a), tau, atol=1e-10 * abs(tau).max())
     link = f"link{len(order) - 1}"
-    J = pinocchio.computeFrameJacobian(
-        model, data, theirs[0], model.getFrameId(link), pinocchio.LOCAL_WORLD_ALIGNED
-    )
+    J = pinocchio.computeFrameJacobian(model, data, theirs[0], model.getFrameId(link), pinocchio.LOCAL_WORLD_ALIGNED)
     np.testing.assert_allclose(space.jacobian(link, q), J[:, order], atol=1e-10)
 
 
@@ -202,9 +199,12 @@ def chain_in_space(rng):
         arm = rng.uniform(0.2, 0.5, 3)
         place = place + arm
         body = model.add(
-            f"b{k}", spatial.Body(mass=rng.uniform(1, 2), inertia=tuple(rng.uniform(0.09, 0.11, 3)), position=tuple(place))
+            f"b{k}",
+            spatial.Body(mass=rng.uniform(1, 2), inertia=tuple(rng.uniform(0.09, 0.11, 3)), position=tuple(place)),
         )
-        at = spatial.Marker(body="ground" if before is None else before[0], point=tuple(place - arm / 2 - (before[1] if before else 0)))
+        at = spatial.Marker(
+            body="ground" if before is None else before[0], point=tuple(place - arm / 2 - (before[1] if before else 0))
+        )
         i = body.at(*(-arm / 2))
         if kinds[k] is spatial.Universal:
             i = body.at(*(-arm / 2), {"z": (1, 0, 0)})

@@ -1,8 +1,8 @@
 """Motion, inertia and forces of a spanning tree of joints in joint coordinates.
 
-A frame is moved from its reference pose by the product of the exponentials of the screws before it (Murray, Li and Sastry, A
-Mathematical Introduction to Robotic Manipulation, 1994, section 3.2).  Velocities and their rates are spatial vectors in ground axes
-at the origin (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.9).
+The product of the exponentials of its screws moves a frame from its reference pose. Source: Murray, Li and Sastry, A Mathematical
+Introduction to Robotic Manipulation (1994), section 3.2. Velocities and their rates are spatial vectors in
+ground axes at the origin (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 2.9).
 """
 
 from math import cos, sin, sqrt

@@ -73,15 +73,17 @@ JOINT_TREE = Layout({
     "n_gamma": INT, "gamma_source": INTS, "gamma_row": INTS, "n_ja": INT, "ja_source": INTS, "ja_row": INTS, "ja_column": INTS,
     "n_counters": INT, "counter": INTS, "counter_from": INTS,
 })  # fmt: skip
-"""Spanning tree of a mechanism (`stiffmbs.dynamics.joint_tree`).  Frames: index of the frame before each, 0 for ground and k + 1 for
-frame k; 1 if it is a free body; its first coordinate and rate; its screw at the reference pose (velocity of the point at the origin, angular
-velocity); reference (a screw's coordinate, or position and quaternion of a free body); memory for `FRAME` numbers of each frame from the ground
-on; the screw of each rate at the current pose.  Bodies: frame, reference position and quaternion, and the rates that move each.  Results: N of u =
-N v, N' v, M and the bias of the tree's rates, and for the equations of its loops C, J N and J u' at zero rates of v.  Then entries of
-forces and inertia, of C and J in the set ``motion``, of J u' and J in the set ``acceleration``, and counters of turns with the coordinates they count."""
+"""Spanning tree of a mechanism (`stiffmbs.dynamics.joint_tree`).
+
+Frames: index of the frame before each, 0 for ground and k + 1 for frame k. Then 1 for a free body, first coordinate and first rate. The screw is
+at the reference pose: velocity of the point at the origin and angular velocity. The reference is a screw's coordinate, or position and
+quaternion of a free body. `frame` is memory for `FRAME` numbers of each frame from ground on, `column` the screw of each rate at the current pose.
+Bodies: frame, `BODY` numbers at the reference pose, and the rates that move each. Results: N of u = N v, N' v, M and the bias of the tree's
+rates. Results of the loops' equations: C, J N, and J u' at zero rates of v. Entries of forces and inertia follow, and of C and J in the set ``motion``.
+Those of J u' and J in the set ``acceleration`` are next, then counters of turns with the coordinates they count."""
 
 FRAME = 29
-"""Numbers of a frame: quaternion and position of its displacement from the reference pose, rotation matrix by rows, velocity at the origin and
-angular velocity, their rates at zero rates of v, and the angle of a planar frame with its turns."""
+"""Numbers of a frame. They begin with quaternion and position of its displacement from the reference pose, and the rotation matrix by rows. Velocity
+at the origin and angular velocity follow, their rates at zero rates of v, and the angle of a planar frame with its turns."""
 BODY = 8
 """Numbers of a body at the reference pose: position, quaternion, and angle in the plane."""

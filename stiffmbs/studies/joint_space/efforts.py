@@ -36,7 +36,9 @@ class Efforts:
 
     def __repr__(self) -> str:
         listed = ", ".join(f"{name} {value:.6g}" for name, value in zip(self.actuators, self.values, strict=True))
-        chosen = f"; least norm, as {self.redundant} combination{'s' * (self.redundant > 1)} of them may be chosen freely"
+        chosen = (
+            f"; least norm, as {self.redundant} combination{'s' * (self.redundant > 1)} of them may be chosen freely"
+        )
         return f"<Efforts: {listed}{chosen if self.redundant else ''}>"
 
 

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from ...errors import InputError
+from ...errors import InputError, SolverError
 from .markers import MarkerPose
 
 ORTHOGONAL: Final = 1e-6
 """Largest departure of R^T R from the unit matrix."""
+
+DAMPING: Final = 1e-3
+"""First damping, relative to the square of the gap."""
+LESS, MORE = 0.2, 10.0
+"""Factors of the damping after a move that came nearer, and after one that did not."""
+LONGEST: Final = 0.5
+"""Longest move of a coordinate, rad or sizes of the mechanism."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +40,9 @@ class Wanted:
         if turn is not None and (
             np.abs(turn.T @ turn - np.eye(dimensions)).max() > ORTHOGONAL or np.linalg.det(turn) < 0
         ):
-            raise InputError("rotation: found a matrix that is no rotation, expected orthogonal columns of length 1, right-handed")
+            raise InputError(
+                "rotation: found a matrix that is no rotation, expected orthogonal columns of length 1, right-handed"
+            )
         return cls(place, turn, size)
 
     def gap(self, pose: MarkerPose) -> np.ndarray:
@@ -82,3 +92,40 @@ def _vector(turn: np.ndarray) -> np.ndarray:
     from scipy.spatial.transform import Rotation
 
     return np.asarray(Rotation.from_matrix(turn).as_rotvec())
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Pose and Jacobian of a marker by coordinates, moves of coordinates, and the size of each rate."""
+
+    pose: Callable[[np.ndarray], MarkerPose]
+    jacobian: Callable[[np.ndarray], np.ndarray]
+    moved: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    unit: np.ndarray
+
+
+def nearest(
+    reach: Reach, wanted: Wanted, q: np.ndarray, most_iterations: int, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the coordinates nearest to a pose that are found, and the gap that is left.
+
+    The damping of Levenberg and Marquardt's method is in proportion to the square of the gap (Sugihara 2011, eq. 22).
+    """
+    gap, damping = wanted.gap(reach.pose(q)), DAMPING
+    for _ in range(most_iterations):
+        if wanted.is_met(gap, tolerance):
+            break
+        J = wanted.rows(reach.jacobian(q) * reach.unit)
+        weight = damping * (gap @ gap + tolerance**2)
+        move = J.T @ np.linalg.solve(J @ J.T + weight * np.eye(len(J)), gap)
+        move /= max(1.0, float(np.abs(move).max(initial=0.0)) / LONGEST)
+        try:
+            trial = reach.moved(q, reach.unit * move)
+            left = wanted.gap(reach.pose(trial))
+        except (InputError, SolverError):  # the loops cannot be closed there
+            left = np.full(len(gap), np.inf)
+        if left @ left < gap @ gap:
+            q, gap, damping = trial, left, LESS * damping
+        else:
+            damping *= MORE
+    return q, gap

@@ -136,7 +136,11 @@ def joint_equations(
             b[n : 2 * n, column] = inverse_mass[:, k]
     own_outputs = tuple(c.displacement for c in channels) + rates
     chosen = [row[name] for name in outputs or ()]
-    at = found.at[chosen] if outputs is not None else np.array([*(_at(found, row, c) for c in channels), *found.at[[row[rate] for rate in rates]]])
+    at = (
+        found.at[chosen]
+        if outputs is not None
+        else np.array([*(_at(found, row, c) for c in channels), *found.at[[row[rate] for rate in rates]]])
+    )
     return replace(
         found,
         a=rows @ back,

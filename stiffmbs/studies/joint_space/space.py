@@ -9,13 +9,12 @@ from typing import Any, Final, Unpack
 import numpy as np
 
 from ...analyses.job import Runnable, data_of, prepare, settings_of
+from ...analyses.linearised.transfer import STEP
 from ...compile.state import State
 from ...dynamics.joint_tree import JointTree
 from ...errors import InputError, SolverError
-from ...analyses.linearised.transfer import STEP
 from ...linear_analysis.transfer import Transfer
 from ...model.settings import RunSettings, Settings, takes_settings
-from ...reading.did_you_mean import instead_of
 from ...reading.marker import MarkerReference
 from ...results.channels import channels_of, turns_of
 from ...results.joint_coordinates import JointCoordinates
@@ -23,14 +22,15 @@ from ...results.saved_state import SavedState
 from ...solve.settings import changed
 from ..joint_pose import parts_of
 from .efforts import Efforts, coordinates_of_drives, least_efforts, places_of
-from .inverse_kinematics import Wanted
+from .independent import named, order_of, places_in, refuse_others, refuse_velocities
+from .inverse_kinematics import Reach, Wanted, nearest
 from .linear import LinearInputs, joint_equations, refuse_reactions
 from .loops import Loops, move_tree
 from .markers import MarkerPose, PlacedMarker, placed_marker
 from .spanning_tree import SpanningTree
 
-NO_MASS: Final = 1e-14
-"""Smallest eigenvalue of a mass matrix scaled to a unit diagonal, below which a motion has no mass."""
+NO_MASS: Final = 1e-7
+"""Smallest pivot of the Cholesky factor of a mass matrix scaled to a unit diagonal, below which a motion has no mass: the root of rounding."""
 Array = np.ndarray | Sequence[float]
 
 
@@ -83,12 +83,13 @@ class JointSpace:
     """Model as functions of the coordinates of its joints; made by `stiffmbs.joint_space`.
 
     All arrays have the order of `coordinates` (q) and `rates` (v, accelerations, efforts), in SI units. Joints come in the order of
-    `Simulation.joint_coordinates`; those that loops determine are left out. They are followed by bodies that no joint with such
-    coordinates carries: in space position of the centre of mass and quaternion of a body's own axes, with velocity in ground axes
-    and angular velocity in its own axes as rates; dependent parts of such a pose are corrected.
+    `Simulation.joint_coordinates`; those that loops determine are left out. Bodies follow that no joint with such coordinates carries.
+    In space they have the position of the centre of mass and the quaternion of their own axes, of which dependent parts are corrected.
+    Their rates are the velocity in ground axes and the angular velocity in own axes.
 
-    M(q) v' + h(q, v) = tau. With the velocities u = N(q) v of all bodies, M = N^T M_u N and h = N^T (M_u N' v - f) + gyroscopic terms
-    (Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, 1989, sections 7.3 and 11.4).
+    The equations of motion are M(q) v' + h(q, v) = tau. With the velocities u = N(q) v of all bodies, M = N^T M_u N and
+    h = N^T (M_u N' v - f), where f has the gyroscopic terms (Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, 1989,
+    sections 7.3 and 11.4; Featherstone, Rigid Body Dynamics Algorithms, 2008, section 3.1).
 
     Attributes
     ----------
@@ -104,20 +105,20 @@ class JointSpace:
         job = prepare(data, settings)
         self._data, self._settings, self._drives, self._job = data, settings, drives, job
         system, self._t = job.dynamics.system, job.grid.start
-        _refuse_others(system)
+        refuse_others(system)
         self._size = system.size or 1.0
         joints = JointCoordinates(system, data.joints)
-        given = _named(independent)
+        given = named(independent)
         chosen = SpanningTree(job.dynamics, joints, self._t, job.start.q, frozenset(given)).found()
         self._all, tree = chosen, chosen.tree
-        _refuse_timed(system, tree.loops)
+        refuse_velocities(system, tree.loops)
         self._state = State(system)
         self._state.q[:] = job.start.q
         self._tree = JointTree(self._state, tree)
         names = tuple(name.removesuffix("_rate") for name in chosen.rates)
         self._units = np.array([self._unit(name) for name in chosen.rates])
         count = tree.sizes[1] - (system.n_u - int(np.count_nonzero(system.active)))
-        order = _order(chosen.rates, len(chosen.joints), _places(given, names, len(names) - count if given else 0))
+        order = order_of(chosen.rates, len(chosen.joints), places_in(given, names, len(names) - count if given else 0))
         self._loops = Loops(self._tree, self._t, names, order, count, self._units)
         if given and not {names[k] for k in self._loops.independent} >= set(given):
             free = ", ".join(names[k] for k in self._loops.independent)
@@ -219,7 +220,7 @@ class JointSpace:
         InputError, SolverError
             As for `mass_matrix`; and if an actuator is unknown, or if the actuators cannot give the accelerations.
         """
-        names = tuple(self._drives) if actuators is None else tuple(_named(actuators))
+        names = tuple(self._drives) if actuators is None else tuple(named(actuators))
         a = self._array("acceleration", acceleration, self.rates)
         own = {name.removesuffix("_rate"): k for k, name in enumerate(self._all.rates)}
         places = places_of(names, own, self._drives)
@@ -329,28 +330,15 @@ class JointSpace:
         InputError
             If an argument is invalid, or if no such coordinates are found.
         """
-        placed = self._placed(marker)
         wanted = Wanted.of(position, rotation, self._data.dimensions, self._size)
         here = self.q if q is None else self._array("q", q, self.coordinates)
-        self._move_to(here)
-        gap, best = wanted.gap(self.pose(marker, here)), here
-        damping = 1e-3
-        for _ in range(most_iterations):
-            if wanted.is_met(gap, tolerance):
-                return best
-            self._move_to(best)
-            J = wanted.rows(self._jacobian(placed) * self._units[self._independent])
-            move = J.T @ np.linalg.solve(J @ J.T + damping * (gap @ gap + tolerance**2) * np.eye(len(J)), gap)
-            move /= max(1.0, 2.0 * float(np.abs(move).max(initial=0.0)))
-            try:
-                trial = self.moved(best, self._units[self._independent] * move)
-                left = wanted.gap(self.pose(marker, trial))
-            except (InputError, SolverError):  # the loops cannot be closed there
-                left = np.full(len(gap), np.inf)
-            if left @ left < gap @ gap:
-                best, gap, damping = trial, left, damping / 5.0
-            else:
-                damping *= 10.0
+        reach = Reach(
+            lambda q: self.pose(marker, q),
+            lambda q: self.jacobian(marker, q),
+            self.moved,
+            self._units[self._independent],
+        )
+        best, gap = nearest(reach, wanted, here, most_iterations, tolerance)
         if wanted.is_met(gap, tolerance):
             return best
         raise InputError(
@@ -486,7 +474,9 @@ class JointSpace:
             for first in (k for k, name in enumerate(self.coordinates) if name.endswith(".q0")):
                 norm = float(np.linalg.norm(found[first : first + 4]))
                 if norm == 0.0:
-                    raise InputError(f"q: found a quaternion of length 0 at {self.coordinates[first]}, expected length 1")
+                    raise InputError(
+                        f"q: found a quaternion of length 0 at {self.coordinates[first]}, expected length 1"
+                    )
                 found[first : first + 4] /= norm
         return found
 
@@ -505,7 +495,9 @@ class JointSpace:
             tree.q[self._of_q] = self._coordinates(first + (goal - first) * part / parts)
             if not self._loops.close():
                 named = ", ".join(f"{name} = {value:g}" for name, value in zip(self.coordinates, goal, strict=True))
-                raise InputError(f"q: the loops cannot be closed at {named}; expected coordinates that the joints allow")
+                raise InputError(
+                    f"q: the loops cannot be closed at {named}; expected coordinates that the joints allow"
+                )
 
     def _distance(self, first: np.ndarray, goal: np.ndarray) -> float:
         """Return the largest change of a coordinate, rad or sizes of the mechanism."""
@@ -526,56 +518,15 @@ class JointSpace:
 
 def _solved(M: np.ndarray, right: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
     """Return M^-1 times a vector or matrix; raise a SolverError if a motion has no mass."""
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(M), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(scale[:, None] * M * scale)
-    if len(values) and not values[0] > NO_MASS:
-        k = int(np.argmax(np.abs(vectors[:, 0])))
+    scale = 1.0 / np.sqrt(np.maximum(M.diagonal(), np.finfo(float).tiny))
+    scaled = scale[:, None] * M * scale
+    try:
+        least = np.linalg.cholesky(scaled).diagonal().min(initial=1.0)
+    except np.linalg.LinAlgError:
+        least = 0.0
+    if least <= NO_MASS:
+        k = int(np.argmax(np.abs(np.linalg.eigh(scaled)[1][:, 0])))
         raise SolverError(f"forward_dynamics: the motion along {names[k]} has no mass, expected mass or inertia in it")
-    across = vectors.T * scale
-    found: np.ndarray = across.T @ ((across @ right).T / values).T
+    across = scale if right.ndim == 1 else scale[:, None]
+    found: np.ndarray = across * np.linalg.solve(scaled, across * right)
     return found
-
-
-def _named(names: Sequence[str] | None) -> list[str]:
-    if isinstance(names, str):
-        raise InputError(f"found the text '{names}', expected a list of names")
-    return list(names or ())
-
-
-def _places(given: list[str], names: tuple[str, ...], count: int) -> list[int]:
-    """Return the places of independent coordinates; raise an InputError if one is unknown, or their number is wrong."""
-    for name in given:
-        if name not in names:
-            raise InputError(f"independent: found '{name}'{instead_of(name, names)}")
-    if len(given) != count:
-        raise InputError(f"independent: found {len(given)} coordinates, expected {count}, one for each degree of freedom")
-    return [names.index(name) for name in given]
-
-
-def _order(rates: tuple[str, ...], n_joints: int, kept: list[int]) -> list[int]:
-    """Return the rates in the order in which they become dependent: of free bodies first, kept ones last."""
-    linear = [k for k in range(n_joints, len(rates)) if rates[k].rpartition(".")[2].startswith("v")]
-    angular = [k for k in range(n_joints, len(rates)) if k not in linear]
-    order = [*linear[::-1], *angular[::-1], *range(n_joints)[::-1]]
-    return [*(k for k in order if k not in kept), *kept]
-
-
-def _refuse_others(system: Any) -> None:
-    """Raise an InputError if forces depend on reactions, or a state has no rate."""
-    if system.forces_by_reactions:
-        raise InputError(
-            f"forces.{system.forces_by_reactions[0]}: its forces depend on reactions of joints, such as friction, which no function of q and v "
-            "has; expected forces of positions, velocities and states"
-        )
-    if system.algebraic.any():
-        raise InputError(f"states.{system.states[int(np.argmax(system.algebraic))]}: found a state without a rate, expected rates")
-
-
-def _refuse_timed(system: Any, loops: np.ndarray) -> None:
-    """Raise an InputError if a joint outside the tree depends on time, or has no position form."""
-    wrong = np.flatnonzero(loops & (system.timed | ~system.holonomic))
-    if len(wrong):
-        raise InputError(
-            f"joints.{system.equations[int(wrong[0])][0]}: its equations depend on time or states, or constrain velocities only; expected a joint "
-            "that constrains positions, or a drive"
-        )

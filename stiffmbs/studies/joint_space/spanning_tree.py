@@ -183,7 +183,10 @@ class SpanningTree:
         """Number the coordinates: those of joints in their order, then those of free bodies."""
         of_joints = sorted(move[0] for move in screws if not isinstance(move, int) and move[0] >= 0)
         place = {k: n for n, k in enumerate(of_joints)}
-        coordinates, rates = [self._joints.names[k] for k in of_joints], [f"{self._joints.names[k]}_rate" for k in of_joints]
+        coordinates, rates = (
+            [self._joints.names[k] for k in of_joints],
+            [f"{self._joints.names[k]}_rate" for k in of_joints],
+        )
         kind, bodies = self._system.of_body, self._system.bodies
         frames = []
         for parent, move in zip(parents, screws, strict=True):
@@ -231,7 +234,7 @@ class SpanningTree:
         gaps = np.abs(state.vector("motion", "C")), np.abs(state.vector("motion", "V"))
         self._joints.watch(state.q, state.u)
         self._joints.begin(self._t, {})
-        off = {name: 0.0 for name in chosen.joints}
+        off = dict.fromkeys(chosen.joints, 0.0)
         for k, name, scale, turns in zip(count(), chosen.joints, unit, angular, strict=False):
             own = self._joints.names.index(name)
             change = self._joints.coordinates[own] - tree.q[k]
