@@ -146,6 +146,9 @@ class JointTree:
         self.table = packed(JOINT_TREE, {"state": state.table, **self._lists, **counts})
         self._at = address(self.q), address(self.v), address(self.table)
         self._frames, self._bodies = self._lists["body_frame"], self._lists["body_reference"].reshape(-1, BODY)
+        counters = range(system.n_pose, system.first_state)
+        self._other_counters = [place for place in counters if place not in tree.counters]
+        self._turns = state.q[self._other_counters].copy()
         self._motion, self._columns = np.zeros(MOTION_OF_MARKER), np.zeros((6, n_v))
         self._pose, self._inertia = POSE.short_call, INERTIA.short_call
         self._closure, self._forces, self._marker = CLOSURE.short_call, FORCES.short_call, MARKER.short_call
@@ -165,6 +168,10 @@ class JointTree:
 
     def forces(self, t: float) -> None:
         """Compute M, h, and J and gamma of the loops."""
+        if self._other_counters:  # in the turns nearest to those of the reference pose
+            self.place(t)
+            self.state.q[self._other_counters] = self._turns
+            self.state.restart_counters(t)
         self._forces(t, *self._at)
 
     def at_reference(self, body: int, point: np.ndarray, axes: np.ndarray) -> np.ndarray:

@@ -223,7 +223,27 @@ def random_pose(space, rng, size=0.6):
     return space.moved(space.q, rng.uniform(-size, size, len(space.rates)))
 
 
+def on_a_plane(rng):
+    """A body that slides on a plane, with a nut on a screw, an arm that a coupler turns with another, and a spring with turns."""
+    model = spatial.Model("plane", gravity=(0.2, 1.0, -9.81))
+    inertia = (0.1, 0.12, 0.08)
+    base = model.add("base", spatial.Body(mass=2, inertia=inertia, center_of_mass=(0.1, 0.05, 0.0)))
+    nut = model.add("nut", spatial.Body(mass=1, inertia=inertia, position=(0.3, 0, 0.4)))
+    arms = [model.add(f"arm{k}", spatial.Body(mass=1, inertia=inertia, position=(0.4 * k, 0.5, 0))) for k in (1, 2)]
+    model.add(
+        "table", spatial.Planar(i=base.at(0, 0, 0), j=spatial.Marker(body="ground", orientation={"z": (0.3, 0.1, 1)}))
+    )
+    model.add("thread", spatial.Screw(i="nut", j=base.at(0.3, 0, 0.4, {"z": (1, 0, 1)}), pitch=0.3))
+    for k, arm in enumerate(arms, start=1):
+        model.add(f"hinge{k}", spatial.Revolute(i=arm.at(-0.2, 0, 0), j=base.at(0.4 * k - 0.2, 0.5, 0)))
+    model.add("belt", spatial.Coupler(joint_1="hinge1", joint_2="hinge2", scale=-2.0))
+    along = {"z": (1, 0, 1)}
+    model.add("spring", spatial.TorsionSpring(i=nut.at(0, 0, 0, along), j=base.at(0, 0, 0, along), stiffness=3.0))
+    return model
+
+
 MODELS = {
+    "on_a_plane": on_a_plane,
     "chain": chain_in_space,
     "slider_crank": lambda rng: slider_crank(0.7, cross=True),
     "balls": lambda rng: slider_crank(0.7),

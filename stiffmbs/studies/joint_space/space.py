@@ -347,11 +347,18 @@ class JointSpace:
         )
 
     def moved(self, q: Array, move: Array) -> np.ndarray:
-        """Return coordinates after a small move, rates times time: sums, and for quaternions a rotation about own axes."""
+        """Return coordinates after a small move, rates times time: sums, and for quaternions a rotation about own axes.
+
+        Parameters and errors as for `bias`; move of shape (rates,), m or rad.
+        """
         step = np.zeros(len(self._all.rates))
         step[self._independent] = self._array("move", move, self.rates)
-        self._tree.q[self._of_q] = self._coordinates(q)
+        self._move_to(q)
+        if self._closed:
+            step = self._loops.map() @ step[self._independent]
         move_tree(self._tree, step)
+        if self._closed and not self._loops.close():
+            raise InputError("moved: the loops cannot be closed after this move; expected a smaller one")
         return self._tree.q[self._of_q].copy()
 
     def linearise(

@@ -108,15 +108,19 @@ class SpanningTree:
         width = self._system.of_body.n_u
         columns = slice(width * child, width * (child + 1))
         unit = self._unit[columns]
-        matrix, chosen = self._J[link.rows][:, columns] * unit, []
-        rank = _rank(matrix)
-        for k in link.coordinates:
+        equations = self._J[link.rows][:, columns] * unit
+        matrix, rank, chosen = equations, _rank(equations), list[int]()
+        for k in sorted(
+            link.coordinates, key=lambda k: ".angle" not in self._joints.names[k]
+        ):  # of a thread, its turns
             wider = np.vstack([matrix, self._rates[k, columns] * unit])
             if rank < width and _rank(wider) > rank:
                 matrix, rank = wider, rank + 1
                 chosen.append(k)
         if rank < width:
             return None
+        chosen.sort()
+        matrix = np.vstack([equations, self._rates[chosen][:, columns] * unit])
         right = np.zeros((len(matrix), len(chosen)))
         right[len(matrix) - len(chosen) :] = np.eye(len(chosen))
         moves = np.linalg.lstsq(matrix, right, rcond=None)[0]
