@@ -88,7 +88,9 @@ def checked(folder: Path, text: str, *options: str) -> list[str]:
 @pytest.mark.sampled(2)
 def test_mypy_accepts_what_is_right_and_refuses_what_is_misspelt(tmp_path, plugin):
     start = RIGHT.count("\n")
-    (tmp_path / "mypy.ini").write_text(f"[mypy]\nplugins = {plugin}\n")
+    (tmp_path / "mypy.ini").write_text(
+        f"[mypy]\nplugins = {plugin}\n[mypy-stiffmbs.*]\nignore_errors = True\n"
+    )  # as installed
     found = checked(tmp_path, RIGHT + "\n".join(WRONG), "--config-file=mypy.ini")
     said = {int(line.split(":")[1]) - start: line for line in found if ": error: " in line}
     assert said.keys() == set(range(1, len(WRONG) + 1)), "\n".join(found)

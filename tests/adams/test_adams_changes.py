@@ -44,6 +44,7 @@ def test_without_its_hinge_the_bar_falls_freely(run_with):
     assert "JOINT/1, SPRINGDAMPER/7 are deactivated by model.acf and left out" in found.notes
 
 
+@pytest.mark.long
 def test_without_gravity_it_stays(run_with):
     found = run_with(FREE + "ACCGRAV/KGRAV=0\n" + RUN)
     np.testing.assert_allclose(found["PART_2.z"], 3, atol=1e-12)
@@ -129,6 +130,7 @@ def test_a_motion_does_not_outlive_its_joint(run_with):
         run_with("DEACTIVATE/JOINT, ID=1\n" + RUN, "MOTION/1, JOINT=1, FUNCTION=TIME")
 
 
+@pytest.mark.long
 def test_a_motion_by_the_integral_of_a_step_is_solved_by_dynamics(run_with):
     """STEP integrated from 0 to its end at 1 s: half of 2 rad/s, in 1 s."""
     motion = "MOTION/1, JOINT=1, VELOCITY, ICDISP=0.5, FUNCTION=STEP(TIME, 0, 0, 1, 2)\nVARIABLE/1, FUNCTION=AZ(20,11)"

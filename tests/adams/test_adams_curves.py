@@ -66,6 +66,7 @@ def ring(turn):
     return np.column_stack([300 * np.cos(angles), 0 * angles, 200 * np.sin(angles)])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("turn", [1, -1])
 def test_a_bead_goes_round_a_closed_wire(turn):
@@ -77,6 +78,7 @@ def test_a_bead_goes_round_a_closed_wire(turn):
     np.testing.assert_allclose(found["energy.total"], found["energy.total"][0], atol=1e-6)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("turn", [1, -1])
 def test_a_bead_goes_round_a_closed_wire_that_leaves_its_plane(turn):

@@ -81,7 +81,7 @@ def _same_motion(scene, again, **how):
 QUICK = ("slider", "coupler", "bushing", "states")
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(15)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "kind",
@@ -94,7 +94,7 @@ def test_a_scene_moves_as_its_dataset(kind):
     _same_motion(scene, read_adams(text))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(15)
 @pytest.mark.long
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in DATA.glob("*/dataset.adm")))
 def test_a_dataset_written_anew_is_the_same(name):

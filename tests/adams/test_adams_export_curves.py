@@ -47,7 +47,7 @@ def test_curves_are_written_as_they_were_read(name):
                 )  # about either side of the way
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 @pytest.mark.long
 @pytest.mark.parametrize("name", DATASETS)
 def test_they_move_alike(name):

@@ -185,7 +185,8 @@ VTORQUE/7, I=21, JFLOAT=39, RM=33, TX=1\ TY=2\ TZ=4
 """
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", ["SFORCE(1", "SFORCE(2", "SPDP(3", "GFORCE(4", "VFORCE(5", "BUSH(6", "VTORQ(7"])
 def test_forces_follow_other_forces(name):
     """A torque by a component of another force is that component, as a VARIABLE reports it."""
@@ -211,7 +212,8 @@ SFORCE/10, ACTION, ROT, I=22, J=12, FUNC=3
 """
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("pair", ["31,21", "21,0", "22,12", "33,20"])
 def test_forces_follow_all_that_acts_between_two_markers(pair):
     terms = [f"{name}({pair},22)" for name in ("FX", "FM", "TZ")] + [f"FZ({pair})"]
@@ -226,6 +228,7 @@ def test_forces_follow_all_that_acts_between_two_markers(pair):
         assert solution[f"SFORCE_{k}.tz"][0] == pytest.approx(solution[f"VARIABLE_{k}"][0], rel=1e-8, abs=1e-8), term
 
 
+@pytest.mark.long
 def test_a_block_rubs_by_the_force_that_presses_it():
     """Mass 2 on a spring that carries its weight: the friction 0.3 m g slows it from 4 m/s."""
     text = (

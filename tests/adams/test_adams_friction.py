@@ -31,7 +31,7 @@ def direction(v, slow):
     return step5(v, -slow, -1, slow, 1)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.long
 @pytest.mark.parametrize("ratio", [0.0557, 0.01, 0.03, 0.08, 0.099, 0.101, 0.11, 0.12, 0.13, 0.145, 0.16])
 def test_the_torque_of_a_ball_over_its_speed_is_that_of_a_run_of_adams(tmp_path, ratio):
@@ -128,6 +128,7 @@ PART/1, GROUND
 LAW = "FRICTION/1, JOINT=1, MU_STATIC=0.5, MU_DYNAMIC=0.2, STICTION_TRANSITION_VELOCITY=100, REACTION_ARM=50, INITIAL_OVERLAP=200"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(("word", "growth"), [("CONSTANT", 0), ("INCREASE", 1), ("DECREASE", -1)])
 def test_a_guide_rubs_by_force_moments_and_preload(tmp_path, word, growth):

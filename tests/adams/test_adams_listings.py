@@ -75,6 +75,7 @@ def test_adams_lists_the_same(case, quantity):
     np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("case", CASES)
 def test_bodies_move_as_their_requests_say(case):
     """The body's own channels are those of its centre-of-mass marker, which the requests are of."""

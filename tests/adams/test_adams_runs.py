@@ -11,6 +11,7 @@ from stiffmbs.adams.load import read_adams
 from .metric_datasets import GRAVITY, HEAD, TWO, G, run
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "statement, equations",
@@ -280,6 +281,7 @@ def test_the_joint_holds_before_assembly_moves_parts():
     assert any("assembly changed PART_2.x by -0.001 m" in note for note in solution.notes)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("function", ["DM(20,11)-2-0.1*SIN(5*TIME)", "DM(20,11)-2.0+0*TIME", "DM(20,11)**2-4"])
 def test_a_general_constraint_acts_on_its_marker(function):

@@ -210,6 +210,7 @@ def test_a_field_without_symmetry_is_followed():
         np.testing.assert_allclose(found[f"PART_2.w{name}"], own[9 + k], atol=1e-9)
 
 
+@pytest.mark.long
 def test_the_torque_of_a_field_without_symmetry_on_marker_j_is_about_that_marker():
     """FIELD(id, 1, TX ..): -T - d x F, with d from J to I, also where J is off the origin of its part."""
     stiffness = np.diag([4, 5, 6, 4, 5, 6.0])

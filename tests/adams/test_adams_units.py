@@ -26,6 +26,7 @@ LBF, FT = 4.4482216152605, 0.3048
 SLUG = LBF / FT
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "units, force, mass, length, time",

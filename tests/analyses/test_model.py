@@ -106,6 +106,7 @@ def test_files_are_solved_by_their_names(examples, kind):
             use(kind("nowhere.yaml"))
 
 
+@pytest.mark.long
 def test_a_model_is_solved_by_its_own_methods():
     model, settings = cart_pendulum(), stiffmbs.RunSettings(duration=0.1, rtol=1e-8)
     expected = stiffmbs.run(cart_pendulum(), settings)

@@ -32,6 +32,7 @@ def exact(width, centre):
     ).y[0]  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "solver",
     ["bdf", *(pytest.param(name, marks=(pytest.mark.long, pytest.mark.sampled(2))) for name in ("radau", "projected"))],

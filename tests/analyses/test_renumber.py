@@ -39,6 +39,7 @@ def scaled(data, factor):
     return data.model_copy(update={"forces": forces})
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "projected", "auto"])
 @pytest.mark.parametrize("name", CHANGES)

@@ -121,6 +121,8 @@ def starts(scene):
         yield found, int(np.flatnonzero(found.time == 1.0)[-1])
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ADDED)
 def test_what_a_stage_adds_is_set_up_in_its_pose_in_plane_and_space(kind):
     (plane, row), (space, _) = starts(read(STAGE, added=ADDED[kind]))
@@ -140,6 +142,7 @@ WOUND = STAGE.replace(
 )
 
 
+@pytest.mark.long
 def test_a_drive_that_a_stage_adds_selects_the_turn_of_its_joint_and_unwinds_no_spring():
     scene = read(WOUND, added='joints: {y: {type: drive, joint: p, position: "0.2 + 3*(t-1)"}}')
     plane, space = stiffmbs.run(scene), stiffmbs.run(spatial.in_space(scene))
@@ -182,6 +185,7 @@ stages:
 """
 
 
+@pytest.mark.long
 def test_what_read_an_angle_before_a_drive_keeps_its_turns_in_plane_and_space(tmp_path):
     scene = stiffmbs.read_scene(READ_ANGLE)
     drawn = math.radians(100)
@@ -217,6 +221,7 @@ def test_a_lock_closes_in_the_nearest_turn():
     assert found["s.torque"][-1] == pytest.approx(-0.05 * 3 * TURN, abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "kind", ["bushing", *(pytest.param(kind, marks=pytest.mark.long) for kind in ("spring", "coupler"))]
 )
@@ -263,6 +268,8 @@ MOTOR = "  m: {type: drive, joint: p, position: 20 deg + 3*t^2}"
 HELD = "at_start: {m: {type: drive, joint: p, position: 20 deg}}"
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("motor", [MOTOR, HELD], ids=["drive", "at_start"])
 @pytest.mark.parametrize(
     "angle",
@@ -336,6 +343,7 @@ run: {duration: 0.1, rtol: 1e-8}
     assert found["p.angle"][0] == pytest.approx(1) and found["p.angle_rate"][0] == pytest.approx(4)
 
 
+@pytest.mark.long
 def test_the_polar_angle_of_a_cam_jumps_without_a_note():
     text = """
 bodies: {a: {mass: 1, inertia: 0.1, angle: 50 deg, omega: 9}, f: {mass: 0.4, inertia: 0.01, position: [0, 0.0496]}}

@@ -28,6 +28,8 @@ run: {{{run}, points: 301, rtol: 1e-8, solver: radau}}
 """
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_a_beam_that_falls_flat_rebounds_as_one_mass_and_keeps_its_energy(dimensions):
     up = "y" if dimensions == 2 else "z"

@@ -53,7 +53,8 @@ def compare(problem, n, form, solve):
     return max(errors[name] for name in expected)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("form", [str, spectral], ids=["pairs", "spectral"])
 @pytest.mark.parametrize("name", AT_REST)
 def test_the_error_at_rest_is_within_twice_the_estimate(name, form):
@@ -61,6 +62,7 @@ def test_the_error_at_rest_is_within_twice_the_estimate(name, form):
     assert errors[0] > 2.5 * errors[1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "form", [str, pytest.param(spectral, marks=(pytest.mark.long, pytest.mark.sampled(3)))], ids=["pairs", "spectral"]
 )
@@ -88,6 +90,7 @@ def test_an_odd_node_of_a_joint_is_kept_by_a_finer_beam():
     assert "10 instead of 5 elements" in verified.verification[-1]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("tolerance", "spare"), [("{tolerance: 1 mm}", 1e-3), ("{tolerance: 1e-5 m}", 1e-5), ("auto", 5.08e-4)]
 )

@@ -82,6 +82,7 @@ def test_an_arc_has_its_length_and_its_curvature():
     assert [scene.bodies[f"s.{node}"].angle for node in ("start", "end")] == pytest.approx([math.pi / 2, -math.pi / 2])
 
 
+@pytest.mark.long
 def test_a_beam_without_loads_is_at_rest_in_any_form():
     found = stiffmbs.run(
         read_scene(f"""

@@ -30,6 +30,7 @@ def test_every_solver_follows_a_rubber_pendulum(solver):
     assert np.ptp(energy) < 1e-5 * np.max(np.abs(found["energy.kinetic"]))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(("n", "interpolation", "tolerance"), [(128, "pairs", 1e-6), (32, "spectral", 1e-5)])
 def test_both_interpolations_converge_to_finite_elements_of_high_order(n, interpolation, tolerance):
@@ -93,6 +94,7 @@ def nodes_of(solution, name, n, length=10.0, mass_per_length=1.0):
     return dict(zip(names, node_weights(n) * length / n * mass_per_length, strict=True))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("text", "channels", "expected", "tolerance"),
@@ -144,6 +146,8 @@ joints:
     assert found == pytest.approx([191.83284, 196.15700, 953.53732, 1080.93587], rel=1e-4)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("spin", "expected"),
     [(200, [191.83284, 196.15700, 953.53732, 1080.93587]), (400, [189.46186, 198.12374, 883.13087, 1131.68886])],
@@ -157,6 +161,7 @@ def test_whirl_of_the_rotor_of_the_examples(spin, expected):
     assert found == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_a_thick_cantilever_has_the_frequencies_of_timoshenko(dimensions):
     """The rotary inertia of a section belongs to its height; values by Ritz' method with 14 polynomials."""
@@ -181,6 +186,7 @@ def test_damping_is_that_of_the_stiffness():
         assert mode.damping_ratio == pytest.approx(math.tau * free.frequency * 1e-3 / 2, rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_beam_moves_as_a_rigid_body_without_strain():
     """A straight beam that turns about its centre of mass in space, with the stretch of its spin."""
     found = solved("""
@@ -215,6 +221,7 @@ def test_an_element_that_is_bent_too_far_stops_the_run():
     assert "rotates its ends by more than half a revolution" in found.notes[0]
 
 
+@pytest.mark.long
 def test_sensitivities_with_respect_to_stiffness_and_length():
     text = """
 parameters: {E: 5 MPa, L: 1 m}
@@ -269,6 +276,8 @@ def test_a_rotor_that_starts_in_its_pose_at_rest_is_told_the_other_start():
         assert "write start" not in str(stiffmbs.run(stiffmbs.read_scene(text), duration=1e-3).notes)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("torque", [0, 8.9, pytest.param(9.1, marks=pytest.mark.long)])
 def test_a_twisted_shaft_buckles_at_the_torque_of_greenhill_and_has_no_breakpoint(torque):
     """With clamped ends, tan(M L/2EI) = M L/2EI: M = 8.987 EI/L; the gyroscopic terms of the shaft at rest are smooth."""

@@ -24,6 +24,7 @@ forces: {{P: {{type: force, i: c.end, force: [{-load}, 0]{axes}}}}}
 """)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("end", "critical"),
@@ -131,6 +132,7 @@ start: {{rotation: {rate * unit!r} rad/s}}
     return np.array([math.tau * mode.frequency for mode in stiffmbs.modes(scene).modes]) / unit
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("rate", [2, 4, 10])
 def test_a_rotating_cantilever_flaps_faster(rate):

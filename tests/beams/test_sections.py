@@ -58,7 +58,7 @@ def output(state, name):
     return state.values["output"][first : first + 1]
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize(("dimensions", "n", "damping"), FORMS)
 def test_forces_follow_from_the_energy_and_derivatives_from_the_forces(dimensions, n, damping):
     state = state_with(dimensions, n, damping)
@@ -126,6 +126,7 @@ def test_elements_form_groups_of_three_and_four():
         assert min(sizes) > 2 or n in (1, 2, 5)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("n", [3, 4, 7])
 def test_an_end_moment_rolls_a_beam_up_to_a_circle(n):
     found = at_rest(spectral(cantilever(n, torque=math.tau)))
@@ -188,6 +189,7 @@ def test_a_rubber_pendulum():
     assert np.ptp(found["energy.total"]) < 1e-5 * np.max(found["energy.kinetic"])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("text", "channels", "expected", "tolerance"),
@@ -202,6 +204,7 @@ def test_thick_beams_converge_fast(text, channels, expected, tolerance):
     assert [found[name][-1] for name in channels] == pytest.approx(expected, abs=tolerance)
 
 
+@pytest.mark.long
 def test_sensitivities_against_differences():
     text = spectral("""
 parameters: {E: 5 MPa, L: 1 m, d: 20 mm, rho: 1100}

@@ -45,6 +45,7 @@ def test_an_end_moment_rolls_a_beam_up_to_a_circle_with_any_number_of_elements(n
     assert found["strip.end.y"] == pytest.approx((1 - math.cos(angle)) / angle, abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("load", ELASTICA)
 def test_a_dead_load_bends_a_beam_to_the_elastica(load):
@@ -55,6 +56,7 @@ def test_a_dead_load_bends_a_beam_to_the_elastica(load):
     assert found["strip.end.y"] == pytest.approx(up, abs=5e-6)
 
 
+@pytest.mark.long
 def test_the_error_in_the_plane_is_of_fourth_order():
     tips = [
         at_rest(cantilever(n, force="[0, 5]", stiffness="[1e7, 1e7, 1]"))["strip.end.angle"] for n in (4, 8, 16, 64)
@@ -138,6 +140,7 @@ forces: {P: {type: force, i: cone.end, force: [0, 1]}}
     assert found["cone.end.y"] == pytest.approx(bending + shear, rel=1e-6)
 
 
+@pytest.mark.long
 def test_an_anti_roll_bar_twists_and_bends():
     """Relative end displacement of a bar of two arms in two bushings, by hand: 41.863725 mm, without shear."""
     found = at_rest("""

@@ -38,6 +38,7 @@ def turned(found, node="end"):
     return np.array([2 * found[f"s.{node}.q{k}"] for k in (1, 2, 3)])
 
 
+@pytest.mark.long
 def test_a_channel_that_is_loaded_at_its_centroid_twists():
     """By F e L/(G J), and its shear centre by the deflection of a symmetrical beam."""
     of, F = channel(), 1e-2
@@ -69,6 +70,7 @@ def test_a_taper_interpolates_the_shear_centre():
         read_scene(beam(tapered, "", "spectral"))
 
 
+@pytest.mark.long
 def test_a_taper_completes_its_sections_before_it_interpolates():
     """I3 and J of one end by default are those of that end, whatever the other end gives."""
     given = "{type: numbers, A: 1e-3, I2: 2e-6, I3: 1e-6, J: 2e-8}"
@@ -83,6 +85,7 @@ def test_a_taper_completes_its_sections_before_it_interpolates():
         assert turned(found)[0] == pytest.approx(turned(expected)[0], rel=1e-12)
 
 
+@pytest.mark.long
 def test_an_angle_bends_obliquely():
     """Its end moves by F L^3/(3 E) I^-1, and the shear, in both directions (Timoshenko)."""
     of = Angle(width=0.05, height=0.08, thickness=0.005).properties(0.25)
@@ -238,7 +241,8 @@ forces:
 """
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     ("fields", "shear_centre", "wagner"),
     [
@@ -361,6 +365,8 @@ def test_the_part_of_the_stretch_by_torsion_that_bends_the_section(section, rect
     assert of.wagner == pytest.approx(fibres(rectangles, centroid + of.shear_centre), rel=1e-4, abs=1e-7)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("outline", "hole", "rectangles"),
     [
@@ -397,7 +403,8 @@ def test_a_thin_angle_of_equal_legs_has_the_coefficient_of_its_closed_form():
     assert of.wagner[0] == pytest.approx(-of.wagner[1], rel=1e-9)  # about the line across the plane of symmetry
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("sign", "wagner", "z"), [(1, 0.08, 0.0), (-1, 0.08, 0.0), (1, -0.05, 0.03), (1, 0.0, 0.03)])
 def test_a_beam_of_one_symmetry_buckles_sideways_under_a_moment(sign, wagner, z):
     """M^2 = N (G J + w M) with N = pi^2 E I3/L^2: Trahair (1993), sec. 17.4, without warping, between fork supports."""

@@ -35,6 +35,8 @@ def _pose(run, body, centre, rows):
     return origin, np.array([turned @ w for turned, w in zip(axes, of("w"), strict=True)])
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "name", ["shafts", pytest.param("rods", marks=pytest.mark.long), pytest.param("plates", marks=pytest.mark.long)]
 )
@@ -154,6 +156,7 @@ def test_parts_without_mass_move_by_their_joints_alone(tmp_path):
     np.testing.assert_allclose(stiffmbs.run(scene)["arm.wz"], 2.0, rtol=1e-9)
 
 
+@pytest.mark.long
 def test_results_of_a_file_are_a_listing():
     """`stiffmbs diff` compares the forces of joints with those in the file."""
     run = stiffmbs.run(load_cad(DATA / "shafts.asmt"), rtol=1e-9)

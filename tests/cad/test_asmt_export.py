@@ -31,6 +31,7 @@ run: {duration: 0.2, output: 0.1}
 """
 
 
+@pytest.mark.long
 def test_a_scene_is_the_same_after_a_file(tmp_path):
     """Without the spring and the equation, which an .asmt file cannot contain, and the notes name."""
     written = written_assembly(read_scene(SCENE))

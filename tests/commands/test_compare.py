@@ -71,6 +71,7 @@ def test_a_scene_from_standard_input_is_read_once_for_all_values(examples):
     assert [row["setting"] for row in json.loads(result.stdout)["rows"]] == ["start=0.1", "start=0.2"]
 
 
+@pytest.mark.long
 def test_a_chaotic_motion_is_refused(examples):
     result = invoke(
         "compare", examples / "chain.yaml", "--set", "N=2", "--set", "run.output=0.02", "--duration", "12", "--json"

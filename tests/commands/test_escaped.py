@@ -57,6 +57,7 @@ def files(request, tmp_path_factory):
     return folder, sign
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
 def test_no_command_prints_them(files, command, monkeypatch):

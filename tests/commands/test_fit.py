@@ -13,6 +13,7 @@ def called(*arguments):
     return CliRunner().invoke(main, list(map(str, arguments)))
 
 
+@pytest.mark.long
 def test_a_spring_is_fitted_to_a_file_of_results(examples, tmp_path):
     scene, data = examples / "cart_pendulum.yaml", tmp_path / "data.csv"
     true = stiffmbs.run(

@@ -56,6 +56,7 @@ def started(folder, *arguments) -> Iterator[subprocess.Popen[str]]:
         process.wait()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -79,6 +80,7 @@ def test_a_command_imports_nothing_from_the_current_folder(folder, arguments):
     assert not (folder / RAN).exists(), (folder / RAN).read_text()
 
 
+@pytest.mark.long
 def test_workers_of_a_page_import_nothing_from_the_current_folder(folder):
     pytest.importorskip("starlette")
     pytest.importorskip("uvicorn")

@@ -97,6 +97,7 @@ def started(*arguments, **options):
     return subprocess.Popen([*COMMAND, *arguments], stderr=subprocess.PIPE, text=True, **options)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 @pytest.mark.parametrize(
@@ -148,6 +149,7 @@ run: {duration: 100000, points: 100001, rtol: 1e-10}
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_what_was_computed_is_kept_when_a_run_is_asked_to_end(folder, number):
@@ -163,6 +165,7 @@ def test_what_was_computed_is_kept_when_a_run_is_asked_to_end(folder, number):
         assert 1 < len(results["time"]) < 100_001
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("delay", [0.15, 0.4, 0.8, 1.2, 2.0])
 def test_ctrl_c_ends_without_a_traceback_at_any_moment(folder, delay):
@@ -196,6 +199,7 @@ def test_ctrl_c_within_a_callback_is_not_lost(capfd):
     assert capfd.readouterr().err.strip() == "stiffmbs: interrupted"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("kilobytes", [200_000, 400_000, 700_000, 1_000_000])
 def test_little_memory_is_told(folder, kilobytes):

@@ -12,6 +12,7 @@ from stiffmbs.commands.run import READ_BY_RICH
 from ..conftest import EXAMPLES
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", [pytest.param("car", marks=pytest.mark.long), "half_car"])
 def test_a_run_of_compiled_kernels_loads_neither_scipy_nor_sympy(scene):
     """Loading them takes longer than the search for the steady motion in which the car starts."""
@@ -22,6 +23,7 @@ def test_a_run_of_compiled_kernels_loads_neither_scipy_nor_sympy(scene):
     assert found.stdout.strip() == "set()"
 
 
+@pytest.mark.long
 def test_a_warm_run_does_not_load_the_metadata_of_packages(tmp_path):
     """Their imports take longer than reading the cached scene."""
     arguments = ["run", str(EXAMPLES / "cart_pendulum.yaml"), "-o", str(tmp_path / "out.npz")]
@@ -33,6 +35,7 @@ def test_a_warm_run_does_not_load_the_metadata_of_packages(tmp_path):
     assert found.stdout.splitlines()[-1] == "set()"
 
 
+@pytest.mark.long
 def test_a_check_loads_no_solver(tmp_path):
     program = "import sys; from stiffmbs.commands.main import main; import atexit;" + (
         f"sys.argv[1:] = ['check', {str(EXAMPLES / 'cart_pendulum.yaml')!r}];"
@@ -50,6 +53,8 @@ def test_an_import_loads_no_dataclasses():
     assert found.stdout.strip() == "set()"
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("environment", [{}, {"COLUMNS": "90"}, {"PYTHONIOENCODING": "ascii"}])
 def test_a_summary_in_a_file_loads_rich_only_where_it_changes_the_text(environment, tmp_path):
     arguments = ["run", str(EXAMPLES / "cart_pendulum.yaml"), "-o", str(tmp_path / "out.npz"), "--duration", "0.1"]

@@ -39,6 +39,7 @@ def _heed_interrupts():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_interruption_keeps_what_was_computed(examples, tmp_path, solver):

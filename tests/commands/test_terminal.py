@@ -49,6 +49,7 @@ def test_a_first_run_in_a_terminal_shows_what_it_derives_and_compiles(examples, 
     assert re.search(r"compiling (the routines \w+|\w+ \([12] of 2 kinds, \w+\))", shown)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", pytest.param("projected", marks=pytest.mark.long)])
 def test_a_long_run_in_a_terminal_shows_time_step_order_and_time_left(examples, tmp_path, solver):

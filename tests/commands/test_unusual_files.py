@@ -61,7 +61,7 @@ def limited():
 @pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("use", USES)
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(15)
 def test_unusual_files_are_refused(tmp_path, use, kind):
     if (use, kind) in MAY_WORK:
         pytest.skip("what is written to may be any file")
@@ -77,6 +77,7 @@ def test_unusual_files_are_refused(tmp_path, use, kind):
     assert len(done.stderr.strip().splitlines()) == 1
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_meshes_of_mjcf_are_refused(tmp_path, kind):

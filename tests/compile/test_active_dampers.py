@@ -71,6 +71,7 @@ def test_formulas_of_the_rate_that_damp_have_no_note(law):
     assert notes("spring_damper", damper_law=law) == []
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("law", "rates"),
     [
@@ -86,6 +87,7 @@ def test_a_formula_of_the_rate_that_adds_energy_is_noted(law, rates):
     assert notes("spring_damper", damper_law="-2*v", damping=3) == []
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("dimensions", "damping", "where"),
     [

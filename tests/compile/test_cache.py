@@ -183,6 +183,7 @@ def loaded_by_a_run(scene, solver, directory, tmp_path):
     return done.stderr.strip()
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_a_warm_run_imports_nothing_that_derives_or_compiles(examples, tmp_path, solver):

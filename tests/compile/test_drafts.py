@@ -385,6 +385,7 @@ def test_the_time_that_remains_decides(monkeypatch, seconds, times, expected):
     assert is_long(monkeypatch, seconds, times) == expected
 
 
+@pytest.mark.long
 def test_a_long_run_starts_again_on_fully_compiled_code(started, monkeypatch, examples):
     ended = []
 

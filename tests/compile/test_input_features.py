@@ -94,7 +94,7 @@ INPUTS = {
 LONG = ("noisy(t)", "akima(t)")
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(10)
 @pytest.mark.parametrize("how", WAYS, ids=str)
 @pytest.mark.parametrize(
     "force", [pytest.param(force, marks=pytest.mark.long if force in LONG else ()) for force in INPUTS]
@@ -174,6 +174,7 @@ def test_the_curvature_of_a_force_jumps_at_the_points_of_a_curve():
     assert several.within(2.0, 4.0).bends == pytest.approx([3.5])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "kind", ["leaves a point", "reaches a point", "leaves another function", "leaves a level in between"]
 )
@@ -192,6 +193,7 @@ def test_the_end_of_a_rest_is_found_to_the_last_digit(kind):
         assert np.abs(found - t).min() <= 2e-16 * t, (t, found)
 
 
+@pytest.mark.long
 def test_a_force_with_too_many_points_bends_nowhere():
     """A run with such a force is not refused: only breakpoints are to be stopped at."""
     many = {"table": [[0, 0], [0.3e-6, 1], [0.6e-6, -1], [1e-6, 0]], "beyond": "repeat"}

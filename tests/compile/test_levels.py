@@ -29,6 +29,7 @@ def bushings(system):
     return next((g, group) for g, group in enumerate(system.groups) if "bush" in group.names)
 
 
+@pytest.mark.long
 def test_results_do_not_depend_on_the_level_of_optimisation(system, monkeypatch, tmp_path):
     """To the last digit: a run does not change with the level at which its kernels are compiled."""
     monkeypatch.setattr(drafts, "object_code", object_code.object_code)  # other tests compile at lower levels

@@ -71,6 +71,7 @@ FAILING = """
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(("limit", "expected"), [(1000, "AssemblyError"), (60_000, "STOPPED"), (10**9, "DONE")])
 def test_too_little_memory_is_one_sentence(limit, expected):

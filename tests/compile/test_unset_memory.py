@@ -31,6 +31,7 @@ def test_a_read_before_a_write_shows(tmp_path, monkeypatch):
     assert np.isnan(value[0])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long(60)
 @pytest.mark.parametrize(
     ("tests", "marked"),

@@ -144,6 +144,7 @@ run: {duration: 1 s, points: 101}
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "auto"])
 def test_a_drive_that_a_mechanism_locks_against_ends_the_run(solver):

@@ -41,6 +41,7 @@ def with_valve() -> Model:
     return model
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("settings", SOLVERS, ids=lambda s: "-".join(str(value) for value in s.values()))
 def test_every_solver_finds_the_motion_of_minimal_coordinates(settings: dict[str, object]) -> None:
     solution = with_valve().run(

@@ -89,6 +89,8 @@ def near_by(dynamics):
     return np.linspace(0.0, 1e-2, n), q + 1e-9 * along, u * (1.0 + 1e-9 * along)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("make", [chain, car])
 def test_a_row_does_not_depend_on_the_rows_before(make):
     """Outputs at more times leave the others as they are, to the last digit."""

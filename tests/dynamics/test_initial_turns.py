@@ -36,6 +36,7 @@ def scene_of(text):
 HINGE = "  {0}: {{type: revolute, i: {1}, j: {{body: ground, point: [{2}, 0, 0]}}}}\n"
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("degrees", [-1000, -270, 200, 270, 540, 3000])
 def test_a_force_reads_the_turn_of_a_drive(degrees):
     found = solved(

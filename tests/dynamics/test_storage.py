@@ -33,6 +33,7 @@ def test_a_full_disk_is_told_before_anything_is_written(monkeypatch):
         storage.allocated(300, 4)
 
 
+@pytest.mark.long
 def test_results_in_files_are_those_in_memory(examples, tmp_path):
     scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
     cases = ({}, {"solver": "projected", "scheme": "dop853"})

@@ -47,6 +47,7 @@ def rigid():
     ).y[0]
 
 
+@pytest.mark.long
 def test_step_count_hardly_grows_over_six_decades_of_stiffness(runs):
     steps = [solution.solver["steps"] for solution in runs.values()]
     assert max(steps) < 3 * steps[0], steps

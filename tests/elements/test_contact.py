@@ -134,6 +134,8 @@ def in_contact(**fields):
 RUBBING = {"friction": 0.3, "static_friction": 0.5, "stiction_velocity": 2, "friction_velocity": 3}
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "fields",
     [

@@ -29,6 +29,7 @@ def geared(start=0.0):
     return model
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("settings", SOLVERS)
 def test_wheels_turn_many_times(settings):
     model = geared()
@@ -73,6 +74,8 @@ OF_COUNTER = 0.01
 """Error of the counter at rtol 1e-2, rad (measured: 0.0041)."""
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("settings, follows", FAST)
 def test_a_request_counts_as_a_torsion_spring_does(settings, follows):
     """3000 rad/s, whatever the output points: omega = omega_0 cos(w t) with w^2 = k/I, phi = omega_0/w sin(w t)."""
@@ -106,6 +109,7 @@ def test_turns_are_counted_beside_a_pole():
     assert not any("revolutions" in note for note in solution.notes)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("points", [2, 7, 101])
 def test_an_angle_that_swings_between_output_points_is_counted(points):

@@ -48,7 +48,7 @@ def with_points(state, changes, model):
 
 @pytest.mark.long
 @pytest.mark.parametrize("case", CASES, ids=case_name)
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(25)
 def test_all_terms_in_a_random_direction(case):
     state, model = state_with(*case, with_model=True)
     rng = np.random.default_rng(3)

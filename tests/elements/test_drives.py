@@ -55,6 +55,7 @@ LAWS = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("drive", "motion", "accuracy"), LAWS.values(), ids=LAWS.keys())
 def test_rotor_follows_its_drive_and_the_motor_turns_its_inertia(drive, motion, accuracy):
     solution = rotor(**drive)

@@ -95,6 +95,7 @@ def test_the_reserved_names_are_the_attributes_of_the_symbolic_element_and_of_jo
     assert {name for name in attributes if not name.startswith("__")} | {"type"} == IN_EQUATIONS
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
 @pytest.mark.parametrize("make", (force, joint))
 @pytest.mark.parametrize("name", sorted((IN_EQUATIONS | {*OF_BASES}) - {"type"}))
@@ -109,6 +110,7 @@ def test_a_field_with_a_name_of_the_symbolic_element_or_of_the_base_is_refused_w
         make(family, name)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
 @pytest.mark.parametrize("make", (force, joint))
@@ -118,6 +120,7 @@ def test_other_names_mean_the_field(family, make):
         np.testing.assert_allclose(end(family, make, name), expected, atol=1e-12, err_msg=name)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("name", ("revolute_0", "joint_friction_0", "bushing_0", "cylindrical_0", "vertical_tyre_0"))
 def test_symbols_of_numbers_differ_from_all_others(name):

@@ -105,6 +105,7 @@ FULL = {
 SPRING = {"stiffness": 30, "damping": 0.4, "free_length": 0.3, "damper_law": "v^3", "spring_law": "sin(s)"}
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("element", "fields"),
     [
@@ -214,6 +215,7 @@ VARIANTS = {
 }
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("model", VARIANTS.values(), ids=VARIANTS.keys())
 def test_derivatives_of_what_random_elements_leave_out(model):
     state = State(compile_model(model.data()))

@@ -18,6 +18,7 @@ def products(name):
     return sum(line.partition(" = ")[2].count("*") for line in lines if "index[" not in line)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("name", MOST)
 def test_accelerations_take_few_products(name):

@@ -252,6 +252,7 @@ def test_force_on_a_rod_with_coincident_points_is_told():
         stiffmbs.run(model, duration=0.1)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("settings", [{}, {"presolve": False}, {"solver": "projected"}, {"solver": "auto"}], ids=str)
 @pytest.mark.parametrize("turns", [-2, -1, 1, 3])
 @pytest.mark.parametrize("on", ["i", "j"])

@@ -80,6 +80,7 @@ def test_curve_turns_with_its_marker():
     np.testing.assert_allclose(y, 0.5 - x**2, atol=1e-10)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "kinematic"])
 def test_a_cam_with_a_narrow_bump_lifts_its_follower_in_every_turn(solver):

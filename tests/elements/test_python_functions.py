@@ -34,6 +34,8 @@ def by_formulas(**fields):
     return made
 
 
+@pytest.mark.long
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("fields", [{}, {"j": "post"}], ids=["on one body", "between two"])
 @pytest.mark.parametrize(
     "settings",
@@ -60,6 +62,7 @@ def test_the_motion_is_the_same_in_space():
     np.testing.assert_allclose(space["ball.wz"], plane["ball.omega"], atol=1e-5)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("way", "words"), [("differences", "central differences"), ("complex_step", "a complex step")])
 def test_a_note_tells_how_derivatives_are_computed(way, words):
     solution = stiffmbs.run(model(PythonFunction(law, way)), duration=0.1)
@@ -91,6 +94,7 @@ def test_a_function_is_called_again_in_the_next_run():
     assert stiffmbs.run(made, duration=1.0).outcome.name == "DONE"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(("solver", "calls"), [("bdf", range(20, 400, 29)), ("projected", range(10, 60, 3))])
 def test_an_exception_at_any_call_leaves_no_wrong_number(solver, calls):
@@ -120,6 +124,7 @@ def test_ctrl_c_in_the_function_interrupts_the_run():
     assert solution.outcome.name == "INTERRUPTED" and len(solution.time) > 10
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize("solver", ["bdf", "projected"])

@@ -18,7 +18,7 @@ def pair(first, second):
     return f"type: solid_impact, i: b, j: ground, i_shape: {first}, j_shape: {second}"
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(
     ("first", "second", "start"),
     [

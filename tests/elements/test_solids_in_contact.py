@@ -52,7 +52,7 @@ def test_energy_is_kept_over_impacts(force, body):
     np.testing.assert_allclose(found["energy.total"], found["energy.total"][0], rtol=1e-6)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("force", "inertia", "height", "points"),

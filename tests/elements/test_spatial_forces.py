@@ -93,7 +93,7 @@ def cases(names):
     return [pytest.param(name, marks=pytest.mark.long if name in LONG else ()) for name in names]
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(15)
 @pytest.mark.long
 @pytest.mark.parametrize("name", cases(INNER))
 def test_action_is_reaction_in_force_and_in_torque(name):
@@ -104,7 +104,7 @@ def test_action_is_reaction_in_force_and_in_torque(name):
         assert np.max(np.abs(found.sum(axis=0))) < 1e-13 * np.max(np.abs(found))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.long
 @pytest.mark.parametrize("name", cases(CONSERVATIVE))
 def test_energy_and_momenta_are_kept(name):
@@ -309,7 +309,7 @@ def _elastic_moments(seed, stiffness):
     return [*force, *(torque - np.cross(i.point, force))], -np.array(gradient)
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(15)
 @pytest.mark.long
 @pytest.mark.parametrize("angle", [0.0, 1e-3, 0.4, 1.0, 2.5, 3.6])
 @pytest.mark.parametrize("free", [None, *(pytest.param(k, marks=pytest.mark.long) for k in range(3))])

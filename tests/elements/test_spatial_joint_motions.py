@@ -144,7 +144,7 @@ REFERRING = {
 }
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(15)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "solver", [{}, {"presolve": False}, {"solver": "projected"}], ids=["bdf", "as-is", "projected"]

@@ -16,6 +16,7 @@ from .test_spatial_forces import CLOSED
 FINE = {"rtol": 1e-10, "points": 101}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "surface", [pytest.param(name, marks=() if name == "plane" else pytest.mark.long) for name in CLOSED]

@@ -143,6 +143,7 @@ def chain(count):
     return f"gravity: [0.3, -9.81]\nbodies:\n{bodies}\njoints:\n{joints}\n"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("links", "most", "kept_dense"), [(70, 400, True), (70, 200, False), (90, 400, False), (90, 800, True)]
 )
@@ -154,6 +155,7 @@ def test_matrices_are_dense_up_to_a_number_of_unknowns(links, most, kept_dense):
     assert isinstance(known.stiffness, np.ndarray) == kept_dense
 
 
+@pytest.mark.long
 def test_dense_and_sparse_matrices_lead_to_the_same_equilibrium():
     poses = []
     for most in (400, 0):

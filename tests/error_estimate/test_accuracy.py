@@ -15,6 +15,7 @@ from ..conftest import EXAMPLES
 SCENE = PENDULUM.format(duration=8)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("asked", [1e-2, 1e-3, 1e-5])
 @pytest.mark.parametrize("solver", ["bdf", "radau", "auto"])
 def test_positions_are_as_accurate_as_asked(asked, solver):

@@ -189,6 +189,7 @@ def test_a_run_of_much_work_says_how_to_ask():
     assert not found.errors and "--errors" in found.estimate.sentence
 
 
+@pytest.mark.long
 def test_a_run_of_many_restarts_says_how_to_ask():
     """The estimate of a relay with 21 249 switches took 54 s, the run 14 s."""
     relay = """
@@ -249,6 +250,7 @@ def test_long_explicit_runs_take_no_second_run():
     assert not found.errors and "--errors" in found.estimate.sentence
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long(200)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_random_scenes(solver, every):
@@ -286,6 +288,7 @@ def hundred_impacts():
     return stiffmbs.run(scene, solver="projected", rtol=1e-12, duration=20, points=2001, output=None)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_a_ball_after_a_hundred_impacts(solver):
@@ -306,6 +309,7 @@ def test_a_passage_of_a_singular_pose_is_not_lost():
     )
 
 
+@pytest.mark.long
 def test_stiff_beams_that_turn_are_not_lost():
     """A mean of the matrices of two tangent spaces was not stable: the error of a leaf spring grew without bounds."""
     scene = load_scene(EXAMPLES / "beams" / "leaf_spring.yaml")

@@ -49,6 +49,8 @@ run: {{duration: 0.6, points: 61}}
 """
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("rtol", [1e-4, 1e-5, 1e-6, 1e-7, 1e-8])
 def test_knots_at_which_accelerations_jump(rtol):
     """Polynomials through states of bdf on both sides of a knot gave 18 to 370 times the true error.

@@ -14,6 +14,7 @@ WELL_DAMPED = (1e12, 7e9)
 LIGHTLY_DAMPED = (1e13, None)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", ["radau", "bdf"])
 @pytest.mark.parametrize("bushing", [WELL_DAMPED, LIGHTLY_DAMPED], ids=["1e12", "1e13"])
 def test_errors_of_poses_do_not_stretch_stiff_bushings(solver, bushing):
@@ -26,6 +27,8 @@ def test_errors_of_poses_do_not_stretch_stiff_bushings(solver, bushing):
         assert 1 / 4 < ratio(found, name, truth[name]) < 4
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("stiffness", [1e10, 1e12])
 def test_motions_beside_a_stiff_bushing_have_the_errors_of_rigid_ones(stiffness):
     """Linearised by differences, a stretched bushing turned: poses had bars 20 to 300 times their errors."""
@@ -35,6 +38,7 @@ def test_motions_beside_a_stiff_bushing_have_the_errors_of_rigid_ones(stiffness)
     assert max(found.errors[name].over_time / np.abs(truth[name]).max() for name in REACTIONS) < 1e-3
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8])
 @pytest.mark.parametrize("scene", [bar_on_bushing, partial(four_bar, "")], ids=["bar", "loop"])
 def test_defects_of_radau_beside_stiff_bushings(scene, rtol):

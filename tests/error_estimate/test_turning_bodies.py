@@ -28,7 +28,8 @@ def turning_over(t):
     return solve_ivp(rates, (0, t[-1]), start, "DOP853", t, rtol=1e-13, atol=1e-13).y
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize(
     "solver, rtol", [("bdf", 1e-4), ("bdf", 1e-6), ("bdf", 1e-8), ("radau", 1e-3), ("radau", 1e-6), ("radau", 1e-8)]
 )
@@ -40,6 +41,7 @@ def test_a_body_that_turns_over(solver, rtol):
         assert 0.6 < ratio(found, channel, truth[channel]) < 1.5, channel
 
 
+@pytest.mark.long
 def test_bodies_that_turn_over_many_times_are_not_lost():
     """Nineteen turns over in 10 s; the true errors of quaternions are 4e-4."""
     scene = TURNING_OVER.replace("10.0", "30.0").replace("duration: 5", "duration: 10")
@@ -49,6 +51,7 @@ def test_bodies_that_turn_over_many_times_are_not_lost():
         assert 0.8 < ratio(found, channel, truth[channel]) < 1.25, channel
 
 
+@pytest.mark.long
 def test_a_body_in_the_plane_that_turns_within_steps():
     """Its error estimated by the seven points of a step, of up to two radians, was 12 times too large."""
     scene = """

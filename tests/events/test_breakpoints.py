@@ -46,6 +46,7 @@ def breakpoints(force, start=0.0, end=10.0):
     return breakpoint_times(inputs_of(compile_model(sled(force).data())), start, end)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("force", "times"),
     [
@@ -178,6 +179,8 @@ def test_every_jump_of_a_drive_is_told():
     assert "and 1 more such jumps" in notes
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("formulation", ["SI2", "SI1", "I3", "index1"])
 def test_an_error_of_velocities_is_no_jump_of_a_drive(formulation):
     """The error test of I3 leaves velocities out: where a drive comes to rest, they were reported to jump by 9e-7 rad/s."""

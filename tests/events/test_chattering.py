@@ -86,6 +86,7 @@ STUCK = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("scene", STUCK)
 def test_a_force_that_jumps_where_the_motion_stays_is_told_soon(scene, solver):
@@ -134,6 +135,7 @@ def spun_up():
     return model
 
 
+@pytest.mark.long
 def test_events_within_steps_count_too(monkeypatch):
     """IDA knows no event function of events that the search within its steps has found: a run of them did not end."""
     monkeypatch.setattr(NativeIda, "roots", lambda ida: np.zeros(ida.watch.n_event_functions, dtype=int))
@@ -141,6 +143,8 @@ def test_events_within_steps_count_too(monkeypatch):
     assert found.outcome is Outcome.STOPPED and "chatters: it has passed breakpoints" in found.message
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_a_law_that_changes_ever_faster_is_told_within_some_thousand_changes(solver):
     solution = solve(spun_up(), solver, duration=1.0)
@@ -149,6 +153,8 @@ def test_a_law_that_changes_ever_faster_is_told_within_some_thousand_changes(sol
     assert 2 * CHATTERING.window <= solution.solver["events"] <= 5 * CHATTERING.window
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", ["auto", "dop853", "bdf"])
 def test_a_relay_that_swings_on_and_on_is_followed(solver):
     """x'' = -5 sign(x) from x = 0 at 0.01 m/s swings with 250 Hz; each change of law is one of the motion."""

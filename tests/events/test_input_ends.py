@@ -33,7 +33,7 @@ def sled(**how):
     return model
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("law", ENDS)
 @pytest.mark.parametrize("field", ["force", "position", pytest.param("velocity", marks=pytest.mark.long)])
 def test_every_solver_says_where_an_input_ends(field, law):
@@ -48,6 +48,7 @@ def test_every_solver_says_where_an_input_ends(field, law):
     assert message.startswith(f"stopped at t = {ENDS[law]:.9g} s: 'push' has no finite value there")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("law", HARMLESS)
 def test_inputs_with_values_over_the_whole_run_are_followed_to_its_end(law):
     for how in SOLVERS[:2]:

@@ -67,7 +67,7 @@ KINKS = {
 }
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(16)
 @EVERY
 @pytest.mark.parametrize("kink", KINKS)
 def test_a_drive_with_a_kink_pushes_the_body_that_carries_it(kink, how):
@@ -88,6 +88,7 @@ def test_a_drive_with_a_kink_pushes_the_body_that_carries_it(kink, how):
         assert any("a drive makes velocities jump (rotor.omega by 1.82, 100 %" in note for note in solution.notes)
 
 
+@pytest.mark.sampled(4)
 @EVERY
 def test_forces_jump_at_the_points_of_a_curve_that_a_drive_follows(how):
     """The second derivative of a monotone curve (PCHIP) jumps at its points, and the body that carries the drive feels it."""
@@ -109,6 +110,7 @@ def test_forces_jump_at_the_points_of_a_curve_that_a_drive_follows(how):
     )
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", ["bdf", "radau", "auto", "dop853", "rk4"])
 @pytest.mark.parametrize("kink", ["at an output", "at a rounded output", "at the start"])
 def test_steps_of_a_simulation_end_before_a_kink_and_begin_after_it(kink, name):
@@ -122,7 +124,7 @@ def test_steps_of_a_simulation_end_before_a_kink_and_begin_after_it(kink, name):
         assert simulation["platform.omega"] == pytest.approx(expected, abs=1e-5)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 @EVERY
 def test_the_end_does_not_depend_on_output_points(how):
     """Two drives with kinks at the same time, and a force that jumps then, between and at output points."""

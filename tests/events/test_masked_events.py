@@ -83,6 +83,7 @@ def test_a_jump_that_the_motion_crosses_is_an_event():
     np.testing.assert_allclose(solution["block.x"], expected, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_relay_about_its_rest_is_told():
     """A damped spring with 0.1 N towards the middle comes to rest there in ever shorter swings."""
     solution = solved(block("-9*block.x - 0.1*sign(block.x) - 3*block.vx", 1.0), duration=600.0, rtol=1e-4)

@@ -9,7 +9,8 @@ from tests.stress.families.events import periodic_laws
 from tests.stress.fuzzers import laws
 
 
-@pytest.mark.sampled(11)
+@pytest.mark.long
+@pytest.mark.sampled(44)
 @pytest.mark.parametrize("case", periodic_laws.CASES, ids=lambda case: case.name)
 def test_each_period_of_a_law_is_felt(case):
     verdict = case.judge()
@@ -30,7 +31,7 @@ def test_peaks_that_are_as_wide_as_an_explicit_step(rtol):
     assert abs(solution["pushed.vx"][-1] / impulse - 1) < 1e-4
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(20))
 def test_random_laws_over_a_state(seed):
@@ -38,6 +39,7 @@ def test_random_laws_over_a_state(seed):
     assert verdict.outcome in (Outcome.RIGHT, Outcome.TOLD), verdict
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [951679, pytest.param(952811, marks=pytest.mark.long)])
 def test_a_short_step_before_an_interval_does_not_hide_it(seed):
     """A step of 1e-12 s just before a narrow interval, after hundreds of others: rates over less time are rounding."""

@@ -9,7 +9,7 @@ from tests.stress.families.events import starts_on_breakpoints
 from tests.stress.families.events.within_one_step import SOLVERS
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(20)
 @pytest.mark.long
 @pytest.mark.parametrize("case", starts_on_breakpoints.CASES, ids=lambda case: case.name)
 def test_a_law_that_starts_on_a_breakpoint_is_felt(case):

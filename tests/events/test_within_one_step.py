@@ -20,7 +20,7 @@ def test_what_begins_and_ends_within_one_step_is_seen(case):
     assert verdict.outcome is Outcome.RIGHT, verdict
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(20))
 def test_random_contacts_and_bumps(seed):
@@ -239,7 +239,7 @@ def test_a_periodic_table_of_few_zones_turns(intervals, turns):
 TEETH = "{lines: true, ends: periodic, table: [[0, 0], [0.7, 0], [0.85, 1], [1, 0]]}"
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(
     ("how", "rtol", "allowed"),
     [({"solver": "projected", "scheme": scheme}, rtol, 0.1 * rtol) for scheme in ("dop853", "dopri5") for rtol in (1e-3, 1e-4, 1e-6)] + [({"solver": "bdf"}, 1e-4, 1e-2)],

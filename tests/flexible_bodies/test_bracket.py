@@ -54,6 +54,7 @@ def folder(tmp_path_factory):
     return path
 
 
+@pytest.mark.long
 def test_a_body_that_is_described_elsewhere_is_moved_without_deformation(folder):
     exact, moved = (stiffmbs.run(folder / f"{name}.yaml") for name in ("exact", "moved"))
     for axis in "xyz":
@@ -63,6 +64,7 @@ def test_a_body_that_is_described_elsewhere_is_moved_without_deformation(folder)
     assert stiffmbs.check(folder / "moved.yaml").degrees_of_freedom == 8
 
 
+@pytest.mark.long
 def test_the_largest_stress_is_that_of_the_weights_on_the_upright(folder):
     """Both weights on a section of 40 mm x 10 mm; twice the static stress, as the run starts undeformed."""
     result = CliRunner().invoke(main, ["stresses", str(folder / "moved.yaml"), "bracket", "--json"])

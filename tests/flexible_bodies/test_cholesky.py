@@ -19,6 +19,7 @@ from stiffmbs.flexible_bodies.solid import NodePairs
 from .bars import DENSITY, HEIGHT, LENGTH, NU, WIDTH, E, bar, face, mesh_of_bar
 
 
+@pytest.mark.long
 @settings(deadline=None, max_examples=60)
 @given(
     seed=st.integers(0, 10**6), count=st.integers(1, 250), neighbours=st.integers(0, 4), flat=st.booleans(),
@@ -64,6 +65,8 @@ def test_a_matrix_that_is_not_positive_definite_is_refused(tmp_path, shift):
         Cholesky(csc_array(model.stiffness + shift * model.mass), model.nodes)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["tetra", "tetra10", "hexahedron", "hexahedron27"])
 def test_assembled_matrices_are_those_of_scikit_fem(tmp_path, kind):
     model = bar(tmp_path, kind, along=2, across=2)

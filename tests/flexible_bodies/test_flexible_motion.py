@@ -91,6 +91,7 @@ def _nodes(folder, solution):
 FREE = "velocity: [1, 2, 3]\n    omega: [30, 50, 200]"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["radau", "projected"])
 def test_free_flight_keeps_energy_momentum_and_angular_momentum(folder, solver):
     solution = run(scene(folder, motion=FREE, run__solver=solver, run__rtol="1e-11"))
@@ -156,7 +157,8 @@ def test_a_very_stiff_body_moves_as_a_rigid_one(folder, rtol):
         np.testing.assert_allclose(flexible[name][10:], rigid[name][10:], atol=1e-3 * np.abs(rigid[name]).max())
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("rtol", [1e-3, 1e-4, 1e-5, 1e-6])
 def test_the_slider_of_a_crank_with_a_very_stiff_rod_is_moved_as_by_a_rigid_one(rtol):
     """The pin's force is mass times acceleration, d2/dt2 (a cos wt + sqrt(b^2 - a^2 sin^2 wt)). bdf was off by 94 to 1047 N of 382 N."""
@@ -184,6 +186,7 @@ def test_a_simulation_and_a_run_have_the_same_reactions(folder):
             assert stepped["pin.fy"] == pytest.approx(force, abs=1e-2 * np.abs(expected["pin.fy"][3:]).max())
 
 
+@pytest.mark.long
 def test_natural_modes_of_the_clamped_bar_are_those_of_the_reduction(folder):
     body = reduced_body(read_flexible_body(str(folder / "bar.yaml")), folder)
     found = modes(scene(folder, CLAMP))

@@ -108,6 +108,7 @@ def test_a_column_of_two_bodies(folder, tmp_path):
     assert found == pytest.approx(frequency(lambda x: -0.5 * EULER + 0 * x), rel=3e-3)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(("part", "tip"), [(2.0, 0.0), (1.0, 2 * MASS)])
 def test_flapping_of_a_rotating_beam(folder, part, tip):
@@ -242,6 +243,7 @@ def test_a_column_buckles_out_of_the_plane_of_its_loads(folder, presolve):
     assert np.log(deflection[-1] / deflection[-11]) / (5 / rate) == pytest.approx(rate, rel=2e-2)
 
 
+@pytest.mark.long
 def test_the_note_on_a_mesh_with_one_interface_does_not_miss_a_mesh(folder):
     """One interface has no static shapes; the stiffness by rotation is there."""
     one = BODY.replace("      b: {plane: {point: [400 mm, 0, 0], normal: [1, 0, 0]}}\n", "")

@@ -55,6 +55,7 @@ def stiffmbs(*arguments):
     return json.loads(result.output)
 
 
+@pytest.mark.long
 def test_equilibrium_is_the_static_solution_of_the_mesh(clamped):
     """Static modes of the interfaces make the reduction exact for loads on them."""
     path, stiffness, _, entries = clamped
@@ -99,6 +100,8 @@ run: {duration: 0.1}
 """
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("modes", [0, 6, pytest.param(15, marks=pytest.mark.long)])
 def test_a_body_on_bushings_at_points_comes_to_rest_as_its_mesh(tmp_path, modes):
     """The mass matrix of a flexible body is not diagonal, so its accelerations are not forces over masses."""

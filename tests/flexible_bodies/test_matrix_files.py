@@ -232,6 +232,7 @@ def test_an_ansys_file_has_both_triangles_and_the_mass_of_the_beam(tmp_path):
     np.testing.assert_array_equal(of_rows, labels[order] + [0, 1])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -294,6 +295,7 @@ def test_bad_files_are_refused_with_one_sentence(tmp_path, model, change, messag
     assert "\n" not in str(found.value)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 @pytest.mark.parametrize("kind", ["op4", "op2", "pch", "bdf"])
 def test_damaged_files_are_refused_or_read(tmp_path, model, kind):

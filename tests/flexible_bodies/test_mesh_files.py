@@ -169,6 +169,7 @@ def test_an_incomplete_file_is_refused(tmp_path, name, text):
         read(tmp_path / name, text)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.filterwarnings("ignore:genfromtxt")
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="a reader that does not end is interrupted by a timer")
 @pytest.mark.parametrize("suffix", sorted(extension_to_filetypes))

@@ -116,6 +116,7 @@ def _deformed(scene):
     return scene.model_copy(update={"bodies": bodies})
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("start, expected, within", [("published", PUBLISHED, 1e-6), ("undeformed", UNDEFORMED, PHASE)])
 def test_the_rod_of_a_slider_crank_bends_as_a_beam(tmp_path, start, expected, within):

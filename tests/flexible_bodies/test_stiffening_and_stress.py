@@ -140,6 +140,7 @@ def loaded_bar(tmp_path_factory):
     return folder
 
 
+@pytest.mark.long
 def test_the_stress_of_a_loaded_cantilever(loaded_bar):
     """Stress M y/I, displacement of a node at the end, and energy F u/2."""
     scene = load_scene(loaded_bar / "bar.yaml", [])
@@ -158,6 +159,7 @@ def test_the_stress_of_a_loaded_cantilever(loaded_bar):
     assert moved[1] == pytest.approx(100 * LENGTH**3 / (3 * 2.1e11 * HEIGHT * WIDTH**3 / 12), rel=0.02)
 
 
+@pytest.mark.long
 def test_the_command_reports_peaks_and_writes_the_deformed_mesh(loaded_bar, monkeypatch):
     monkeypatch.chdir(loaded_bar)
     result = CliRunner().invoke(main, ["stresses", "bar.yaml", "bar", "-o", "m.xdmf", "--node", "5", "--json"])
@@ -216,6 +218,7 @@ run: {duration: 0.02, points: 11, rtol: 1e-5, solver: radau}
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("kind", ["tetra10", "tetra"])
 def test_modes_that_do_not_carry_a_load_and_elements_of_first_order_are_noted(tmp_path, kind):

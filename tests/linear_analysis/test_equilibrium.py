@@ -147,6 +147,8 @@ def test_the_command_tells_that_there_is_none(few_moves, tmp_path):
     assert json.loads(told.stdout)["status"] == "stopped" and "stone.fy" in json.loads(told.stdout)["message"]
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("pull, expected", [(14.8, 0.3212346895), (14.83, None), (16.0, None), (100.0, None)])
 def test_a_plate_beyond_pull_in_has_no_equilibrium_on_the_far_side_of_the_electrode(pull, expected):
     """Electrostatic force F/(1 - x)^2 on a spring of 100 N/m: pull-in at x = 1/3, F = 400/27 (Senturia 2001, ch. 6)."""
@@ -165,6 +167,7 @@ forces:
         assert found.channels["plate.x"] == pytest.approx(expected, abs=1e-8)
 
 
+@pytest.mark.long
 def test_a_pole_at_which_a_force_changes_its_sign_is_no_equilibrium():
     """A spring of 100 N/m and 26/(1 - x) N have no balance: 25 N is the largest force with one."""
     scene = """
@@ -233,6 +236,8 @@ run: {duration: 1 ms}
 """
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("scene", "driven", "described"),
     [

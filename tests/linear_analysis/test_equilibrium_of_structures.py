@@ -80,6 +80,7 @@ forces:
 """A wheel carrier under a leaf spring, led by a lower arm and a tie rod, on a tyre, as in the Iltis; round numbers."""
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("lift", [-0.1, 0.0, 0.2])
 def test_a_leaf_spring_and_a_tie_rod_carry_the_car_from_any_height(lift):
@@ -94,6 +95,7 @@ def test_a_leaf_spring_and_a_tie_rod_carry_the_car_from_any_height(lift):
             assert np.ptp(still[f"{body}.{axis}"]) < 1e-8
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("count", [200, pytest.param(1000, marks=pytest.mark.long)])
 def test_many_bodies_hang_as_a_catenary_of_springs_says(count):

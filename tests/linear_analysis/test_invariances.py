@@ -101,7 +101,8 @@ def every_change(test):
     return FEW(given(seed=SEEDS)(test))
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
+@pytest.mark.sampled(10)
 @every_change
 def test_equilibria_modes_and_transfer_functions(seed, dimensions, name):
     content, change, units = original_and_changed(seed, dimensions, name)
@@ -139,7 +140,8 @@ def gain_of(scene, state, body, frequencies):
     )
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.long
+@pytest.mark.sampled(10)
 @every_change
 def test_sensitivities(seed, dimensions, name):
     content, change, units = original_and_changed(seed, dimensions, name)
@@ -155,7 +157,7 @@ def test_sensitivities(seed, dimensions, name):
     assert changed / units.factor((-1, 1, 2)) == pytest.approx(slope, rel=1e-5)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_results_do_not_depend_on_what_was_computed_before(dimensions, solver):

@@ -22,6 +22,7 @@ def test_a_random_equilibrium_is_balanced_still_and_stable(seed):
     assert verdict.outcome is Outcome.RIGHT, verdict.detail
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [1000117, 1000671, 1000817])
 def test_soft_directions_of_stiff_bodies_are_balanced(seed):
@@ -39,6 +40,7 @@ def test_two_hundred_random_equilibria(first):
     assert {seed: v.detail for seed, v in verdicts.items() if v.outcome is not Outcome.RIGHT} == {}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_pose_beside_an_equilibrium_is_seen_to_be_none(seed, monkeypatch):

@@ -11,7 +11,7 @@ from tests.stress.mechanisms.bicycle import bicycle, published
 pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(15)
 @pytest.mark.parametrize("speed", range(11))
 def test_the_benchmark_bicycle_has_its_published_eigenvalues(speed):
     """Weave, capsize and castering, and rolling on as the only rigid body motion."""

@@ -78,6 +78,7 @@ def test_a_car_on_a_circle_rolls_outwards():
     assert speed == pytest.approx(rate * outwards, rel=1e-12)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("rate", [0.5, pytest.param(1.0, marks=pytest.mark.long)])
 def test_a_disc_rolls_on_a_circle(rate):
@@ -116,6 +117,7 @@ forces: {air: {type: force, i: sled, force: ["40 N - 2 N s/m*vx(sled)", 0]}}
 """
 
 
+@pytest.mark.long
 def test_a_sled_at_the_speed_at_which_thrust_and_drag_balance(few_moves):
     scene = stiffmbs.read_scene(SLED)
     found = stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0)))
@@ -167,6 +169,7 @@ run: {duration: 2 s, rtol: 1e-8}
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "relaxation",
@@ -245,6 +248,7 @@ forces:
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("asked", ["", "rotation: found, "])
 def test_a_car_that_pulls_to_one_side_turns_at_the_rate_of_the_bicycle_model(asked):

@@ -184,6 +184,7 @@ def test_a_model_becomes_a_text():
         page.close()
 
 
+@pytest.mark.long
 def test_a_model_with_python_functions_asks_before_they_run():
     called = []
     model = stiffmbs.Model()
@@ -217,6 +218,7 @@ def test_a_taken_port_is_refused(page, scene):
     assert found.exit_code == 2 and f"--port {port}" in found.output
 
 
+@pytest.mark.long
 def test_a_new_file_is_created_by_saving(tmp_path):
     path = Path(tmp_path / "new.yaml")
     page = stiffmbs.open(path, browser=False)
@@ -285,6 +287,7 @@ def test_consent_is_true_alone():
         page.close()
 
 
+@pytest.mark.long
 def test_a_worker_that_does_not_read_does_not_block_the_server(scene, monkeypatch):
     from stiffmbs.live import workers
 
@@ -307,6 +310,7 @@ def _unanswered(client):
         client.ask("job", {"page": "a", "what": "solve", "text": "x" * 3_000_000})
 
 
+@pytest.mark.long
 def test_a_file_that_is_no_scene_is_not_quoted(page, tmp_path):
     (tmp_path / "secret.txt").write_text("root:x:0:0\nhunter2\n")
     said = Client(page).job("solve", "include: secret.txt\nbodies: {a: {mass: 1, inertia: 1}}\n")["message"]

@@ -13,6 +13,7 @@ def weight(scene):
     return 9.81 * sum(body.mass for body in scene.bodies.values())
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("word", ["bushing", "rigid"])
 def test_at_rest_the_tyres_carry_the_weight_and_go_on_to(examples, word):
     scene = stiffmbs.load_scene(examples / "car.yaml", [("V", "0"), ("choose.compliance", word)])
@@ -48,7 +49,7 @@ def test_a_car_with_a_steering_column_starts_in_the_steady_motion_to_which_it_pu
     assert any("turns at" in note for note in found.notes)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("manoeuvre", ["bump", "rough", "step_steer", "sine_sweep"])
 def test_manoeuvres_run_and_the_driver_keeps_the_speed(examples, manoeuvre):
     scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", manoeuvre)])
@@ -106,6 +107,7 @@ RELAX_LENGTH_Y = 500
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("mode", [1, 11])
 def test_a_step_steer_on_tyres_of_a_fiala_file(examples, tmp_path, mode):
     """The integrators agree; the steady turn is near that of the Magic Formula tyres, whose cornering stiffness is similar."""

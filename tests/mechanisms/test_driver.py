@@ -18,6 +18,7 @@ def driven(manoeuvre, *changes, **settings):
     return run
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("word", ["bushing", "rigid"])
 def test_the_double_lane_change_of_iso_3888_at_80_km_h(word):
@@ -45,7 +46,7 @@ def test_a_circle_of_100_m_at_20_m_s():
 
 
 @pytest.mark.long
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize(("speed", "radius", "duration"), [(1, 20, 40), (5, 40, 20), (40, 600, 10), (60, 1200, 12)])
 def test_the_driver_is_stable_from_1_to_60_m_s(speed, radius, duration):
     run = driven("circle", ("V", str(speed)), ("R", str(-radius)), duration=duration, output=0.05)
@@ -75,6 +76,8 @@ def test_a_speed_profile_along_points_with_the_pedal_at_the_end():
     assert run["driver.speed"][-1] < 14, "braked"
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("manoeuvre", ["lane_change", "circle"])
 def test_a_car_with_a_driver_on_a_path_stands(manoeuvre):
     scene = stiffmbs.load_scene(EXAMPLES / "car.yaml", [("choose.manoeuvre", manoeuvre), ("V", "0")])
@@ -83,6 +86,7 @@ def test_a_car_with_a_driver_on_a_path_stands(manoeuvre):
     assert found.channels["driver.pace"] == pytest.approx(1, abs=1e-9), "the least that the driver sees"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("pedal", [6e3, 12e3])
 def test_the_pedal_is_the_braking_force(pedal):

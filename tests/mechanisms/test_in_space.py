@@ -103,7 +103,7 @@ def runs():
             yield pytest.param(path, DOP853, id=f"{path.stem}-dop853", marks=long)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.long
 @pytest.mark.parametrize(("path", "settings"), list(runs()))
 def test_an_example_is_the_same_in_space(path, settings):
@@ -250,7 +250,7 @@ def assembled(scene):
 @pytest.mark.long
 @pytest.mark.parametrize("settings", [BDF, DOP853], ids=["bdf", "dop853"])
 @pytest.mark.parametrize("kind", CASES)
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(21)
 def test_each_kind_is_the_same_in_space(kind, settings):
     scene = assembled(case(kind))
     plane, space = both(scene, duration=0.4, points=41, **settings)
@@ -258,6 +258,7 @@ def test_each_kind_is_the_same_in_space(kind, settings):
     check_same(scene, plane, space, energies, AFTER_CORNERS if kind in WITH_CORNERS else AGREES)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("kind", ["revolute", "fixed", "distance", "point_on_line", "point_on_curve", "equation"])
 def test_assembly_moves_bodies_as_in_the_plane(kind):
@@ -353,6 +354,7 @@ def test_each_closed_loop_has_three_equations_too_many_and_leaves_forces_across_
     assert len(prepare(spatial.in_space(scene)).redundancy.redundant) == 3 * loops
 
 
+@pytest.mark.long
 def test_a_scene_that_starts_in_equilibrium_does_so_in_space():
     """With parts, of which the instances have other parameters."""
     planar = stiffmbs.load_scene(EXAMPLES / "vehicles" / "front_axle.yaml")

@@ -59,6 +59,7 @@ def sprung_piston(t, bearing, zeta, r=0.04, L=0.14, speed=100 * np.pi, m=0.5, ro
     return found.y
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(("bearing", "tolerance"), [("1e6", 1e-8), ("1e9", 1e-9)])
 def test_slider_crank_at_3000_rpm_with_an_elastic_bearing(solved, bearing, tolerance):

@@ -102,6 +102,7 @@ def tensor_of_rattleback():
     return turned @ np.diag(RATTLEBACK["moments"]) @ turned.T
 
 
+@pytest.mark.long
 def test_a_rattleback_reverses_its_spin():
     (a, b, c), w = RATTLEBACK["axes"], np.array([0.02, 0.01, -5.0])
     start = np.cross(np.array([0, 0, -c]), w)  # the velocity of the centre
@@ -149,6 +150,7 @@ run: {{duration: 2 s, points: 101}}
     np.testing.assert_allclose(solution["energy.total"], solution["energy.total"][0], rtol=1e-6)
 
 
+@pytest.mark.long
 def test_a_tippe_top_turns_over_and_keeps_jelletts_constant():
     """Friction at the contact of a sphere keeps L . r, with r from the centre of mass to the contact (Jellett 1872, ch. VIII)."""
     radius, below, moments = 0.02, 0.003, np.array([2.4e-6, 2.4e-6, 2.1e-6])

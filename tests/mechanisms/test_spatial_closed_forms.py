@@ -19,6 +19,7 @@ STARTS = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("start", STARTS.values(), ids=STARTS)
 def test_symmetric_top_against_its_reduced_equation(start):
     """u' and the two momenta, integrated in time."""
@@ -54,7 +55,7 @@ def test_symmetric_top_against_three_hinges():
     np.testing.assert_allclose(energies(links, q, u), energies(links, q, u)[0], rtol=1e-11)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(6)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "omega",

@@ -39,6 +39,7 @@ def test_spherical_pendulum_of_a_point_mass(settings):
     np.testing.assert_allclose(vector(solution, "bob"), length * zxz(heading, tilt, spin)[:, :, 2], atol=1e-8)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @SOLVERS
 def test_a_bar_hung_by_a_universal_joint(settings):
@@ -131,6 +132,7 @@ def column_with_two_arms():
     ]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @SOLVERS
 def test_a_double_pendulum_on_a_turning_column(settings):

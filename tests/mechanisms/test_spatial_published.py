@@ -62,6 +62,7 @@ def bricard_reference():
     return lambda t: np.array([mechanism.corners(angles)[2] for angles in mechanism.motion(t)[:2].T])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @SOLVERS_OF_LONG_RUNS
 def test_bricard(solved, bricard_reference, settings):
@@ -115,6 +116,7 @@ def four_rods():
     return times, [poses(links, angles) for angles in q.T]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @SOLVERS
 def test_a_chain_of_hinges_in_space(solved, four_rods, settings):
@@ -127,6 +129,7 @@ def test_a_chain_of_hinges_in_space(solved, four_rods, settings):
         np.testing.assert_allclose(axes(solution, f"link{k + 1}"), [pose[k].turn for pose in at], atol=1e-7)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("links", [10, 40])
 @pytest.mark.parametrize("joint", ["revolute", "spherical"])
@@ -164,6 +167,7 @@ def crank_reference():
     return SliderCrank().motion(np.linspace(0, 2, 21))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @SOLVERS
 def test_spatial_slider_crank(solved, crank_reference, settings):

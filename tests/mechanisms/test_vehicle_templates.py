@@ -59,7 +59,7 @@ def unexpected(notes):
     return [note for note in notes if not any(sentence in note for sentence in ALLOWED)]
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(14)
 @pytest.mark.long
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_three_solvers_agree(name):
@@ -118,6 +118,7 @@ def test_its_modes_are_those_of_a_vehicle_and_its_rig_is_symmetric(name):
             assert found.asymmetry() < 1e-6
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["formula_student", "motorcycle"])
 def test_no_mode_grows_at_the_speed_of_the_lane_change(name):
@@ -125,6 +126,7 @@ def test_no_mode_grows_at_the_speed_of_the_lane_change(name):
     assert max(rates) < 0.1
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("rear", ["twist_beam", "five_link"])
 def test_other_rear_suspensions_of_the_hatchback(rear):
@@ -235,6 +237,7 @@ def test_a_fifth_wheel_carries_roll_and_a_ball_does_not():
         assert stiffmbs.check(stiffmbs.read_scene(text)).degrees_of_freedom == free
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["hatchback", "formula_student", "motorcycle", "truck", "car"])
 def test_it_starts_in_equilibrium_as_the_torques_of_its_wheels_balance(name):

@@ -65,6 +65,7 @@ def test_a_tumbling_body_over_several_turns(text, own):
     assert run.unit("vehicle.ay") == "m/s^2"
 
 
+@pytest.mark.long
 def test_the_car_in_a_step_steer():
     steering = "{angle: 'dy(steering.rack, chassis, chassis)/(8 mm)', torque: 'steer.fy*8 mm'}"
     changes = [

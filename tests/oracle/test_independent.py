@@ -23,7 +23,8 @@ END = 0.15
 """Duration of runs whose results are differentiated, s."""
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", [2, 1, 5, 8])
 def test_a_random_scene_has_the_accelerations_modes_and_responses_of_independent_equations(seed):
     verdict = independent.trial(seed)
@@ -54,6 +55,7 @@ def test_the_comparison_can_fail(seed, monkeypatch):
     assert independent.trial(seed).outcome is not Outcome.RIGHT
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 @pytest.mark.parametrize("seed", [0, 1, 2, 5])

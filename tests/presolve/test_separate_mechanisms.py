@@ -65,6 +65,7 @@ def test_angles_are_those_of_pendulums_by_themselves():
         np.testing.assert_allclose(together[f"p{k}.angle"], alone["p0.angle"], atol=3e-7)
 
 
+@pytest.mark.long
 def test_a_study_has_the_numbers_of_its_runs_whether_they_are_solved_apart_or_together():
     given = scene([(1, 1)], **FAST)
     stiffness = [1e1, 1e5, 1e3]

@@ -74,6 +74,7 @@ def test_welded_bodies_and_independent_mechanisms(solver, scheme):
     )
 
 
+@pytest.mark.long
 def test_differences_shrink_with_the_tolerance():
     gaps = []
     for rtol in (1e-5, 1e-7, 1e-9):
@@ -156,6 +157,7 @@ def test_two_welded_halves_are_a_whole():
     np.testing.assert_allclose(one["energy.kinetic"], other["energy.kinetic"], atol=1e-7)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(10))
 def test_moments_of_no_distribution_of_mass_are_kept_by_welds(seed):
     """Bodies with `any_moments` among those that are merged, in any place."""
@@ -314,7 +316,7 @@ def test_turns_are_counted_where_mechanisms_are_solved_apart():
     np.testing.assert_allclose(with_it["wheel0.q3"] ** 2, np.sin((8 * t + 5 * t**2) / 2) ** 2, atol=1e-7)
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(15)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("kind", ["bushing", "field"])

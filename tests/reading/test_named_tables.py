@@ -130,6 +130,7 @@ def test_a_table_stays_between_its_points_by_default(points):
     assert (values.min(), values.max()) == pytest.approx((y.min(), y.max()), rel=1e-6, abs=1e-9)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("points", "how", "noted"),
     [

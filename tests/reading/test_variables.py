@@ -158,6 +158,7 @@ def test_a_formula_within_the_bounds_is_left_as_it_is():
     assert ast.unparse(parse(text)) == text.replace("*", " * ")
 
 
+@pytest.mark.long
 @settings(max_examples=25)
 @given(st.lists(st.tuples(st.sampled_from("+-*/"), st.integers(1, 9)), min_size=100, max_size=300))
 def test_a_balanced_chain_has_the_same_value(chain):

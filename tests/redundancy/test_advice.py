@@ -65,6 +65,7 @@ def test_two_hinges_of_a_door_share_its_weight_by_their_stiffness(ratio):
     assert at_rest["upper.fz"] == pytest.approx(20 * WEIGHT / (1 + ratio), rel=1e-3)
 
 
+@pytest.mark.long
 def test_one_elastic_hinge_carries_nothing():
     """Why one bushing is no advice: whatever its stiffness, the rigid hinge holds the door."""
     model = door()
@@ -172,6 +173,7 @@ def decided_by_stiffness(cases, rows, rng):
         assert np.abs(one[own]).max() > 1e-9, f"{name} carries nothing"
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(2, 4), st.integers(3, 6))
 def test_advice_on_random_loops_in_the_plane(seed, bodies, joints):
@@ -182,6 +184,7 @@ def test_advice_on_random_loops_in_the_plane(seed, bodies, joints):
         decided_by_stiffness(cases, {name: plane.rows_of(joint, pose) for name, joint in model.joints.items()}, rng)
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(2, 3), st.integers(2, 5))
 def test_advice_on_random_loops_in_space(seed, bodies, joints):

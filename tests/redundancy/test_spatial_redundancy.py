@@ -236,6 +236,7 @@ def driven_door(*laws):
     return model
 
 
+@pytest.mark.long
 def test_two_drives_that_agree():
     report = stiffmbs.check(driven_door("5*t", "5*t"), duration=3.0)
     assert (report.equations, report.rank, report.degrees_of_freedom) == (12, 6, 0)

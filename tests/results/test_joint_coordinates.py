@@ -92,6 +92,7 @@ def quaternion(rotation):
     return tuple(np.roll(rotation.as_quat(), 1))
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 @given(seed=st.integers(0, 10**6), angles=st.tuples(st.floats(-3.1, 3.1), st.floats(-2.5, 2.5)))
@@ -256,6 +257,8 @@ def arms(angle, angle_rate, **settings):
     return stiffmbs.run(stiffmbs.read_scene(ARM.replace("ANGLE_RATE", angle_rate).replace("ANGLE", angle)), **settings)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_formulas_of_forces_and_states_in_mirrored_parts_use_coordinates(solver):
     found = arms("hinge.angle", "hinge.angle_rate", solver=solver)
@@ -287,6 +290,7 @@ def test_the_effort_of_a_drive_is_its_force_along_the_coordinate_and_its_power_t
     np.testing.assert_allclose(work, change, atol=1e-4 * np.abs(change).max())
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("channel", ["hinge.angle", "hinge.angle_rate", "hinge.angle_acceleration", "motor.effort"])
 def test_sensitivities_of_coordinates_and_efforts(channel):
@@ -309,6 +313,7 @@ def test_names_that_are_no_coordinates_are_refused(formula, sentence):
         stiffmbs.read_scene(SLIDER + f"forces: {{f: {{type: torque, i: bar, torque: {formula}}}}}")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("driven", "expected"), [(None, np.pi), ("-pi", -np.pi), ("3*pi", 3 * np.pi)])
 def test_half_a_turn_at_the_start_does_not_depend_on_rounding(driven, expected):
     """The sign of an initial angle of half a turn is positive, and a drive finds its turn, in any axes."""

@@ -88,6 +88,7 @@ PAGES = [
 ]  # fmt: skip
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("command", PAGES, ids=lambda command: f"{command[0]}-{command[-1]}")
 def test_pages_and_figures_hold_the_scene_that_was_solved(folder, command):
     pytest.importorskip("matplotlib")
@@ -97,6 +98,7 @@ def test_pages_and_figures_hold_the_scene_that_was_solved(folder, command):
         assert expected in text.replace("\\", ""), expected
 
 
+@pytest.mark.long
 def test_a_report_shows_the_file_of_an_unchanged_scene(folder):
     pytest.importorskip("jinja2")
     (folder / "scene.yaml").write_text(f"{SCENE}# as measured\n")

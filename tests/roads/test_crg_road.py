@@ -75,6 +75,7 @@ def error_at(road, x, y, z):
 PLACES = [(3.05, 0.2), (11.3, -1.7), (20.0, 2.9), (33.7, -0.5), (39.0, 1.0)]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("layout", "bend"), [("KRBI", BEND), ("KDBI", 0.0), ("LRFI", 0.0), ("LDFI", BEND)])
 def test_heights_beside_the_reference_line(tmp_path, layout, bend):
     road = CrgRoad(file=written(tmp_path / "road.crg", layout, bend), placed="file")
@@ -139,7 +140,7 @@ run: {duration: 1.5, output: 10 ms, rtol: 1e-8}
 """
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("bend", "filtered"),
     [

@@ -25,6 +25,7 @@ def load_at(road, x, y=0.0, deflection=0.03):
     return reported(model)["load"]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("road", "x", "height"),

@@ -66,7 +66,7 @@ def arm(tmp_path, variant):
     return path
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.long
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("variant", VARIANTS)

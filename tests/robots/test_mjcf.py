@@ -74,7 +74,7 @@ def test_accelerations_of_public_models(name):
     assert worst_difference(_public(name), compiled(_public(name)), 3) < 1e-9
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(10)
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["ant", "half_cheetah", "humanoid", "pusher_v5", "walker2d_v5", "swimmer"])
 def test_accelerations_of_larger_public_models(name):

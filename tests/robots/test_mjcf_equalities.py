@@ -96,12 +96,13 @@ def accelerations_agree(tmp_path, text, coordinates=None):
 
 
 @pytest.mark.long
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("equality", EQUALITIES)
 def test_accelerations_with_equalities_and_dry_friction(tmp_path, equality):
     accelerations_agree(tmp_path, ROBOT.format(EQUALITIES[equality]))
 
 
+@pytest.mark.long
 def test_a_weld_holds_its_anchor_as_drawn(tmp_path):
     accelerations_agree(tmp_path, ROBOT.format(EQUALITIES["weld with an anchor"]))
 

@@ -32,6 +32,7 @@ def _file(tmp_path, text):
     return path
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("more", ["", 'actuatorfrcrange="-1.5 1.2"'])
 def test_accelerations_with_tendons_through_space(tmp_path, more):

@@ -57,6 +57,7 @@ def test_a_ball_passes_the_fold_and_the_run_says_so(settings, theta, rate, turni
     assert any("singular pose" in note and "joint" in note for note in found.notes)
 
 
+@pytest.mark.long
 def test_uneven_bodies_pass_the_fold_or_stop_there():
     """Explicit steps of 1e-7 s followed the constraints, closed to 1e-12, into the second motion."""
     passed = 0

@@ -109,6 +109,7 @@ def displacements() -> tuple[np.ndarray, np.ndarray]:
     return t, exact.sol(t)[0]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("points", [2, 2001])
 def test_a_departure_is_noted_with_its_distance_and_duration(solver: str, points: int) -> None:

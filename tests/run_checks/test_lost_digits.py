@@ -20,6 +20,8 @@ run: {duration: 0.1 s, points: 51, solver: radau, rtol: 1e-8}
 """
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("stiffness", ["1e9", "1e12", "1e15"])
 def test_a_force_beyond_the_digits_of_coordinates_is_noted(stiffness):
     found = stiffmbs.run(stiffmbs.read_scene(SCENE.replace("STIFFNESS", stiffness)))

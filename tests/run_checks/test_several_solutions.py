@@ -77,6 +77,8 @@ def turned(friction=1.0, exchanged=False):
     return stiffmbs.read_scene(json.dumps(scene))
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("solver", "rtol"), [("bdf", 1e-4), ("radau", 1e-4), ("radau", 1e-6)])
 def test_joints_whose_loads_depend_on_each_other_are_named(solver, rtol):
     """Two solutions from 0.54 s to 0.71 s: c.omega at the end was -1.73 to -1.75 without a note, or the energy was said to be broken."""
@@ -87,6 +89,8 @@ def test_joints_whose_loads_depend_on_each_other_are_named(solver, rtol):
     )
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("solver", "rtol"), [("bdf", 1e-6), ("radau", 1e-4), ("radau", 1e-8)])
 def test_a_stop_where_loads_have_no_further_solution_names_the_friction(solver, rtol):
     """The guide on the other body: two solutions meet at 0.3761 s, after which there is none."""

@@ -92,6 +92,7 @@ FOLDING = Path(__file__).parents[1] / "data" / "folding_cv_joint.yaml"
 """A constant-velocity joint that folds at 0.561 s; b1.wx(0.6 s) is 5.162."""
 
 
+@pytest.mark.long
 def test_radau_passes_a_singular_pose_at_tolerances_near_rounding():
     """Newton's remainder stayed below the rounding of the near-singular equations: 55 774 steps at 3e-11, 600 000 at 1e-11."""
     found = stiffmbs.run(

@@ -40,6 +40,8 @@ def told(solution):
     return [note for note in solution.notes if "missed" in note]
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
 def test_a_python_function_that_no_output_meets(how, monkeypatch):
     few = replace(parameters_of(within_long_steps.RUN_CHECKS), parts_of_a_run=1000)
@@ -54,7 +56,7 @@ def test_a_python_function_that_no_output_meets(how, monkeypatch):
 @pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
 @pytest.mark.parametrize("width", [1e-4, 3e-4, 1e-3, 3e-3, 1e-2])
 @pytest.mark.parametrize("places", [(0.777,), (5.0031,), (3.777, 9.66)])
-@pytest.mark.sampled(31)
+@pytest.mark.sampled(62)
 def test_narrow_python_functions_on_every_solver(places, width, how):
     found = stiffmbs.run(ball(width, places), duration=1.0, points=2, rtol=1e-6, **how)
     assert told(found)

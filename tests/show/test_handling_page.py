@@ -63,6 +63,7 @@ def test_lane_changes_have_cones_and_the_path():
         )
 
 
+@pytest.mark.long
 def test_the_page_answers_in_words_and_fits_a_phone(tmp_path):
     write_handling(tmp_path / "page.html", _found())
     page = (tmp_path / "page.html").read_text()

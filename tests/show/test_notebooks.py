@@ -27,6 +27,7 @@ def test_a_plot_is_shown_once(monkeypatch):
         sheet._ipython_display_()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("cell", ["run.plot('bar.x')", "run.plot('bar.x');", "found = run.plot('bar.x'); found"])
 def test_a_cell_of_a_notebook_shows_one_picture(cell):

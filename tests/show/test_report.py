@@ -102,6 +102,7 @@ def test_the_verdict_stands_first(page_of):
     assert found and digits and found.start() < digits.start() < text.index("Loads") < text.index("Solver")
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("as_results", [False, True])
 def test_two_runs_are_compared_differences_first(tmp_path, as_results):

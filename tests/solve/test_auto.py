@@ -55,6 +55,7 @@ def test_radau_is_taken_for_a_vibration_that_it_resolves_at_less_cost():
     assert np.all(np.diff(chosen.step_times) > 0)
 
 
+@pytest.mark.long
 def test_a_repeated_run_makes_the_same_choices():
     job = prepare(ringing(), solver="auto", duration=20.0, rtol=1e-8)
     first, again = job.integrate(), job.integrate()
@@ -234,12 +235,14 @@ def test_steps_up_to_the_decay_of_a_vibration():
     assert steps_of_decay(np.e, 0.025, 100.0) == pytest.approx(40.0 * AUTO.steps_per_radian)
 
 
+@pytest.mark.long
 def test_explicit_steps_are_not_taken_to_be_longer_than_those_of_radau(examples):
     """A rough road limits the steps of both, and the fastest rate does not tell."""
     road = examples / "vehicles" / "quarter_car.yaml"
     assert stiffmbs.run(road, solver="auto", rtol=1e-4).solver["name"] == "radau"
 
 
+@pytest.mark.long
 def test_checks_of_implicit_steps_are_spaced_in_proportion_to_the_steps_taken(examples, monkeypatch):
     """Each returns from compiled code and costs as much as several steps; 2000 steps have 15, and 10 or 24 at half or twice their density."""
     checks, wait = [], auto.ImplicitCheck._wait
@@ -258,6 +261,7 @@ def test_radau_comes_back_where_explicit_steps_cost_more_than_its_own_had(exampl
     assert solution.solver["steps"] > 0.8 * stiffmbs.run(road, solver="radau", rtol=1e-6).solver["steps"]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(("stiffness", "zeta"), [("1e6", "0.05"), ("3e6", "0.01")])
 def test_a_car_whose_start_excites_vibrations_keeps_explicit_steps(stiffness, zeta):

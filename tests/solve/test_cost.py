@@ -9,6 +9,7 @@ from stiffmbs.solve.radau.radau import driver, of_radau
 from tests.bench.costs import SCENES
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "measured"),

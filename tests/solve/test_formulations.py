@@ -83,6 +83,7 @@ def test_relaxation_holds_a_heavy_load_still():
     np.testing.assert_allclose(solution["pin.fy"], 9.81e5, rtol=1e-10)
 
 
+@pytest.mark.long
 def test_index_3_refuses_forces_that_follow_reactions(examples):
     scene = stiffmbs.load_scene(examples / "stick_slip.yaml")
     with pytest.raises(stiffmbs.InputError, match=r"formulation I3: found forces that depend on reactions \(rubbing\)"):

@@ -108,6 +108,7 @@ def test_a_locked_mechanism_names_instant_and_pose():
     assert solution["constraint.position"].max() < 1e-12
 
 
+@pytest.mark.long
 def test_the_branch_is_kept_at_coarse_output():
     """Two output points over a swing to near the dead centre and back: the same branch as with many."""
     drive = "1.2 + 0.72*sin(pi*t)"
@@ -166,6 +167,7 @@ def test_a_drive_without_a_value_is_not_called_a_dead_centre():
     assert solution.time[-1] <= 1.0
 
 
+@pytest.mark.long
 def test_a_driven_velocity_is_integrated(examples):
     """A motor whose speed bends at 30 ms: the crank's angle is the integral of it, and all else as under that position."""
     speed, turned = "-25 - 200*max(t - 0.03, 0)", "pi - 25*t - 100*max(t - 0.03, 0)^2"
@@ -213,7 +215,8 @@ DRIVES = {
 }  # fmt: skip
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("solver", ["kinematic", "bdf", "radau"])
 @pytest.mark.parametrize("what", sorted(DRIVES))
 def test_a_drive_along_a_rail_never_locks(what, solver):

@@ -15,6 +15,7 @@ SEEDS = st.integers(0, 2**32 - 1)
 FEW = settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(1, 5), st.integers(0, 3))
 def test_energy_of_an_undamped_scene_is_kept(seed, count, springs):
@@ -24,6 +25,7 @@ def test_energy_of_an_undamped_scene_is_kept(seed, count, springs):
     assert solution.energy_drift() < 1e-5 * (1 + np.max(solution["energy.kinetic"]))
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(2, 5))
 def test_momentum_of_a_free_scene_is_kept(seed, count):
@@ -41,6 +43,7 @@ def test_momentum_of_a_free_scene_is_kept(seed, count):
         assert np.max(np.abs(momentum - momentum[0])) < 1e-6 * (1 + np.max(np.abs(momentum)))
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(1, 5))
 def test_joints_do_no_work(seed, count):
@@ -69,6 +72,7 @@ def _point(solution, marker):
     return np.array([x + np.cos(angle) * xi - np.sin(angle) * eta, y + np.sin(angle) * xi + np.cos(angle) * eta])
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(1, 4))
 def test_newtons_law_for_every_body(seed, count):
@@ -85,6 +89,7 @@ def test_newtons_law_for_every_body(seed, count):
         np.testing.assert_allclose(body.mass * acceleration, force, atol=1e-9 * (1 + np.max(np.abs(force))))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(4))
 def test_both_integrators_agree(seed):
     rng = np.random.default_rng(seed)
@@ -135,6 +140,7 @@ def test_spring_of_no_length_is_defined():
     np.testing.assert_allclose(solution["a.x"], np.sin(2 * solution.time) / 2, atol=1e-7)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["force", "torque", "spring_damper"])
 def test_a_force_between_bodies_leaves_momentum_alone(kind):
     rng = np.random.default_rng(1)

@@ -8,6 +8,8 @@ from tests.stress.families.scales.output_points import EXAMPLES, POINTS, SOLVERS
 SCENES = "andrews", "bouncing_ball", "cam_follower", "dead_centres"
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("scene", SCENES)
 def test_bdf_takes_the_same_steps_for_all_output_points(scene):
     """The first step after a start or event was a part of the time to the next output: ends differed by 10 to 2000 tolerances."""
@@ -16,6 +18,8 @@ def test_bdf_takes_the_same_steps_for_all_output_points(scene):
     assert len(counts) == 1
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_ends_do_not_depend_on_output_points(solver):
     verdict = same_ends(EXAMPLES / "bouncing_ball.yaml", SOLVERS[solver], 1e-3)

@@ -26,6 +26,8 @@ def test_a_fast_pendulum_at_a_tight_tolerance_is_told_its_rounding():
     assert "rtol = 1e-10 is below rounding: bar.angle" in solution.message
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_a_planet_on_an_arm_is_told_the_rounding_of_its_place_or_moves(solver):
     """An arm of 1.5e11 m: radau blamed a jump or kink, 'axis' violated by 5 km. Explicit steps, which both advise, pass."""

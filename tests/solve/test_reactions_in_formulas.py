@@ -75,6 +75,7 @@ def test_the_integral_of_a_reaction_is_the_impulse(settings):
     assert solution["impulse"] == pytest.approx(impulse, abs=1e-6)
 
 
+@pytest.mark.long
 def test_a_reaction_in_a_formula_is_its_channel_in_space_too():
     scene = stiffmbs.spatial.in_space(sliding(FORMULA))
     planar = stiffmbs.run(sliding(FORMULA), duration=0.5, points=6, rtol=1e-9)
@@ -127,6 +128,7 @@ forces: {{push: {{type: force, i: cart, force: ["{force}", 0]}}}}
         stiffmbs.read_scene(text)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("torque", ["-0.3*tanh(fx(hinge)/0.2)", "-0.3*max(fx(hinge), 2)", "-0.3*abs(fy(hinge) - 10)"])
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_laws_of_a_reaction_need_no_event_functions(torque, solver):

@@ -42,6 +42,7 @@ def test_a_slider_crank_through_two_turns():
     assert np.abs(np.sum(p**2, axis=0) - 1).max() < 1e-14
 
 
+@pytest.mark.long
 def test_the_motor_does_the_work():
     solution = stiffmbs.run(driven(), duration=2.0, points=2001, solver="kinematic")
     power = SPEED * solution["motor.tx"]
@@ -51,6 +52,7 @@ def test_the_motor_does_the_work():
     )
 
 
+@pytest.mark.long
 def test_dynamics_give_the_same_motion_and_forces():
     kinematic, dynamic = (
         stiffmbs.run(driven(), duration=1.0, points=21, rtol=1e-9, solver=solver) for solver in ("kinematic", "bdf")
@@ -59,6 +61,7 @@ def test_dynamics_give_the_same_motion_and_forces():
         np.testing.assert_allclose(dynamic[name], kinematic[name], atol=1e-6 * (1 + np.abs(kinematic[name]).max()))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", ["kinematic", "bdf", "projected"])
 def test_a_motor_that_asks_for_more_than_a_rod_allows(solver):
     shape = {"height": 0.4, "length": 0.75}
@@ -121,6 +124,7 @@ def test_a_linkage_of_skew_axes_through_full_turns(twist):
         np.testing.assert_allclose([solution[f"rocker.{c}"][k] for c in "xyz"], expected, atol=1e-12)
 
 
+@pytest.mark.long
 def test_a_parallelogram_of_hinges_whose_redundant_equations_are_left_out():
     model = parallelogram(1.0)
     model.add("motor", Drive(joint="foot0", position="1 + 3*t"))
@@ -136,6 +140,7 @@ def test_freedoms_are_counted():
         stiffmbs.run(model, solver="kinematic")
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 @pytest.mark.parametrize("force", ["sqrt(1 - t)", "1/(1 - t)^2", "sqrt(0.01 - sled.x) + 1"])
 def test_a_force_without_a_value_is_named(solver, force):

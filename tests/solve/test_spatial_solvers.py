@@ -77,6 +77,7 @@ def off(found, expected):
 ERRORS = {"SI2": 4e-7, "SI2_exact": 4e-7, "SI1": 4e-7, "I3": 4e-4, "index1": 4e-7}
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("formulation", ERRORS)
 @pytest.mark.parametrize("scene", SCENES)
 def test_all_formulations_give_one_motion(scene, formulation, exact):
@@ -97,6 +98,7 @@ def test_all_schemes_give_one_motion(scene, settings, exact):
     assert forces < 4e-6
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("projection", [True, False])
 @pytest.mark.parametrize(
     ("scheme", "order", "steps"), [("rk4", 4, (1 / 80, 1 / 160)), ("euler_cromer", 1, (1 / 400, 1 / 800))]
@@ -191,6 +193,7 @@ def test_corners_in_time_and_state_are_met_in_space():
     assert forces < 1e-5
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["heavy_top", "governor"])
 def test_errors_fall_evenly_with_the_tolerance(name):

@@ -62,6 +62,7 @@ def test_spurious_forces_between_steps_are_removed(rigid, stiffness):
     assert error(stiffmbs.run(pendulum("solver: bdf, rtol: 1e-4", stiffness)), rigid) < 0.01
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_simulations_and_followed_runs_correct_states_within_steps(rigid, solver):
     """With uncorrected states, reactions were wrong by 20 times the largest."""
@@ -79,6 +80,7 @@ def interpolated(run):
     return [note for note in stiffmbs.run(pendulum(run, 1e14)).notes if "interpolated" in note]
 
 
+@pytest.mark.long
 def test_interpolated_states_that_cannot_be_corrected_are_told():
     """One correction, in place of eight, does not suffice."""
     (note,) = interpolated("solver: bdf, rtol: 1e-3, tuning: {polishing: {most_corrections: 1}}")
@@ -86,6 +88,7 @@ def test_interpolated_states_that_cannot_be_corrected_are_told():
     assert not interpolated("solver: bdf, rtol: 1e-4")
 
 
+@pytest.mark.long
 def test_states_between_output_times_are_not_told():
     """Radau left up to 51 states of the search for events open, which the note counted among 3 output times."""
     run = "solver: radau, rtol: 1e-4, tuning: {polishing: {most_corrections: 1}}"
@@ -192,6 +195,7 @@ def simulated(scene):
     return {name: np.array(values) for name, values in found.items()}
 
 
+@pytest.mark.long
 def test_simulations_restart_without_a_change_of_stiff_forces():
     """At jumps, and after the duration of the scene, the smallest move made reactions wrong by 1.4 times the largest.
 

@@ -42,6 +42,7 @@ def test_every_solver_and_scheme_in_the_settings_is_registered():
     assert set(RunSettings.model_fields) == FOR_ALL_SOLVERS | set(OTHER)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("how", CHOICES, ids=str)
 def test_settings_have_an_effect_where_the_solver_reads_them(how, examples):
     traits = traits_of(RunSettings(**how))

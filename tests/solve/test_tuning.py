@@ -62,6 +62,8 @@ def test_the_page_names_all_subsystems():
     assert re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE) == [*tuning.SUBSYSTEMS]
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "settings, changes",
     [({"solver": "projected"}, TIGHT_STEPS), ({}, TIGHT_NEWTON), ({"solver": "bdf"}, {"error_test": {"margin": 0.01}})],
@@ -169,6 +171,7 @@ def test_joints_that_hold_at_the_start_use_changed_parameters(monkeypatch):
     assert seen == [2, 2]
 
 
+@pytest.mark.long
 def test_a_run_notes_its_changed_parameters():
     found = stiffmbs.run(EXAMPLE, duration=0.1, tuning={"newton": {"loosest": 0.01, "last": 3}})
     assert "run.tuning changes parameters of solvers or checks: newton.loosest = 0.01 (default 0.03)" in found.notes

@@ -76,6 +76,7 @@ DAMAGES = {
 }  # fmt: skip
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_damaged_store_is_refused_or_mended(folder, damage):
     expected = sweep(folder / "scene.yaml", {"bodies.b.mass": [1.0, 2.0, 3.0]}, outputs=["final(b.x)", "b.vx"])

@@ -41,6 +41,7 @@ def test_stiffness_and_damping_are_found_again():
     np.testing.assert_allclose(found.solution["sled.x"], moved(found.solution.time, 130.0, 2.5), atol=1e-6)
 
 
+@pytest.mark.long
 def test_standard_errors_are_those_of_linear_theory():
     """sigma^2 (J^T J)^-1 with J of the closed form, by central differences of it."""
     data = noisy(1)
@@ -110,6 +111,7 @@ def test_noise_is_given_for_each_channel(sigma, sentence):
         fit(stiffmbs.read_scene(SLED), noisy(0), PARAMETERS, sigma=sigma)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("data", "parameters", "error", "sentence"),
@@ -195,6 +197,7 @@ run: {duration: 0.5, rtol: 1e-8}
     assert found.runs < 25
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("ranges", "sentence"),
@@ -211,6 +214,7 @@ def test_a_fit_that_ends_at_a_bound_says_so(ranges, sentence):
     assert bool(sentence) == ("bound" in found.message)
 
 
+@pytest.mark.long
 def test_a_fit_ends_where_steps_are_below_the_integration_error():
     """Further steps follow the integration error alone: the estimates are within a tenth of their standard errors."""
     data = noisy(3)

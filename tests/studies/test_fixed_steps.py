@@ -86,6 +86,7 @@ def test_arrays_of_joints_are_the_channels_in_the_order_of_the_scene():
     np.testing.assert_allclose(sim.joint_rates, [channels[f"{name}_rate"] for name in sim.joints], rtol=1e-9)
 
 
+@pytest.mark.long
 def test_an_arm_with_two_joints_of_one_link_moves_as_by_bdf():
     """The body between them is nearly massless; its accelerations by elimination lose half the digits unless corrected."""
     sim, exact = arm(), arm({"solver": "bdf", "rtol": 1e-10})
@@ -124,6 +125,7 @@ def test_a_step_of_an_input_within_a_step_is_not_smeared(settings):
         assert sim["sled.x"] == pytest.approx(2.5 * (2.5 * STEP) ** 2, rel=1e-6)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("settings", [RK4, {"solver": "bdf"}], ids=["rk4", "bdf"])
 def test_invalid_inputs_leave_the_simulation_as_it_was(settings):
     sim = arm(settings)
@@ -164,6 +166,7 @@ def test_a_step_that_fails_keeps_the_state_before_it(settings):
     sim.step(STEP, {"F": 0.0})
 
 
+@pytest.mark.long
 def test_steps_of_other_solvers_follow_rows_of_inputs_too():
     values = torques(4)
     sim, expected = arm({"solver": "bdf"}), arm({"solver": "bdf"})
@@ -173,6 +176,7 @@ def test_steps_of_other_solvers_follow_rows_of_inputs_too():
     np.testing.assert_array_equal(state(sim), state(expected))
 
 
+@pytest.mark.long
 def test_a_reset_places_an_arm_by_its_joints():
     sim = arm()
     sim.step(0.1, [1.0] * 5)
@@ -200,6 +204,7 @@ def test_a_reset_moves_a_loop_by_one_of_its_joints():
     assert sim["slider.x"] == pytest.approx(0.6)
 
 
+@pytest.mark.long
 def test_a_reset_to_a_state_is_a_load():
     sim = arm()
     sim.steps(10, [1.0] * 5)
@@ -209,6 +214,8 @@ def test_a_reset_to_a_state_is_a_load():
     np.testing.assert_allclose(state(sim), expected, rtol=0, atol=1e-15)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("settings", [RK4, {"solver": "bdf"}], ids=["rk4", "bdf"])
 @pytest.mark.parametrize("angle", [4.0, -30.0])
 def test_a_reset_moves_counters_of_turns_too(settings, angle):

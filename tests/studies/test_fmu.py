@@ -134,6 +134,7 @@ for made, _ in instances:
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(("files", "freed"), [(1, "freed"), (3, "kept"), (3, "freed")])
 def test_a_process_may_have_many_instances_of_one_or_several_files(tmp_path, files, freed):
@@ -157,6 +158,7 @@ forces: {spring: {type: force, i: ball, force: [-k*ball.x, 0, 9.81 N]}}
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("text", "outputs"),
     [
@@ -256,6 +258,7 @@ print(json.dumps([at, back, first, again, faults, where(other)]))
 """
 
 
+@pytest.mark.long
 def test_states_are_kept_and_late_parameters_and_wrong_times_are_refused(scene, tmp_path):
     stiffmbs.build_fmu(scene, tmp_path / "pushed.fmu")
     done = subprocess.run(

@@ -49,6 +49,7 @@ run: {duration: 2, rtol: 1e-7, points: 41}
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("gravity", "to", "factor"),
     [
@@ -98,6 +99,7 @@ run: {{duration: 1, rtol: 1e-7}}
 """
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("v", [0.0, 3.0])
 @pytest.mark.parametrize(
     ("law", "k", "exact"),
@@ -113,6 +115,7 @@ def test_a_motion_at_rest_or_steady_has_short_enough_steps(law, k, exact, v):
     assert stiffmbs.sensitivities(scene, "A", "final(b.x)").to["A"] == pytest.approx(exact, rel=1e-3)
 
 
+@pytest.mark.long
 def test_a_vibration_that_no_step_resolves_is_refused():
     scene = stiffmbs.read_scene(AT_REST.format(law="A - k*b.x", k=5e4, v=0))
     with pytest.raises(SolverError, match="102400 steps do not resolve how 'final"):
@@ -249,6 +252,7 @@ run: {duration: 1, points: 5}
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 @pytest.mark.parametrize("to", ["push", "edge"])
 @pytest.mark.parametrize("law", ["max(a.vx - edge, 0)", "abs(a.vx - edge)"])
@@ -274,12 +278,14 @@ def test_a_breakpoint_counts_as_touched_up_to_rounding(edge, refused):
         assert sensitivities(scene, ["push"], "final(b.vx)").to["push"] == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.long
 def test_a_law_with_a_zero_slope_at_its_breakpoint_has_a_derivative():
     """Its second difference grows with the square of the displacement."""
     law = ON_A_KINK.replace("c: 3 N s/m", "c: 3e4 N s^2/m^2").replace("LAW", "max(a.vx, 0)^2")
     assert sensitivities(stiffmbs.read_scene(law), ["push"], "final(b.vx)").to["push"] == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.long
 def test_a_body_that_moves_along_a_kink_has_one():
     scene = stiffmbs.read_scene(ON_A_KINK.replace("LAW", "max(a.vy, 0)"))
     found = [sensitivities(scene, ["push"], f"final({body}.vx)").to["push"] for body in ("a", "b")]
@@ -313,6 +319,7 @@ run: {duration: 0.001, points: 6}
 """
 
 
+@pytest.mark.long
 def test_steps_are_not_refined_for_the_rounding_of_a_derivative_of_zero(monkeypatch):
     """A force along the stretched links does not rotate them: outputs and derivatives are rounding, which never agrees."""
     module, numbers = import_module("stiffmbs.studies.sensitivities.sensitivities"), []

@@ -14,7 +14,7 @@ from tests.studies.oscillator import SLED, oscillation, slope
 BY_BOTH = pytest.mark.parametrize("solver", ["bdf", "radau"])
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @BY_BOTH
 @pytest.mark.parametrize("of", ["sled.x", "rms(sled.x)", "final(3*sled.x^2 + sin(sled.x))", "integral(abs(sled.x))/2"])
 def test_those_of_a_damped_oscillation(of, solver):
@@ -40,6 +40,7 @@ run: {duration: 1, rtol: 1e-6}
 """
 
 
+@pytest.mark.sampled(2)
 @BY_BOTH
 def test_a_force_that_ends_at_an_instant_that_moves(solver):
     """x = v + F/m (T - T^2/2) at 1 s."""
@@ -61,6 +62,7 @@ run: {duration: 0.1, points: 17, rtol: 1e-6}
 """
 
 
+@pytest.mark.long
 def test_short_steps_before_an_event_do_not_spoil_those_along_radau():
     """The last steps before the event take 1e-12 s and less; bdf has the formula of another method."""
     along_bdf, along_radau = (
@@ -197,6 +199,8 @@ def differences(scene, path, value, of, **settings):
     return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * h)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("scene", "name", "value", "of", "settings"),
     [
@@ -235,6 +239,7 @@ forces:
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("referring", "force", "of"),

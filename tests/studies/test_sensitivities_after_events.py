@@ -51,6 +51,7 @@ def differences(found, name, of):
 FOLLOWS = {"p": {"zero": "p - 5*cart.x - 1", "start": 1.5}}
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     "force",
     [
@@ -71,6 +72,7 @@ def test_an_algebraic_state_follows_what_it_is_a_formula_of(force):
     assert all(of_state.values())
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("scene", "outputs"),
@@ -111,7 +113,8 @@ def test_the_energy_of_a_body_follows_its_mass():
 TABLE = {"lines": True, "table": [[-1, 0], [0.1, 1], [0.2, -1], [0.5, 2], [0.6, 0], [0.85, 1], [3, 1]]}
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.long
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("force", ["F*tab(t - s)", "F*tab(t/r)", "F*tab(t - s)*(1 - cart.vx/5)"])
 @pytest.mark.parametrize(
     "of", ["integral(cart.x)", "integral(cart.ax)", "rms(cart.vx)", "mean(push.fx)", "final(cart.x)"]
@@ -144,6 +147,7 @@ def test_a_number_that_takes_a_channel_at_its_jump_is_refused():
     assert sensitivities(read(scene), ["s"], "cart.vx").to["s"][-1] == pytest.approx(10)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("over", [0.0, 1e-15, -1e-15, 1e-13, -1e-13, 1e-11, -1e-11])
 @pytest.mark.parametrize(
@@ -156,6 +160,7 @@ def test_a_breakpoint_that_is_touched_but_for_errors_of_the_run_is_refused(law, 
         sensitivities(read(scene), ["k"], "final(cart.x)")
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("over", [1e-3, 1e-4, 1e-5, -1e-7, -1e-5])
 def test_a_breakpoint_that_is_passed_by_more_than_errors_is_none_of_them(over):
     """The force acts from -A + over on: the motion before and after is a vibration about 0 and about F/k."""
@@ -211,6 +216,7 @@ def two_sleds(of_a, of_b):
     }  # fmt: skip
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("of_a", "of_b"),
     [
@@ -267,6 +273,7 @@ run: {duration: 0.6, rtol: 1e-8, points: 7}
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("name", "value"), [("a", 1.5), ("m", 1.3), ("I", 0.05)])
 def test_a_drive_whose_velocity_jumps_pushes_the_other_bodies(name, value):
     """Velocities change by the smallest correction in the mass matrix, whose derivatives are part of the sensitivity."""
@@ -289,6 +296,8 @@ run: {{duration: 0.5 s, points: 11}}
 """
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_a_kink_over_a_state_ends_steps_on_its_own_side(solver):
     """The last step before a kink has the slope before it at all nodes, although the kink is located with an error."""

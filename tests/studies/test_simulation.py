@@ -20,6 +20,7 @@ run: {duration: 2, rtol: 1e-9}
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 @pytest.mark.parametrize("name", ["cart_pendulum.yaml", "half_car.yaml", "bouncing_ball.yaml", "heavy_top.yaml"])
 def test_steps_give_the_states_of_one_run(examples, name, solver):

@@ -64,6 +64,7 @@ run: {duration: 1, rtol: 1e-7}
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", [{}, {"solver": "projected"}], ids=["bdf", "dop853"])
 @pytest.mark.parametrize("scene", [PLANE, SPACE], ids=["plane", "space"])
 def test_a_channel_read_alone_is_that_of_all_channels(scene, solver):
@@ -96,6 +97,8 @@ def wheel(**requests):
     return model
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("requests", [{}, {"turn": "hinge.angle"}], ids=["followed", "counted"])
 def test_an_angle_counts_full_turns_over_the_steps(requests, tmp_path):
     sim = stiffmbs.simulation(wheel(**requests))

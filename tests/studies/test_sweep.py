@@ -23,6 +23,7 @@ def alone(path, changes, output, **settings):
     return np.max(np.abs(solution[output]))
 
 
+@pytest.mark.long
 def test_a_grid_holds_what_single_runs_give_to_the_last_bit(examples):
     path, k_b, zeta = examples / "half_car.yaml", np.logspace(5, 8, 3), [0.02, 0.1]
     found = sweep(path, k_b=k_b, zeta=zeta, outputs=["peak(front_bushing.fx)", "chassis.y"], **SHORT)

@@ -40,6 +40,7 @@ def test_a_brake_stops_a_wheel_and_holds_it(solver):
     assert found["brake.braking"].max() < C * (1 + 1e-6)
 
 
+@pytest.mark.long
 def test_a_held_wheel_does_not_creep():
     """Against a torque below the brake's it turns by -a log(1 - M/C) and stays; with a larger one it turns away."""
     angles = {}

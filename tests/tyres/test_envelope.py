@@ -66,6 +66,7 @@ def test_a_cleat_under_two_cams(x):
     )
 
 
+@pytest.mark.long
 def test_cams_begin_and_end_to_rise_before_and_after_the_cleat():
     """The response is longer than the cleat by the cams and their distance, and has two humps of half the height."""
     x = np.linspace(1.5, 2.5, 101)

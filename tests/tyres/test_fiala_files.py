@@ -113,6 +113,7 @@ def test_a_wheel_on_the_road(read, mode):
             assert got == pytest.approx([fx, fy, my, mz, 0.0], rel=1e-8, abs=1e-6), (speed, slip, hand)
 
 
+@pytest.mark.long
 def test_the_lateral_slip_lags_by_the_relaxation_length_of_the_file(read):
     tyre = MagicFormulaTyre(i="wheel", properties=read(file_of("inch-pound", 12)))
     assert tyre.own_states() == ("deflection_x", "deflection_y")

@@ -24,6 +24,7 @@ TYRE = TyreProperties(coefficients=PLAIN)
 LOADS = np.array([1000.0, 4000.0, 6500.0])
 
 
+@pytest.mark.long
 def test_slope_peak_and_asymptote_of_the_longitudinal_force():
     """BCD = Kx at zero slip, D at the peak, D sin(C pi/2 (1 - E) ... ) at large slip; Pacejka (2012), sec. 4.3.1."""
     dfz = LOADS / 4000 - 1
@@ -103,6 +104,7 @@ def test_combined_slip_without_coefficients_by_the_manual_of_pac2002():
         assert both["Fy"] == pytest.approx(mu_y / abs(act_y) * fy0, rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_belt_of_a_tyre_whose_deflection_grows_turns_it():
     """M = QTZ1 LGYR MBELT Re Omega dy/dt, where dy/dt = Vy at zero deflection."""
     lengths = {**PLAIN, "PTX1": 1.0, "PTY1": 1.0, "PTY2": 1.8}

@@ -91,6 +91,7 @@ def slope(tyre, h=1e-6, of="Fy", **state):
     return (high - low) / (2 * h)
 
 
+@pytest.mark.long
 def test_stiffnesses_are_slopes_of_the_forces_at_any_pressure():
     for p in (1.9e5, 2.4e5, 2.9e5):
         state = TYRE.steady_state(4000.0, p=p)
@@ -99,6 +100,7 @@ def test_stiffnesses_are_slopes_of_the_forces_at_any_pressure():
         assert slope(TYRE, p=p, gamma=None) == pytest.approx(state["Kyg0"], rel=1e-6)
 
 
+@pytest.mark.long
 def test_camber_with_and_without_turn_slip_has_one_stiffness():
     """Camber is turning slip reduced by epsilon_gamma, which the stiffness of spin divides by again (4.89)."""
     turning = TyreProperties(
@@ -110,6 +112,7 @@ def test_camber_with_and_without_turn_slip_has_one_stiffness():
     assert residual == pytest.approx(slope(turning, of="Mzr", gamma=None), rel=1e-5)
 
 
+@pytest.mark.long
 def test_a_tight_turn_at_no_slip_has_the_torque_of_parking():
     """Mz tends to q_Crp1 mu_y R Fz sqrt(Fz/Fz0) (4.95), against the turn, and the side force fades."""
     turning = TyreProperties(coefficients={**NUMBERS, **TURNING}, version="6.2")
@@ -175,6 +178,7 @@ def test_a_hand_other_than_that_of_either_side_is_refused(hand):
         MagicFormulaTyre(i="wheel", properties=TYRE, hand=hand)
 
 
+@pytest.mark.long
 def test_a_standing_tyre_has_no_forces_of_rolling():
     """At rest there is neither camber thrust, residual torque nor rolling resistance, and nothing is divided by zero."""
     found = reported(wheel(MagicFormulaTyre(i="wheel", properties=TYRE), 0.33, 0.02, 0.0, 0.1, 0.0, 0.0))
@@ -218,6 +222,7 @@ def rig(version="6.2", **settings):
     return stiffmbs.run(stiffmbs.read_scene(text), **settings)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("version", ["6.1", "6.2"])
 def test_a_motorcycle_tyre_at_40_degrees_of_camber_rolls_by_every_solver(version):

@@ -76,7 +76,8 @@ def difference(one, other):
     return max((np.abs(one[name] - x) / np.abs(x).max()).max() for name, x in other.items())
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("turning", [False, True], ids=["straight", "turn slip"])
 @pytest.mark.parametrize("version", ["6.1", "6.2"])
 @settings(max_examples=20, deadline=None)
@@ -93,6 +94,7 @@ def test_a_weight_of_combined_slip_below_zero_gives_numbers_with_turn_slip():
     assert all(np.isfinite(x).all() for name, x in found.items() if name not in ("rho", "Rl"))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", [*COEFFICIENTS_6, *SCALES_6])
 def test_each_coefficient_is_seen(name):
     """The comparison above fails where one coefficient is wrong."""
@@ -115,6 +117,7 @@ def test_turn_slip_in_reverse_is_the_mirror_image_of_that_forward():
         assert back[name] == pytest.approx(sign * ahead[name], abs=1e-9 * scale), name
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("hand", [1, -1])
 @pytest.mark.parametrize("seed", range(3))
 def test_a_wheel_has_the_forces_of_its_state_on_either_side_forward_and_backward(seed, hand):

@@ -62,13 +62,14 @@ def difference(one, other):
     return (np.abs(one - other) / np.abs(other).max(axis=0)).max()
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("seed", range(12))
 def test_forces_and_torques_of_random_tyres(seed):
     tyre, states = random_tyre(seed), random_states(seed + 100)
     assert difference(by_package(tyre, states), by_plain(tyre, states)) < TOLERANCE
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", [*COEFFICIENTS, *SCALES])
 def test_the_sign_of_each_coefficient_is_seen(name):
     """The comparison above fails where one sign is wrong: the other sign of a number is far beyond its tolerance, or where

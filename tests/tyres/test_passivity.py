@@ -48,7 +48,7 @@ def test_a_negative_slip_stiffness_is_reported_with_its_range(version):
     assert "and 19" in note
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 @pytest.mark.parametrize("seed", range(30))
 def test_notes_agree_with_the_stiffnesses_of_the_equations(seed):
     """Both stiffnesses at random, over load and camber."""

@@ -342,6 +342,8 @@ def test_a_key_without_a_value_that_no_formula_uses_is_noted_alone(tmp_path):
         TyreProperties.from_file(file)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("version", ["5.2", "6.2"])
 def test_a_tyre_without_vertical_stiffness_has_its_forces_alone(tmp_path, version):
     file = tmp_path / "forces.tir"

@@ -46,6 +46,7 @@ def gliding(tyre, speed=20.0, gravity=(0.0, 0.0, -9.81), sideways=None):
     return model
 
 
+@pytest.mark.long
 def test_the_lateral_slip_lags_by_its_relaxation_length():
     speed, rate, swing, (_, length) = 20.0, 15.0, 0.01, LENGTHS
     tyre = FialaTyre(i="wheel", **FIALA, relaxation=LENGTHS)
@@ -137,6 +138,7 @@ def at_slip(coefficients=SMALL, use_mode=4, **fields):
     return reported(wheel(tyre, 0.3, 0.02, slip_angle=0.05, camber=0.02, spin=36.0))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("mode", "acting"),

@@ -79,7 +79,7 @@ def standing(tyre, camber=0.0, gravity=(0, 0, -9.81)):
     return model
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(10)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long if name == "lagging magic" else ()) for name in TYRES]
@@ -121,11 +121,13 @@ def test_a_cambered_wheel_stands(name):
     assert abs(run["tyre.load"] / WEIGHT - 1).max() < 1e-9
 
 
+@pytest.mark.long
 def test_a_cambered_wheel_that_rolls_has_its_thrust():
     found = reported(wheel(magic(False), 0.3, 0.02, camber=0.06, spin=10 / 0.2933))
     assert found["lateral"] < -100
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["lagging fiala", "lagging file of fiala", "lagging magic"])
 def test_a_blocked_wheel_is_in_equilibrium_on_a_slope_and_does_not_creep(name):
@@ -139,6 +141,7 @@ def test_a_blocked_wheel_is_in_equilibrium_on_a_slope_and_does_not_creep(name):
     assert np.ptp(run["fork.x"]) < 1e-8 and np.ptp(run["fork.y"]) < 1e-8
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["fiala", "file of fiala", "magic"])

@@ -139,7 +139,7 @@ FILES = {
 ENCODINGS = {"5.2 of Windows, Latin-1": "latin-1", "6.2 in UTF-16": "utf-16"}
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("ends", ["\n", "\r\n"], ids=["LF", "CRLF"])
 @pytest.mark.parametrize("name", FILES)
 def test_each_file_is_read_as_the_same_tyre(read, name, ends):

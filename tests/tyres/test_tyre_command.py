@@ -58,6 +58,7 @@ def test_units_that_do_not_exist_are_refused(tmp_path):
         EARLIER.to_file(tmp_path / "copy.tir", {"SPEED": "m"})
 
 
+@pytest.mark.long
 def test_curves_states_and_files_of_the_command(tmp_path):
     LATER.to_file(tmp_path / "tyre.tir")
     given = (

@@ -35,6 +35,7 @@ def test_the_load_is_that_of_the_curve(tyre, deflection, load):
     assert loaded(tyre(CURVE), deflection)["load"] == pytest.approx(load, abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_curve_counts_as_the_stiffness_that_it_has_everywhere(tyre):
     straight = "[DEFLECTION_LOAD_CURVE]\n0 0\n10 2\n40 8\n"
     for camber in (0.0, 0.05):

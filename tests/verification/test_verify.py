@@ -47,7 +47,7 @@ def example(name, *changes):
     return stiffmbs.load_scene(EXAMPLES / f"{name}.yaml", list(changes))
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(8)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "problem", ["cart_pendulum", "half_car", "heavy_top", "spatial_slider_crank", "rolling_disc", "stick_slip"]
@@ -287,6 +287,7 @@ def test_what_takes_too_long_is_given_up_and_said(monkeypatch):
     assert np.isnan(found.errors["cart.x"].over_time)
 
 
+@pytest.mark.long
 def test_command_shows_bars_and_json_gains_errors(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = str(EXAMPLES / "cart_pendulum.yaml")

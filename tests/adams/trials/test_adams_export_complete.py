@@ -120,7 +120,7 @@ def test_a_field_that_is_added_later_is_refused_until_it_is_written():
 FORCES = [(kind, form) for dimensions, kind, form in CASES if dimensions == 3 and issubclass(kind, Force)]
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(15)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(("kind", "form"), FORCES, ids=lambda part: getattr(part, "kind", ""))
@@ -149,7 +149,7 @@ def test_random_forces_are_refused_or_move_alike(kind, form, seed):
             np.testing.assert_allclose(other[f"{read}.{axis}"], one[f"{name}.{axis}"], atol=2e-7, err_msg=name)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(12)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
 def test_random_scenes_are_refused_or_run_alike(seed, tmp_path):

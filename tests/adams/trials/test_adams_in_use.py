@@ -1,6 +1,7 @@
 """Datasets as users write them, in several styles, run through the command line and compared with closed forms."""
 
 import numpy as np
+import pytest
 from click.testing import CliRunner
 
 import stiffmbs
@@ -88,6 +89,7 @@ def _model(folder, dataset, commands=""):
     return folder / "model.adm"
 
 
+@pytest.mark.long
 def test_a_command_file_of_one_static_simulation_runs_and_is_summarised(tmp_path):
     """The tip of the beam moves by F L^3/(3 E I), less by the shortening of its chord (of second order)."""
     path = _model(tmp_path, BEAM, "sim/stat\n")
@@ -128,6 +130,7 @@ def test_a_formula_over_several_lines_has_each_of_its_terms(tmp_path):
     assert solution["REQUEST_1.f6"][0] == 1.5
 
 
+@pytest.mark.long
 def test_a_bushing_and_a_field_have_the_same_frequencies_in_milliseconds(tmp_path):
     modes = stiffmbs.modes(load_adams(_model(tmp_path, MODES)))
     exact = np.repeat(np.sqrt([1e4, 1e4, 1e4, 1e5, 2e5, 3e5]), 2) / (2 * np.pi)

@@ -108,7 +108,7 @@ def mechanism(n, unit):
 
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.long) for k in range(1, 200))])
-@pytest.mark.sampled(23)
+@pytest.mark.sampled(92)
 def test_changed_numbers_change_both_alike(seed):
     random = Random(seed)
     n, unit = mutated(random)

@@ -22,7 +22,7 @@ def play(tmp_path_factory):
 
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(40))
-@pytest.mark.sampled(11)
+@pytest.mark.sampled(33)
 def test_motion_reactions_and_requests(play, seed):
     trial, solution, history = play(seed)
     for k in range(len(trial.bodies)):

@@ -40,6 +40,7 @@ def compare(folder, text, mechanism, reactions, bodies=("PART_2",), tolerance=2e
     return solution, history
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "motion, rate",
     [

@@ -86,6 +86,7 @@ SFORCE/1, ROTATION, I=21, J=1, FUNCTION=-0.05*WZ(21,1,1)"""
     return text, mechanism, own
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "middle", ["", *(pytest.param(each, marks=pytest.mark.long) for each in (", MASS=0, CM=20", ", CM=20, IP=0,0,0"))]

@@ -122,6 +122,7 @@ def test_displacements(both):
     holds(both, "REQUEST_9", "x y z", lambda v: v.r[1], 1e-6)
 
 
+@pytest.mark.long
 def test_velocities_are_differences_in_ground_resolved_in_rm(both):
     holds(both, "REQUEST_3", "vx vy vz", lambda v: rates(v, TIP, SEAT))
     holds(both, "REQUEST_3", "wx wy wz", lambda v: spins(v, TIP, SEAT))

@@ -94,7 +94,7 @@ def in_si(tmp_path_factory):
     return solved(tmp_path_factory.mktemp("si"), dataset(first, *SYSTEMS[first]))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize("units", list(SYSTEMS)[1:])
 def test_channels_are_in_si_and_functions_in_units_of_the_dataset(tmp_path, in_si, units):
     force, mass, length, time = SYSTEMS[units]

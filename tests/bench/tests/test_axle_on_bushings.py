@@ -16,6 +16,7 @@ COMPILED = "compiled"
 PROBLEMS = {benchmark.name: benchmark for benchmark in BENCHMARKS}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "name",
     [

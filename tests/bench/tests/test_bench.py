@@ -58,7 +58,7 @@ def test_starts_by_hand_are_consistent(name):
     run.close()
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long if name in LONG_RACES else ()) for name in PROBLEMS]
 )
@@ -81,6 +81,7 @@ def test_references_have_the_published_values():
     np.testing.assert_allclose(found, andrews_problem.ANGLES_AT_END, rtol=5e-10)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("k_b", [1e5, *(pytest.param(k_b, marks=pytest.mark.long) for k_b in (1e7, 1e9))])
 def test_the_half_cars_references_are_those_of_other_programs(k_b):
     y = half_car_problem.reference(k_b)[:, 1]
@@ -146,7 +147,7 @@ WITHOUT_YARDSTICK = (
 )
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(25)
 @pytest.mark.parametrize("name", [pytest.param(name, marks=MANY if name in LONG_LOOKS else ()) for name in FAMILIES])
 def test_quick_look_in_json(name):
     result = CliRunner().invoke(bench, ["--quick", "--json", name])

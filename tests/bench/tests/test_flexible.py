@@ -10,6 +10,8 @@ from tests.bench.problems.flexible import BEAMS, BENCHMARKS, of_beam, of_element
 ERROR = 1e-3
 
 
+@pytest.mark.sampled(2)
+@pytest.mark.long
 @pytest.mark.parametrize("name", BEAMS)
 def test_a_beam_has_about_the_error_that_is_asked_for(name):
     reference = of_elements(BEAMS[name], 32)()
@@ -17,6 +19,7 @@ def test_a_beam_has_about_the_error_that_is_asked_for(name):
         assert error_of(of_beam(BEAMS[name], {"solver": solver}, ERROR)(), reference) < 3 * ERROR
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("problem", BENCHMARKS, ids=lambda problem: problem.name)
 def test_other_tools_solve_the_same_problem(problem):

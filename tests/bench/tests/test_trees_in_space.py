@@ -19,6 +19,7 @@ COMPILED = "compiled"
 """Of peers whose equations a C compiler takes seconds for: the others have the same ones."""
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "name", ["heavy_top", "arm", "tilted_chain_10", pytest.param("tilted_chain_100", marks=pytest.mark.long)]
 )

@@ -48,6 +48,7 @@ def driven(locking, drive=TORQUE, parameters=None):
     return found, left, right
 
 
+@pytest.mark.long
 def test_an_open_differential_has_equal_torques():
     found, left, right = driven("open")
     assert found["diff.torque_left"] == pytest.approx(found["diff.torque_right"], abs=1e-9)
@@ -55,6 +56,7 @@ def test_an_open_differential_has_equal_torques():
     assert right == pytest.approx(RATIO * TORQUE / 2 / RIGHT, rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_limited_slip_differential_slips_at_preload_plus_locking_ratio_and_holds_below():
     given = {"preload": "20 N m", "drive_locking": 0.1, "coast_locking": 0.05}
     for drive, share in ((TORQUE, 0.1), (-TORQUE, 0.05)):
@@ -67,6 +69,7 @@ def test_a_limited_slip_differential_slips_at_preload_plus_locking_ratio_and_hol
     assert left == pytest.approx(RATIO * TORQUE / (LEFT + RIGHT), rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_viscous_differential_has_a_torque_difference_by_the_speeds():
     found, left, right = driven("viscous", parameters={"viscosity": "7 N m s/rad"})
     assert found["diff.torque_left"][-1] - found["diff.torque_right"][-1] == pytest.approx(
@@ -76,13 +79,14 @@ def test_a_viscous_differential_has_a_torque_difference_by_the_speeds():
     assert [left, right] == pytest.approx(np.linalg.solve([[LEFT + 7, -7], [-7, RIGHT + 7]], [half, half]), rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_locked_differential_turns_both_outputs_alike():
     found, left, right = driven("locked")
     assert left == pytest.approx(right, rel=1e-6)
     assert found["diff.torque_left"][-1] == pytest.approx(LEFT * left, rel=1e-6)
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("locking", ["open", "limited_slip", "viscous", "locked"])
@@ -162,6 +166,7 @@ def powered(clutch, variables=None, tables=None, parameters=None, **words):
     return stiffmbs.read_scene(json.dumps(outputs(inertia=60.0, parts=parts, **more)))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(("gear", "ratio"), [(1, 3.6), (3, 1.4)])
 def test_a_powertrain_accelerates_by_torque_times_ratio_over_inertia(gear, ratio):
@@ -268,6 +273,7 @@ def steered(assist, tables=None, hand="5 N m", parameters=None):
     return stiffmbs.equilibrium(stiffmbs.read_scene(json.dumps(scene))).channels
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("hand", [5.0, -2.0])
 def test_a_steering_column_has_its_ratio_compliance_and_assist(hand):

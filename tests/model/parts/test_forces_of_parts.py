@@ -30,6 +30,8 @@ def scene(body, part, **sections):
     return stiffmbs.read_scene(json.dumps({"dimensions": 3, "gravity": [0, 0, 0], "bodies": {"b": body}, "parts": {"p": part}, **sections}))  # fmt: skip
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("mirror", [False, True])
 @pytest.mark.parametrize("part", ["viscoelastic_bushing", "hydromount"])
 def test_the_dynamic_stiffness_of_a_mount(part, mirror):

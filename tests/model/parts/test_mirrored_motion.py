@@ -87,12 +87,14 @@ def _differences(text, signs, rotations):
     assert moved > 1e-3
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("mirror", ["x", "y"])
 @pytest.mark.parametrize("joints", JOINTS_IN_PLANE.values(), ids=JOINTS_IN_PLANE)
 def test_joints_in_the_plane(joints, mirror):
     _differences(_planar(mirror, joints), _signs(mirror)[:2], (("angle", "omega"), (-1, -1)))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("mirror", ["x", "y"])
 @pytest.mark.parametrize("force", FORCES_IN_PLANE.values(), ids=FORCES_IN_PLANE)
 def test_forces_in_the_plane(force, mirror):
@@ -199,14 +201,14 @@ def _rotations(mirror):
     return ("wx", "wy", "wz"), [-sign for sign in _signs(mirror)]
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(21)
 @pytest.mark.long
 @pytest.mark.parametrize(("joints", "mirror"), _about_each_axis(JOINTS_IN_SPACE))
 def test_joints_in_space(joints, mirror):
     _differences(_spatial(mirror, joints), _signs(mirror), _rotations(mirror))
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(21)
 @pytest.mark.long
 @pytest.mark.parametrize(("force", "mirror"), _about_each_axis(FORCES_IN_SPACE))
 def test_forces_in_space(force, mirror):

@@ -139,6 +139,7 @@ def test_a_rigid_corner_has_its_travel_and_the_wheels_spin(part):
     assert not report.redundant
 
 
+@pytest.mark.long
 def test_every_part_is_a_valid_scene_by_itself_and_is_listed():
     for name in shipped_parts():
         mounts = {mount: f"of_{mount}" for mount in shipped_part(name).get("mounts") or {}}

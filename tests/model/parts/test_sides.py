@@ -73,6 +73,7 @@ def test_mounts_on_the_other_sides_are_refused(chassis):
         main=corner(part="differential", mounts={"left": "first.input", "right": "behind.input"}))  # fmt: skip
 
 
+@pytest.mark.long
 def test_suspensions_on_their_sides_are_read():
     for part in ("double_wishbone", "macpherson", "trailing_arm", "multi_link", "pushrod_wishbone"):
         for chassis in (CHASSIS, ASKEW):
@@ -130,6 +131,7 @@ def test_twin_wheels_have_the_hand_of_their_side_and_symmetric_tyres_none():
     assert axle((0.0,), (1,), PHY1=0.002) == []
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize("name", COEFFICIENTS_6)
 def test_the_coefficients_that_differ_between_sides_are_those_that_break_the_symmetry(name):
     numbers = random_tyre(5) | dict.fromkeys((other for other in ONE_SIDED if other != name), 0.0)

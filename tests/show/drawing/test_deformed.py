@@ -62,6 +62,7 @@ def moving(tmp_path_factory):
     return scene, solution, drawing_of(scene, along=poses), poses
 
 
+@pytest.mark.long
 def test_vertices_are_the_nodes_with_their_magnified_displacements(moving):
     scene, solution, drawing, poses = moving
     motion = FlexibleMotion(scene, solution, "bar")

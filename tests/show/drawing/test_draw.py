@@ -28,6 +28,7 @@ def run(*arguments):
     return CliRunner().invoke(main, ["draw", *(str(argument) for argument in arguments)])
 
 
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(("dimensions", "kind", "form"), CASES, ids=lambda case: getattr(case, "kind", None))
 def test_every_kind_is_drawn(dimensions, kind, form):
     """Something of it is shown, finite, on bodies of the model."""
@@ -50,6 +51,7 @@ CARS = ("truck", "hatchback", "formula_student", "leaf_sprung_car", "motorcycle"
 """Scenes of hundreds of bodies; `car` is one more of these."""
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "scene", [pytest.param(name, marks=pytest.mark.long if name in CARS else ()) for name in EXAMPLE_SCENES]
 )

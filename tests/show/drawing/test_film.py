@@ -197,6 +197,7 @@ def test_a_film_of_nothing_that_moves_is_refused():
         stiffmbs.animate(EXAMPLES / "four_bar.yaml", "x.gif", rate=float("nan"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("speed", [pytest.param(0.0, marks=pytest.mark.long), 50.0])
 def test_a_film_goes_with_a_mechanism_that_travels(speed):
     """At 50 m/s a body of half a metre would be a dot of the film; it fills as much of it as one at rest."""

@@ -60,6 +60,7 @@ def coloured(image):
     return (np.ptp(image, axis=2) > 30).mean()
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("command", "scene", "options"),
@@ -205,6 +206,7 @@ def test_every_control_has_a_name_for_screen_readers(tab, opened):
     assert not unnamed
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("command", [["report", "--no-verify"], ["animate", "--duration", "1"], ["modes"]])
 def test_every_text_has_the_contrast_of_wcag(tab, opened, command):
@@ -215,6 +217,7 @@ def test_every_text_has_the_contrast_of_wcag(tab, opened, command):
     assert len(tab.run(browser.FAINT)) == 1
 
 
+@pytest.mark.long
 def test_a_report_fits_its_screen_and_its_labels_are_apart(tab, opened):
     """On a desktop and on a phone, light and dark; tables are never cut at the right edge."""
     opened("report", EXAMPLES / "crank_slider.yaml", "--no-verify", "--set", "run.points=101")

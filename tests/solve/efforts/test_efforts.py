@@ -28,6 +28,7 @@ CASES = [
 ]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.long
 @pytest.mark.parametrize(("analysis", "rtol"), CASES)
 def test_evaluations_are_those_recorded(analysis, rtol):

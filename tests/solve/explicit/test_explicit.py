@@ -265,6 +265,7 @@ def test_between_long_steps_at_rest_nothing_moves(scheme):
     assert np.max(np.abs(solution["mass.vx"])) < 1e-2
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("scheme", ADAPTIVE)
 def test_flat_poses_are_passed_wherever_steps_end(scheme):

@@ -13,6 +13,7 @@ def solved(model, rtol, **settings):
     return stiffmbs.run(model, solver="bdf", duration=1.0, points=3, rtol=rtol, **settings)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize(("mass", "rtol"), [(1e-9, 1e-6), (1e-8, 1e-8)])
 def test_a_light_node_in_a_damper_does_not_creep(mass, rtol, monkeypatch):

@@ -45,6 +45,7 @@ def _exported(path):
     }
 
 
+@pytest.mark.sampled(3)
 def test_libraries_are_found_in_the_wheel_of_each_system(unpacked, monkeypatch):
     folder, system = unpacked
     monkeypatch.syspath_prepend(folder)

@@ -52,6 +52,8 @@ def test_motions_without_stiff_forces_are_far_below_the_tolerance(rtol):
         np.testing.assert_allclose(found[name], values, rtol=0, atol=0.3 * rtol, err_msg=name)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("stages", [3, 5, 7])
 def test_steps_end_where_the_curvature_of_a_force_jumps(stages):
     """States within steps over these points had errors of 1e-6, 3e-6 and 2e-6 of a velocity at rtol 1e-8."""
@@ -97,6 +99,7 @@ def test_constraints_give_way_less_than_the_method_errs():
     assert relaxed > 5 * own
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("c", [4e4, 2e5, 1e6])
 def test_forces_within_a_first_step_over_decaying_motions(c):
     """The force of a damper rises from zero to its peak in 0.1 ms, and first steps are up to 50 ms long.

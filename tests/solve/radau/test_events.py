@@ -25,6 +25,7 @@ def height(t):
     return rest * (math.cos(angle) - 1) - impact / omega * math.sin(angle)
 
 
+@pytest.mark.long
 def test_a_mass_that_bounces_on_a_spring_keeps_to_the_tolerance():
     """The error estimate of a step over the kink of the law does not bound the error of the state at the event."""
     model = Model(gravity=(0, -G))
@@ -77,6 +78,7 @@ forces: {{push: {{type: force, i: a, force: [bump(a.x), 0]}}}}
     assert found["a.vx"][-1] == pytest.approx(exact["a.vx"][-1], rel=rtol)
 
 
+@pytest.mark.long
 def test_steps_over_a_rough_road_have_few_restarts(examples):
     """The samples of the road divide its height into intervals; only the ends of the run-in are events."""
     road = stiffmbs.load_scene(examples / "vehicles" / "quarter_car.yaml")
@@ -95,6 +97,7 @@ def bilinear(t, stiffness=(400.0, 1e4)):
     return -0.1 * stretched / compressed * math.sin(compressed * (since - 2 * quarter))
 
 
+@pytest.mark.long
 def test_a_spring_with_a_kink_keeps_to_the_tolerance():
     """The error estimate of a step over a kink is below the tolerance of smooth solutions long before its error is."""
     model = stiffmbs.read_scene("""
@@ -112,6 +115,8 @@ forces: {f: {type: force, i: b, force: [-law(b.x), 0]}}
     assert np.quantile(errors, 0.9) < 5
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("rtol", [1e-9, 1e-10])
 def test_events_are_found_after_a_step_of_the_rounding_of_time(rtol):
     """The search stayed at the start of that step, where the state is not known any more: 558 of 946 events were missed."""

@@ -60,6 +60,8 @@ def test_a_small_vibration_about_a_position_of_rest_is_not_damped(frequency, rto
     np.testing.assert_allclose(found["mass.vx"], speed * np.cos(frequency * found.t), atol=0.1 * speed)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6])
 def test_a_body_is_free_after_a_steep_force_has_ended(rtol):
     """Corrections by the matrix of the steep force are small: they do not show that the iteration has converged."""
@@ -265,6 +267,7 @@ run: {duration: 1 s, points: 11, solver: radau}
     np.testing.assert_allclose(found["cart.x"], expected, atol=max(10 * rtol, 1e-9))
 
 
+@pytest.mark.long
 def test_a_drifting_run_ends_before_it_follows_another_mechanism():
     """Torques of 1e9 N m hold two cranks against each other: relaxed constraints give way, and exact ones do not."""
     found = stiffmbs.run(loop(2, 1e9, False, 3.2), duration=1.0, points=21, solver="radau")

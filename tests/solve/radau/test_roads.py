@@ -10,7 +10,7 @@ LENGTH = 12.5
 """Path of a car along the road, m."""
 
 
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(15)
 @pytest.mark.long
 @pytest.mark.parametrize("rtol", [1e-4, 1e-8])
 @pytest.mark.parametrize(

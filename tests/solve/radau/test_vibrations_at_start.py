@@ -14,7 +14,8 @@ run: {{duration: 0.05, points: 51, solver: radau, stages: {stages}, rtol: {rtol}
 OMEGA, RTOL, PHASES = 1000.0, 1e-6, 50
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.long
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("stages", [3, 5, 7, "auto"])
 def test_a_vibration_is_resolved_whatever_its_phase_at_the_start(stages):
     """A vibration of 300 tolerances; a step of many radians would damp it."""

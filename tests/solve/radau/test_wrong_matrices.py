@@ -100,6 +100,7 @@ SCENES = {
 }
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("change", [scaled_by_half, wrong_block, of_the_start])
 @pytest.mark.parametrize("name", SCENES)
 def test_no_wrong_result_is_accepted_with_a_wrong_matrix(examples, falsified, name, change):

@@ -47,6 +47,7 @@ def test_a_controlled_cart_with_filters_moves_as_scipy_says():
     assert solution["all"] == pytest.approx(solution["motor"] + solution["lead"] + solution["two.q"], abs=1e-12)
 
 
+@pytest.mark.long
 def test_bdf_and_dop853_agree_and_so_does_the_scene_in_space():
     scene = stiffmbs.read_scene(SCENE)
     implicit, explicit = (stiffmbs.run(scene, solver=solver) for solver in ("bdf", "projected"))

@@ -55,6 +55,7 @@ def differences(found, *rates):
     return [np.abs(found[name] - known).max() for name, known in zip(names, exact(found.time, *rates), strict=True)]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("settings", "error"), SOLVERS, ids=lambda x: x.get("scheme", x["solver"]) if isinstance(x, dict) else ""
 )
@@ -63,7 +64,8 @@ def test_a_sampled_controller_follows_the_exact_discrete_solution(settings, erro
     assert max(differences(stiffmbs.run(stiffmbs.read_scene(SCENE), duration=2, output=0.02, **settings))) < error
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.long
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
 @pytest.mark.parametrize("rtol", [1e-3, 1e-6])
 def test_error_bars_are_those_of_the_exact_solution(solver, rtol):
@@ -98,6 +100,7 @@ def test_runs_and_simulations_in_pieces_take_each_sample_once(solver):
         assert [simulation["block.x"], simulation["push"]] == pytest.approx([x, push], abs=1e-8)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("settings", [{"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}])
 def test_a_run_with_all_steps_keeps_no_more_memory_for_each_sample_than_its_rows(settings):
@@ -188,6 +191,7 @@ def test_a_sample_without_a_value_stops_the_run_and_names_the_state():
     assert "the formula of the sampled state 'integral' has no finite value" in found.message
 
 
+@pytest.mark.long
 def test_intervals_are_integrated_at_once_while_no_value_changes_that_acts():
     """The controller acts after 1 s only; the count of samples, which nothing reads, is right at each output."""
     text = SCENE.replace("kp*(goal - block.x) - 2*block.vx + integral", "'branch(t - 1, 0, 0, 40*(goal - block.x))'")

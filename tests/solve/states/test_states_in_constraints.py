@@ -33,6 +33,7 @@ def rates(t, y, push):
     return np.array([omega, -(9.81 * 0.5 * np.sin(angle) + 0.5 * trolley * np.cos(angle)) / 0.26, z_rate, w_rate])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "settings",
     [{"solver": "projected"}, *({"solver": "bdf", "formulation": name} for name in ("SI2", "I3", "SI1", "index1"))],

@@ -89,6 +89,7 @@ def test_constraints_that_hold_by_a_slope_alone(seed):
     assert verdict.outcome is Outcome.RIGHT
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("seed", "kind"), [(0, "urdf"), (2, "urdf"), (8, "mjcf"), (202, "scene")])
 def test_conversions_are_compared_and_the_comparison_can_fail(monkeypatch, seed, kind):
     """A robot's or dataset's gravity that is read wrongly is seen."""
@@ -114,6 +115,7 @@ def test_an_error_of_the_small_masses_between_joints_is_right(monkeypatch):
     assert convert.trial(seed).outcome is Outcome.WRONG
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [6000025, 6000032, 6000033, 6000042, 6000129, 6000133, 6002027])
 def test_inputs_do_not_stop_runs(seed):
@@ -140,7 +142,7 @@ def test_an_error_of_fixed_steps_is_right_if_half_the_step_reduces_it_by_the_ord
     assert kinks.trial(6000072).outcome is Outcome.WRONG
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("name", sorted(set(fuzz.fuzzers()) - {"entry-points"}))
 def test_the_first_cases_of_a_fuzzer_are_not_wrong(name):
     found = [

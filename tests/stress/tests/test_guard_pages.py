@@ -47,6 +47,7 @@ def test_a_lattice_stays_within_its_arrays(cells):
     assert "1 cases, nothing touched outside" in done.stdout
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("array", ["x", *(pytest.param(name, marks=pytest.mark.long) for name in ("work", "b"))])
 def test_an_array_that_is_one_number_too_short_is_found(array):
@@ -54,6 +55,8 @@ def test_an_array_that_is_one_number_too_short_is_found(array):
     assert done.returncode == -signal.SIGSEGV
 
 
+@pytest.mark.sampled(3)
+@pytest.mark.long
 @pytest.mark.parametrize(("offset", "status"), [(0, 0), (11, 0), (12, 70), (-1, 70)])
 def test_bytes_beside_an_array_are_looked_at(offset, status):
     assert python("-c", PATTERN.format(offset=offset)).returncode == status

@@ -39,7 +39,7 @@ def original(request):
     return invariances.Original(content, BDF, fine, bars_of(fine, coarse))
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(15)
 @pytest.mark.parametrize("name", invariances.WAYS)
 def test_each_change_leaves_the_motion(original, name):
     try:
@@ -49,6 +49,7 @@ def test_each_change_leaves_the_motion(original, name):
     assert gap.ratio <= 1
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("section", "field", "factor"), [("gravity", 0, 1.001), ("bodies", "mass", 1.001), ("bodies", "inertia", 1.01)]
 )
@@ -73,6 +74,7 @@ def test_random_scenes_keep_the_momentum_of_each_body(original):
     assert gap.ratio <= 1
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("dimensions", [2, 3])
 @pytest.mark.parametrize("seed", range(3))
 def test_two_halves_of_a_body_are_one_again(dimensions, seed):

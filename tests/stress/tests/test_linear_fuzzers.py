@@ -12,7 +12,7 @@ from tests.stress.fuzzers import modes, stability, transfer
 pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("fuzzer", [modes, transfer])
 @pytest.mark.parametrize("seed", [pytest.param(seed, marks=pytest.mark.long) for seed in (7, 8, 16, 101)])
 def test_nothing_is_wrong(fuzzer, seed):

@@ -48,6 +48,7 @@ def test_every_shipped_part_has_a_maker():
     assert made | set(WITHOUT) >= set(shipped_parts())
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_scenes_have_all_kinds(dimensions):
     found = set.union(*map(used, scenes(1500 if dimensions == 3 else 300, dimensions=dimensions)))

@@ -101,7 +101,7 @@ def test_the_frequency_response_is_that_of_single_sines(found):
 
 
 @pytest.mark.long
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("name", "rear"),
     [("hatchback", "twist_beam"), ("hatchback", "five_link"), ("hatchback", "trailing_arm"), ("formula_student", "")],
@@ -115,6 +115,7 @@ def test_the_driver_keeps_to_the_double_lane_change(name, rear):
     assert found["passed (1 yes, 0 no)"] == 1
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
@@ -193,6 +194,7 @@ def test_drives_of_the_steering_alone_are_left_out():
         _strip({"joints": dict(drives)}, by_wheel)
 
 
+@pytest.mark.long
 def test_variables_read_the_driver_of_the_test():
     """A throttle that follows the scene's own driver follows the one of the test."""
     driver = {"drive": "engine", "parameters": {"target": "V", "begins": -1}}
@@ -216,6 +218,8 @@ def speeds(scene, **manoeuvre):
     return study.solved(with_manoeuvre(scene, car_of(scene), Manoeuvre(20.0, 3.0, "0", **manoeuvre)))["vehicle.speed"]
 
 
+@pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "entry",
     [
@@ -256,6 +260,7 @@ def test_a_changed_pedal_counts():
     assert changed == pytest.approx(pedal, rel=1e-9)
 
 
+@pytest.mark.long
 def test_changes_of_what_a_test_keeps_count():
     """Drive and tolerances by --set were left out, and so were parameters whose names begin as a section's."""
     changes = [

@@ -84,6 +84,7 @@ def inputs(time):
     return {"sweep": sweep * np.clip(41 - time, 0, 1), "cut off": sweep, "random": 0.1 * band, "pulse": pulse}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("name", "lowest", "error"),
     [("sweep", 0.2, 2e-4), ("pulse", 0.2, 2e-4), ("cut off", 0.6, 1e-3), ("random", 0.2, 6e-3)],
@@ -307,6 +308,7 @@ def test_weightings_are_those_of_the_tables_of_iso_2631(name, frequencies, facto
         assert vibration.weighted_rms(vibrating, step, name) == pytest.approx(factor / 1000, rel=0.004)
 
 
+@pytest.mark.long
 def test_spectra_keep_the_power_and_transmissibility_is_that_of_a_mass_on_a_spring():
     generator, step = np.random.default_rng(1), 0.002
     time = np.arange(0, 200, step)
@@ -338,6 +340,7 @@ def test_times_that_a_metric_lacks_are_named():
         metrics.frequency_response(time**1.1, steer, steer)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("seed", range(12))
 def test_the_step_response_of_any_stable_car(seed):
     """Times, gain and overshoot of a bicycle model at random, against the samples of its exact response; to either side."""
@@ -363,6 +366,8 @@ def test_the_step_response_of_any_stable_car(seed):
         assert found.peak_time == pytest.approx(time[np.argmax(part)] - begun, abs=2e-3)
 
 
+@pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long if k else ()) for k, name in enumerate(vibration.WEIGHTINGS)]
 )

@@ -50,6 +50,7 @@ def channels(scene, **manoeuvre):
     return {name: run[name] for name in run if name.startswith("vehicle.")}
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("steer", TRANSIENT)
 def test_channels_of_a_manoeuvre_are_those_of_the_centre_of_mass(steer):
@@ -64,6 +65,7 @@ def test_channels_of_a_manoeuvre_are_those_of_the_centre_of_mass(steer):
             assert found[name] == pytest.approx(values, abs=2e-4 * size), name
 
 
+@pytest.mark.long
 def test_the_reference_point_is_the_centre_of_mass_of_all_bodies_of_the_car():
     """A ball beside the road does not belong to it; a stated point counts as it is."""
     scene = car_with_origin((0.3, 0.1, 0.2))
@@ -85,6 +87,7 @@ def test_the_reference_point_is_the_centre_of_mass_of_all_bodies_of_the_car():
     assert not car_of(car_with_origin((0.3, 0.1, 0.2), vehicle={"body": "chassis"})).stated
 
 
+@pytest.mark.long
 def test_kinematics_and_compliance_do_not_depend_on_the_origin():
     """The roll centre was measured from the plane y = 0 of the body."""
     others = dict.fromkeys(("lateral", "lateral_parallel", "brake", "traction", "aligning", "aligning_parallel"), 0)

@@ -170,6 +170,7 @@ def _steer(corner, steer, travels):
             compare(steer["axle.ackermann"][k], 100 * (inner - outer) / (ideal - outer), 100)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("part", POINTS)
 def test_measures_follow_from_the_hard_points(part):

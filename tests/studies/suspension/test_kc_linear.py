@@ -62,7 +62,7 @@ def compare(found, expected, tolerance):
         assert found.measures[name] == pytest.approx(value, rel=tolerance, abs=tolerance * scale), name
 
 
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(9)
 @pytest.mark.long
 @pytest.mark.parametrize("rigid", [True, False], ids=["rigid", "bushing"])
 @pytest.mark.parametrize("part", CORNERS)
@@ -113,6 +113,7 @@ def sides_of(points):
     return [{name: p * [1, sign, 1] for name, p in points.items()} for sign in (1, -1)]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("rigid", [True, False], ids=["rigid", "bushing"])
 @pytest.mark.parametrize("axle", ["front", "rear"])
@@ -130,6 +131,7 @@ def test_twist_beams(axle, rigid):
     check(kc({axle: part}, axle), m, wheels, springs, axle)
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.long
 @pytest.mark.parametrize("rigid", [True, False], ids=["rigid", "bushing"])
 @pytest.mark.parametrize(("axle", "kingpins"), [("front", True), ("front", False), ("rear", False)])

@@ -56,6 +56,7 @@ def test_anti_lift_and_anti_squat_of_a_trailing_arm():
     assert found["left.anti_squat"] == pytest.approx(100 * 0.28 / 0.42 * 5)
 
 
+@pytest.mark.long
 def test_an_axle_alone_has_its_anti_measures_by_its_name():
     """Wheelbase and height were given, and the message said that there was 'no wheelbase and height'."""
     chassis = {"chassis": {"mass": 1000, "inertia": [300, 1000, 1000], "position": [1, 0, 0.5]}}
@@ -77,6 +78,7 @@ def test_an_axle_alone_has_its_anti_measures_by_its_name():
     assert "as these are unknown: wheelbase (--wheelbase)\n" in kc_text("car", measured("rear"))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("part", ["double_wishbone", "multi_link"])
 def test_compliance_is_symmetric_and_contains_the_wheel_rate(part):

@@ -89,6 +89,7 @@ def test_left_and_right_are_mirror_images_on_bushings():
     assert found.sweeps["bump"].slope("left.camber") < 0, "into the bump the top leans inwards"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize("part", ["double_wishbone", "multi_link", "macpherson", "trailing_arm"])
 def test_stiff_bushings_are_joints(part):
@@ -203,6 +204,7 @@ def test_an_instant_without_an_equilibrium_is_told():
         stiffmbs.quasi_static(stiffmbs.read_scene(PENDULUM), duration=2.0, points=11)
 
 
+@pytest.mark.long
 def test_the_roll_centre_lies_in_the_plane_of_a_body_beside_the_origin(examples):
     """The displacement is measured from the plane y = 0 of the body, not of the ground."""
     scene = stiffmbs.load_scene(examples / "car.yaml", [("bodies.chassis.position", "[0, 0.3, height]")])
