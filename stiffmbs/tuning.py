@@ -42,7 +42,7 @@ SUBSYSTEMS = {
     "jumps": "solve.events.discontinuity:JUMP",
     "kinematic": "solve.driven_states:KINEMATIC",
     "linear_analysis": "linear_analysis.parameters:LINEAR_ANALYSIS",
-    "linear_solver": "solve.ida.choice:COSTS",
+    "linear_solver": "solve.linear_solvers.linear_solver:COSTS",
     "loop": "solve.ida.native.parameters:LOOP",
     "matrices": "sparse.parameters:MATRICES",
     "narrow_inputs": "solve.events.narrow_inputs:NARROW_INPUTS",

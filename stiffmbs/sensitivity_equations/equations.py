@@ -16,7 +16,7 @@ from ..compile.terms import TERM_SETS
 from ..errors import SolverError
 from ..solve.ida.libraries import ida_libraries
 from ..solve.ida.session import Session
-from ..solve.linear_solvers.fixed_order import FixedOrder
+from ..solve.linear_solvers.linear_solver import LinearSolver
 from .native.layouts import DEPTH, PART, VARIATIONS
 
 ADVANCE, WITHIN, DEFECTS = together(
@@ -35,7 +35,7 @@ class VariationalEquations:
     matrix, and `directions` are variations of the parameters of the system.
     """
 
-    def __init__(self, equations: Equations, matrix: FixedOrder, state: State, directions: Sequence[Numbers]) -> None:
+    def __init__(self, equations: Equations, matrix: LinearSolver, state: State, directions: Sequence[Numbers]) -> None:
         self.equations, self._count = equations, len(directions)
         n = equations.n
         self._session = Session(ida_libraries())

@@ -44,7 +44,7 @@ def test_runs_on_two_threads_are_those_on_one_to_the_last_bit(examples):
 
 
 def test_a_run_does_not_hang_on_those_before_it(examples):
-    """Pivots, counters and steps are those of a first run, also where the matrix is factored along a fixed order."""
+    """Pivots, counters and steps are those of a first run, also where blocks are factored in a fixed order."""
     first, again = (prepare(stiffmbs.load_scene(examples / "andrews.yaml"), rtol=1e-6) for _ in range(2))
     before, expected = again.integrate(), first.integrate()
     repeated = again.integrate()

@@ -31,8 +31,10 @@ from stiffmbs.solve.events.discontinuity import Jumps
 from stiffmbs.solve.events.narrow_inputs import hidden_peak
 from stiffmbs.solve.events.refusals import exponential, refuse_beyond_sense
 from stiffmbs.solve.events.restart import straight_on
-from stiffmbs.solve.ida.choice import COSTS, block_cost, sparse_cost
 from stiffmbs.solve.ida.native.parameters import LOOP
+from stiffmbs.solve.linear_solvers.block_lu import BlockLU
+from stiffmbs.solve.linear_solvers.linear_solver import COSTS
+from stiffmbs.solve.linear_solvers.sparse_lu import SparseLU
 from stiffmbs.solve.radau.native import newton as stages
 from stiffmbs.solve.radau.parameters import RADAU
 from stiffmbs.solve.trajectory import Rows, unwatched
@@ -67,7 +69,9 @@ def saved_by_blocks(rods):
     """Return the time that blocks save in a chain of rods, ns."""
     n = 10 * rods
     order = EliminationOrder(np.arange(n), fill=10 * n, updates=100 * n)
-    return sparse_cost(n, order, COSTS.fixed) - block_cost(n, order, 3 * rods) - COSTS.worth_compiling
+    nothing = np.empty(0, dtype=np.int64)
+    pattern = n, nothing, nothing, order
+    return SparseLU(*pattern).cost - BlockLU(*pattern, [nothing] * (3 * rods), nothing).cost - COSTS.worth_compiling
 
 
 def longest_chain_in_blocks():
@@ -268,7 +272,7 @@ def highest_hidden_peak():
 
 TABLE = {
     "linear_solver": {
-        **dict.fromkeys(["fixed", "blocks", "cached_nodes", "far_node"], longest_chain_in_blocks),
+        **dict.fromkeys(["sparse", "blocks", "cached_nodes", "far_node"], longest_chain_in_blocks),
         "worth_compiling": shortest_chain_in_blocks,
     },
     "stability_limit": {
@@ -328,7 +332,7 @@ TABLE = {
 """What each parameter decides, as a number."""
 
 EXPECTED = {
-    "linear_solver.fixed": 1119, "linear_solver.blocks": 1119, "linear_solver.cached_nodes": 1119, "linear_solver.far_node": 1119,
+    "linear_solver.sparse": 1119, "linear_solver.blocks": 1119, "linear_solver.cached_nodes": 1119, "linear_solver.far_node": 1119,
     "linear_solver.worth_compiling": 2,
     "stability_limit.least_distance": 18, "stability_limit.negligible": 16, "stability_limit.gain": 105, "stability_limit.gain_if_faint": 117,
     "stability_limit.step_error": 105, "stability_limit.faint": 8, "stability_limit.interval": 2000, "stability_limit.growth": 5000, "stability_limit.damping_steps": 100,

@@ -113,7 +113,7 @@ def test_a_study_varies_a_parameter():
         ({"newton": {"last": 1.5}}, "newton.last: found 1.5, expected an integer from 1 to 3000"),
         ({"loop": {"most_steps": 0}}, "loop.most_steps: found 0, expected an integer from 1"),
         ({"loop": {"most_steps": 1e12}}, "loop.most_steps: found 1000000000000.0, expected an integer"),
-        ({"linear_solver": {"fixed": [0.1]}}, "linear_solver.fixed: found .*, expected a list of 3 numbers"),
+        ({"linear_solver": {"sparse": [0.1]}}, "linear_solver.sparse: found .*, expected a list of 3 numbers"),
         ({"presolve": {"at_rest": 1e-9}}, "presolve: found the removed parameter 'at_rest': all modes of flexible bodies are"),
         ({"error_test": {"predicted_residual": False}}, "error_test: found the unknown parameter 'predicted_residual'"),
     ],

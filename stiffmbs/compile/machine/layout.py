@@ -53,8 +53,8 @@ CELLS = {FLOAT_CELL: "float", INT_CELL: "int"}
 """Kinds of cells in compiled code."""
 DTYPES = {INTS: np.int64, INDICES: np.int32, FLOATS: np.float64}
 """Data types of arrays; indices are 32-bit to save memory bandwidth in long lists."""
-OWN = OWN_INTS, OWN_INDICES, OWN_FLOATS = "own ints", "own indices", "own floats"
-POINTERS = {INTS: INTS, INDICES: INDICES, FLOATS: FLOATS, OWN_INTS: INTS, OWN_INDICES: INDICES, OWN_FLOATS: FLOATS}
+OWN = OWN_INTS, OWN_FLOATS = "own ints", "own floats"
+POINTERS = {INTS: INTS, INDICES: INDICES, FLOATS: FLOATS, OWN_INTS: INTS, OWN_FLOATS: FLOATS}
 """Kinds of arrays in compiled code, which allocates its own (`stiffmbs.compile.machine.native.memory`)."""
 
 

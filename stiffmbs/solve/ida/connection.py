@@ -8,7 +8,7 @@ import numpy as np
 
 from ...compile.machine.object_code import SHORT
 from ...compile.machine.routines import Routine, together
-from ..linear_solvers.fixed_order import Assembled
+from ..linear_solvers.linear_solver import Assembled
 from .libraries import Libraries, ida_libraries
 from .session import Session
 from .statistics import COUNTERS

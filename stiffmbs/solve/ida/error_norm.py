@@ -6,7 +6,7 @@ import numpy as np
 
 from ...compile.machine.layout import fill
 from ...compile.machine.routines import Routine
-from ..linear_solvers.fixed_order import Assembled
+from ..linear_solvers.linear_solver import Assembled
 from .native.layouts import ERROR_NORM, ITERATION
 from .operations import take_norm
 from .session import Session

@@ -19,7 +19,7 @@ from ...model.settings import RunSettings
 from ..error_control.error_test import ErrorControl
 from ..events.event_functions import EventSearch, StepBound
 from ..events.whole_steps import WholeStepLog
-from ..linear_solvers.fixed_order import FixedOrder
+from ..linear_solvers.linear_solver import LinearSolver
 from .connection import BDF, FUNCTIONS, LOOK_AT_START, LOOK_WITHIN, MODULE, Formula
 from .error_norm import ErrorNorm, Iteration
 from .native.layouts import NATIVE_IDA
@@ -78,7 +78,7 @@ class NativeIda:
         self,
         equations: Equations,
         state: State,
-        matrix: FixedOrder,
+        matrix: LinearSolver,
         rtol: float,
         atol: np.ndarray,
         *,
@@ -202,8 +202,7 @@ class NativeIda:
         self._statistics.forget()
         for each in (self.history, self.whole_steps, self.output_correction, self.error_norm, self._formula):
             each.forget()
-        if self._assembled.pivots is not None:
-            self._assembled.pivots["ready"] = 0
+        self._assembled.forget()
 
     def begin(
         self, t: float, y: np.ndarray, yp: np.ndarray, first_step: float = 0.0, highest_order: int | None = None

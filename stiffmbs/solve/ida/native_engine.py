@@ -16,7 +16,7 @@ from ..error_control.error_test import ErrorControl
 from ..error_control.native.parameters import NEWTON, POLISHING
 from ..error_control.newton import Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
-from ..linear_solvers.fixed_order import FixedOrder
+from ..linear_solvers.linear_solver import LinearSolver
 from ..radau.collocation import radau
 from ..recorded_steps import Piece, StepRecorder
 from ..trajectory import History, Recording, just_after
@@ -59,7 +59,7 @@ class NativeEngine:
     """
 
     def __init__(
-        self, equations: Equations, dynamics: Dynamics, matrix: FixedOrder, settings: RunSettings, control: ErrorControl,
+        self, equations: Equations, dynamics: Dynamics, matrix: LinearSolver, settings: RunSettings, control: ErrorControl,
         formula: Formula | None = None,
     ) -> None:  # fmt: skip
         tolerances, reported = control.tolerances(equations, settings), equations.independent

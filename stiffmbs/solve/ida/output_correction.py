@@ -7,7 +7,7 @@ import numpy as np
 from ...compile.equations import ABSENT, Equations
 from ...compile.machine.layout import fill
 from ...dynamics.dynamics import Dynamics
-from ..linear_solvers.fixed_order import Assembled, FixedOrder
+from ..linear_solvers.linear_solver import Assembled, LinearSolver
 from .native.layouts import OUTPUT_CORRECTION
 from .session import Session
 
@@ -33,7 +33,9 @@ class OutputCorrection:
         """Return True if the memory exists."""
         return self._assembled is not None
 
-    def make_ready(self, session: Session, matrix: FixedOrder, memory: int, y_vector: int, dynamics: Dynamics) -> None:
+    def make_ready(
+        self, session: Session, matrix: LinearSolver, memory: int, y_vector: int, dynamics: Dynamics
+    ) -> None:
         """Create the matrix, its solver and the vectors.
 
         `session`: owner of these objects. `memory`: IDA memory. `y_vector`: vector like those of the iteration.
@@ -89,8 +91,8 @@ class OutputCorrection:
     def forget(self) -> None:
         """Discard the factors and their pivots, and the number of states that could not be corrected."""
         self._cells["factored"], self._cells["failed"] = 0.0, 0
-        if self._assembled is not None and self._assembled.pivots is not None:
-            self._assembled.pivots["ready"] = 0
+        if self._assembled is not None:
+            self._assembled.forget()
 
 
 def _rows_of_motion(equations: Equations) -> tuple[np.ndarray, np.ndarray]:

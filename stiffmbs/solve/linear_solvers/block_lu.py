@@ -9,34 +9,37 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.machine.layout import QUAD, Layout, at_a_line, held_once, packed_with_memory
+from ...compile.machine.layout import QUAD, at_a_line, held_once, packed_with_memory
 from ...compile.machine.routines import Routine
 from ...sparse.block_updates import updates
 from ...sparse.blocks import Blocks, filled
 from ...sparse.elimination_order import EliminationOrder, nodes_in_order
 from ..ida.session import WhenNeeded
-from .fixed_order import FixedOrder, Memory, Pivoted
+from .linear_solver import COSTS, FACTOR_SIGNATURE, SOLVE_SIGNATURE, LinearSolver, Memory
 from .native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER, VELOCITY
+from .sparse_lu import SparseLU
 
 _MODULE = "stiffmbs.solve.linear_solvers.native.block_lu"
-SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
-SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)", unrolled=True)
+FACTOR, SOLVE = Routine(_MODULE, "setup", FACTOR_SIGNATURE), Routine(_MODULE, "solve", SOLVE_SIGNATURE, unrolled=True)
 SEED: Final = 14
 """Seed of the state for the trial of the factors; its entries between 0.5 and 1 expose rounding errors."""
+MOST_STORED = 2 * QUAD
+"""Upper bound of the numbers stored in the blocks, relative to the entries of a triangle of full blocks: in both panels,
+a line of one unknown takes a whole quad."""
 
 
 @dataclass(frozen=True)
-class BlockLU(FixedOrder):
-    """Block LU in a fixed order, checked by its residual; `Pivoted` if the residual is too large.
+class BlockLU(LinearSolver):
+    """Block LU in a fixed order, checked by its residual; `SparseLU` if the residual is too large.
 
     `nodes`: unknowns of each supernode, in the order of elimination. `kinds` of shape (n,): kind of each unknown.
     `parts`: 2 for a complex matrix, given as a real one of twice the size. Its unknowns 2 k and 2 k + 1 are the parts of
     unknown k of the supernodes.
     """
 
-    setup: ClassVar[Routine] = SETUP
+    factor: ClassVar[Routine] = FACTOR
     solve: ClassVar[Routine] = SOLVE
-    layout: ClassVar[Layout] = BLOCK_LU
+    kind: ClassVar[str] = "blocks in a fixed order"
 
     nodes: list[np.ndarray]
     kinds: np.ndarray
@@ -51,9 +54,14 @@ class BlockLU(FixedOrder):
             kinds[at[at != ABSENT]] = kind
         return cls(equations.n, *equations.pattern, order, nodes_in_order(equations, order), kinds)
 
-    def sentence(self) -> str:
-        """Return a description for the summary."""
-        return f"blocks in a fixed order, {self.n} unknowns, {len(self.rows)} entries"
+    @property
+    def cost(self) -> float:
+        """Estimated time of a factorisation with its solutions, ns; infinite if blocks are too many for 32-bit indices."""
+        if MOST_STORED * self.order.fill > np.iinfo(np.int32).max:
+            return np.inf
+        update, entry, unknown, node = COSTS.blocks
+        n_nodes, far = len(self.nodes), COSTS.far_node * max(len(self.nodes) - COSTS.cached_nodes, 0)
+        return update * self.order.updates + entry * self.order.fill + unknown * self.n + node * n_nodes + far
 
     @cached_property
     def blocks(self) -> Blocks:
@@ -81,7 +89,7 @@ class BlockLU(FixedOrder):
 
     def memory(self, array_of: int) -> Memory:
         """Return the memory of the compiled routines, given the address of N_VGetArrayPointer."""
-        with_pivots = Pivoted(self.n, self.rows, self.columns, self.order).memory(array_of)
+        with_pivots = SparseLU(self.n, self.rows, self.columns, self.order).memory(array_of)
         blocks = self.blocks
         widths = [self.parts * right + own for right, own in zip(blocks.right_width, blocks.widths, strict=True)]
         scratch = max([*widths, *blocks.down_width, *(2 * QUAD * size for size in blocks.sizes)])
@@ -95,6 +103,6 @@ class BlockLU(FixedOrder):
         }  # fmt: skip
         content = packed_with_memory(BLOCK_LU, arrays)
         cells = content.view(BLOCK_LU.cells)[0]
-        needed = WhenNeeded(cells, {"setup_pivots": Pivoted.setup, "solve_pivots": Pivoted.solve})
+        needed = WhenNeeded(cells, {"setup_pivots": SparseLU.factor, "solve_pivots": SparseLU.solve})
         cells["compile_pivots"] = needed.address
-        return Memory(content, arrays, with_pivots.factors, needed)
+        return Memory(content, arrays, with_pivots.factors, cells, needed)

@@ -15,12 +15,11 @@ from ...model.settings import RunSettings
 from ...sparse.elimination_order import EliminationOrder
 from ...tuning import parameters_of
 from ..cost import ImplicitCost
-from ..ida.choice import cost_of
 from ..ida.libraries import Libraries, ida_libraries
 from ..ida.session import Session
 from ..ida.statistics import COUNTERS
 from ..linear_solvers.block_lu import BlockLU
-from ..linear_solvers.fixed_order import Assembled, FixedOrder
+from ..linear_solvers.linear_solver import Assembled, LinearSolver
 from .collocation import MOST_BETWEEN, Collocation, radau
 from .condensed import condensed_efforts, indices
 from .interface import COUNTER, REPEAT, RESOLVES, RadauFunctions
@@ -43,14 +42,14 @@ class Pairs(NamedTuple):
     of the real one. `im_re`, `re_im`: entry of each imaginary part.
     """
 
-    matrix: FixedOrder
+    matrix: LinearSolver
     re_re: np.ndarray
     im_im: np.ndarray
     im_re: np.ndarray
     re_im: np.ndarray
 
 
-def in_pairs(matrix: FixedOrder, imaginary: np.ndarray) -> Pairs:
+def in_pairs(matrix: LinearSolver, imaginary: np.ndarray) -> Pairs:
     """Return a complex matrix whose given slots have an imaginary part, with the linear solver of a real matrix."""
     rows, columns = matrix.rows, matrix.columns
     row, column = rows[imaginary], columns[imaginary]
@@ -66,12 +65,12 @@ def in_pairs(matrix: FixedOrder, imaginary: np.ndarray) -> Pairs:
     return Pairs(type(matrix)(**fields, order=_order_in_pairs(matrix)), *parts)
 
 
-def pair_cost(matrix: FixedOrder) -> float:
+def pair_cost(matrix: LinearSolver) -> float:
     """Return the estimated cost of a complex matrix, in that of the real one."""
-    return cost_of(replace(matrix, n=2 * matrix.n, order=_order_in_pairs(matrix))) / cost_of(matrix)
+    return replace(matrix, n=2 * matrix.n, order=_order_in_pairs(matrix)).cost / matrix.cost
 
 
-def _order_in_pairs(matrix: FixedOrder) -> EliminationOrder:
+def _order_in_pairs(matrix: LinearSolver) -> EliminationOrder:
     """Return the elimination order of a complex matrix, with its fill-in: blocks store real and imaginary parts once."""
     own, parts = matrix.order, 2 if isinstance(matrix, BlockLU) else 4
     doubled = (2 * own.unknowns[:, None] + np.arange(2)).ravel()
@@ -90,7 +89,7 @@ class Radau:
     def __init__(
         self,
         equations: Equations,
-        matrix: FixedOrder,
+        matrix: LinearSolver,
         state: State,
         stages: int | None,
         cost: ImplicitCost,
@@ -179,8 +178,7 @@ class Radau:
         cells = self._words.view(RADAU.cells)[0]
         cells["method"], cells["h_factored"] = 0, 0.0
         for each in self._kept[1]:
-            if each.pivots is not None:
-                each.pivots["ready"] = 0
+            each.forget()
 
 
 def _angles(equations: Equations) -> dict[str, Any]:

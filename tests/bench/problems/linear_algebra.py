@@ -1,4 +1,4 @@
-"""`bdf` with the linear solver that it chooses and with pivots searched in every matrix, beside what its kernels take alone."""
+"""`bdf` with the linear solver that it chooses and with the sparse LU, beside what its kernels take alone."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from stiffmbs.compile.terms import TERM_SETS
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.solve.error_control.error_test import CHOSEN
 from stiffmbs.solve.formulations import FORMULATIONS
-from stiffmbs.solve.ida.choice import COSTS, Driven, sparse_cost
+from stiffmbs.solve.ida.choice import Driven
 from stiffmbs.solve.ida.native_engine import NativeEngine
 from stiffmbs.solve.integrator import Integrator
-from stiffmbs.solve.linear_solvers.fixed_order import Pivoted
+from stiffmbs.solve.linear_solvers.sparse_lu import SparseLU
 from stiffmbs.solve.trajectory import Trajectory
 from stiffmbs.sparse.elimination_order import elimination_order
 
@@ -33,15 +33,13 @@ EVALUATIONS = 200
 """Of each set of kernels; the shortest time counts."""
 
 
-def with_pivots(job: Job) -> Job:
-    """The job, to be integrated by `bdf` with threshold pivoting in every matrix."""
+def by_sparse_lu(job: Job) -> Job:
+    """The job, to be integrated by `bdf` with the sparse LU."""
     dynamics, control = job.dynamics, CHOSEN[job.dynamics.system.of_body.dimensions]
     equations = Equations(FORMULATIONS[job.settings.formulation](job.settings), dynamics.system, dynamics.coordinates)
-    order = elimination_order(equations)
-    matrix = Pivoted(equations.n, *equations.pattern, order)
-    cost = sparse_cost(equations.n, order, COSTS.fixed)
+    matrix = SparseLU(equations.n, *equations.pattern, elimination_order(equations))
     engine = partial(NativeEngine, equations, dynamics, matrix, job.settings, control)
-    dynamics.kept("bdf", (job.settings, control), lambda: Driven(equations, cost, engine))
+    dynamics.kept("bdf", (job.settings, control), lambda: Driven(equations, matrix.cost, engine))
     return job
 
 
@@ -88,7 +86,7 @@ class LinearAlgebra:
     def _rows(self, rounds: int) -> list[Row]:
         jobs = [
             prepare(self.make(), solver="bdf", rtol=RTOL),
-            with_pivots(prepare(self.make(), solver="bdf", rtol=RTOL)),
+            by_sparse_lu(prepare(self.make(), solver="bdf", rtol=RTOL)),
         ]
         found = [job.integrate() for job in jobs]
         times: list[list[float]] = [[], []]

@@ -7,7 +7,7 @@ import numpy as np
 from stiffmbs.solve import sampling
 from stiffmbs.solve.ida.native import ida_loop
 from stiffmbs.solve.ida.statistics import StepLog
-from stiffmbs.solve.linear_solvers.native import block_lu, block_trial, fixed_order
+from stiffmbs.solve.linear_solvers.native import block_lu, block_trial
 from stiffmbs.solve.trajectory import Outcome
 from tests.decisions.common import Record, always, never, nothing
 from tests.interpreted import interpreted
@@ -87,19 +87,6 @@ def trial(left=0.5):
     return s
 
 
-def largest_multiplier():
-    """Return the ratio of an entry to its pivot, in quarter octaves, up to which a fixed order serves."""
-
-    def serves(ratio):
-        s = Record(
-            lu=np.zeros(3), update=[], n_lower=1, n_upper=0, slot=[0, 1, 2], weight=np.ones(3), update_start=[0, 0, 0], row=[0],
-        )  # fmt: skip
-        f = Record(n=2, a_start=[0, 2, 3], a=np.array([ratio, 1.0, 1.0]), l_start=[0, 2, 3])
-        return fixed_order._eliminated(s, f)
-
-    return count_while(serves, DOUBLES)
-
-
 def largest_change_of_a_pivot():
     """Return the ratio of a pivot to that of the last trial, in quarter octaves, up to which no trial follows."""
 
@@ -116,7 +103,7 @@ def setups_after_refusals():
     )
     replaced = {
         "holds": always, "block_view": lambda table: s, "_eliminated": nothing, "trusted": never, "_has_pivots": always,
-        "pivoted_view": lambda table: Record(last_flag=0),
+        "sparse_view": lambda table: Record(last_flag=0),
     }  # fmt: skip
     with interpreted(block_lu, **replaced):
         block_lu.setup({0: {block_lu.LU: 0}}, None)
@@ -131,7 +118,6 @@ DECISIONS = {
     "loop.most_tiny": tiny_steps,
     "loop.most_passed": samples_of_a_call,
     "loop.most_items": steps_in_a_log,
-    "pivots.largest": largest_multiplier,
     "pivots.largest_residual": lambda: trial().allowed[0],
     "pivots.refinable": lambda: count_while(lambda left: trial(left).refined, DOUBLES[1:]),
     "pivots.changed": largest_change_of_a_pivot,
@@ -140,6 +126,6 @@ DECISIONS = {
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
     "loop.most_steps": 2048, "loop.samples": 64, "loop.steps_apart": 64, "loop.first_part": 0.01, "loop.most_tiny": 99, "loop.most_passed": 64, "loop.most_items": 1000000,
-    "pivots.largest": 40, "pivots.largest_residual": 1e-09, "pivots.refinable": 53, "pivots.changed": 12, "pivots.most_between_trials": 50,
+    "pivots.largest_residual": 1e-09, "pivots.refinable": 53, "pivots.changed": 12, "pivots.most_between_trials": 50,
 }  # fmt: skip
 """The decisions of the default parameters."""

@@ -20,7 +20,7 @@ from stiffmbs.solve.ida.choice import chosen
 from stiffmbs.solve.ida.ida import NativeIda
 from stiffmbs.solve.ida.statistics import Status
 from stiffmbs.solve.linear_solvers.block_lu import BlockLU
-from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, Pivoted
+from stiffmbs.solve.linear_solvers.sparse_lu import SparseLU
 from stiffmbs.sparse.elimination_order import EliminationOrder, elimination_order
 from stiffmbs.tuning import parameters_of
 from tests.by_callbacks import ByScikitSundae
@@ -42,7 +42,7 @@ class Problem:
         self.yp[at["q"]], self.yp[at["u"]] = start.u, start.acceleration
 
     def native(self, **options):
-        matrix = options.pop("matrix", None) or in_fixed_order(self.equations, Pivoted)
+        matrix = options.pop("matrix", None) or sparse_lu(self.equations)
         atol, state = options.pop("atol", self.atol), options.pop("state", None) or State(self.system)
         return NativeIda(self.equations, state, matrix, self.rtol, atol, **options)
 
@@ -109,34 +109,35 @@ def test_the_steps_are_those_of_scikit_sundae(name, end, request):
     np.testing.assert_allclose(rows[:, at], expected[:, at], rtol=0.1 * problem.rtol, atol=0.1 * problem.rtol)
 
 
-def in_fixed_order(equations, kind=FixedOrder):
-    order = elimination_order(equations)
-    return BlockLU.of(equations, order) if kind is BlockLU else kind(equations.n, *equations.pattern, order)
+def sparse_lu(equations):
+    return SparseLU(equations.n, *equations.pattern, elimination_order(equations))
 
 
-KINDS = {"fixed order": FixedOrder, "blocks in a fixed order": BlockLU}
+def block_lu(equations):
+    return BlockLU.of(equations, elimination_order(equations))
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_all_matrices_give_the_same_motion(chain, kind):
-    equations, times = chain.equations, np.array([0.2, 0.4])
-    matrix, searched = in_fixed_order(equations, KINDS[kind]), in_fixed_order(equations, Pivoted)
-    assert matrix.sentence().startswith(kind)
-    assert searched.sentence().startswith("pivots searched in every matrix")
-    rows, status = chain.through(chain.native(matrix=matrix), times)
-    expected, _ = chain.through(chain.native(matrix=searched), times)
-    assert status is Status.STOP
-    at = np.concatenate([equations.at["q"], equations.at["u"]])
-    np.testing.assert_allclose(rows[:, at], expected[:, at], atol=1e-7)
+KINDS = {"sparse LU": sparse_lu, "blocks in a fixed order": block_lu}
+
+
+def test_both_linear_solvers_give_the_same_motion(chain):
+    rows = []
+    for kind, made in KINDS.items():
+        matrix = made(chain.equations)
+        assert matrix.sentence().startswith(kind)
+        found, status = chain.through(chain.native(matrix=matrix), np.array([0.2, 0.4]))
+        assert status is Status.STOP
+        rows.append(found[:, np.concatenate([chain.equations.at["q"], chain.equations.at["u"]])])
+    np.testing.assert_allclose(*rows, atol=1e-7)
 
 
 def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, monkeypatch):
     monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), worth_compiling=np.inf))
-    assert type(chosen(chain.equations)[0]) is FixedOrder, "blocks would save too little to be compiled"
+    assert isinstance(chosen(chain.equations)[0], SparseLU), "blocks would save too little to be compiled"
     monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), worth_compiling=0.0))
     assert isinstance(chosen(chain.equations)[0], BlockLU)
-    monkeypatch.setattr(choice, "block_cost", lambda *_: np.inf)
-    assert type(chosen(chain.equations)[0]) is FixedOrder
+    monkeypatch.setattr(BlockLU, "cost", np.inf)
+    assert isinstance(chosen(chain.equations)[0], SparseLU)
 
 
 def test_blocks_of_a_long_chain_come_from_memory():
@@ -145,15 +146,17 @@ def test_blocks_of_a_long_chain_come_from_memory():
     def cost(rods):
         n, nodes = 10 * rods, 3 * rods
         order = EliminationOrder(np.arange(n), fill=10 * n, updates=100 * n)
-        return choice.block_cost(n, order, nodes) / choice.sparse_cost(n, order, choice.COSTS.fixed)
+        nothing = np.empty(0, dtype=np.int64)
+        pattern = n, nothing, nothing, order
+        return BlockLU(*pattern, [nothing] * nodes, nothing).cost / SparseLU(*pattern).cost
 
     assert cost(100) < 1 < cost(3000)
 
 
-@pytest.mark.parametrize("kind", [FixedOrder, Pivoted, BlockLU])
+@pytest.mark.parametrize("kind", KINDS)
 def test_pivots_are_sought_anew_where_they_have_become_small(chain, kind):
     """The order found far from the start, where the matrix is another one, serves all the same."""
-    ida = chain.native(matrix=in_fixed_order(chain.equations, kind))
+    ida = chain.native(matrix=KINDS[kind](chain.equations))
     for scale in (1e-6, 1e6):  # cj is the inverse of the step: from 1e6 to 1 and back
         ida.begin(0.0, chain.y, chain.yp, first_step=1e-6 * scale)
         _, status = ida.advance(np.array([0.1]), 0.1, np.empty((1, chain.equations.n)))

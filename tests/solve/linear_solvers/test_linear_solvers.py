@@ -1,4 +1,4 @@
-"""Elimination along a fixed order, by entries, with pivots of every matrix and by blocks, against numpy's dense solution."""
+"""Sparse LU and block LU against numpy's dense solution."""
 
 import ctypes
 
@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.compile.machine.native.tables import FACTORS
 from stiffmbs.compile.machine.routines import Routine
-from stiffmbs.solve.ida.choice import MOST_STORED
-from stiffmbs.solve.linear_solvers.block_lu import BlockLU
-from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, Pivoted
+from stiffmbs.solve.linear_solvers.block_lu import MOST_STORED, BlockLU
 from stiffmbs.solve.linear_solvers.native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER
+from stiffmbs.solve.linear_solvers.sparse_lu import SparseLU
 from stiffmbs.sparse.blocks import filled
 from stiffmbs.sparse.elimination_order import EliminationOrder
 
@@ -38,7 +38,7 @@ class Solver:
 
     def solved(self, dense, b):
         self.factors["a"][:] = dense[self.rows, self.columns]
-        assert self.matrix.setup.call(self.solver.ctypes.data, 0) == 0
+        assert self.matrix.factor.call(self.solver.ctypes.data, 0) == 0
         x = np.full(len(b), np.nan)
         assert self.matrix.solve.call(self.solver.ctypes.data, 0, x.ctypes.data, b.ctypes.data, 0.0) == 0
         return x
@@ -72,7 +72,7 @@ PATTERNS = {
 }
 
 
-@pytest.mark.parametrize("kind", [FixedOrder, Pivoted, BlockLU])
+@pytest.mark.parametrize("kind", [SparseLU, BlockLU])
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("pattern", PATTERNS)
 def test_solutions_are_those_of_numpy(kind, pattern, seed):
@@ -168,7 +168,7 @@ def test_what_keeps_pivots_from_being_compiled_is_told_and_they_are_asked_for_ag
     solver.factors["a"][:] = dense[solver.rows, solver.columns]
     with monkeypatch.context() as patch:
         patch.setattr(Routine, "address", property(lambda routine: interrupted()))
-        assert solver.matrix.setup.call(solver.solver.ctypes.data, 0) < 0
+        assert solver.matrix.factor.call(solver.solver.ctypes.data, 0) < 0
     with pytest.raises(KeyboardInterrupt, match="found while compiling"):
         solver.memory.needed.raise_fault()
     solver.memory.needed.raise_fault()  # it is raised once
@@ -197,6 +197,17 @@ def test_pivots_that_grow_out_of_a_singular_pose_are_taken_again():
         dense = np.array([[pivot, 2.0], [-1.0, 1.0]])
         np.testing.assert_allclose(solver.solved(dense, b), np.linalg.solve(dense, b), rtol=1e-13)
     assert solver.counted("refused") == 1 and not solver.counted("pivoted")
+
+
+def test_a_run_knows_no_pivots_of_earlier_ones():
+    """The first matrix leaves pivots in the sparse LU, the second one of a new run needs none."""
+    solver, b = Solver(BlockLU, np.ones((2, 2), dtype=bool), sizes=(1,)), np.array([1.0, 2.0])
+    solver.solved(np.array([[0.0, 1.0], [1.0, 0.0]]), b)
+    factors = solver.memory.arrays["factors"].view(FACTORS.cells)[0]
+    assert factors["ready"] == 1
+    solver.memory.known["ready"] = 0
+    solver.solved(np.eye(2), b)
+    assert factors["ready"] == 0
 
 
 @pytest.mark.parametrize("relaxed", [1e-12, 1e-10, 1e-8])

@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..layout import DTYPES, FLOATS, INDICES, INTS
+from ..layout import DTYPES, FLOATS, INTS
 from ..translate.code import Code
 from ..translate.values import Operand, Value, builtin
 from .access import compiled
 
 REALLOCATE = "PyMem_RawRealloc"
 """Python's name of the C library's realloc; needs no interpreter lock."""
-INT, INDEX, FLOAT = (np.dtype(DTYPES[kind]).itemsize for kind in (INTS, INDICES, FLOATS))
+INT, FLOAT = (np.dtype(DTYPES[kind]).itemsize for kind in (INTS, FLOATS))
 """Bytes of a number."""
-MOST_INDICES = int(np.iinfo(DTYPES[INDICES]).max)
-"""Largest number of an array of 32-bit indices."""
 
 
 @builtin

@@ -4,7 +4,7 @@ Each supernode is factored with pivots from its own rows (`stiffmbs.solve.linear
 later blocks are lists of small dense products (`stiffmbs.sparse.block_updates`).  Only the order avoids singular
 blocks (`stiffmbs.sparse.elimination_order`), so a trial solution checks the factors by its residual.  If that is
 too large, solutions are refined once, or pivoting over all rows replaces these factors
-(`stiffmbs.solve.linear_solvers.native.pivoted`).  No new trial is made while all pivots stay close to those of the last one.
+(`stiffmbs.solve.linear_solvers.native.sparse_lu`).  No new trial is made while all pivots stay close to those of the last one.
 
 References
 ----------
@@ -31,7 +31,7 @@ from stiffmbs.solve.linear_solvers.native.node_factors import (
 )
 from stiffmbs.solve.linear_solvers.native.pair_factors import inverted_of_pairs, triangular_of_pairs
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
-from stiffmbs.solve.linear_solvers.native.pivoted import pivoted_view
+from stiffmbs.solve.linear_solvers.native.sparse_lu import sparse_view
 from stiffmbs.sparse import block_updates
 
 LU = list(BLOCK_LU).index("lu")
@@ -106,6 +106,7 @@ def _forget(s):
     s.refused = 0
     s.refined = 0
     s.ready = 1
+    factors_view(s.factors).ready = 0
 
 
 @compiled
@@ -145,7 +146,7 @@ def setup(solver, matrix):
         s.last_flag = NOT_COMPILED
         return int32(FAILED)
     outcome = call_int(s.setup_pivots, (s.with_pivots, matrix))
-    s.last_flag = pivoted_view(ints(s.with_pivots[CONTENT])).last_flag
+    s.last_flag = sparse_view(ints(s.with_pivots[CONTENT])).last_flag
     return int32(outcome)
 
 

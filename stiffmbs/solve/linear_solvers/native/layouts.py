@@ -3,21 +3,13 @@
 Letters of these tables in native functions: docs/project/notation.md.
 """
 
-from stiffmbs.compile.machine.layout import FLOATS, INDICES, INT, INT_CELL, INTS, OWN_FLOATS, OWN_INDICES, Layout
+from stiffmbs.compile.machine.layout import FLOATS, INDICES, INT, INT_CELL, INTS, OWN_FLOATS, Layout
 
-FIXED_ORDER = Layout({
-    "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "slot": INDICES, "weight": FLOATS,
-    "ready": INT_CELL, "n_lower": INT_CELL, "n_upper": INT_CELL,
-    "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES, "mark": INTS, "x": FLOATS,
+SPARSE_LU = Layout({
+    "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "entries": FLOATS,
 })  # fmt: skip
-"""Linear solver of IDA with fixed pivots (`stiffmbs.solve.linear_solvers.native.fixed_order`).  It begins like the content of the
-SUNDIALS solver that it replaces: number of unknowns, pivots, last flag.  `ready` is 1 if pivots are known; `n_lower`
-and `n_upper` count the entries off the diagonal.  Long lists have 32-bit numbers to save memory access."""
-
-PIVOTED = Layout({
-    "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "weight": FLOATS,
-})  # fmt: skip
-"""Linear solver with pivots searched in every matrix (`stiffmbs.solve.linear_solvers.native.pivoted`)."""
+"""Sparse LU (`stiffmbs.solve.linear_solvers.native.sparse_lu`).  It begins like the content of the SUNDIALS solver that it
+replaces: number of unknowns, pivots, last flag.  `entries` keeps those of the matrix while it is scaled."""
 
 MULTIPLIER, COORDINATE, VELOCITY = range(3)
 """Kinds of unknowns in `BLOCK_LU`."""
@@ -33,7 +25,7 @@ BLOCK_LU = Layout({
     "pivot": FLOATS, "tried": FLOATS, "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
 })  # fmt: skip
 """Linear solver by dense blocks (`stiffmbs.solve.linear_solvers.native.block_lu`).  `with_pivots` holds the address of the
-table of `PIVOTED` that replaces inaccurate blocks; `compile_pivots` is the C function that stores the addresses
+table of `SPARSE_LU` that replaces inaccurate blocks; `compile_pivots` is the C function that stores the addresses
 of its routines in the next two cells.  `ready` is 1 if the counts are of this run.  `pivoted` is 1 for current factors
 with pivoting, `waits` the number of further ones, `serves` that of factorisations covered by the last trial, `refused`
 that of failed trials.  `refined` is 1 if solutions are refined; `panels` is the start of the factors.  `order` holds

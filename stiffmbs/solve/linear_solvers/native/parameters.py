@@ -9,13 +9,11 @@ from ....tuning import tuned
 
 @dataclass(frozen=True)
 class PivotParameters:
-    """Parameters of the accuracy of factors in a fixed order.
+    """Parameters of the accuracy of factors by blocks.
 
     Source: ``tests/solve/linear_solvers``, with scenes whose stiffnesses differ by twelve decades.
     """
 
-    largest: float = 1e3
-    """Ratio of an entry to the pivot of its column above which the pivot is rejected."""
     largest_residual: float = 1e-9
     """Allowed residual of a trial solution by blocks, relative to the terms of a row."""
     refinable: float = 1e-5
