@@ -83,6 +83,8 @@ from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
 from .studies.handling.study import Handling as Handling
 from .studies.handling.study import handling as handling
+from .studies.joint_space.space import JointSpace as JointSpace
+from .studies.joint_space.space import joint_space as joint_space
 from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
 from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity

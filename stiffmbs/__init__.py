@@ -40,6 +40,7 @@ _LATER = {
     "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
     "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance", "VehicleOptions": ".studies.suspension.vehicle",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
+    "JointSpace": ".studies.joint_space.space", "joint_space": ".studies.joint_space.space",
     "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw", "html": ".show.html", "plot": ".show.figure",
     "summary": ".show.summary", "open": ".live.page",

@@ -49,7 +49,7 @@ def weights(count: int, given: Collection[int]) -> np.ndarray:
     return found
 
 
-def parts_of(change: float) -> int:
+def parts_of(change: float, what: str = "reset") -> int:
     """Return the number of poses to which Newton's iteration follows a change of a coordinate, rad or sizes.
 
     Raises InputError if they are too many.
@@ -57,7 +57,7 @@ def parts_of(change: float) -> int:
     parts = max(1, math.ceil(change / PART))
     if parts > MOST_PARTS:
         raise InputError(
-            f"reset: found a joint coordinate {change:.3g} rad (or sizes of the mechanism) from its start, expected at most {MOST_PARTS * PART:g}"
+            f"{what}: found a joint coordinate {change:.3g} rad (or sizes of the mechanism) from its start, expected at most {MOST_PARTS * PART:g}"
         )
     return parts
 
@@ -99,7 +99,7 @@ class JointPose:
         """
         goal, weight = np.zeros(len(self._joints.names)), weights(len(self._joints.names), given)
         goal[list(given)] = [*given.values()]
-        matrix, rates, found = self._matrix(), self._rate_matrix(), u.copy()
+        matrix, rates, found = self._matrix(), self.rate_matrix(), u.copy()
         for factor in (weight, np.where(weight < 1.0, 0.0, 1.0)):
             left = np.concatenate([self._rate_violation(found), factor * (rates @ found - goal)])
             found -= _least_squares(np.vstack([matrix, factor[:, None] * rates]), left)
@@ -124,7 +124,7 @@ class JointPose:
             left = float(np.abs(violations).max(initial=0.0))
             if left <= CONSISTENCY.position_tolerance:
                 break
-            matrix = np.vstack([self._matrix(), weight[:, None] * self._rate_matrix()])
+            matrix = np.vstack([self._matrix(), weight[:, None] * self.rate_matrix()])
             move = -_least_squares(matrix, violations)
             longest = np.abs(move / self._unit).max(initial=0.0) / PART  # a longer move leaves the linear range
             self.q[:] = self._dynamics.system.of_body.moved(self.q, move / max(1.0, longest))
@@ -138,7 +138,7 @@ class JointPose:
         self._joints.follow(self._t)
         return self._joints.coordinates.copy()
 
-    def _rate_matrix(self) -> np.ndarray:
+    def rate_matrix(self) -> np.ndarray:
         """Return the rates of joint coordinates by velocities, shape (coordinates, n_u)."""
         columns = []
         for k in range(len(self._u)):

@@ -60,3 +60,30 @@ JOINT_COORDINATES = Layout({
 set ``output`` has the terms of joints alone.  `counter` is the coordinate that counts the turns of an angle, `FOLLOWED` for an angle
 without one, and `WITHOUT_TURNS` for other coordinates."""
 FOLLOWED, WITHOUT_TURNS = -1, -2
+
+JOINT_TREE = Layout({
+    "state": INTS, "n_bodies": INT, "n_v": INT,
+    "n_frames": INT, "parent": INTS, "free": INTS, "at_q": INTS, "at_v": INTS, "screw": FLOATS, "reference": FLOATS, "frame": FLOATS, "column": FLOATS,
+    "body_frame": INTS, "body_reference": FLOATS, "path_start": INTS, "path": INTS,
+    "N": FLOATS, "drift": FLOATS, "mass": FLOATS, "M": FLOATS, "h": FLOATS,
+    "n_f": INT, "f_source": INTS, "f_row": INTS,
+    "n_inertia": INT, "inertia_source": INTS, "inertia_row": INTS, "inertia_column": INTS,
+    "n_loops": INT, "C": FLOATS, "J": FLOATS, "gamma": FLOATS,
+    "n_c": INT, "c_source": INTS, "c_row": INTS, "n_j": INT, "j_source": INTS, "j_row": INTS, "j_column": INTS,
+    "n_gamma": INT, "gamma_source": INTS, "gamma_row": INTS, "n_ja": INT, "ja_source": INTS, "ja_row": INTS, "ja_column": INTS,
+    "n_counters": INT, "counter": INTS, "counter_from": INTS,
+})  # fmt: skip
+"""Spanning tree of a mechanism (`stiffmbs.dynamics.joint_tree`).
+
+Frames: index of the frame before each, 0 for ground and k + 1 for frame k. Then 1 for a free body, first coordinate and first rate. The screw is
+at the reference pose: velocity of the point at the origin and angular velocity. The reference is a screw's coordinate, or position and
+quaternion of a free body. `frame` is memory for `FRAME` numbers of each frame from ground on, `column` the screw of each rate at the current pose.
+Bodies: frame, `BODY` numbers at the reference pose, and the rates that move each. Results: N of u = N v, N' v, M and the bias of the tree's
+rates. Results of the loops' equations: C, J N, and J u' at zero rates of v. Entries of forces and inertia follow, and of C and J in the set ``motion``.
+Those of J u' and J in the set ``acceleration`` are next, then counters of turns with the coordinates they count."""
+
+FRAME = 29
+"""Numbers of a frame. They begin with quaternion and position of its displacement from the reference pose, and the rotation matrix by rows. Velocity
+at the origin and angular velocity follow, their rates at zero rates of v, and the angle of a planar frame with its turns."""
+BODY = 8
+"""Numbers of a body at the reference pose: position, quaternion, and angle in the plane."""

@@ -1,0 +1,1 @@
+"""Models in the coordinates of their joints."""
