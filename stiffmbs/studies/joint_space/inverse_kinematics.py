@@ -16,8 +16,10 @@ ORTHOGONAL: Final = 1e-6
 
 DAMPING: Final = 1e-3
 """First damping, relative to the square of the gap."""
-LESS, MORE = 0.2, 10.0
-"""Factors of the damping after a move that came nearer, and after one that did not."""
+LESS: Final = 0.2
+"""Factor of the damping after a move that came nearer."""
+MORE: Final = 10.0
+"""Factor of the damping after a move that did not."""
 LONGEST: Final = 0.5
 """Longest move of a coordinate, rad or sizes of the mechanism."""
 

@@ -154,7 +154,7 @@ def gaps_in_output():
 
     dynamics = Record(report=report, system=Record(of_body=body))
     with patch.multiple(
-        missing_rows, _unknown=nothing, _joined=nothing, with_stiff_forces=nothing, lengths_of_steps=nothing
+        missing_rows, _unknown=nothing, joined_rows=nothing, with_stiff_forces=nothing, lengths_of_steps=nothing
     ):
         return len(missing_rows.reported(dynamics, Record(t=t, q=zeros, u=zeros), False, 1e-6)[1])
 

@@ -60,7 +60,7 @@ def samples_of_a_call():
     dynamics = Record(system=Record(sampled=np.array([True]), first_state=0), input_features=nothing)
     with interpreted(sampling, **replaced):
         sampling.solved_between_samples(
-            solve, dynamics, Record(q=at_rest, u=None), Record(start=0.0, end=1.0, times=[]), None, None
+            solve, dynamics, Record(q=at_rest, u=None), Record(start=0.0, end=1.0, times=[], monitor=None), None, None
         )
     return max(taken)
 
