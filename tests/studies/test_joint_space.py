@@ -549,3 +549,15 @@ def test_inverse_kinematics_of_a_body_with_few_motions():
     for angle in (0.3, 1.0, 2.5):
         goal = space.pose("arm", [angle])
         np.testing.assert_allclose(space.inverse_kinematics("arm", goal.position, goal.rotation), [angle], atol=1e-9)
+
+
+@pytest.mark.parametrize("joint", ["bearing", "pin", "pivot", "knee"])
+def test_a_drive_of_any_joint_of_a_loop_is_an_actuator(joint):
+    """Its power is that of the effort along the crank's angle."""
+    model = four_bar_model(0.3, 0.8627, 0.4894, 0.7033, 2.3)
+    space = stiffmbs.joint_space(model, independent=["bearing.angle"])
+    needed = space.inverse_dynamics([2.0], [1.5], [2.0])
+    model.add("motor", stiffmbs.Drive(joint=joint, position="t"))
+    driven = stiffmbs.joint_space(model, independent=["bearing.angle"])
+    rate = driven.state([2.0], [1.5]).channels[f"{joint}.angle_rate"]
+    np.testing.assert_allclose(driven.actuator_efforts([2.0], [1.5], [2.0]).values * rate, needed * 1.5, rtol=1e-8)

@@ -57,6 +57,11 @@ def places_of(actuators: tuple[str, ...], places: Mapping[str, int], drives: Map
     found = []
     for name in actuators:
         coordinate = drives.get(name, name)
+        if coordinate not in places and name in drives:
+            raise InputError(
+                f"actuator '{name}': found a drive of {coordinate or 'a formula'}, expected one along a coordinate of a joint in the "
+                "spanning tree; choose its coordinate by `independent`"
+            )
         if coordinate not in places:
             raise InputError(
                 f"actuator '{name}': found no such coordinate or drive{instead_of(name, [*places, *drives])}; an actuator acts along "

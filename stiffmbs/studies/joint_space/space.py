@@ -111,7 +111,8 @@ class JointSpace:
         self._size = system.size or 1.0
         joints = JointCoordinates(system, data.joints)
         given = named("independent", independent)
-        chosen = SpanningTree(job.dynamics, joints, self._t, job.start.q, frozenset(given)).found()
+        first = frozenset(given), frozenset(drives.values())
+        chosen = SpanningTree(job.dynamics, joints, self._t, job.start.q, first).found()
         self._all, tree = chosen, chosen.tree
         refuse_velocities(system, tree.loops)
         self._state = State(system)
