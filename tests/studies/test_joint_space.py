@@ -188,6 +188,20 @@ def test_redundant_actuators_share_the_least_efforts():
     assert "least norm" in repr(found)
 
 
+def test_efforts_that_a_tiny_mechanism_misses_are_told():
+    scene = """
+bodies:
+  a: {mass: 1e-9, inertia: 1e-18, position: [1e-4, 0]}
+  b: {mass: 1e-9, inertia: 1e-18, position: [3e-4, 0]}
+joints:
+  h: {type: revolute, i: {body: a, point: [-1e-4, 0]}, j: ground}
+  k: {type: revolute, i: {body: b, point: [-1e-4, 0]}, j: {body: a, point: [1e-4, 0]}}
+"""
+    space = stiffmbs.joint_space(stiffmbs.read_scene(scene))
+    with pytest.raises(InputError, match=r"along k.angle_rate is missing"):
+        space.actuator_efforts([0.1, 0.2], [0, 0], [1, 1], ["h.angle"])
+
+
 def chain_in_space(rng):
     """A tree in space with revolute, prismatic, cylindrical, universal and spherical joints, and springs."""
     model = spatial.Model("chain", gravity=(0.3, -0.5, -9.81))
@@ -427,6 +441,10 @@ def test_driven_coordinates_may_be_independent_and_guides_too():
         (lambda s: s.inverse_kinematics("slider"), "found no position and no rotation"),
         (lambda s: s.inverse_kinematics("slider", [1.0]), r"position: found \[1\.\], expected finite numbers"),
         (lambda s: s.inverse_kinematics("slider", rotation=2 * np.eye(2)), "a matrix that is no rotation"),
+        (lambda s: s.inverse_kinematics("slider", [0.6, 0.0], tolerance=0.0), "tolerance: found 0, expected a number greater"),
+        (lambda s: s.linearise(inputs="bearing.angle"), "inputs: found the text 'bearing.angle', expected a list"),
+        (lambda s: s.linearise(outputs="rod.x"), "outputs: found the text 'rod.x', expected a list"),
+        (lambda s: s.actuator_efforts([1.0], [0.0], [1.0], 3), "actuators: found 3, expected a list of names"),
         (lambda s: s.linearise(inputs=["engine"]), "input 'engine': found no such force"),
         (lambda s: s.linearise(outputs=["pin.fx"]), "output 'pin.fx': found no coordinate"),
     ],
@@ -440,7 +458,8 @@ def test_invalid_coordinates_are_refused():
     for given, sentence in (
         (["crank"], "independent: found 'crank'"),
         (["bearing.angle", "pin.angle"], "found 2 coordinates, expected 1"),
-        ("bearing.angle", "expected a list of names"),
+        ("bearing.angle", "independent: found the text 'bearing.angle', expected a list of names"),
+        (3, "independent: found 3, expected a list of names"),
     ):
         with pytest.raises(InputError, match=sentence):
             stiffmbs.joint_space(crank_slider(), independent=given)
@@ -481,3 +500,78 @@ def test_friction_by_reactions_is_refused():
 def test_rolling_is_refused():
     with pytest.raises(InputError, match="constrain velocities only"):
         stiffmbs.joint_space("examples/rolling_disc.yaml")
+
+
+def four_bar(crank, rod, rocker, base, angle):
+    """Joints B and C of a four-bar with its rocker on the left, as complex numbers."""
+    B = crank * np.exp(1j * angle)
+    reach = abs(base - B)
+    inner = math.acos((rod**2 + reach**2 - rocker**2) / (2 * rod * reach))
+    return B, B + rod * (base - B) / reach * np.exp(1j * inner)
+
+
+def four_bar_model(crank, rod, rocker, base, angle):
+    B, C = four_bar(crank, rod, rocker, base, angle)
+    model = Model("four-bar", gravity=(0, 0))
+    ends = {"crank": (0j, B, crank), "rod": (B, C, rod), "rocker": (base + 0j, C, rocker)}
+    bar = {}
+    for name, (start, end, length) in ends.items():
+        middle = (start + end) / 2
+        own = Body(mass=1, inertia=0.02, position=(middle.real, middle.imag), angle=float(np.angle(end - start)))
+        bar[name] = model.add(name, own)
+        bar[name] = bar[name].at(-length / 2, 0), bar[name].at(length / 2, 0)
+    model.add("bearing", Revolute(i=bar["crank"][0], j="ground"))
+    model.add("pin", Revolute(i=bar["rod"][0], j=bar["crank"][1]))
+    model.add("pivot", Revolute(i=bar["rocker"][0], j=stiffmbs.Marker(body="ground", point=(base, 0))))
+    model.add("knee", Revolute(i=bar["rocker"][1], j=bar["rod"][1]))
+    return model
+
+
+@pytest.mark.parametrize("lengths", [(0.3, 0.8627, 0.4894, 0.7033), (0.3, 0.8, 0.403, 0.701)])
+def test_loops_remain_closed_in_the_same_way(lengths):
+    """The rocker remains on its side at all angles of the crank, though its other side comes near at 0 or 180 degrees."""
+    space = stiffmbs.joint_space(four_bar_model(*lengths, 2.3), independent=["bearing.angle"])
+    for change in np.linspace(-7, 7, 29):
+        q = space.q + change
+        _, C = four_bar(*lengths, q[0])
+        middle = (lengths[3] + C) / 2
+        np.testing.assert_allclose(space.pose("rocker", q).position, [middle.real, middle.imag], atol=1e-8)
+
+
+def test_dead_point_on_the_way_is_reported():
+    """A parallelogram may continue in two ways beyond 180 degrees."""
+    space = stiffmbs.joint_space(four_bar_model(0.3, 0.8, 0.3, 0.8, 1.0), independent=["bearing.angle"])
+    np.testing.assert_allclose(space.pose("rod", [3.0]).rotation, np.eye(2), atol=1e-6)
+    with pytest.raises(SolverError, match=r"bearing\.angle do not determine the motion at .* = 3\.14.*, on the way"):
+        space.mass_matrix([4.0])
+
+
+def test_both_signs_of_a_quaternion_are_one_pose():
+    space = stiffmbs.joint_space("examples/heavy_top.yaml")
+    for q in (space.q, space.moved(space.q, [0.1, 0.2, 0.3])):
+        other = np.array([*q[:3], *-q[3:]])
+        np.testing.assert_allclose(space.mass_matrix(other), space.mass_matrix(q), atol=1e-12)
+        np.testing.assert_allclose(space.moved(other, [0, 0, 0]), other, atol=1e-12)
+
+
+def test_inverse_kinematics_of_a_body_with_few_motions():
+    """One joint in space: five of the six rows of the pose depend on one."""
+    model = spatial.Model("arm", gravity=(0, 0, 0))
+    arm = model.add("arm", spatial.Body(mass=1, inertia=(0.1, 0.1, 0.1), position=(0.5, 0, 0)))
+    model.add("hinge", spatial.Revolute(i=arm.at(-0.5, 0, 0), j="ground"))
+    space = stiffmbs.joint_space(model)
+    for angle in (0.3, 1.0, 2.5):
+        goal = space.pose("arm", [angle])
+        np.testing.assert_allclose(space.inverse_kinematics("arm", goal.position, goal.rotation), [angle], atol=1e-9)
+
+
+@pytest.mark.parametrize("joint", ["bearing", "pin", "pivot", "knee"])
+def test_a_drive_of_any_joint_of_a_loop_is_an_actuator(joint):
+    """Its power is that of the effort along the crank's angle."""
+    model = four_bar_model(0.3, 0.8627, 0.4894, 0.7033, 2.3)
+    space = stiffmbs.joint_space(model, independent=["bearing.angle"])
+    needed = space.inverse_dynamics([2.0], [1.5], [2.0])
+    model.add("motor", stiffmbs.Drive(joint=joint, position="t"))
+    driven = stiffmbs.joint_space(model, independent=["bearing.angle"])
+    rate = driven.state([2.0], [1.5]).channels[f"{joint}.angle_rate"]
+    np.testing.assert_allclose(driven.actuator_efforts([2.0], [1.5], [2.0]).values * rate, needed * 1.5, rtol=1e-8)

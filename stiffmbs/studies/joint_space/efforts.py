@@ -14,7 +14,7 @@ from ...model.model_data import ModelData
 from ...reading.did_you_mean import instead_of
 
 UNREACHED: Final = 1e-9
-"""Largest effort that actuators may leave, relative to the largest effort."""
+"""Largest effort that actuators may leave, relative to the largest effort, or to that of unit accelerations."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,11 @@ def places_of(actuators: tuple[str, ...], places: Mapping[str, int], drives: Map
     found = []
     for name in actuators:
         coordinate = drives.get(name, name)
+        if coordinate not in places and name in drives:
+            raise InputError(
+                f"actuator '{name}': found a drive of {coordinate or 'a formula'}, expected one along a coordinate of a joint in the "
+                "spanning tree; choose its coordinate by `independent`"
+            )
         if coordinate not in places:
             raise InputError(
                 f"actuator '{name}': found no such coordinate or drive{instead_of(name, [*places, *drives])}; an actuator acts along "
@@ -66,15 +71,17 @@ def places_of(actuators: tuple[str, ...], places: Mapping[str, int], drives: Map
     return found
 
 
-def least_efforts(actuators: tuple[str, ...], along: np.ndarray, needed: np.ndarray, names: tuple[str, ...]) -> Efforts:
+def least_efforts(
+    actuators: tuple[str, ...], along: np.ndarray, needed: np.ndarray, scale: float, names: tuple[str, ...]
+) -> Efforts:
     """Return the efforts of least norm with along^T efforts = needed.
 
-    `along` of shape (actuators, n): rates of the actuators by the independent rates. `needed` of shape (n,). Raises InputError if
-    the actuators cannot give these efforts.
+    `along` of shape (actuators, n): rates of the actuators by the independent rates. `needed` of shape (n,). `scale`: size of
+    efforts. Raises InputError if the actuators cannot give these efforts.
     """
     values, _, rank, _ = np.linalg.lstsq(along.T, needed, rcond=None)
     missing = needed - along.T @ values
-    if np.abs(missing).max(initial=0.0) > UNREACHED * max(1.0, float(np.abs(needed).max(initial=0.0))):
+    if np.abs(missing).max(initial=0.0) > UNREACHED * max(scale, float(np.abs(needed).max(initial=0.0))):
         k = int(np.argmax(np.abs(missing)))
         raise InputError(
             f"actuators {', '.join(actuators) or 'none'}: they cannot give these accelerations, an effort of {missing[k]:.6g} along "

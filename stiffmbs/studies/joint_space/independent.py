@@ -11,11 +11,14 @@ from ...errors import InputError
 from ...reading.did_you_mean import instead_of
 
 
-def named(names: Sequence[str] | None) -> list[str]:
-    """Return a list of names; raise an InputError if it is a text."""
+def named(what: str, names: Sequence[str] | None) -> list[str]:
+    """Return a list of names; raise an InputError if it is a text or no list."""
     if isinstance(names, str):
-        raise InputError(f"found the text '{names}', expected a list of names")
-    return list(names or ())
+        raise InputError(f"{what}: found the text '{names}', expected a list of names")
+    try:
+        return [] if names is None else list(names)
+    except TypeError:
+        raise InputError(f"{what}: found {names!r}, expected a list of names") from None
 
 
 def places_in(given: list[str], names: tuple[str, ...], count: int) -> list[int]:

@@ -20,6 +20,8 @@ LESS: Final = 0.2
 """Factor of the damping after a move that came nearer."""
 MORE: Final = 10.0
 """Factor of the damping after a move that did not."""
+ROUNDING: Final = 1e-12
+"""Singular value of a Jacobian that is rounding, relative to the largest."""
 LONGEST: Final = 0.5
 """Longest move of a coordinate, rad or sizes of the mechanism."""
 
@@ -119,7 +121,11 @@ def nearest(
             break
         J = wanted.rows(reach.jacobian(q) * reach.unit)
         weight = damping * (gap @ gap + tolerance**2)
-        move = J.T @ np.linalg.solve(J @ J.T + weight * np.eye(len(J)), gap)
+        along, values, across = np.linalg.svd(J, full_matrices=False)
+        used = values > ROUNDING * values.max(
+            initial=0.0
+        )  # J has dependent rows if the marker has fewer motions than the gap
+        move = across[used].T @ (values[used] / (values[used] ** 2 + weight) * (along.T @ gap)[used])
         move /= max(1.0, float(np.abs(move).max(initial=0.0)) / LONGEST)
         try:
             trial = reach.moved(q, reach.unit * move)

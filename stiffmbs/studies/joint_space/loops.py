@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ...compile.bodies import SPACE
+from ...compile.quaternions import CONJUGATE, times
 from ...dynamics.joint_tree import Frame, JointTree
 from ...dynamics.native.parameters import CONSISTENCY
 from ...errors import InputError, SolverError
@@ -18,6 +20,31 @@ WORTH_CHOOSING: Final = 1e-2
 """Part of a rate outside those that follow already, from which on it may follow, too."""
 CLOSED: Final = 1e-14
 """Gap of a loop at which the iteration ends, sizes of the mechanism."""
+
+SAME_SENSE: Final = 0.1
+"""Smallest real part of the eigenvalues of J(q1)^-1 J(q2) at two poses of one motion."""
+SHARPEST: Final = 0.5
+"""Largest change of the direction of a motion between these poses."""
+
+
+@dataclass(frozen=True)
+class Passed:
+    """Pose on a motion: coordinates of the tree, derivatives of the loops by dependent rates, and direction of the tree's rates."""
+
+    q: np.ndarray
+    equations: np.ndarray
+    direction: np.ndarray
+
+    def leads_to(self, other: Passed) -> bool:
+        """Return True if the loops are closed in the same way at another pose.
+
+        Beyond a singular pose, as by the other elbow of an arm, J(q1)^-1 J(q2) has a negative eigenvalue. Where two motions
+        cross, one of them turns sharply instead.
+        """
+        if np.linalg.norm(other.direction - self.direction) > SHARPEST:
+            return False
+        change = np.linalg.lstsq(self.equations, other.equations, rcond=None)[0]
+        return bool(np.linalg.eigvals(change).real.min(initial=1.0) > SAME_SENSE)
 
 
 class Loops:
@@ -82,6 +109,15 @@ class Loops:
         found: np.ndarray = (solution.T * unit).T
         return found
 
+    def along(self, way: np.ndarray) -> Passed:
+        """Return the pose of the tree's J on a motion with the independent rates `way`."""
+        rates = self.map() @ way / self._unit
+        return Passed(
+            self._tree.q.copy(),
+            self._tree.J[:, self.dependent] * self._unit[self.dependent],
+            rates / (np.linalg.norm(rates) or 1.0),
+        )
+
     def close(self) -> bool:
         """Move dependent coordinates until the loops are closed; return False if they are not."""
         tree, size = self._tree, self._tree.state.system.size or 1.0
@@ -105,6 +141,15 @@ def move_tree(tree: JointTree, move: np.ndarray) -> None:
     """Move the coordinates of a tree by rates times time; quaternions remain normalised."""
     for frame in tree.tree.frames:
         tree.q[frame.at_q : frame.at_q + frame.widths[0]] = moved(frame, tree.q, move)
+
+
+def difference(frame: Frame, first: np.ndarray, goal: np.ndarray) -> np.ndarray:
+    """Return the rates of one frame from some coordinates of the tree to others."""
+    there = slice(frame.at_q, frame.at_q + frame.widths[0])
+    change = goal[there] - first[there]
+    if frame.screw is not None:
+        return change
+    return np.concatenate([change[:3], 2.0 * times(CONJUGATE * first[there][3:], goal[there][3:])[1:]])
 
 
 def moved(frame: Frame, q: np.ndarray, move: np.ndarray) -> np.ndarray:

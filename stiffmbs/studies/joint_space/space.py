@@ -25,12 +25,14 @@ from .efforts import Efforts, coordinates_of_drives, least_efforts, places_of
 from .independent import named, order_of, places_in, refuse_others, refuse_velocities
 from .inverse_kinematics import Reach, Wanted, nearest
 from .linear import LinearInputs, joint_equations, refuse_reactions
-from .loops import Loops, move_tree
+from .loops import Loops, difference, move_tree
 from .markers import MarkerPose, PlacedMarker, placed_marker
 from .spanning_tree import SpanningTree
 
 NO_MASS: Final = 1e-7
 """Smallest pivot of the Cholesky factor of a mass matrix scaled to a unit diagonal, below which a motion has no mass: the root of rounding."""
+SHORTEST: Final = 1e-6
+"""Shortest part of a motion of loops from the start."""
 Array = np.ndarray | Sequence[float]
 
 
@@ -85,7 +87,7 @@ class JointSpace:
     All arrays have the order of `coordinates` (q) and `rates` (v, accelerations, efforts), in SI units. Joints come in the order of
     `Simulation.joint_coordinates`; those that loops determine are left out. Bodies follow that no joint with such coordinates carries.
     In space they have the position of the centre of mass and the quaternion of their own axes, of which dependent parts are corrected.
-    Their rates are the velocity in ground axes and the angular velocity in own axes.
+    Their rates are the velocity in ground axes and the angular velocity in own axes. Each thread needs its own `JointSpace`.
 
     The equations of motion are M(q) v' + h(q, v) = tau. With the velocities u = N(q) v of all bodies, M = N^T M_u N and
     h = N^T (M_u N' v - f), where f has the gyroscopic terms (Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, 1989,
@@ -96,7 +98,7 @@ class JointSpace:
     coordinates, rates : tuple of str
         Channels of q and of v.
     q, v : ndarray
-        Values at the start.
+        Values of the assembled start without drives; a driven coordinate has the value of the described pose.
     """
 
     def __init__(
@@ -108,8 +110,9 @@ class JointSpace:
         refuse_others(system)
         self._size = system.size or 1.0
         joints = JointCoordinates(system, data.joints)
-        given = named(independent)
-        chosen = SpanningTree(job.dynamics, joints, self._t, job.start.q, frozenset(given)).found()
+        given = named("independent", independent)
+        first = frozenset(given), frozenset(drives.values())
+        chosen = SpanningTree(job.dynamics, joints, self._t, job.start.q, first).found()
         self._all, tree = chosen, chosen.tree
         refuse_velocities(system, tree.loops)
         self._state = State(system)
@@ -220,14 +223,14 @@ class JointSpace:
         InputError, SolverError
             As for `mass_matrix`; and if an actuator is unknown, or if the actuators cannot give the accelerations.
         """
-        names = tuple(self._drives) if actuators is None else tuple(named(actuators))
+        names = tuple(self._drives) if actuators is None else tuple(named("actuators", actuators))
         a = self._array("acceleration", acceleration, self.rates)
         own = {name.removesuffix("_rate"): k for k, name in enumerate(self._all.rates)}
         places = places_of(names, own, self._drives)
         self._move_to(q)
         M, h, D = self._dynamics(v)
         along = (np.eye(len(a)) if D is None else D)[places]
-        return least_efforts(names, along, M @ a + h, self.rates)
+        return least_efforts(names, along, M @ a + h, float(np.abs(M).max(initial=0.0)), self.rates)
 
     def forward_dynamics(self, q: Array, v: Array, efforts: Array | None = None) -> np.ndarray:
         """Return the accelerations v' by efforts on the coordinates, by default none, shape (n,).
@@ -330,6 +333,8 @@ class JointSpace:
         InputError
             If an argument is invalid, or if no such coordinates are found.
         """
+        if not tolerance > 0.0:
+            raise InputError(f"tolerance: found {tolerance:g}, expected a number greater than 0")
         wanted = Wanted.of(position, rotation, self._data.dimensions, self._size)
         here = self.q if q is None else self._array("q", q, self.coordinates)
         reach = Reach(
@@ -398,7 +403,8 @@ class JointSpace:
         """
         here, moving = self.q if q is None else q, self.v if v is None else v
         tau = np.zeros(len(self.rates)) if efforts is None else self._array("efforts", efforts, self.rates)
-        chosen = LinearInputs.of(inputs, self._data, self.rates)
+        outputs = None if outputs is None else named("outputs", outputs)
+        chosen = LinearInputs.of(None if inputs is None else named("inputs", inputs), self._data, self.rates)
         if outputs is not None and (tau.any() or len(chosen.of_scene) < len(chosen.names)):
             kind, bodies = self._job.dynamics.system.of_body, self._job.dynamics.system.bodies
             of_bodies = [f"{body}.{label}" for body in bodies for label in (*kind.positions, *kind.velocities)]
@@ -497,14 +503,66 @@ class JointSpace:
             return
         tree.q[:] = tree.tree.reference
         first = tree.q[self._of_q].copy()
-        parts = parts_of(float(self._distance(first, goal)), "q")
-        for part in range(1, parts + 1):
-            tree.q[self._of_q] = self._coordinates(first + (goal - first) * part / parts)
-            if not self._loops.close():
-                named = ", ".join(f"{name} = {value:g}" for name, value in zip(self.coordinates, goal, strict=True))
-                raise InputError(
-                    f"q: the loops cannot be closed at {named}; expected coordinates that the joints allow"
-                )
+        signs = self._signs(first, goal)
+        self._follow(first, signs * goal)
+        tree.q[self._of_q] *= signs
+
+    def _signs(self, first: np.ndarray, goal: np.ndarray) -> np.ndarray:
+        """Return -1 for quaternions that have the shorter way from the first ones with the other sign, which is the same rotation."""
+        found = np.ones(len(goal))
+        if self._free:
+            for k in (k for k, name in enumerate(self.coordinates) if name.endswith(".q0")):
+                found[k : k + 4] = 1.0 if first[k : k + 4] @ goal[k : k + 4] >= 0.0 else -1.0
+        return found
+
+    def _follow(self, first: np.ndarray, goal: np.ndarray) -> None:
+        """Follow the motion of the loops, in shorter parts where they may close in another way."""
+        tree, loops = self._tree, self._loops
+        if np.array_equal(first, goal) and loops.close():
+            return
+        longest = part = 1.0 / parts_of(float(self._distance(first, goal)), "q")
+        way = self._way(goal)
+        tree.closure(self._t)
+        passed, done, opened = loops.along(way), 0.0, False
+        while done < 1.0:
+            trial = 1.0 if done + 1.5 * part > 1.0 else done + part
+            tree.q[:] = passed.q
+            tree.q[self._of_q] = self._coordinates(first + (goal - first) * trial)
+            try:
+                closed = loops.close()
+                opened |= not closed
+                now = loops.along(way)
+            except SolverError:  # a singular pose
+                closed = False
+            if closed and passed.leads_to(now):
+                passed, done, part = now, trial, min(longest, 2.0 * part)
+                continue
+            part = 0.5 * (trial - done)
+            if part < SHORTEST:
+                raise self._stopped(first + (goal - first) * trial, goal, opened)
+
+    def _way(self, goal: np.ndarray) -> np.ndarray:
+        """Return the independent rates of a motion from the start."""
+        there, rates = self._tree.tree.reference, np.zeros(len(self._all.rates))
+        there[self._of_q] = goal
+        for frame in self._frames:
+            rates[frame.at_v : frame.at_v + frame.widths[1]] = difference(frame, self._tree.tree.reference, there)
+        found: np.ndarray = rates[self._independent]
+        return found
+
+    def _stopped(self, here: np.ndarray, goal: np.ndarray, opened: bool) -> InputError | SolverError:
+        """Return the error of a motion of the loops that ends before its goal."""
+        at, end = (
+            ", ".join(f"{name} = {value:g}" for name, value in zip(self.coordinates, q, strict=True))
+            for q in (here, goal)
+        )
+        if opened:
+            return InputError(f"q: the loops cannot be closed at {end}; expected coordinates that the joints allow")
+        where = "in this pose" if at == end else f"at {at}, on the way from the start to {end}"
+        return SolverError(
+            f"the coordinates {', '.join(self.coordinates)} do not determine the motion {where}, such as a dead point; choose other "
+            "coordinates by `independent`, or another pose"
+        )
 
     def _distance(self, first: np.ndarray, goal: np.ndarray) -> float:
         """Return the largest change of a coordinate, rad or sizes of the mechanism."""

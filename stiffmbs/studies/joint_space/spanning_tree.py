@@ -56,11 +56,17 @@ class Chosen:
 class SpanningTree:
     """Search for a spanning tree at a pose.
 
-    `dynamics`: dynamics at this pose. `joints`: coordinates of joints. `preferred`: coordinates that the tree contains if possible.
+    `dynamics`: dynamics at this pose. `joints`: coordinates of joints. `preferred`: coordinates that the tree contains if possible, those of the
+    first set before those of the next.
     """
 
     def __init__(
-        self, dynamics: Dynamics, joints: JointCoordinates, t: float, q: np.ndarray, preferred: frozenset[str]
+        self,
+        dynamics: Dynamics,
+        joints: JointCoordinates,
+        t: float,
+        q: np.ndarray,
+        preferred: tuple[frozenset[str], ...],
     ) -> None:
         self._system, self._joints, self._t, self._q = dynamics.system, joints, t, q
         self._dynamics = dynamics
@@ -75,8 +81,9 @@ class SpanningTree:
         self._size = self._system.size or 1.0
         self._unit = self._system.per_velocity(self._size, 1.0)
         links = list(self._links())
-        first = [any(joints.names[k] in preferred for k in link.coordinates) for link in links]
-        self._order = [link for _, link in sorted(zip(first, links, strict=True), key=lambda pair: not pair[0])]
+        names = [{joints.names[k] for k in link.coordinates} for link in links]
+        rank = [next((n for n, first in enumerate(preferred) if first & own), len(preferred)) for own in names]
+        self._order = [link for _, link in sorted(zip(rank, links, strict=True), key=lambda pair: pair[0])]
 
     def _links(self) -> Iterator[Link]:
         numbers = {name: k for k, name in enumerate(self._joints.names)}
