@@ -153,7 +153,7 @@ class Part:
         """Write the states of the bodies of the whole model, one state per row, from those of the part."""
         n_q, n_u, count = self.system.of_body.n_q, self.system.of_body.n_u, len(self.system.bodies)
         into_q[:, self.trailing] = q[:, self.kept]
-        if self._is_whole and len(into_u[0]) == n_u * count:  # nothing to select, which is slow for thousands of rows
+        if self._is_whole and into_u.shape[1] == n_u * count:  # nothing to select, which is slow for thousands of rows
             into_q[:, : n_q * count], into_u[:] = q[:, : n_q * count], u
             self._turn(into_q[:, : n_q * count].reshape(len(q), count, n_q), into_u.reshape(len(u), count, n_u), q)
             return
