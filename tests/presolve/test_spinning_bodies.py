@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from stiffmbs import load_scene, read_scene, run
+from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.warm import usual_kinds
 from stiffmbs.compile.compile_model import kinds_of
 from stiffmbs.presolve.reduced_model import ReducedModel
@@ -200,3 +201,19 @@ def test_auto_keeps_spins_apart_where_it_begins_with_implicit_steps():
 
 def test_explicit_steps_follow_the_spin():
     assert not any("spin" in line for line in top(80).run(duration=0.1, solver="auto").presolve)
+
+
+def test_a_part_of_a_model_takes_no_rows():
+    """As a monitor shows them before the first row of a run."""
+    scene = """
+dimensions: 3
+bodies: {wheel: {mass: 1, inertia: [0.1, 0.2, 0.1], omega: [0, 30, 0]}}
+joints: {axle: {type: revolute, i: {body: wheel, orientation: {z: [0, 1, 0]}}, j: {body: ground, orientation: {z: [0, 1, 0]}}}}
+run: {duration: 1, points: 2}
+"""
+    job = prepare(read_scene(scene))
+    (subsystem,) = job.subsystems
+    own, whole = subsystem.start, job.start
+    q, u = np.empty((0, len(whole.q))), np.empty((0, len(whole.u)))
+    subsystem.part.put(np.empty((0, len(own.q))), np.empty((0, len(own.u))), q, u)
+    assert len(q) == len(u) == 0
