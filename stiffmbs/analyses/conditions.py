@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 SAME = 1e-9
 """Default part of a bound by which a value has to go back before its condition counts again."""
 LOOKS, ROWS = 64, 100
-"""A monitor looks after this part of a run, or after this number of rows, whichever comes first."""
+"""A monitor looks after this part of a run, or after this number of rows, whichever comes first; and after this part of the rows, so that
+all looks together take a time in proportion to the rows."""
 
 
 class Series(Protocol):
@@ -63,6 +64,7 @@ class Crossing:
 
 
 def channel_of(name: str, request: str, solution: Series) -> np.ndarray:
+    """Return the values of a request; raise an InputError that names the condition if there is none."""
     if request not in solution:
         raise InputError(f"'{name}': found request = {request}, expected the name of a request")
     return solution[request]
@@ -135,6 +137,7 @@ class Monitor:
         self._rows: OutputRows | None = None
         self._apart = (job.grid.end - job.grid.start) / LOOKS
         self._looked = self._reached = job.grid.start
+        self._known, self._new = 0, len(self._pending)
         self._active = True
 
     def look(self, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> None:
@@ -146,9 +149,10 @@ class Monitor:
             return
         self._reached = t[-1]
         self._pending.append((t.copy(), q.copy(), u.copy()))
-        if t[-1] - self._looked < self._apart and sum(len(rows[0]) for rows in self._pending) < ROWS:
+        self._new += len(t)
+        if t[-1] - self._looked < self._apart and self._new < max(ROWS, self._known / LOOKS):
             return
-        self._looked = t[-1]
+        self._looked, self._known, self._new = t[-1], self._known + self._new, 0
         if self._is_met():
             self.met = True
             raise ConditionMet

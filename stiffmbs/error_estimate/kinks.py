@@ -97,6 +97,7 @@ def integrals_of_motion(
     steps, places = len(curve.start), len(ends) - 1
 
     def integrated(begin: np.ndarray, end: np.ndarray, of_step: np.ndarray) -> np.ndarray:
+        """Return the integrals of the motion's rates over parts of steps."""
         at = begin[:, None] + (end - begin)[:, None] * GAUSS_NODES
         t, z = curve.at(at, of_step)
         rates = motion(t, z[:, :n_q], z[:, n_q:]).reshape(*at.shape, -1)

@@ -70,6 +70,7 @@ def _value(
     of_terms = {placeholder(k): term for k, term in enumerate(output.terms)}
 
     def names(name: str) -> object:
+        """Return what a name of the formula stands for."""
         if name == TIME:
             return time
         if name in output.quantities:

@@ -63,6 +63,7 @@ def curve_chart(curves: Sequence[Curve], title: str, abscissa: str, peak: str = 
         return np.column_stack([across, BOTTOM - (BOTTOM - TOP) * (values_y - low) / (high - low)])
 
     def content() -> Iterator[str]:
+        """Yield the parts of the figure."""
         yield _text(0, 13, title, "strong")
         for value in np.arange(round(low / step_y), round(high / step_y) + 1) * step_y:
             ((_, y),) = place(np.array([start]), np.array([value]))
@@ -100,6 +101,7 @@ def polar_chart(vectors: np.ndarray, largest: float, title: str, below: str, uni
     sizes = np.hypot(*vectors[np.isfinite(vectors).all(axis=1)].T)
 
     def content() -> Iterator[str]:
+        """Yield the parts of the figure."""
         yield _text(0, 13, title, "strong") + _text(0, 29, below, "soft")
         for part in (0.5, 1.0):
             yield f'<circle cx="{middle}" cy="{floor}" r="{part * RADIUS:.1f}" class="grid"/>'

@@ -182,6 +182,7 @@ class Implicit:
         """Return the costs of an integrator, which the dynamics keep: with its linear solver if it is final, or lower bounds."""
 
         def estimated() -> tuple[ImplicitCost, float, float]:
+            """Estimate the costs, which takes some time."""
             factors = 1e-3 * driven(self._dynamics, self._settings, **_driver(name)).cost if final else None
             found = (radau.of_radau if name == "radau" else ImplicitCost.of)(self._dynamics, factors)
             growth = -math.log10(self._settings.rtol) * found.start_steps * found.step

@@ -1,9 +1,12 @@
 """Stages that end where a request comes to a value."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.analyses import conditions
 
 THROWN = """
 name: a ball that is thrown up
@@ -127,3 +130,18 @@ def test_a_stage_has_one_end_that_lies_after_its_start():
         stiffmbs.InputError, match=r"stage 2 of 2: found its end at 0.5 s, expected a time after its start at 0.6 s"
     ):
         ran("speed, at_most: 0", THROWN.replace("end: 3", "end: 0.5"))
+
+
+def test_all_looks_of_a_monitor_take_a_time_in_proportion_to_the_rows(monkeypatch):
+    start = SimpleNamespace(q=np.zeros(1), u=np.zeros(1), lam=np.zeros(0))
+    job = SimpleNamespace(
+        dynamics=SimpleNamespace(system=None), start=start, grid=SimpleNamespace(start=0.0, end=1.0), data=None
+    )
+    monkeypatch.setattr(conditions, "Dynamics", lambda _: SimpleNamespace(place=lambda *_: None))
+    known = []
+    monkeypatch.setattr(conditions.Monitor, "_is_met", lambda self: known.append(self._known))
+    monitor, count, row = conditions.Monitor({}, True, job), 100_000, np.zeros((1, 1))
+    for k in range(1, count):
+        monitor.look(np.array([k / count]), row, row)
+    assert known[-1] > 0.9 * count
+    assert sum(known) < 100 * count
