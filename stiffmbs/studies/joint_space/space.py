@@ -20,19 +20,17 @@ from ...results.channels import channels_of, turns_of
 from ...results.joint_coordinates import JointCoordinates
 from ...results.saved_state import SavedState
 from ...solve.settings import changed
-from ..joint_pose import parts_of
 from .efforts import Efforts, coordinates_of_drives, least_efforts, places_of
+from .following import IndependentCoordinates
 from .independent import named, order_of, places_in, refuse_others, refuse_velocities
 from .inverse_kinematics import Reach, Wanted, nearest
 from .linear import LinearInputs, joint_equations, refuse_reactions
-from .loops import Loops, difference, move_tree
+from .loops import Loops, move_tree
 from .markers import MarkerPose, PlacedMarker, placed_marker
 from .spanning_tree import SpanningTree
 
 NO_MASS: Final = 1e-7
 """Smallest pivot of the Cholesky factor of a mass matrix scaled to a unit diagonal, below which a motion has no mass: the root of rounding."""
-SHORTEST: Final = 1e-6
-"""Shortest part of a motion of loops from the start."""
 Array = np.ndarray | Sequence[float]
 
 
@@ -129,17 +127,11 @@ class JointSpace:
                 f"independent: found {', '.join(given)}, which do not determine the motion together, expected coordinates such as {free}"
             )
         self._independent, self._closed = self._loops.independent, count > 0
-        self._frames = [
-            frame
-            for frame in sorted(tree.frames, key=lambda frame: frame.at_q)
-            if np.isin(np.arange(frame.at_v, frame.at_v + frame.widths[1]), self._independent).any()
-        ]
-        self._of_q = np.array([k for f in self._frames for k in range(f.at_q, f.at_q + f.widths[0])], dtype=int)
-        self._free = [f for f in self._frames if f.screw is None]
+        self._own = IndependentCoordinates(self._tree, self._t, self._loops, chosen.coordinates)
         self._markers: dict[object, PlacedMarker] = {}
-        self.coordinates = tuple(chosen.coordinates[k] for k in self._of_q)
+        self.coordinates = self._own.names
         self.rates = tuple(chosen.rates[k] for k in self._independent)
-        self.q = self._tree.q[self._of_q].copy()
+        self.q = self._tree.q[self._own.places].copy()
         pose = self._tree
         pose.place(self._t)
         self.v = np.linalg.lstsq(pose.N, job.start.u, rcond=None)[0][self._independent]
@@ -364,7 +356,7 @@ class JointSpace:
         move_tree(self._tree, step)
         if self._closed and not self._loops.close():
             raise InputError("moved: the loops cannot be closed after this move; expected a smaller one")
-        return self._tree.q[self._of_q].copy()
+        return self._tree.q[self._own.places].copy()
 
     def linearise(
         self,
@@ -479,95 +471,11 @@ class JointSpace:
             raise InputError(f"{what}: found {found[k]} for {names[k]}, expected a finite number")
         return found
 
-    def _coordinates(self, q: Array) -> np.ndarray:
-        """Return valid coordinates, with unit quaternions."""
-        found = self._array("q", q, self.coordinates)
-        if self._free:
-            found = found.copy()
-            for first in (k for k, name in enumerate(self.coordinates) if name.endswith(".q0")):
-                norm = float(np.linalg.norm(found[first : first + 4]))
-                if norm == 0.0:
-                    raise InputError(
-                        f"q: found a quaternion of length 0 at {self.coordinates[first]}, expected length 1"
-                    )
-                found[first : first + 4] /= norm
-        return found
-
     def _move_to(self, q: Array) -> None:
-        """Take coordinates; where joints close loops, follow the motion to them from the start."""
-        goal = self._coordinates(q)
-        tree = self._tree
-        tree.v[:] = 0.0
-        if not self._closed:
-            tree.q[self._of_q] = goal
-            return
-        tree.q[:] = tree.tree.reference
-        first = tree.q[self._of_q].copy()
-        signs = self._signs(first, goal)
-        self._follow(first, signs * goal)
-        tree.q[self._of_q] *= signs
-
-    def _signs(self, first: np.ndarray, goal: np.ndarray) -> np.ndarray:
-        """Return -1 for quaternions that have the shorter way from the first ones with the other sign, which is the same rotation."""
-        found = np.ones(len(goal))
-        if self._free:
-            for k in (k for k, name in enumerate(self.coordinates) if name.endswith(".q0")):
-                found[k : k + 4] = 1.0 if first[k : k + 4] @ goal[k : k + 4] >= 0.0 else -1.0
-        return found
-
-    def _follow(self, first: np.ndarray, goal: np.ndarray) -> None:
-        """Follow the motion of the loops, in shorter parts where they may close in another way."""
-        tree, loops = self._tree, self._loops
-        if np.array_equal(first, goal) and loops.close():
-            return
-        longest = part = 1.0 / parts_of(float(self._distance(first, goal)), "q")
-        way = self._way(goal)
-        tree.closure(self._t)
-        passed, done, opened = loops.along(way), 0.0, False
-        while done < 1.0:
-            trial = 1.0 if done + 1.5 * part > 1.0 else done + part
-            tree.q[:] = passed.q
-            tree.q[self._of_q] = self._coordinates(first + (goal - first) * trial)
-            try:
-                closed = loops.close()
-                opened |= not closed
-                now = loops.along(way)
-            except SolverError:  # a singular pose
-                closed = False
-            if closed and passed.leads_to(now):
-                passed, done, part = now, trial, min(longest, 2.0 * part)
-                continue
-            part = 0.5 * (trial - done)
-            if part < SHORTEST:
-                raise self._stopped(first + (goal - first) * trial, goal, opened)
-
-    def _way(self, goal: np.ndarray) -> np.ndarray:
-        """Return the independent rates of a motion from the start."""
-        there, rates = self._tree.tree.reference, np.zeros(len(self._all.rates))
-        there[self._of_q] = goal
-        for frame in self._frames:
-            rates[frame.at_v : frame.at_v + frame.widths[1]] = difference(frame, self._tree.tree.reference, there)
-        found: np.ndarray = rates[self._independent]
-        return found
-
-    def _stopped(self, here: np.ndarray, goal: np.ndarray, opened: bool) -> InputError | SolverError:
-        """Return the error of a motion of the loops that ends before its goal."""
-        at, end = (
-            ", ".join(f"{name} = {value:g}" for name, value in zip(self.coordinates, q, strict=True))
-            for q in (here, goal)
-        )
-        if opened:
-            return InputError(f"q: the loops cannot be closed at {end}; expected coordinates that the joints allow")
-        where = "in this pose" if at == end else f"at {at}, on the way from the start to {end}"
-        return SolverError(
-            f"the coordinates {', '.join(self.coordinates)} do not determine the motion {where}, such as a dead point; choose other "
-            "coordinates by `independent`, or another pose"
-        )
-
-    def _distance(self, first: np.ndarray, goal: np.ndarray) -> float:
-        """Return the largest change of a coordinate, rad or sizes of the mechanism."""
-        lengths = [not name.rpartition(".")[2].startswith(("angle", "q")) for name in self.coordinates]
-        return float((np.abs(goal - first) / np.where(lengths, self._size, 1.0)).max(initial=0.0))
+        """Take valid coordinates; where joints close loops, follow the motion to them from the start."""
+        goal = self._own.normalised(self._array("q", q, self.coordinates))
+        self._tree.v[:] = 0.0
+        self._own.move_to(goal)
 
     def _take_rates(self, v: Array) -> np.ndarray | None:
         """Take rates at the pose of the tree; return D where joints close loops."""
