@@ -223,7 +223,7 @@ class Simulation:
     def step(self, dt: float, inputs: Inputs | None = None) -> None:
         """Advance by a time step, with inputs that are constant from now on.
 
-        If no input changes, `bdf` and `radau` keep their history, as in one run; otherwise they restart.
+        If no input changes, `bdf` and `radau` keep their history, as in one run; otherwise steps start by a Radau method.
 
         Parameters
         ----------

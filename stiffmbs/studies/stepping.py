@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
@@ -15,7 +16,6 @@ from ..dynamics.held_inputs import HeldInputs
 from ..dynamics.initial import InitialValues
 from ..dynamics.native.parameters import CONSISTENCY
 from ..errors import SolverError
-from ..model.settings import RunSettings
 from ..results.joint_coordinates import JointCoordinates
 from ..solve import SOLVERS
 from ..solve.events.restart import restarted
@@ -24,25 +24,35 @@ from ..solve.explicit.integration import Integration
 from ..solve.explicit.projected import scheme_of
 from ..solve.ida.native_engine import Reached
 from ..solve.integrator import Integrator
-from ..solve.radau.radau import radau_integrator
-from ..solve.settings import changed, traits_of
+from ..solve.radau.radau import driver, radau_integrator
+from ..solve.settings import traits_of
 from ..solve.stiff_rows import lengths_of_steps, projected
 from ..solve.trajectory import Grid, Outcome, just_after, just_before
-from ..tuning import in_use
+from ..tuning import in_use, tuned
 
-PART, FINEST = 0.01, 1e-12
-"""Part of the tolerance that restarts get, and the finest tolerance; errors of restarts accumulate."""
+
+@dataclass(frozen=True)
+class SteppingParameters:
+    """Parameters of the steps of a simulation by `bdf` or `radau`."""
+
+    unchanged: int = 6
+    """Number of steps after a jump of inputs before the solver of the run starts; inputs that jump again make its start
+    useless. Source: evaluations of a start of `bdf` relative to those of a step that starts by a Radau method."""
+
+
+STEPPING = tuned("stepping", SteppingParameters())
 
 
 class StartedSteps:
-    """Restarts of IDA, each with the steps to the next instant, in one compiled call if possible.
+    """Starts of Radau methods, each with the steps to the next instant, in one compiled call if possible.
 
-    `q`, `u`: memory of the current state.
+    One-step methods need no history, so that their first step has the full order; it is as long as the last call left
+    it, and has the number of stages of that call. `q`, `u`: memory of the current state.
     """
 
     def __init__(self, job: Job, q: np.ndarray, u: np.ndarray) -> None:
         self._dynamics, self._q, self._u = job.dynamics, q, u
-        self._integrator = Integrator(job.dynamics, _finer(job.settings), memory="starts")
+        self._integrator = Integrator(job.dynamics, job.settings, **driver("starts"))
         self._engine = self._integrator.engine
         self._features: InputFeatures | None = None
 
@@ -85,13 +95,6 @@ def _breaks(features: InputFeatures, t: float, end: float) -> bool:
     return len(between) > 0 and bool(np.any((between >= just_before(t)) & (between <= just_after(end))))
 
 
-def _finer(settings: RunSettings) -> RunSettings:
-    """Return the settings of a run with the tolerance of restarts."""
-    part = max(PART, min(1.0, FINEST / settings.rtol))
-    absolute = None if settings.atol is None else part * settings.atol
-    return changed(settings, {"rtol": part * settings.rtol, "atol": absolute})
-
-
 class Stepper(Protocol):
     """Stepper from consistent values.
 
@@ -128,8 +131,8 @@ def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
 class ImplicitSteps:
     """Steps of bdf or radau, as long as in one run, with interpolation in the last step.
 
-    After a jump of inputs, IDA restarts and ends a step at the end of the first simulation step, as inputs mostly jump
-    again there. `t`: time, s.
+    After a jump of inputs, steps of the simulation are those of `StartedSteps`, as inputs mostly jump again; the solver
+    starts if they do not. `t`: time, s.
     """
 
     def __init__(self, job: Job, integrator: Integrator, start: InitialValues, t: float) -> None:
@@ -155,7 +158,7 @@ class ImplicitSteps:
         self._features = self._dynamics.input_features(self._first, self._end)
 
     def _begin(self, start: InitialValues, t: float) -> None:
-        self._t, self._jumped, self._ended = t, False, False
+        self._t, self._jumped, self._since_jump = t, False, 0
         self._engine.ida.pause_after(1)
         self._steps: Iterator[Reached] = self._integrator.run(
             start, Grid(t, self._end, None).before_breakpoints(self._features)
@@ -168,15 +171,16 @@ class ImplicitSteps:
 
     def _advance(self, t: float) -> None:
         place = self._dynamics.sides(t)[0]
-        if self._jumped or self._ended:
+        if self._jumped or self._since_jump:
             self._look_through(self._t)
             self.q[:], self.u[:] = self._integrator.closed(self._t, (self.q, self.u), self.length)
             begin = self._dynamics.sides(self._t)[1]
-            if self._jumped and t <= self._end:
+            if (self._jumped or self._since_jump < STEPPING.unchanged) and t <= self._end:
                 if place > just_after(begin):
                     self._started.advance(begin, place, self._features)
                     self.length = t - self._t
-                self._t, self._present, self.time, self._jumped, self._ended = t, t, place, False, True
+                self._since_jump = 1 if self._jumped else self._since_jump + 1
+                self._t, self._present, self.time, self._jumped = t, t, place, False
                 return
             self._begin(restarted(self._dynamics, begin, self.q, self.u), begin)
         while self._t < place:

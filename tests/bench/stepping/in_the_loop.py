@@ -16,6 +16,7 @@ import numpy as np
 import stiffmbs
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.studies.simulation import Simulation
+from stiffmbs.studies.stepping import ImplicitSteps
 
 from ..benchmark import Row
 
@@ -23,6 +24,7 @@ SCHEMES: dict[str, dict[str, Any]] = {
     "rk4": {"solver": "projected", "scheme": "rk4"},
     "euler_cromer": {"solver": "projected", "scheme": "euler_cromer"},
     "bdf": {"solver": "bdf"},
+    "radau": {"solver": "radau"},
 }
 CHECKED = 50
 """Steps over which states are compared with those of exact steps."""
@@ -62,10 +64,9 @@ class InTheLoop:
         for scheme, settings in SCHEMES.items():
             sim = self._simulation(model, settings)
             off = float(np.abs(self._after(sim, values) - exact).max())
+            how = f"a call for each step, arrays of joints read{_evaluations(sim, self.step, values)}"
             rows += [
-                self._row(
-                    scheme, "a call for each step, arrays of joints read", off, partial(_arrays, sim, self.step, values)
-                ),
+                self._row(scheme, how, off, partial(_arrays, sim, self.step, values)),
                 self._row(scheme, "ten channels read by name", off, partial(_by_name, sim, self.step, values)),
             ]
         together = self._simulation(model, SCHEMES["rk4"])
@@ -100,6 +101,18 @@ class InTheLoop:
             spent.append(time.process_time() - begun)
         seconds = statistics.median(spent)
         return Row(solver, f"{how}: {1e6 * seconds / self.steps:.1f} us a step", off, seconds, peer)
+
+
+def _evaluations(sim: Simulation, step: float, values: np.ndarray) -> str:
+    """Return a clause on the residuals and matrices of some implicit steps; empty for explicit steps."""
+    if not isinstance(sim._stepper, ImplicitSteps):
+        return ""
+    spent = []
+    for row in values[:CHECKED]:
+        sim.step(step, row)
+        counted = sim._stepper._started._engine.ida.statistics()
+        spent.append(counted["residuals"] + counted["jacobians"])
+    return f", {np.mean(spent):.0f} evaluations, {max(spent)} at most"
 
 
 def _arrays(sim: Simulation, step: float, values: np.ndarray) -> None:
