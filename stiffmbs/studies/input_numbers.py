@@ -14,12 +14,16 @@ from ..dynamics.held_inputs import AffineNumber, HeldInputs
 from ..errors import InputError
 from ..model.scene import Scene
 from ..reading.did_you_mean import instead_of
+from ..reading.units.quantity import LARGEST
 from .case_solver import CaseSolver
 
 Inputs: TypeAlias = Mapping[str, float] | Sequence[float] | np.ndarray
 """Values of inputs by name, or of all of them in their order."""
 TRIED: Final = (0.0, *(sign * 10.0**k for k in (0, -1, 3) for sign in (1, -1)))
 """Values at which the linearity of force parameters in an input is tested."""
+BEYOND: Final = 10.0
+"""Factor of an accepted value to which the bounds of an input are widened."""
+OF_NUMBERS: Final = "which changes more than numbers of forces and states, such as the form of a force, expected a value that changes only these"
 SAME_NUMBER = 8 * float(np.finfo(float).eps)
 
 
@@ -47,6 +51,8 @@ class InputNumbers:
         found = self._affine_numbers(values)
         self.affine = found is not None
         self.held = HeldInputs([*values.values()], found or ())
+        self.held.least[:] = np.minimum(self.held.least, min(TRIED))
+        self.held.largest[:] = np.maximum(self.held.largest, max(TRIED))
 
     def _scene(self, values: Mapping[str, float]) -> Scene:
         return self._solver.scene([float(values[name]) for name in self.names])
@@ -68,6 +74,8 @@ class InputNumbers:
             status = self.held.hold()
             if status < 0:
                 self._check_finite(wanted)
+                self._widen(wanted)
+                status = self.held.hold()
             return status > 0
         self._check_finite(wanted)
         changed = {
@@ -96,6 +104,36 @@ class InputNumbers:
         self._check_finite(found)
         return found
 
+    def valid_rows(self, rows: np.ndarray) -> int:
+        """Return the number of rows of affine inputs before the first one that the scene refuses."""
+        for row in np.flatnonzero(((rows < self.held.least) | (rows > self.held.largest)).any(axis=1)).tolist():
+            try:
+                self._widen(rows[row])
+            except InputError:
+                return int(row)
+        return len(rows)
+
+    def _widen(self, values: np.ndarray) -> None:
+        """Widen the bounds of affine inputs to some values, or raise an InputError if the scene refuses one of these.
+
+        The values that a field of a scene accepts are an interval. Bounds beyond these values save readings of the scene.
+        """
+        held = self.held
+        for k in np.flatnonzero((values < held.least) | (values > held.largest)).tolist():
+            name, value = self.names[k], float(values[k])
+            self._changes_at(name, value)
+            try:
+                self._changes_at(name, BEYOND * value)
+                value *= BEYOND
+            except InputError:
+                pass
+            held.least[k], held.largest[k] = min(held.least[k], value), max(held.largest[k], value)
+
+    def _changes_at(self, name: str, value: float) -> None:
+        """Raise an InputError if the scene refuses the value of an input, or if it changes more than numbers."""
+        if changes_of_numbers(self._job, self._scene({**self.values, name: value})) is None:
+            raise InputError(f"input '{name}': found {value:g}, {OF_NUMBERS}")
+
     def _fill(self, wanted: np.ndarray, values: Inputs) -> None:
         """Fill an array with all inputs; those that are not given keep their values."""
         if isinstance(values, np.ndarray) and values.shape == wanted.shape and values.dtype.kind == "f":
@@ -120,22 +158,20 @@ class InputNumbers:
             )
 
     def _check_finite(self, values: np.ndarray) -> None:
-        """Raise an InputError that names the first input without a finite value."""
-        bad = np.argwhere(~np.isfinite(values))
+        """Raise an InputError that names the first input without a finite value, or with one too large to compute with."""
+        bad = np.argwhere(~(np.abs(values) < LARGEST))
         if len(bad):
             at = tuple(bad[0].tolist())
             row = f" in row {at[0]}" if len(at) > 1 else ""
-            raise InputError(f"input '{self.names[at[-1]]}': found {values[at]}{row}, expected a finite number")
+            expected = f"a size below {LARGEST:g}" if np.isfinite(values[at]) else "a finite number"
+            raise InputError(f"input '{self.names[at[-1]]}': found {values[at]}{row}, expected {expected}")
 
     def _write(self, changed: Mapping[str, float]) -> None:
         """Write the numbers of the scene with changed inputs; later changes are found against this scene."""
         scene = self._scene({**self.values, **changed})
         if not write_numbers(self._job, scene):
             found = ", ".join(f"input '{name}': found {value:g}" for name, value in changed.items())
-            raise InputError(
-                f"{found}, which changes more than numbers of forces and states, such as the form of a force, expected a value "
-                "that changes only these"
-            )
+            raise InputError(f"{found}, {OF_NUMBERS}")
         self._job = replace(self._job, data=scene)
 
     def _affine_numbers(self, values: Mapping[str, float]) -> list[AffineNumber] | None:
