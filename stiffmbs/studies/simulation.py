@@ -292,7 +292,7 @@ class Simulation:
         if not valid or n < 1 or not 0 < dt < math.inf:
             raise InputError(f"steps: found n = {n!r} and dt = {dt!r}, expected a number and a time greater than 0")
         rows, done = self._inputs.rows(inputs, n), 0
-        if self._inputs.affine and not (self._bounded or self._relaxed):
+        if self._inputs.affine and not (self._inputs.of_time or self._bounded or self._relaxed):
             done = self._taken_together(dt, rows[: self._inputs.valid_rows(rows)])
         for k, row in enumerate(rows[done:], done):
             with prefixed(f"row {k} of the inputs: "):

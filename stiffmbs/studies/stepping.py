@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from ..analyses.job import Job
-from ..compile.inputs.features import InputFeatures
+from ..compile.inputs.features import NO_FEATURES, InputFeatures
 from ..compile.machine.layout import addresses
 from ..dynamics.held_inputs import HeldInputs
 from ..dynamics.initial import InitialValues
@@ -154,8 +154,8 @@ class ImplicitSteps:
             self._first, self._end = t, t + self._job.settings.duration
         elif self._changes == self._dynamics.input_changes:
             return
-        self._changes = self._dynamics.input_changes
         self._features = self._dynamics.input_features(self._first, self._end)
+        self._changes = self._dynamics.input_changes
 
     def _begin(self, start: InitialValues, t: float) -> None:
         self._t, self._jumped, self._since_jump = t, False, 0
@@ -172,16 +172,19 @@ class ImplicitSteps:
     def _advance(self, t: float) -> None:
         place = self._dynamics.sides(t)[0]
         if self._jumped or self._since_jump:
-            self._look_through(self._t)
+            calm = self._dynamics.meets_no_feature(self._t, t)
+            if not calm:
+                self._look_through(self._t)
             self.q[:], self.u[:] = self._integrator.closed(self._t, (self.q, self.u), self.length)
             begin = self._dynamics.sides(self._t)[1]
-            if (self._jumped or self._since_jump < STEPPING.unchanged) and t <= self._end:
+            if (self._jumped or self._since_jump < STEPPING.unchanged) and (calm or t <= self._end):
                 if place > just_after(begin):
-                    self._started.advance(begin, place, self._features)
+                    self._started.advance(begin, place, NO_FEATURES if calm else self._features)
                     self.length = t - self._t
                 self._since_jump = 1 if self._jumped else self._since_jump + 1
                 self._t, self._present, self.time, self._jumped = t, t, place, False
                 return
+            self._look_through(begin)
             self._begin(restarted(self._dynamics, begin, self.q, self.u), begin)
         while self._t < place:
             reached = next(self._steps, None)
@@ -268,10 +271,12 @@ class FixedSteps:
 
     def _breaks(self, end: float) -> bool:
         """Return True if an input has a breakpoint up to a time, s; determine the features of inputs if they are not known."""
+        if self._dynamics.meets_no_feature(self._t, end):
+            return self._t != self.time
         if not self._first <= self._t < end <= self._end or self._changes != self._dynamics.input_changes:
             self._first, self._end = self._t, end + self._settings.duration
-            self._changes = self._dynamics.input_changes
             self._features = self._dynamics.input_features(self._first, self._end)
+            self._changes = self._dynamics.input_changes
         return self._t != self.time or _breaks(self._features, self._t, end)
 
     def _run(self, t: float) -> None:
