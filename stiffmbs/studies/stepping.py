@@ -33,11 +33,16 @@ from ..tuning import in_use, tuned
 
 @dataclass(frozen=True)
 class SteppingParameters:
-    """Parameters of the steps of a simulation by `bdf` or `radau`."""
+    """Parameters of the steps of a simulation whose inputs change."""
 
     unchanged: int = 6
     """Number of steps after a jump of inputs before the solver of the run starts; inputs that jump again make its start
     useless. Source: evaluations of a start of `bdf` relative to those of a step that starts by a Radau method."""
+    reach: float = 0.02
+    """Part of a value by which the bounds of an input go beyond it, for which times without features of its formulas of time
+    are known. Source: slow changes of a speed, against the length of the times that wide bounds leave out."""
+    cells: int = 1024
+    """Number of intervals of the duration that are without such features, or not. Source: steps of a thousandth of it."""
 
 
 STEPPING = tuned("stepping", SteppingParameters())

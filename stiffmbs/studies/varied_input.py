@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -14,9 +14,11 @@ from ..compile.inputs.of_time import expressions_of, given_in
 from ..compile.inputs.table_ranges import TableRanges
 from ..errors import InputError
 from ..model.scene import Scene
+from ..tuning import in_use
+from .stepping import STEPPING
 
-REACH: Final = 0.02
-"""Part of a value by which the bounds of the input go beyond it."""
+_NEVER = CalmTimes([], 0.0, 0.0, 1)
+"""No time is without features."""
 
 
 class VariedInput:
@@ -37,7 +39,7 @@ class VariedInput:
         self._is_stale = False
         self._least, self._largest, self._end = np.inf, -np.inf, -np.inf
         self._inputs: list[RangedInput] = []
-        self._calm = CalmTimes([], 0.0, 0.0)
+        self._calm = _NEVER
 
     def take(self, values: Mapping[str, float]) -> None:
         """Note a new value of the input, whose features are not determined yet."""
@@ -56,7 +58,8 @@ class VariedInput:
         if not self._is_stale:
             return False
         if not (self._least <= self._value <= self._largest and end <= self._end):
-            self._find(t, end)
+            with in_use(self._job.settings.tuning):
+                self._find(t, end)
         if self._calm.has_step(t, end):
             return True
         of_step = CalmTimes([each.at(self._part) for each in self._inputs], t, end, cells=1)
@@ -69,15 +72,15 @@ class VariedInput:
 
     def _find(self, t: float, end: float) -> None:
         """Find the times without features again, from a time on, for wider bounds."""
-        reach = REACH * abs(self._value)
+        reach = STEPPING.reach * abs(self._value)
         self._least = min(self._least, self._value - reach)
         self._largest = max(self._largest, self._value + reach)
         self._end = end + self._job.settings.duration
         try:
             self._inputs = list(self._ranged(self._least, self._largest))
-            self._calm = CalmTimes(self._inputs, t, self._end)
+            self._calm = CalmTimes(self._inputs, t, self._end, STEPPING.cells)
         except InputError:  # a bound is refused, or changes more than numbers
-            self._inputs, self._calm = [], CalmTimes([], t, t)
+            self._inputs, self._calm = [], _NEVER
 
     def _ranged(self, least: float, largest: float) -> Iterator[RangedInput]:
         known: dict[int, TableRanges] = {}

@@ -15,9 +15,6 @@ from .of_time import evaluated_at, evaluated_within
 from .pieces import longest_pieces
 from .table_ranges import TableRanges
 
-CELLS = 1024
-"""Number of intervals into which a time is divided; each is without features, or not."""
-
 
 @dataclass(frozen=True)
 class RangedInput:
@@ -62,9 +59,9 @@ def _between(one: float, other: float, count: int, order: int) -> Enclosure:
 
 
 class CalmTimes:
-    """Times between two limits in which steps meet no feature of some inputs."""
+    """Times between two limits in which steps meet no feature of some inputs, by a number of equal intervals."""
 
-    def __init__(self, inputs: Sequence[RangedInput], start: float, end: float, cells: int = CELLS) -> None:
+    def __init__(self, inputs: Sequence[RangedInput], start: float, end: float, cells: int) -> None:
         apart = 2.0 * aside(start, end)
         self._edges = np.linspace(start - apart, end + apart, cells + 1)
         low, high = self._edges[:-1], self._edges[1:]
