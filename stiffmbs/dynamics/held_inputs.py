@@ -47,6 +47,11 @@ class HeldInputs:
         self.table = packed(HELD_INPUTS, {"n": len(self.values), "n_numbers": len(numbers), **self._arrays})
         self._hold, self._at = HOLD.short_call, (address(self.wanted), address(self.table))
 
+    def write(self) -> None:
+        """Write the numbers of the current values."""
+        for each in self._kept:
+            each.numbers[each.place] = each.offset + each.slope * self.values[each.input]
+
     def hold(self) -> int:
         """Take the wanted values; return 1 if any has changed, 0 if none, or a failure, with nothing changed, if one is out of its bounds."""
         return self._hold(*self._at)  # type: ignore[no-any-return]

@@ -115,9 +115,14 @@ class InputNumbers:
 
     def _vary(self, moving: int) -> VariedInput:
         """Return the input with an index as one that moves breakpoints."""
-        varied = VariedInput(self._job, self.names[moving], self.values, self._found_at, lambda: self._write({}))
+        varied = VariedInput(self._job, self.names[moving], self.values, self._found_at, self._read_elements)
         self._job.dynamics.follow(varied)
         return varied
+
+    def _read_elements(self) -> None:
+        """Read the elements with the current inputs; their numbers stay those of the affine functions to the last bit."""
+        self._write({})
+        self.held.write()
 
     def _found_at(self, values: Mapping[str, float]) -> tuple[Scene, list[Change]]:
         """Return the scene with some values of inputs, and the forces that differ from those of the last scene read.

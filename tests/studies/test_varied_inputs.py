@@ -1,5 +1,7 @@
 """Inputs of a simulation in formulas of time: breakpoints move with each change, and none is missed."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -31,28 +33,57 @@ LAWS = {
     "bump": (
         "0.5*k*(1 - cos(pi*min(max(V*t - a, 0), 2)))",
         lambda V, t: 10.0 * (1.0 - np.cos(np.pi * min(max(V * t - 0.3, 0.0), 2.0))),
+        lambda V: [0.3 / V, 2.3 / V],
+        3.0,
     ),
     "pulse": (
-        "1e3*(step(t, V, 0, V + 2e-3, 1) - step(t, V + 4e-3, 0, V + 6e-3, 1))",
-        lambda V, t: 1e3 * (ramp(t, V, V + 2e-3) - ramp(t, V + 4e-3, V + 6e-3)),
+        "4e4*(step(t, V, 0, V + 1e-5, 1) - step(t, V + 2e-5, 0, V + 3e-5, 1))",
+        lambda V, t: 4e4 * (ramp(t, V, V + 1e-5) - ramp(t, V + 2e-5, V + 3e-5)),
+        lambda V: [V, V + 1e-5, V + 2e-5, V + 3e-5],
+        0.3,
     ),
-    "smooth pulse": ("50*exp(-((t - V)/0.01)^2)", lambda V, t: 50.0 * np.exp(-(((t - V) / 0.01) ** 2))),
-    "sine": ("k*sin(V*t + a)", lambda V, t: 20.0 * np.sin(V * t + 0.3)),
-    "corners": ("k*abs(sin(V*t))*V", lambda V, t: 20.0 * V * abs(np.sin(V * t))),
+    "smooth pulse": (
+        "5e3*exp(-((t - V)/1e-4)^2)",
+        lambda V, t: 5e3 * np.exp(-(((t - V) / 1e-4) ** 2)),
+        lambda V: [V - 1e-3, V, V + 1e-3],
+        0.3,
+    ),
+    "sine": ("k*sin(V*t + a)", lambda V, t: 20.0 * np.sin(V * t + 0.3), lambda V: [], 9.0),
+    "corners": (
+        "k*abs(sin(V*t))*V",
+        lambda V, t: 20.0 * V * abs(np.sin(V * t)),
+        lambda V: [k * np.pi / V for k in range(9)],
+        9.0,
+    ),
 }
+"""Force, the same in Python, its breakpoints, and a typical value of V."""
 SOLVERS = {
     "bdf": {"solver": "bdf"},
     "radau": {"solver": "radau"},
-    "rk4": {"solver": "projected", "scheme": "rk4", "step": 2e-4},
+    "rk4": {"solver": "projected", "scheme": "rk4", "step": 2e-5},
     "dop853": {"solver": "projected", "scheme": "dop853"},
 }
 
 
-def values(seed):
-    """Return the values of V at each step: near one, over a wide range, or equal in some steps."""
+def values(seed, typical=0.3):
+    """Return the values of V at each step: near a typical one, over a wide range, or equal in some steps."""
     random = np.random.default_rng(seed)
-    found = random.uniform(0.2, 3.0, 40) if seed % 2 else 0.2 + 0.05 * random.random(40)
+    found = typical * (random.uniform(0.5, 1.5, 40) if seed % 2 else 1.0 + 0.1 * random.random(40))
     return [float(found[k // 4 * 4 if seed % 3 == 0 else k]) for k in range(len(found))]
+
+
+def exact(law, given, dt):
+    """Return x and x' of m x'' + c x' + k x = F(V, t) at the end, by SciPy, from breakpoint to breakpoint."""
+    _, force, breakpoints, _ = LAWS[law]
+    y = np.zeros(2)
+    for k, V in enumerate(given):
+        within = [t for t in breakpoints(V) if k * dt < t < (k + 1) * dt]
+        for begin, end in pairwise([k * dt, *within, (k + 1) * dt]):
+            y = solve_ivp(
+                lambda t, y, V=V: [y[1], force(V, t) - 30.0 * y[0] - 1.5 * y[1]], (begin, end), y, rtol=1e-9, atol=1e-11,
+                method="DOP853",
+            ).y[:, -1]  # fmt: skip
+    return y
 
 
 @pytest.mark.sampled(6)
@@ -60,25 +91,30 @@ def values(seed):
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("law", LAWS)
 def test_a_law_whose_input_changes_at_each_step_is_followed(law, seed, solver):
-    """m x'' + c x' + k x = F(V, t), with V constant within each step, by SciPy."""
-    text, force = LAWS[law]
-    given, dt = values(seed), 0.02
-    sim = simulation(stiffmbs.read_scene(SCENE.replace("LAW", text)), inputs={"V": given[0]}, **SOLVERS[solver])
+    """The value of V is constant within each step."""
+    given, dt = values(seed, LAWS[law][3]), 0.02
+    sim = simulation(stiffmbs.read_scene(SCENE.replace("LAW", LAWS[law][0])), inputs={"V": given[0]}, **SOLVERS[solver])
     assert sim._inputs.affine and sim._inputs.of_time
-    y = np.zeros(2)
-    for k, V in enumerate(given):
+    for V in given:
         sim.step(dt, {"V": V})
-        span, most = (k * dt, (k + 1) * dt), 1e-3 if "pulse" in law else 1e-2
-        y = solve_ivp(
-            lambda t, y, V=V: [y[1], force(V, t) - 30.0 * y[0] - 1.5 * y[1]],
-            span,
-            y,
-            rtol=1e-9,
-            atol=1e-11,
-            max_step=most,
-        ).y[:, -1]
-    assert sim["sled.x"] == pytest.approx(y[0], abs=1e-6 * max(1.0, np.abs(y).max()))
-    assert sim["sled.vx"] == pytest.approx(y[1], abs=1e-6 * max(1.0, np.abs(y).max()))
+    expected = exact(law, given, dt)
+    off = 1e-6 * max(1.0, np.abs(expected).max())
+    np.testing.assert_allclose([sim["sled.x"], sim["sled.vx"]], expected, rtol=0, atol=off)
+
+
+@pytest.mark.parametrize("law", ["pulse", "smooth pulse"])
+def test_a_pulse_much_shorter_than_a_step_is_not_missed(law):
+    given = [0.03] * 3 + [
+        0.071,
+        0.072,
+        0.15,
+        0.1501,
+    ]  # reached in the second and fourth step, passed over before the sixth
+    sim = simulation(stiffmbs.read_scene(SCENE.replace("LAW", LAWS[law][0])), inputs={"V": 0.03})
+    for V in given:
+        sim.step(0.02, {"V": V})
+    assert sim["sled.vx"] == pytest.approx(exact(law, given, 0.02)[1], abs=1e-6)
+    assert sim["sled.vx"] > 0.5
 
 
 SPEED = {"V": 15.0}
@@ -106,6 +142,19 @@ def test_the_speed_of_a_half_car_changes_without_reading_the_scene(examples, mon
     np.testing.assert_array_equal(drive(sim), states)
     monkeypatch.setattr(VariedInput, "is_calm", lambda self, t, end: False)
     np.testing.assert_allclose(drive(simulation(path, inputs=SPEED, rtol=1e-8)), states, rtol=0, atol=1e-7)
+
+
+def test_explicit_steps_are_the_same_to_the_last_bit_after_other_values():
+    """Whether the elements were read at a step, or times without features were known, changes nothing."""
+    scene = stiffmbs.read_scene(SCENE.replace("LAW", LAWS["bump"][0]).replace("V: 1,", "V: 1, W: 0.1*V,"))
+    sim, fresh = (simulation(scene, inputs={"V": 0.7}, **SOLVERS["rk4"]) for _ in range(2))
+    for V in values(1, 3.0):
+        sim.step(0.02, {"V": V})
+    sim.reset()
+    for k, V in enumerate(values(2, 3.0)):
+        sim.step(0.02, {"V": V})
+        fresh.step(0.02, {"V": V})
+        np.testing.assert_array_equal(np.append(sim.q, sim.u), np.append(fresh.q, fresh.u), f"step {k}")
 
 
 def test_the_speed_set_from_the_start_gives_the_same_motion(examples):
