@@ -199,11 +199,11 @@ def extrapolated(x, c, h):
     """
     n = x.n_all
     if x.h_past == 0.0:
-        ahead = h if x.first > 0.0 and x.acting == 0 else 0.0
+        predicts = x.first > 0.0 and x.acting == 0
         for i in range(c.stages):
             z = shifted(x.z, i * n)
             for k in range(x.n):
-                z[k] = ahead * c.nodes[i] * x.yp[k]
+                z[k] = h * c.nodes[i] * x.yp[k] if predicts else 0.0
             for k in range(x.n, n):
                 z[k] = 0.0
         return
