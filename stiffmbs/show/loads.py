@@ -154,5 +154,5 @@ def load_rows(loads: Sequence[Load], column: Column, about: dict[str, str]) -> I
         mean, rms = (column.words(value, float(np.nan_to_num(load.bar)) + error).partition(" ")[0]
                      for value, error in (load.over_time(power) for power in (1, 2)))  # fmt: skip
         share = load.peak / largest if largest > 0 else 0.0
-        at = f"{load.time[load.peak_row]:.6g}"
+        at = f"{load.time[load.peak_row]:.4g}"
         yield LoadRow(load.element, about.get(load.element, ""), peak, bar, at, mean, rms, share, load.unique)

@@ -229,10 +229,28 @@ def test_a_report_fits_its_screen_and_its_labels_are_apart(tab, opened):
             wide = "[...document.querySelectorAll('table, figure, p')].filter((one) => one.getBoundingClientRect().right > innerWidth + 1).length"
             assert tab.run(wide) == 0
             assert tab.run(browser.OVERLAPS) == []
+            assert tab.run(browser.SPLIT) == []
         assert [text for text in tab.run(browser.FAINT) if "kN" in text[0]] == []
     finally:
         tab.do("Emulation.clearDeviceMetricsOverride")
         tab.do("Emulation.setEmulatedMedia", features=[])
+
+
+@pytest.mark.long
+def test_names_in_a_picture_are_apart_while_it_moves(tab, opened):
+    """Also those of elements at one point, on a small screen, where names without room are left out."""
+    opened("animate", EXAMPLES / "crank_slider.yaml", "--set", "run.points=101")
+    names = "[...document.querySelectorAll('.viewer .name:not(.tip)')].filter((one) => one.checkVisibility()).length"
+    try:
+        for width, least in ((1400, 9), (390, 6)):
+            tab.do("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+            for part in (0, 0.3, 0.8):
+                tab.run(f"shown.time.set({part} * shown.time.end)")
+                tab.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+                assert tab.run(browser.COVERED_NAMES) == []
+                assert tab.run(names) >= least
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
 
 
 @pytest.mark.long
