@@ -18,6 +18,7 @@ from ..analyses.linearised.modes import NO_EQUILIBRIUM, modes
 from ..errors import InputError, StiffmbsError
 from ..model.scene import Figure, Scene
 from ..notes import Note
+from ..results.displayed import displayed
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import write_text
@@ -133,13 +134,17 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
     """Return a row for each channel: its least and greatest value with bars and times, and its error over time."""
     rows = []
     sizes = scales(solution.channels, 1.0, solution.requested)
-    for name, cell in channel_ranges(solution).items():
-        bar, noise = solution.errors.get(name, UNKNOWN), LOADS.zero * sizes[name]
+    shown = displayed(solution)
+    for name, cell in channel_ranges(shown).items():
+        bar, noise = (
+            shown.errors.get(name, UNKNOWN),
+            LOADS.zero * sizes[name] * solution.display.of(solution.unit(name))[1],
+        )
         verified = name in solution.errors
         rows.append(
             {
                 "name": name,
-                "unit": solution.unit(name),
+                "unit": shown.unit(name),
                 "min": with_bar(cell["min"], bar.least, noise) if verified else f"{cell['min']:.6g}",
                 "max": with_bar(cell["max"], bar.greatest, noise) if verified else f"{cell['max']:.6g}",
                 "t_min": f"{cell['t_min']:.6g}",

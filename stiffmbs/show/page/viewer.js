@@ -436,11 +436,11 @@ const MOVING = (() => {
     /* The scale of forces: the length of an arrow of a round force on the screen. */
     function measure() {
       if (!scale) return;
-      const perNewton = ((data.longest.length / data.longest.force) * wide * camera.zoom) / (camera.right - camera.left);
-      const base = 10 ** Math.floor(Math.log10(90 / perNewton));
-      const round = [5, 2, 1].map((f) => f * base).find((f) => f * perNewton <= 90) ?? base;
-      Object.assign(scale.key.style, { width: `${round * perNewton}px`, height: "4px", verticalAlign: "3px" });
-      scale.words.textContent = `${Number(round.toPrecision(2))} N`;
+      const { force, length, unit, factor } = data.longest, perUnit = ((length / (force * factor)) * wide * camera.zoom) / (camera.right - camera.left);
+      const base = 10 ** Math.floor(Math.log10(90 / perUnit));
+      const round = [5, 2, 1].map((f) => f * base).find((f) => f * perUnit <= 90) ?? base;
+      Object.assign(scale.key.style, { width: `${round * perUnit}px`, height: "4px", verticalAlign: "3px" });
+      scale.words.textContent = `${Number(round.toPrecision(2))} ${unit}`;
     }
     function fit() {
       const w = place.clientWidth, h = place.clientHeight;
