@@ -123,6 +123,7 @@ KINDS: dict[str, dict[str, dict[str, str]]] = {
     "results": {".csv": {}, ".npz": {}, ".nc": XARRAY, ".tab": {}, ".res": {}},
     "cases": {".nc": XARRAY, ".csv": XARRAY},
     "curves": {".csv": {}},
+    "curves of an axle": {".csv": {}, ".html": JINJA},
     "tyre": {".tir": {}},
     "mode shapes": {".vtu": MESHIO, ".vtk": MESHIO},
     "deformation": {".xdmf": {}},

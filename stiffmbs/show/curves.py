@@ -35,6 +35,7 @@ class Curve:
     name: str
     x: np.ndarray
     y: np.ndarray
+    style: str = ""  # class of the style sheet; by default that of its place among the curves of a chart
 
 
 def round_step(span: float) -> float:
@@ -44,18 +45,28 @@ def round_step(span: float) -> float:
     return float(next(power * k for k in (1, 2, 5, 10) if power * k >= least * (1 - 1e-9)))
 
 
-def curve_chart(curves: Sequence[Curve], title: str, abscissa: str, peak: str = "", step_x: float | None = None) -> str:
+NO_MARKS = np.empty((0, 2))
+
+
+def curve_chart(
+    curves: Sequence[Curve],
+    title: str,
+    abscissa: str,
+    peak: str = "",
+    step_x: float | None = None,
+    marks: np.ndarray = NO_MARKS,
+) -> str:
     """Return curves in one chart.
 
     `title`, `abscissa`: quantities with their units. `peak`: words at the peak of the first curve. `step_x`: distance of
-    the numbers below the chart.
+    the numbers below the chart. `marks`: points with triangles, shape (n, 2).
     """
-    x = np.concatenate([curve.x for curve in curves])
-    known = np.concatenate([curve.y[np.isfinite(curve.y)] for curve in curves])
+    x = np.concatenate([*(curve.x for curve in curves), marks[:, 0]])
+    known = np.concatenate([*(curve.y[np.isfinite(curve.y)] for curve in curves), marks[:, 1]])
     low, high = min(0.0, float(known.min(initial=0.0))), max(0.0, float(known.max(initial=0.0)))
     step_y = round_step((high - low) or 1.0)
     low, high = step_y * np.floor(low / step_y), step_y * np.ceil(high / step_y) if high > low else step_y
-    start, end = float(x.min()), float(x.max())
+    start, end = float(np.nanmin(x)), float(np.nanmax(x))
     end = end if end > start else start + 1.0
 
     def place(values_x: np.ndarray, values_y: np.ndarray) -> np.ndarray:
@@ -75,7 +86,9 @@ def curve_chart(curves: Sequence[Curve], title: str, abscissa: str, peak: str = 
             yield _text(across, BOTTOM + 17, _number(value), "soft", "middle")
         yield _text(RIGHT, HEIGHT - 4, abscissa, "soft", "end")
         for k, curve in enumerate(curves):
-            yield f'<path class="curve c{k}" d="{_path(place(*_thinned(curve.x, curve.y)))}"/>'
+            yield f'<path class="curve {curve.style or f"c{k}"}" d="{_path(place(*_thinned(curve.x, curve.y)))}"/>'
+        for across, y in place(*marks.T):
+            yield f'<path class="mark" d="M{across - 4:.1f},{y + 4:.1f}L{across + 4:.1f},{y + 4:.1f}L{across:.1f},{y - 4:.1f}Z"/>'
         if peak and np.isfinite(curves[0].y).any():
             yield from _marked(place, curves[0], peak)
 

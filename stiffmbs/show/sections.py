@@ -100,7 +100,7 @@ def _leaves(path: str, value: object) -> Iterator[tuple[str, str]]:
         for key, part in value.items():
             yield from _leaves(f"{path}.{key}".lstrip("."), part)
     else:
-        yield path, str(value)
+        yield path, f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _changed_loads(solution: Solution, other: Solution) -> Iterator[tuple[str, ...]]:

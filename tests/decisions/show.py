@@ -419,7 +419,7 @@ def width_of_a_text():
 def width_of_a_page():
     panels = [Record(case="c")] * 20
     with (
-        patch.multiple(suspension, PANELS=panels, _curves=lambda *_: True),
+        patch.multiple(suspension, PANELS=panels, curves_of=lambda *_: True),
         patch("matplotlib.figure.Figure", lambda figsize, **_: reach(figsize[0])),
     ):
         return reached(lambda: suspension.kc_figure(Record(sweeps={"c": None})))

@@ -8,8 +8,10 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs.commands.main import main
+from stiffmbs.show.handling import write_handling
 
 from ...conftest import EXAMPLES
+from ..test_handling_page import found
 from . import browser
 
 pytest.importorskip("jinja2")
@@ -251,6 +253,25 @@ def test_names_in_a_picture_are_apart_while_it_moves(tab, opened):
                 assert tab.run(names) >= least
     finally:
         tab.do("Emulation.clearDeviceMetricsOverride")
+
+
+@pytest.mark.long
+def test_a_page_of_handling_tests_fits_its_screen(tab, tmp_path):
+    """Two variants, light and dark: nothing is cut, broken or faint, and no labels cover each other."""
+    path = tmp_path / "page.html"
+    variants = {name: found(tests=("step_steer", "lane_change", "constant_speed")) for name in ("base", "softer")}
+    write_handling(path, variants, dict.fromkeys(variants), {})
+    try:
+        for width, theme in ((1400, "light"), (390, "dark"), (390, "light")):
+            tab.do("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+            tab.do("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
+            tab.do("Page.navigate", url=f"file://{path}")
+            tab.wait("document.readyState === 'complete' && document.querySelector('footer')")
+            assert tab.run("document.documentElement.scrollWidth") <= width
+            assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
+        tab.do("Emulation.setEmulatedMedia", features=[])
 
 
 @pytest.mark.long
