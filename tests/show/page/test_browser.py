@@ -256,6 +256,28 @@ def test_names_in_a_picture_are_apart_while_it_moves(tab, opened):
 
 
 @pytest.mark.long
+def test_a_printed_report_has_all_columns_and_charts_side_by_side(tab, opened):
+    """On paper of A4, whose width is that of a narrow screen; the colours are those of the light theme."""
+    opened("report", EXAMPLES / "crank_slider.yaml", "--no-verify", "--set", "run.points=101")
+    columns = "getComputedStyle(document.querySelector('{}')).gridTemplateColumns.split(' ').length"
+    try:
+        tab.do("Emulation.setDeviceMetricsOverride", width=688, height=971, deviceScaleFactor=1, mobile=False)
+        tab.do(
+            "Emulation.setEmulatedMedia", media="print", features=[{"name": "prefers-color-scheme", "value": "dark"}]
+        )
+        assert [tab.run(columns.format(one)) for one in (".two", ".polar")] == [2, 4]
+        assert tab.run(
+            "[...document.querySelectorAll('.minor')].every((one) => one.checkVisibility() || one.closest('details:not([open])'))"
+        )
+        assert tab.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+        assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT)] == [[], []]
+        assert tab.run("document.documentElement.scrollWidth") <= 688
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
+        tab.do("Emulation.setEmulatedMedia", media="", features=[])
+
+
+@pytest.mark.long
 def test_a_page_of_handling_tests_fits_its_screen(tab, tmp_path):
     """Two variants, light and dark: nothing is cut, broken or faint, and no labels cover each other."""
     path = tmp_path / "page.html"
