@@ -88,6 +88,7 @@ def test_what_is_deactivated_may_be_of_a_kind_that_is_not_read(run_with):
     assert found["PART_2.z"][-1] == pytest.approx(3 - G / 2, abs=1e-7)
 
 
+@pytest.mark.long
 def test_two_runs_in_sequence_are_one(run_with):
     found = run_with("SIM/DYN, END=0.4, STEPS=4\nSIM/DYN, DURATION=0.6, DTOUT=0.1\n")
     np.testing.assert_allclose(found.time, np.linspace(0, 1, 11), atol=1e-12)

@@ -129,6 +129,7 @@ def test_three_motors_lead_the_body_123_angles():
         np.testing.assert_allclose(solution[f"PART_2.q{k}"] * sign, expected[k], atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_sleeve_that_a_motor_turns_starts_to_slide_as_its_joint_says():
     text = TWO + "JOINT/1, CYLINDRICAL, I=21, J=1, ICROT=20D, ICTRAN=0.1,3\nMOTION/1, JOINT=1, ROT, FUNC=7*TIME\n"
     solution = run(text + "VARIABLE/1, FUNC=AZ(21,1)")
@@ -158,6 +159,7 @@ def test_gears_share_a_torque(second):
     np.testing.assert_allclose(solution["PART_3.wz"], -rate / 3, atol=1e-6)
 
 
+@pytest.mark.long
 def test_couplers_share_a_force():
     """A drum of 0.2 m with a rope: s = 0.2 angle."""
     text = (

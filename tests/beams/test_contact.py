@@ -92,6 +92,7 @@ def test_the_schema_describes_contacts_of_beams():
     assert list(schema.iter_errors(yaml.safe_load(rod(2, 0.1).replace("stiffness: 1e4", "stifness: 1e4"))))
 
 
+@pytest.mark.long
 def test_a_cable_is_lifted_from_the_ground_as_a_catenary():
     """With the forces H and V at its end, V/w of its length is in the air."""
     found = at_rest("""

@@ -71,6 +71,7 @@ def test_the_error_of_a_motion_is_within_twice_the_estimate(name, form):
     compare(MOVING[name], 8, form, lambda scene: stiffmbs.run(scene, solver="radau"))
 
 
+@pytest.mark.long
 def test_verification_reports_the_discretisation(tmp_path):
     from click.testing import CliRunner
 
@@ -126,6 +127,7 @@ def test_a_number_for_each_interval():
         read_scene(text.replace("[2, 5]", "[2, 5, 1]"))
 
 
+@pytest.mark.long
 def test_bad_tolerances_are_reported(monkeypatch):
     monkeypatch.setattr("stiffmbs.analyses.beam_elements.MOST", 16)
     text = princeton(8, 13.345, 45)

@@ -161,6 +161,7 @@ def test_whirl_of_the_rotor_of_the_examples(spin, expected):
     assert found == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_a_thick_cantilever_has_the_frequencies_of_timoshenko(dimensions):

@@ -182,6 +182,7 @@ def test_a_damaged_row_of_results_is_refused(change, message):
         stored_results(f"{head}{label}{values}{change}{end}{rest}")
 
 
+@pytest.mark.long
 def test_the_force_between_teeth_acts_at_the_pitch_radius():
     """The torque of the mesh on wheel I is the force times its radius of 0.2 m, and the axles carry the force."""
     run = stiffmbs.run(load_cad(DATA / "shafts.asmt"), rtol=1e-9)

@@ -231,6 +231,7 @@ def test_after_warming_first_runs_compile_nothing(examples, monkeypatch):
     assert len(by_runs) > 50 and by_runs <= by_warming
 
 
+@pytest.mark.long
 def test_the_command_compiles_kinds_and_routines(directory, examples, monkeypatch):
     kinds, loops = warm.usual_kinds()[:1], units()[:1]
     monkeypatch.setattr(warm, "usual_kinds", lambda: kinds)

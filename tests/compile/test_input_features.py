@@ -174,6 +174,7 @@ def test_the_curvature_of_a_force_jumps_at_the_points_of_a_curve():
     assert several.within(2.0, 4.0).bends == pytest.approx([3.5])
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "kind", ["leaves a point", "reaches a point", "leaves another function", "leaves a level in between"]

@@ -85,6 +85,7 @@ def test_fixed_steps_are_judged_and_not_repeated(scheme, reached):
     assert not any("rtol" in note for note in found.notes)
 
 
+@pytest.mark.long
 def test_a_lost_solution_has_unknown_errors():
     asked = {"positions": "10 %"}
     found = stiffmbs.run(stiffmbs.read_scene(DOUBLE), solver="bdf", duration=30, accuracy=asked)

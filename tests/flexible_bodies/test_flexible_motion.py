@@ -91,6 +91,7 @@ def _nodes(folder, solution):
 FREE = "velocity: [1, 2, 3]\n    omega: [30, 50, 200]"
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["radau", "projected"])
 def test_free_flight_keeps_energy_momentum_and_angular_momentum(folder, solver):
@@ -225,6 +226,7 @@ def test_the_clamped_bar_sags_by_its_weight(folder):
     assert found.channels["pin.fy"] == pytest.approx(MASS * 9.81, rel=1e-8)
 
 
+@pytest.mark.long
 def test_the_motion_is_the_same_in_another_frame(folder):
     expected = run(scene(folder, motion=FREE))
     turned = "orientation: {z: [0, 1, 0], x: [0, 0, 1]}\n    position: [3, 4, 5]\n    omega: [30, 50, 200]"

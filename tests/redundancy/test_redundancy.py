@@ -241,6 +241,7 @@ def test_two_drives_that_disagree_are_an_error_that_names_both(second):
         stiffmbs.run(model, duration=1.0)
 
 
+@pytest.mark.long
 def test_a_drive_and_a_redundant_loop_do_not_disagree():
     """Turning through many poses of an over-constrained loop is no contradiction."""
     model = parallelogram(1.0)

@@ -227,6 +227,7 @@ def test_radau_closes_every_state_within_a_step(rigid_four_bar, stiffness, dampi
     assert not found.notes
 
 
+@pytest.mark.long
 def test_states_of_radau_that_stay_open_are_told():
     """One correction, in place of eight, does not suffice."""
     run = "solver: radau, rtol: 1e-4, errors: false, tuning: {polishing: {most_corrections: 1}}"

@@ -96,6 +96,7 @@ def test_an_interrupted_second_run_leaves_the_first(no_search):
     assert "may be wrong from there on" in note
 
 
+@pytest.mark.long
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
 @pytest.mark.parametrize("name", ["bouncing_ball", "cam_follower", "elastic_bearing", "half_car", "stick_slip"])

@@ -68,6 +68,7 @@ def test_bars_hold_the_true_error_and_are_not_far_from_it(problem):
     assert np.median(medians) < 6
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_peaks_of_an_oscillator_lie_within_their_bars(solver):
     """1 m +- 0.3 m at 5 rad/s: every peak is known in closed form."""
@@ -214,7 +215,7 @@ LONG = (
 @pytest.mark.parametrize(
     "path",
     [
-        pytest.param(path, marks=(pytest.mark.long, pytest.mark.sampled(5)) if path.stem in LONG else (), id=path.stem)
+        pytest.param(path, marks=pytest.mark.sampled(5 if path.stem in LONG else 2), id=path.stem)
         for path in EXAMPLE_SCENES.values()
     ],
 )
@@ -255,6 +256,7 @@ def test_a_short_run_of_hardly_any_motion_is_clean():
     assert stiffmbs.verify(example("cart_pendulum"), duration=1e-6).notes == ()
 
 
+@pytest.mark.long
 def test_an_impact_between_output_instants_is_seen():
     scene = example("bouncing_ball")
     coarse = stiffmbs.verify(scene, points=61)

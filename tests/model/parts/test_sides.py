@@ -95,6 +95,7 @@ def notes_of_the_car(folder, text):
     return [note for note in notes_of(stiffmbs.load_scene(folder / "car.yaml")) if ALIKE in note]
 
 
+@pytest.mark.long
 def test_tyres_that_are_not_mirrored_are_noted_by_axle(tmp_path):
     text = EXAMPLE_SCENES["car"].read_text()
     assert notes_of_the_car(tmp_path, text) == []

@@ -20,6 +20,7 @@ def test_steps_that_rounding_shortens_are_told_by_the_explicit_integrator():
     assert solution.message.endswith("or solver bdf")
 
 
+@pytest.mark.long
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("slope", [3e-8, 5e-8])
 @pytest.mark.parametrize("rtol", [3e-7, 5e-7, 1e-6])
