@@ -207,6 +207,22 @@ def test_random_edits_do_not_end_the_worker(worker, count):
     assert not [answer for answer in answers if "please report" in answer.get("message", "")]
 
 
+def test_a_band_is_in_the_units_of_the_scene():
+    text = TEXT + "units: {force: kN}\n"
+    content = {
+        "text": text,
+        "what": "sweep",
+        "parameter": "L",
+        "low": 0.5,
+        "high": 0.7,
+        "count": 2,
+        "unit": "m",
+        "channels": ["rail.fy"],
+    }
+    (band,) = ANSWERS["sweep"](Request(content, LiveSolver(), unwatched, lambda _: None))["bands"]
+    assert 0.05 < max(band["high"]) < 1  # of some 100 N
+
+
 def test_choices_are_those_of_the_options():
     options = "options:\n  load:\n    none: {}\n    heavy: {forces: {push: {type: force, i: bar, force: [0, -50 N]}}}\n"
     for chosen, text in (("none", ""), ("heavy", "choose: {load: heavy}\n")):
