@@ -33,17 +33,18 @@ class Judgement:
 
 def page_of_tests(
     kind: str, title: str, facts: Iterable[tuple[str, str]], judged: Judgement, sections: Sequence[Section],
-    origins: Mapping[str, Provenance | None],
+    origins: Mapping[str, Provenance | None], keys: Sequence[str] = (),
 ) -> str:  # fmt: skip
     """Return the page as HTML.
 
     `kind`: the tests, above the title. `facts`: pairs of a name and a value. `origins`: those of the variants by name; a
-    single one may have no name.
+    single one may have no name. `keys`: names of the curves of
+    all charts, by default the variants.
     """
     first = next(iter(origins.values()))
     return environment().from_string(page_file("tests.html")).render(
         kind=kind, title=title, facts=facts, status=judged.status, mark=judged.mark, sentence=judged.sentence, further=judged.further,
-        variants=list(origins), changed=_changed(origins), sections=sections, sheet=page_file("report.css"), version=version("stiffmbs"),
+        variants=keys or list(origins), changed=_changed(origins), sections=sections, sheet=page_file("report.css"), version=version("stiffmbs"),
         origin_section=origin_section(first) if first else "",
     )  # fmt: skip
 

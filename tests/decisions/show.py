@@ -21,6 +21,7 @@ from stiffmbs.show import (
     loads_shown,
     report,
     sections,
+    study_page,
     suspension,
     tyre,
 )
@@ -428,6 +429,10 @@ def width_of_a_text():
         return reached(lambda: summary.summary(Record(name="")))
 
 
+def cases_of_a_table():
+    return len(study_page._table_of_cases([{"case": 0, "status": ""}] * 1000, (), ()).tables[0].rows)
+
+
 def width_of_a_page():
     panels = [Record(case="c")] * 20
     with (
@@ -523,6 +528,7 @@ DECISIONS = {
     "show.report:MOST_LINES": most_lines,
     "show.sections:MOST_ROWS": lambda: differences()[0],
     "show.sections:MOST_FIGURES": lambda: differences()[1],
+    "show.study_page:MOST_CASES": cases_of_a_table,
     "show.summary:UNBROKEN": width_of_a_text,
     "show.suspension:COLUMNS": width_of_a_page,
     "show.suspension:ROUNDING": smallest_shown_measure,
@@ -553,5 +559,6 @@ EXPECTED = {
     "show.page.data:POSES_A_SECOND": 60, "show.page.data:CHANNEL_VALUES": 450, "show.page.data:MOST_INSTANTS": 2000,
     "show.page.modes:POINTS": 31, "show.page.modes:AMPLITUDE": 0.05, "show.report:MOST_LINES": 23, "show.sections:MOST_ROWS": 15,
     "show.sections:MOST_FIGURES": 3, "show.summary:UNBROKEN": 10000, "show.suspension:COLUMNS": 12.0, "show.suspension:ROUNDING": 119,
+    "show.study_page:MOST_CASES": 200,
     "show.tyre:SIZE": 16.5,
 }  # fmt: skip

@@ -12,6 +12,7 @@ from stiffmbs.show.handling import write_handling
 
 from ...conftest import EXAMPLES
 from ..test_handling_page import found
+from ..test_study_page import page_of
 from . import browser
 
 pytest.importorskip("jinja2")
@@ -294,6 +295,24 @@ def test_a_page_of_handling_tests_fits_its_screen(tab, tmp_path):
     finally:
         tab.do("Emulation.clearDeviceMetricsOverride")
         tab.do("Emulation.setEmulatedMedia", features=[])
+
+
+@pytest.mark.long
+def test_a_page_of_a_study_fits_a_phone(tab, tmp_path):
+    """Its table of cases scrolls by itself if it has many columns."""
+    pytest.importorskip("xarray")
+    page_of(tmp_path, (5, 3))
+    try:
+        tab.do("Emulation.setDeviceMetricsOverride", width=390, height=900, deviceScaleFactor=1, mobile=False)
+        tab.do("Page.navigate", url=f"file://{tmp_path / 'page.html'}")
+        tab.wait("document.readyState === 'complete' && document.querySelector('footer')")
+        tab.run(
+            "document.querySelectorAll('tr').forEach((row) => { for (let k = 0; k < 9; k++) row.append(row.lastElementChild.cloneNode(true)); })"
+        )
+        assert tab.run("document.documentElement.scrollWidth") <= 390
+        assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
 
 
 @pytest.mark.long
