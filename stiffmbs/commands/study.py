@@ -45,7 +45,7 @@ def study(
     """
     from ..reading.variation import read_variation
     from ..results.provenance import provenance_of
-    from ..show.study_page import write_study
+    from ..show.page.study import write_study
     from ..studies.data_set import as_dict, text, write
     from ..studies.sweep import study_of
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 BASE = "base"
-"""Name of the scene itself beside its variants."""
+"""Name of the scene itself among its variants."""
 VARIANT = "A variant, and a change of SCENE for it"
 _COMMA = re.compile(r",(?![^\[\]]*\])")
 """Comma between changes, not within a list."""
@@ -72,7 +72,7 @@ def kc(
     """
     from ..results.files import write_table
     from ..results.provenance import provenance_of
-    from ..show.kc_page import write_kc
+    from ..show.page.kc import write_kc
     from ..show.style import write_sheet
     from ..show.suspension import kc_csv, kc_figure, kc_text
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance

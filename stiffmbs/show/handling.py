@@ -19,7 +19,7 @@ from ..studies.handling.steering_inputs import BAR_OF
 from ..studies.handling.study import Handling, Tested
 from .force_table import with_bar
 from .handling_charts import handling_charts
-from .page_of_tests import MINUS, Judgement, change, heads, page_of_tests, written_unit
+from .page.page_of_tests import MINUS, Judgement, change, heads, page_of_tests, written_unit
 from .sections import MISSING, Section, Table
 
 if TYPE_CHECKING:

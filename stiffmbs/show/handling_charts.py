@@ -15,7 +15,7 @@ from ..studies.handling.standards import TESTS
 from ..studies.handling.steering_inputs import response_of_sweeps
 from ..studies.handling.study import Handling
 from .curves import Curve, curve_chart
-from .page_of_tests import written_unit
+from .page.page_of_tests import written_unit
 
 COURSES = {"lane_change": PART_1, "obstacle_avoidance": PART_2}
 """Courses with cones, by test."""

@@ -21,7 +21,6 @@ from stiffmbs.show import (
     loads_shown,
     report,
     sections,
-    study_page,
     suspension,
     tyre,
 )
@@ -29,6 +28,7 @@ from stiffmbs.show.drawing import as_json, bodies, deformed, derive, film, paint
 from stiffmbs.show.drawing.symbols import profiles, shared, spatial
 from stiffmbs.show.page import data
 from stiffmbs.show.page import modes as page_of_modes
+from stiffmbs.show.page import study as page_of_study
 from tests.decisions.common import BELOW, Reached, Record, module, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
@@ -430,7 +430,7 @@ def width_of_a_text():
 
 
 def cases_of_a_table():
-    return len(study_page._table_of_cases([{"case": 0, "status": ""}] * 1000, (), ()).tables[0].rows)
+    return len(page_of_study._table_of_cases([{"case": 0, "status": ""}] * 1000, (), ()).tables[0].rows)
 
 
 def width_of_a_page():
@@ -528,7 +528,7 @@ DECISIONS = {
     "show.report:MOST_LINES": most_lines,
     "show.sections:MOST_ROWS": lambda: differences()[0],
     "show.sections:MOST_FIGURES": lambda: differences()[1],
-    "show.study_page:MOST_CASES": cases_of_a_table,
+    "show.page.study:MOST_CASES": cases_of_a_table,
     "show.summary:UNBROKEN": width_of_a_text,
     "show.suspension:COLUMNS": width_of_a_page,
     "show.suspension:ROUNDING": smallest_shown_measure,
@@ -559,6 +559,6 @@ EXPECTED = {
     "show.page.data:POSES_A_SECOND": 60, "show.page.data:CHANNEL_VALUES": 450, "show.page.data:MOST_INSTANTS": 2000,
     "show.page.modes:POINTS": 31, "show.page.modes:AMPLITUDE": 0.05, "show.report:MOST_LINES": 23, "show.sections:MOST_ROWS": 15,
     "show.sections:MOST_FIGURES": 3, "show.summary:UNBROKEN": 10000, "show.suspension:COLUMNS": 12.0, "show.suspension:ROUNDING": 119,
-    "show.study_page:MOST_CASES": 200,
+    "show.page.study:MOST_CASES": 200,
     "show.tyre:SIZE": 16.5,
 }  # fmt: skip

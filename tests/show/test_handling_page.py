@@ -15,7 +15,7 @@ from stiffmbs.reading.units.display import SI_UNITS, DisplayUnits
 from stiffmbs.show.curves import curve_chart
 from stiffmbs.show.handling import _cell, _steered, write_handling
 from stiffmbs.show.handling_charts import handling_charts
-from stiffmbs.show.page_of_tests import change
+from stiffmbs.show.page.page_of_tests import change
 from stiffmbs.studies.handling import study  # not its class Tested alone, which pytest would collect
 from stiffmbs.studies.handling.known import SEEN
 from stiffmbs.studies.handling.lane_changes import PART_1

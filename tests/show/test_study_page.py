@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from stiffmbs.commands.main import main
-from stiffmbs.show.study_page import MOST_CASES, write_study
+from stiffmbs.show.page.study import MOST_CASES, write_study
 from stiffmbs.studies.data_set import MESSAGE, STATUS
 
 from ..conftest import EXAMPLES

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .origin import origin_section
-from .page.data import environment, page_file
-from .sections import MISSING, Section, Table, changed_values
+from ..origin import origin_section
+from ..sections import MISSING, Section, Table, changed_values
+from .data import environment, page_file
 
 if TYPE_CHECKING:
-    from ..results.provenance import Provenance
+    from ...results.provenance import Provenance
 
 MINUS = "\N{MINUS SIGN}"
 CHANGE = "change"

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..results.files import write_text
-from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
-from .curves import Curve, curve_chart
+from ...results.files import write_text
+from ...studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
+from ..curves import Curve, curve_chart
+from ..sections import MISSING, Section, Table
+from ..suspension import PANELS, ROUNDING, SHOWN, Panel, curves_of, kc_words, measure_rows, slope_rows, unit_of, worded
 from .page_of_tests import Judgement, change, heads, page_of_tests, written_unit
-from .sections import MISSING, Section, Table
-from .suspension import PANELS, ROUNDING, SHOWN, Panel, curves_of, kc_words, measure_rows, slope_rows, unit_of, worded
 
 if TYPE_CHECKING:
-    from ..results.provenance import Provenance
+    from ...results.provenance import Provenance
 
 Variants = Mapping[str, KinematicsAndCompliance]
 TITLES = {

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..results.files import write_text
-from ..studies.data_set import MESSAGE, STATUS, as_dict, numbers, varied
-from .curves import Curve, curve_chart
-from .loads_shown import MOST_CURVES
+from ...results.files import write_text
+from ...studies.data_set import MESSAGE, STATUS, as_dict, numbers, varied
+from ..curves import Curve, curve_chart
+from ..loads_shown import MOST_CURVES
+from ..sections import MISSING, Section, Table
 from .page_of_tests import Judgement, page_of_tests
-from .sections import MISSING, Section, Table
 
 if TYPE_CHECKING:
     import xarray
 
-    from ..results.provenance import Provenance
+    from ...results.provenance import Provenance
 
 Case = Mapping[str, Any]
 MOST_CASES = 200
