@@ -102,12 +102,12 @@ def _charts(variants: Variants, panel: Panel) -> Iterator[str]:
     first = next(iter(variants.values()))
     for name in panel.shown:
         curves = [
-            Curve("", *(np.where(np.abs(part) > ROUNDING, part, 0.0) for part in ((y, x) if panel.upright else (x, y))), f"c{k % 4}{' other' if style != '-' else ''}")
+            _curve(panel, k, style, x, y)
             for k, found in enumerate(variants.values())
             if panel.case in found.sweeps
             for shown, style, x, y in curves_of(found, panel)
             if shown == name
-        ]  # fmt: skip
+        ]
         if curves:
             own = f"{worded(name)}, {written_unit(unit_of(first, name))}".removesuffix(", ")
             case = next(found.sweeps[panel.case].case for found in variants.values() if panel.case in found.sweeps)
@@ -118,3 +118,9 @@ def _charts(variants: Variants, panel: Panel) -> Iterator[str]:
             )
             across, upwards = (own, other) if panel.upright else (other, own)
             yield curve_chart(curves, f"{panel.title}: {upwards}", across)
+
+
+def _curve(panel: Panel, variant: int, style: str, x: np.ndarray, y: np.ndarray) -> Curve:
+    """Return a curve without rounding, with wheel travel upwards if the panel asks for it."""
+    across, upwards = (np.where(np.abs(part) > ROUNDING, part, 0.0) for part in ((y, x) if panel.upright else (x, y)))
+    return Curve("", across, upwards, f"c{variant % 4}" + ("" if style == "-" else " other"))
