@@ -81,6 +81,7 @@ def test_a_motor_turns_many_times(kind):
     np.testing.assert_allclose(solution["MOTION_1.tz"], torque, atol=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("order", "travel", "speed"), [("ACCELERATION", 0.02135, 0.065), ("VELOCITY", 0.065, 0.1)])
 def test_a_slide_is_led_by_the_integral_of_a_step(order, travel, speed):
     """STEP from 0 at 0.2 s to 100 mm/s at 0.5 s: its integral at 1 s is 65 mm, twice integrated 21.35 mm."""
@@ -211,6 +212,7 @@ SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=32, J=15, FUNCTION=5
     np.testing.assert_allclose(solution["PART_2.wz"], gained / 0.2, atol=1e-5)
 
 
+@pytest.mark.long
 def test_a_nut_falls_along_its_spindle():
     text = TWO + "JOINT/1, CYLINDRICAL, I=21, J=1\nJOINT/2, SCREW, I=21, J=1, PITCH=0.3\n" + GRAVITY
     solution = run(text)

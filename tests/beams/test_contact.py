@@ -40,6 +40,7 @@ def test_a_beam_that_falls_flat_rebounds_as_one_mass_and_keeps_its_energy(dimens
     assert np.ptp([found[f"rod.{node}.{up}"] for node in ("start", "node3", "end")], axis=0).max() < 1e-6
 
 
+@pytest.mark.long
 def test_a_point_load_on_an_elastic_foundation():
     """A long beam with shear that its weight keeps on the ground: the integral of P/pi (1 + EI/GA s^2)/(EI s^4 + k EI/GA s^2 + k)."""
     load = "  P: {type: force, i: rod.node20, force: [0, -0.3]}"

@@ -71,6 +71,7 @@ def test_forces_follow_from_the_energy_and_derivatives_from_the_forces(dimension
     assert term(state, "motion", "f") @ state.u == pytest.approx(lost - stored[0], rel=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("dimensions", "n", "damping"), [(2, 3, 0.3), (3, 5, 0.3)])
 def test_directional_derivatives_by_numbers_and_state(dimensions, n, damping):
     state = state_with(dimensions, n, damping)

@@ -99,6 +99,7 @@ def test_a_motion_turns_j_relative_to_i(tmp_path):
     np.testing.assert_allclose(run["arm.wz"], 2.0, rtol=1e-9)
 
 
+@pytest.mark.long
 def test_a_later_start_is_in_the_laws(tmp_path):
     text = CRANK.replace("\t\tMotions\n", MOTION.replace("-2.0d*time", "-time*time"))
     late = text.replace("\t\ttend\n\t\t\t0.5", "\t\ttstart\n\t\t\t1\n\t\ttend\n\t\t\t1.5")

@@ -273,6 +273,7 @@ def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch, el
     assert record._entry(kind) != before
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("first", ["shared", "revolute_spherical"])
 def test_the_name_of_a_record_does_not_depend_on_what_was_imported_first(tmp_path, first):
     """Both modules ask for the same generic class of rods."""

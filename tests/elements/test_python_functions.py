@@ -190,6 +190,7 @@ def own(function):
     return made
 
 
+@pytest.mark.long
 def test_own_classes_call_functions_too():
     solution = stiffmbs.run(own(lambda x: -100 * x[0] - 4 * x[1]), duration=1.0, rtol=1e-9)
     w, d = np.sqrt(100 - 4), 2.0

@@ -107,6 +107,7 @@ def test_free_flight_keeps_energy_momentum_and_angular_momentum(folder, solver):
     np.testing.assert_allclose(solution["energy.total"], solution["energy.total"][0], rtol=1e-8)
 
 
+@pytest.mark.long
 def test_interfaces_are_at_their_nodes(folder):
     solution = run(scene(folder, motion=FREE))
     model, position, velocity, _ = _nodes(folder, solution)
@@ -127,6 +128,7 @@ def test_solvers_agree(folder, solver):
     np.testing.assert_allclose(found["pin.fy"], expected["pin.fy"], atol=1e-4 * np.abs(expected["pin.fy"]).max())
 
 
+@pytest.mark.long
 def test_presolve_changes_nothing(folder):
     expected, found = (
         run(scene(folder, PIN, motion="omega: [0, 0, 20]", run__presolve=on)) for on in ("true", "false")

@@ -194,6 +194,7 @@ def edits(text, count, seed=0):
                 yield text[:k]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", [40, pytest.param(300, marks=pytest.mark.long)])
 def test_random_edits_do_not_end_the_worker(worker, count):
     made, answers = worker

@@ -343,6 +343,7 @@ def _here(body, at, direction, pose):
     return Marker(body=str(body), point=(c * dx + s * dy, -s * dx + c * dy), angle=direction - angle)
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(2, 5), st.integers(2, 7))
 def test_rank_of_random_loops_and_uniqueness_by_an_independent_matrix(seed, bodies, joints):
@@ -359,6 +360,7 @@ def test_rank_of_random_loops_and_uniqueness_by_an_independent_matrix(seed, bodi
     assert {channel.partition(".")[0] for channel in report.not_unique} == loose
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(2, 4), st.integers(2, 6))
 def test_remedies_make_reactions_unique(seed, bodies, joints):

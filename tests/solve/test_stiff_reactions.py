@@ -62,6 +62,7 @@ def test_spurious_forces_between_steps_are_removed(rigid, stiffness):
     assert error(stiffmbs.run(pendulum("solver: bdf, rtol: 1e-4", stiffness)), rigid) < 0.01
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_simulations_and_followed_runs_correct_states_within_steps(rigid, solver):

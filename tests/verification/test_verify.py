@@ -118,6 +118,7 @@ def test_the_reference_that_bars_are_held_against_is_that_of_the_equations_of_mo
     np.testing.assert_allclose(exact["cart.x"], cart_pendulum_reference(exact.time)[0], atol=1e-12)
 
 
+@pytest.mark.long
 def test_the_error_over_time_holds_what_a_closed_form_says():
     for rtol in (1e-4, 1e-7):
         found = stiffmbs.verify(oscillator(), duration=5.0, rtol=rtol)
@@ -230,6 +231,7 @@ def test_clean_scenes_give_no_warning(path):
         assert any(part in note for note in warned), warned
 
 
+@pytest.mark.long
 def test_reactions_without_a_unique_value_have_no_bars():
     text = (EXAMPLES.parent / "docs" / "guide" / "four_bar.md").read_text(encoding="utf-8")
     scene = stiffmbs.read_scene("# parallelogram" + text.split("# parallelogram")[1].split("```")[0])

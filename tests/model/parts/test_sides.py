@@ -53,6 +53,7 @@ def test_a_wheel_centre_on_the_right_of_a_left_part_is_refused():
         car(right=corner(parameters={"wheel_centre": [0, -0.76, 0.3]}))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("chassis", [CHASSIS, ASKEW])
 def test_mounts_on_the_other_sides_are_refused(chassis):
     """An anti-roll bar, and a driver's wheels; an inner differential may have its outputs along the car."""
