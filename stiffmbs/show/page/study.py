@@ -28,7 +28,7 @@ MOST_CASES = 200
 def write_study(path: Path, data: xarray.Dataset, origin: Provenance | None) -> None:
     """Write the page of a study, completely or not at all.
 
-    `data`: result of `stiffmbs.study`. Raises OSError if the file cannot be written.
+    `data`: result of a study, as `stiffmbs.studies.data_set.data_set` returns it. Raises OSError if the file cannot be written.
     """
     cases: list[Case] = as_dict("", data)["cases"]
     names, outputs = varied(data), numbers(data)
@@ -98,17 +98,18 @@ def _charts(
         curves = []
         for k, part in enumerate(of_curve.values()):
             rows = sorted(part, key=lambda case: case[x])
-            values = [
-                np.array([np.nan if case[name] is None else case[name] for case in rows], dtype=float)
-                for name in (x, output)
-            ]
-            curves.append(Curve("", *values, f"c{k}"))
+            curves.append(Curve("", _column(rows, x), _column(rows, output), f"c{k}"))
         yield curve_chart(curves, output, x, from_zero=False)
         return
     for name in names:
         if known and isinstance(known[0][name], float | int):
             points = np.array([[case[name], case[output]] for case in known], dtype=float)
             yield curve_chart([], output, name, marks=points, from_zero=False)
+
+
+def _column(cases: Sequence[Case], name: str) -> np.ndarray:
+    """Return a value of all cases; nan where it is missing."""
+    return np.array([np.nan if case[name] is None else case[name] for case in cases], dtype=float)
 
 
 def _table_of_cases(cases: Sequence[Case], names: Sequence[str], outputs: Sequence[str]) -> Section:
