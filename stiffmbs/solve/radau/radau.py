@@ -59,9 +59,9 @@ def radau_integrator(dynamics: Dynamics, settings: RunSettings) -> Integrator:
     return Integrator(dynamics, settings, **driver())
 
 
-def driver() -> dict[str, Any]:
+def driver(memory: str = "radau") -> dict[str, Any]:
     """Return how an integrator is driven: arguments of `stiffmbs.solve.integrator.driven`."""
-    return {"control": CONTROL, "memory": "radau", "driver": driven_by_radau}
+    return {"control": CONTROL, "memory": memory, "driver": driven_by_radau}
 
 
 def of_radau(dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
