@@ -52,7 +52,10 @@ class KnownErrors:
         found = {}
         for name, own in self.group.items():
             if own and group in ("", own) and self.sizes[name] > self._rounding and name in self._solution.errors:
-                error = error_of(self._solution.errors[name]) / self.sizes[name]
+                bar = self._solution.errors[name]
+                if kind_of(name) == "orientation":  # Euler parameters of a body that turns have peaks that mean nothing
+                    bar = ErrorBar(bar.over_time, bar.over_time, bar.over_time, 0.0, 0.0)
+                error = error_of(bar) / self.sizes[name]
                 if math.isfinite(error) and name not in self._solution.not_unique:
                     found[name] = error
         return found

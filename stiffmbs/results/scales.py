@@ -18,6 +18,8 @@ ROUNDING = 1e-9
 """Difference that counts as rounding of results, relative to a size, or for instants to a length of time."""
 FIXED = 1e-8
 """Largest motion that counts as none, in sizes of the mechanism and rad."""
+OF_GRAVITY = 1e-2
+"""Accelerations below this part of gravity, or of gravity over the mechanism's size, count as that."""
 CROSSED = 1e-3
 """Least size of torques relative to forces, and of rotations relative to displacements, at the mechanism's size."""
 REQUEST_ROUNDING = 1e-14
@@ -56,12 +58,15 @@ def _kind(channel: str, requested: Mapping[str, str]) -> str:
 
 
 def scales(
-    channels: Mapping[str, np.ndarray], size: float, requested: Mapping[str, str] = MappingProxyType({})
+    channels: Mapping[str, np.ndarray],
+    size: float,
+    requested: Mapping[str, str] = MappingProxyType({}),
+    gravity: float = 0.0,
 ) -> dict[str, float]:
     """Return the size of each channel: the largest value of its body or element, but at least a part of all.
 
-    `size`: size of the mechanism, m. `requested`: channels that are requests, with their units. The result: size in the
-    unit of the channel; for requests the largest value of their components; zero where nothing moves or acts.
+    `size`: size of the mechanism, m. `requested`: channels that are requests, with their units. `gravity`: its magnitude, m/s^2,
+    where accelerations are judged. The result: size in the unit of the channel; for requests the largest value of their components; zero where nothing moves or acts.
     """
     own: dict[tuple[str, str], float] = {}
     keys = {name: (_owner(name), _kind(name, requested)) for name in channels}
@@ -76,8 +81,11 @@ def scales(
     largest: dict[str, float] = {}
     for (_, kind), value in own.items():
         largest[kind] = max(largest.get(kind, 0.0), value)
-    for kind, unit in (("position", size), ("angle", 1.0), ("orientation", 1.0)):
-        largest[kind] = max(largest.get(kind, 0.0), FIXED * unit)
+    for kind, least in (
+        ("position", FIXED * size), ("angle", FIXED), ("orientation", FIXED),
+        ("acceleration", OF_GRAVITY * gravity), ("angular acceleration", OF_GRAVITY * gravity / size),
+    ):  # fmt: skip
+        largest[kind] = max(largest.get(kind, 0.0), least)
     for kind, of in TURNING.items():
         largest[kind] = max(largest.get(kind, 0.0), CROSSED * largest.get(of, 0.0) / size)
     largest["torque"] = max(largest.get("torque", 0.0), CROSSED * largest.get("force", 0.0) * size)

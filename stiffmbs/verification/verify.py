@@ -114,7 +114,8 @@ class _Verification:
     def __init__(self, job: Job, first: Solution, allowed: float) -> None:
         self._job, self._first = job, first
         self._begun, self._allowed = job.evaluations(), allowed
-        self._sizes = scales(first.channels, job.dynamics.system.size, first.requested)
+        gravity = float(np.linalg.norm(job.data.gravity))
+        self._sizes = scales(first.channels, job.dynamics.system.size, first.requested, gravity)
         self._traits = traits_of(job.settings)
         self._exact = self._traits.exact
         self._dense: DenseSamples | None = None

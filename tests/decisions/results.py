@@ -26,10 +26,10 @@ from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 BDF = RunSettings(solver="bdf", rtol=1e-6)
 
 
-def scale_of(channel, unit="", size=1.0, **channels):
+def scale_of(channel, unit="", size=1.0, gravity=0.0, **channels):
     """Return the scale of a channel, from the end values of motions that begin at 0; dots are underscores."""
     motions = {name.replace("_", "."): np.array([0.0, value]) for name, value in channels.items()}
-    return scales.scales(motions, size, {channel: unit} if unit else {})[channel]
+    return scales.scales(motions, size, {channel: unit} if unit else {}, gravity)[channel]
 
 
 def balance(change):
@@ -149,6 +149,7 @@ DECISIONS = {
     "results.scales:ROUNDING": farthest_saved_row,
     "results.scales:FIXED": lambda: scale_of("a.x", a_x=0.0),
     "results.scales:CROSSED": lambda: scale_of("j.torque", j_torque=0.0, j_fx=1.0),
+    "results.scales:OF_GRAVITY": lambda: scale_of("a.wdx", size=2.0, gravity=9.81, a_wdx=1e-9),
     "results.scales:REQUEST_ROUNDING": lambda: count_while(
         lambda value: scale_of("r", unit="?", r=value, a_x=1.0) > 0.0, HALVES
     ),
@@ -160,5 +161,5 @@ EXPECTED = {
     "results.energy_balance_notes:OF_POTENTIAL": 1e-10, "results.error_bars:SAFETY": 2.0, "results.error_bars:FINER": 1.1,
     "results.flexible_motion:AT_ONCE": 8, "results.joined:SAME_VALUE": 40, "results.joint_angles:UNCERTAIN_TURN": 14,
     "results.marker_motion:ALIGNED": 160, "results.scales:LITTLE": 0.1, "results.scales:LITTLE_FORCE": 0.01, "results.scales:ROUNDING": 40,
-    "results.scales:FIXED": 1e-9, "results.scales:CROSSED": 1e-5, "results.scales:REQUEST_ROUNDING": 187,
+    "results.scales:FIXED": 1e-9, "results.scales:CROSSED": 1e-5, "results.scales:OF_GRAVITY": 4.905e-3, "results.scales:REQUEST_ROUNDING": 187,
 }  # fmt: skip

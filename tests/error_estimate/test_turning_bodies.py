@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+import stiffmbs
+from stiffmbs.results.digits import KnownErrors, largest_bar
 from tests.error_estimate.test_against_truth import ratio, solved
 
 PRINCIPAL = np.array([0.01, 0.02, 0.03])
@@ -66,3 +68,17 @@ def test_a_body_in_the_plane_that_turns_within_steps():
     found, truth = solved(scene, solver="radau", rtol=1e-8), solved(scene, solver="projected", rtol=1e-12)
     for channel in ("a.x", "a.angle", "b.omega", "s.fx"):
         assert 0.7 < ratio(found, channel, truth[channel]) < 1.4, channel
+
+
+def test_peaks_of_euler_parameters_between_outputs_take_no_digits():
+    """A wheel at 40 rad/s with ten outputs a second: its quaternion has its peaks between them."""
+    found = stiffmbs.run(
+        stiffmbs.read_scene("""
+dimensions: 3
+bodies: {wheel: {mass: 10, inertia: [1, 2, 1], omega: [0, 40, 0], velocity: [12, 0, 0]}}
+run: {duration: 1, points: 11, solver: radau}
+"""),
+        errors=True,
+    )
+    assert found.errors["wheel.q0"].greatest > 0.01
+    assert KnownErrors(found).digits(largest_bar)["positions"] > 6
