@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,46 +12,33 @@ from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.storage import allocated, blocks, release
 from ...model.settings import RunSettings
+from ..engine import Begun, Engine, Reached
 from ..error_control.error_test import ErrorControl
 from ..error_control.native.parameters import NEWTON, POLISHING
 from ..error_control.newton import Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
+from ..events.refusals import refuse_beyond_limits
+from ..events.restart import restarted
+from ..events.whole_steps import WholeSteps
 from ..linear_solvers.linear_solver import LinearSolver
 from ..radau.collocation import radau
 from ..recorded_steps import Piece, StepRecorder
-from ..trajectory import History, Recording, just_after
+from ..stiff_rows import States
+from ..trajectory import Grid, History, Recording, just_after
 from .connection import BDF, Formula
 from .ida import AT_THE_END, NativeIda
 from .native.parameters import LOOP
+from .refusals import refuse
 from .statistics import Status
 
 if TYPE_CHECKING:
+    from ...compile.inputs.features import InputFeatures
     from ...dynamics.initial import InitialValues
-    from .starting.after_event import Begun, EventRestarts
+    from .starting.after_event import EventRestarts
     from .starting.starts import Starts
 
 
-class Reached(NamedTuple):
-    """Progress of an integrator since its last report.
-
-    - `times`, `rows` of shapes (k,), (k, 2 * independent): output times (or ends of steps), and the independent
-      coordinates and velocities there (`stiffmbs.compile.equations.Equations.states` computes all of them).
-    - `y` of shape (n,): current time and unknowns.
-    - `fired`: event functions whose sign changes stopped the integrator; empty if none did.
-    - `failure`: reason of a failure; empty if there is none.
-    - `passed`: number of breakpoints at which the integrator restarted.
-    """
-
-    times: np.ndarray
-    rows: np.ndarray
-    t: float
-    y: np.ndarray
-    fired: tuple[int, ...] = ()
-    failure: str = ""
-    passed: int = 0
-
-
-class NativeEngine:
+class NativeEngine(Engine):
     """IDA through its C interface, `ida`, with the decisions between its calls.
 
     `equations`: equations in the order of the matrix. `dynamics`: its state is the working memory of residual and
@@ -69,13 +56,14 @@ class NativeEngine:
             formula=formula or BDF(control.predicted_residual),
             renewal=control.renewal,
         )  # fmt: skip
-        self._width, self._equations, self.matrix = len(reported), equations, matrix
+        self._width, self.equations, self.matrix = len(reported), equations, matrix
         self._by_radau = formula is not None
         self.recorder: StepRecorder | None = None
         self._rtol, self._settings = settings.rtol, settings
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
-        self.ida.watch.follow_reactions(dynamics)
+        self.watch = self.ida.watch
+        self.watch.follow_reactions(dynamics)
         self._order = StabilityLimitDetection(
             equations, settings, is_active=formula is None and settings.max_order is None
         )
@@ -104,15 +92,22 @@ class NativeEngine:
         self.ida.begin(t, y, yp, highest_order=self._order.order)
         self._record_start(t)
 
-    def record_steps(self, bounds: Recording) -> None:
-        """Record the steps of the next run for an estimate of its errors, up to some work."""
+    def begin_run(self, features: InputFeatures, grid: Grid) -> None:
+        """See `Engine`."""
+        self.ida.see_inputs(features, grid.end - grid.start)
+        self._gap = 2.0 * grid.aside
+        if grid.recorded.most:
+            self._record_steps(grid.recorded)
+
+    def _record_steps(self, bounds: Recording) -> None:
+        """Record the steps of the run for an estimate of its errors, up to some work."""
         places = AT_THE_END
         if self._by_radau:
             from ..radau.memory import CHOSEN_FROM
 
             places = radau(max(CHOSEN_FROM) + 2).nodes[:-1]  # points at which the curve through fewer has defects
         self.ida.keep_steps(True, places)
-        system = self._equations.system
+        system = self.equations.system
         free = max(system.n_u - int(system.active.sum()), 0)
         evaluations = 1 + 2 * free + system.n_q - system.n_pose  # linearised equations are differences
         of_a_row = bounds.row + evaluations * (system.n_q + system.n_u + system.n_c)
@@ -124,7 +119,7 @@ class NativeEngine:
         if recorder is None:
             return ()
         self.ida.keep_steps(False)
-        return recorder.pieces(self._equations)
+        return recorder.pieces(self.equations)
 
     def _record_start(self, t: float) -> None:
         if self.recorder:
@@ -146,16 +141,16 @@ class NativeEngine:
         self._starts.begin(start, t, self.ida.begun, self._order.order)
         self._take_up(self._starts, t)
 
-    def resume_after(self, gap: float) -> None:
-        """Set the time from a stop to the restart after it, s."""
-        self._gap = gap
-
-    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
-        """Restart after a state and events within `ahead`, s; return None, without a start, if that is impossible."""
+    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun:
+        """See `Engine`."""
         self.ida.error_norm.filter_always(self._order.held)
         found = self._event_restarts.begin((q, u), t, ahead, self.ida.begun, self._order.order)
-        if found:
-            self._take_up(self._starts, found.t)
+        if found is None:  # a force is beyond its limits, unless this raises
+            start = restarted(self._dynamics, t, q, u)
+            refuse_beyond_limits(self._dynamics, t, start.q, start.u)
+            self.begin_at(start, t)
+            return Begun(t, False, True)
+        self._take_up(self._starts, found.t)
         return found
 
     def _take_up(self, starts: Starts, t: float) -> None:
@@ -261,7 +256,7 @@ class NativeEngine:
         unknown, size = self.ida.worst()
         if not 0.0 < size < np.inf:
             return ""
-        at, system = self._equations.at, self._equations.system
+        at, system = self.equations.at, self.equations.system
         for name, labels in (("q", system.of_body.positions), ("u", system.of_body.velocities)):
             for k in np.flatnonzero(at[name] == unknown).tolist():
                 return f"; the largest error was in {system.name_of(k, labels)}"
@@ -285,13 +280,37 @@ class NativeEngine:
         least = NEWTON.precision / self._rtol
         return EventRestarts(self._starts, self._dynamics, self._settings, least)
 
+    def states(self, rows: np.ndarray) -> States:
+        """See `Engine`."""
+        return self.equations.states(rows)
+
+    def split(self, y: np.ndarray) -> States:
+        """See `Engine`."""
+        (q,), (u,) = self.equations.states(y[None, self.equations.independent])
+        return q, u
+
+    def unknowns(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `Engine`."""
+        y = np.zeros(self.equations.n)
+        y[self.equations.independent] = self.equations.coordinates.state(q, u)
+        return y[self.equations.independent], y
+
+    def whole_steps(self) -> tuple[WholeSteps, ...]:
+        """See `Engine`."""
+        kept = self.ida.whole_steps.kept()
+        return (WholeSteps.of(self._dynamics, self.equations, *kept),) if len(kept[0]) else ()
+
+    def refuse(self, reached: Reached, grid: Grid) -> None:
+        """See `Engine`."""
+        refuse(self, self._dynamics, self._settings, reached, grid)
+
     def present(self) -> np.ndarray:
         """Return a row of the same form for the current state."""
         return np.concatenate([[self.ida.t, 1.0], self.ida.y, self.ida.yp])
 
     def note(self) -> str:
-        """Return a sentence on the integration for the user; empty if there is none."""
-        notes = self._order.note(self.ida.history.count), self.ida.watch.note(), self.ida.output_correction.note()
+        """See `Engine`."""
+        notes = self._order.note(self.ida.history.count), super().note(), self.ida.output_correction.note()
         return "; ".join(filter(None, notes))
 
     def steps(self) -> int:

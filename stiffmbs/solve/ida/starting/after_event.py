@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from ....compile.machine.object_code import SHORT
 from ....compile.machine.routines import Routine
 from ....dynamics.dynamics import Dynamics
 from ....model.settings import RunSettings
+from ...engine import Begun
 from ...error_control.native.parameters import POLISHING
 from ...events.discontinuity import JUMP, VELOCITY_JUMP, Jumps, direction_of
 from ..native.layouts import EVENT_RESTART
@@ -19,19 +20,6 @@ from .starts import Starts, integers
 _MODULE = "stiffmbs.solve.ida.starting.native.breakpoints"
 RESTARTED = Routine(_MODULE, "restarted_at_event", "int32(float64, float64, int64, int64, int64*)", level=SHORT)
 ADVANCE = Routine(_MODULE, "advance_from", "int32(float64, float64, int64, int64*)")
-
-
-class Begun(NamedTuple):
-    """Result of a restart; the current state is that of the restart.
-
-    `t`: time of the restart, s: that of the given state, or slightly later. `jumps`: true if velocities may have jumped
-    from those of the given state. `meets`: true if event functions that depend on velocities change sign nearby:
-    forces may drive the motion back.
-    """
-
-    t: float
-    jumps: bool
-    meets: bool
 
 
 class EventRestarts:

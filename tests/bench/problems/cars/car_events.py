@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import Job, prepare
+from stiffmbs.solve.bdf import bdf_integrator
 from stiffmbs.solve.ida.native_engine import NativeEngine, Reached
-from stiffmbs.solve.integrator import Integrator
 
 from ...benchmark import Row
 from ...drives import CARS, SOLVERS, Car
@@ -43,7 +43,7 @@ def _wait(job: Job) -> float:
     """The median over the events and breakpoints of one solution."""
     solved = job.subsystems[0] if job.subsystems else job
     solved.dynamics.forget_pivots()
-    integrator = Integrator(solved.dynamics, job.settings)
+    integrator = bdf_integrator(solved.dynamics, job.settings)
     watched = _Watched(integrator.engine)
     integrator.engine = watched  # type: ignore[assignment]
     for _ in integrator.run(solved.start, job.grid):
