@@ -52,7 +52,7 @@ class NativeEngine(Engine):
         tolerances, reported = control.tolerances(equations, settings), equations.independent
         self.ida = NativeIda(
             equations, dynamics.state, matrix, *tolerances, max_step=settings.max_step,
-            reported=reported, growth=control.growth,
+            reported=reported,
             formula=formula or BDF(control.predicted_residual),
             renewal=control.renewal,
         )  # fmt: skip
@@ -78,19 +78,6 @@ class NativeEngine(Engine):
         self._order.forget()
         self._newton, self._stiffness = 0.0, Stiffness(0.0, 0.0)
         self._counted = {"steps": 0, "convergence_failures": 0}
-
-    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
-        """Start or restart at consistent values.
-
-        `newton` is the part of the tolerance that Newton's iteration may leave.  States within steps that are long for
-        the `stiffness` are corrected.
-        """
-        self._newton, self._stiffness = newton, stiffness
-        self.ida.ask("IDASetNonlinConvCoef", newton)
-        self.ida.error_norm.filter_always(self._order.held)
-        self._follow_stiffness(t)
-        self.ida.begin(t, y, yp, highest_order=self._order.order)
-        self._record_start(t)
 
     def begin_run(self, features: InputFeatures, grid: Grid) -> None:
         """See `Engine`."""
@@ -153,6 +140,12 @@ class NativeEngine(Engine):
         self._take_up(self._starts, found.t)
         return found
 
+    def _resume(self, newton: float) -> None:
+        """Start again at the current unknowns, with a part of the tolerance that Newton's iteration may leave."""
+        self.ida.error_norm.filter_always(self._order.held)
+        self._starts.resume(newton, self._order.order)
+        self._take_up(self._starts, self.ida.t)
+
     def _take_up(self, starts: Starts, t: float) -> None:
         self.ida.begun_at(t)
         self._stiffness, self._newton = starts.found()
@@ -176,7 +169,7 @@ class NativeEngine(Engine):
         ida = self.ida
         due = just_after(ida.t) < stop and self._order.due(ida.history.count)  # IDA does not start where it is to stop
         if due and self._order.changed(ida.samples, ida.history.count):
-            self.begin(ida.t, ida.y.copy(), ida.yp.copy(), self._newton, self._stiffness)
+            self._resume(self._newton)
         ida.look_after(self._order.wait(ida.history.count))
 
     def _ease_newton(self) -> None:
@@ -194,9 +187,7 @@ class NativeEngine(Engine):
         if failures > NEWTON.many_failures * max(steps, NEWTON.trusted) and self._newton < NEWTON.easiest:
             self._counted = counted
             eased = min(NEWTON.easiest, NEWTON.eased * self._newton)
-            self.begin(
-                self.ida.t, self.ida.y.copy(), self.ida.yp.copy(), eased, self._stiffness
-            )  # IDA reads it only at a start
+            self._resume(eased)  # IDA reads it only at a start
 
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
         """Integrate to the first stop, or past stops at which compiled restarts apply; report at output times.

@@ -72,10 +72,9 @@ def eased(newton, failures=1000, steps=1000):
     """Return the Newton tolerance after a call with a number of failures."""
     begun = [newton]
     counted = {"steps": steps, "convergence_failures": failures}
-    ida = Record(counted=lambda: counted, usual_steps=0, t=0.0, y=np.zeros(1), yp=np.zeros(1))
+    ida = Record(counted=lambda: counted, usual_steps=0)
     engine = Record(
-        ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _stiffness=None,
-        begin=lambda t, y, yp, eased, stiffness: begun.append(eased),
+        ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _resume=begun.append,
     )  # fmt: skip
     NativeEngine._ease_newton(engine)
     return begun[-1]

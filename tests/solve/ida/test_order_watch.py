@@ -97,7 +97,7 @@ def test_ida_is_not_started_where_it_is_to_stop(monkeypatch):
     for _ in integrator.run(job.start, Grid(0.0, 0.1, np.array([0.1]))):
         pass
     engine, starts = integrator.engine, []
-    monkeypatch.setattr(engine, "begin", lambda *given: starts.append(given))
+    monkeypatch.setattr(engine, "_resume", lambda *given: starts.append(given))
     monkeypatch.setattr(stability_limit.StabilityLimitDetection, "due", lambda *_: True)
     monkeypatch.setattr(stability_limit.StabilityLimitDetection, "changed", lambda *_: True)
     engine._adapt(0.1)

@@ -9,7 +9,7 @@ import numpy as np
 from ....compile.equations import ABSENT, Equations
 from ....compile.machine.layout import packed
 from ....compile.machine.object_code import SHORT
-from ....compile.machine.routines import Routine
+from ....compile.machine.routines import together
 from ....compile.state import SETS
 from ....dynamics.dynamics import Dynamics
 from ....model.settings import RunSettings
@@ -24,8 +24,11 @@ if TYPE_CHECKING:
     from ....dynamics.initial import InitialValues
     from ..ida import NativeIda
 
-_START = Routine(
-    "stiffmbs.solve.ida.starting.native.start", "start", "int32(float64, int64, int64, int64*)", level=SHORT
+_START, _RESUME = together(
+    "stiffmbs.solve.ida.starting.native.start",
+    SHORT,
+    start="int32(float64, int64, int64, int64*)",
+    resume="int32(float64, int64, int64*)",
 )
 FUNCTIONS = {
     "set_newton": "IDASetNonlinConvCoef", "reinitialise": "IDAReInit", "set_first_step": "IDASetInitStep",
@@ -67,14 +70,21 @@ class Starts:
         """
         state = self._state
         state.q[:], state.u[:], state.a[:], state.lam[:] = start.q, start.u, start.acceleration, start.lam
-        flag = _START.short_call(t, counted, highest_order, self._at)
-        if flag < 0:
-            raise ValueError(failure_sentence(flag))
+        _sound(_START.short_call(t, counted, highest_order, self._at))
+
+    def resume(self, newton: float, highest_order: int) -> None:
+        """Start at IDA's current unknowns, with a part of the tolerance that Newton's iteration may leave."""
+        _sound(_RESUME.short_call(newton, highest_order, self._at))
 
     def found(self) -> tuple[Stiffness, float]:
         """Return the stiffness at the last start, and the part of the tolerance that Newton's iteration may leave."""
         cells = self._cells
         return Stiffness(*(float(cells[name]) for name in OF_STIFFNESS)), float(cells["newton"])
+
+
+def _sound(flag: int) -> None:
+    if flag < 0:
+        raise ValueError(failure_sentence(flag))
 
 
 def newton_bounds(rtol: float, fixed: float | None) -> dict[str, float]:

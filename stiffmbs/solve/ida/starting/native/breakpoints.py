@@ -71,7 +71,7 @@ def _same_offsets(s, b, e):
 
 
 @compiled
-def _restarted_at_breakpoint(w, b, c, t):
+def _restarted_at_breakpoint(w, b, c, t, highest_order):
     """Restart at t from IDA's current state; a negative number, with IDA unchanged, leaves the restart to Python."""
     m = dynamics_view(b.dynamics)
     s = state_view(m.state)
@@ -89,7 +89,7 @@ def _restarted_at_breakpoint(w, b, c, t):
     prepare(b, s, m, e, c, t)
     _limit(w, b, c)
     keep_counters(b)
-    return begun(b, c, t)
+    return begun(b, c, t, highest_order)
 
 
 def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table, ida):
@@ -117,9 +117,8 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
         open_ = s.n_c > 0 and c.size > output_correction_view(c.output_correction).long
         if open_ or same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
             return int32(flag)
-        if _restarted_at_breakpoint(w, b, c, t) < 0:
+        if _restarted_at_breakpoint(w, b, c, t, highest_order) < 0:
             return int32(flag)
-        call_int(b.set_highest_order, (c.memory, int32(highest_order)))
         w.t = t
         w.passed += 1
         w.steps_before = c.recorded
@@ -204,9 +203,8 @@ def restarted_at_event(t, ahead, counted, highest_order, table):
     prepare(b, s, m, equations_view(c.equations), c, after)
     if counted:
         keep_counters(b)
-    if begun(b, c, after) < 0:
+    if begun(b, c, after, highest_order) < 0:
         return int32(UNFINISHED)
-    call_int(b.set_highest_order, (c.memory, int32(highest_order)))
     w.t = after
     w.meets = _meets(w, s, m, after) if w.n_event_functions > 0 else 0
     return int32(OK)
