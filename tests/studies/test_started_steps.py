@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import simulation
-from stiffmbs.solve.ida.starting.after_event import EventRestarts
+from stiffmbs.solve.ida.starting.starts import Starts
 
 TOP = """
 parameters: {M: 0 N m}
@@ -40,16 +40,16 @@ def stepped(scene, name, value, settings, steps=40):
 def test_compiled_starts_give_the_states_of_starts_by_python(case, examples, monkeypatch):
     source, name, value, settings = CASES[case]
     scene = stiffmbs.read_scene(source) if "\n" in source else stiffmbs.load_scene(examples / source)
-    done, advance = [], EventRestarts.advance
+    done, advance = [], Starts.advance
 
     def counted(*arguments):
         done.append(advance(*arguments))
         return done[-1]
 
-    monkeypatch.setattr(EventRestarts, "advance", counted)
+    monkeypatch.setattr(Starts, "advance", counted)
     found = stepped(scene, name, value, settings)
     assert sum(done) > 25, "starts that were compiled"
-    monkeypatch.setattr(EventRestarts, "advance", lambda *arguments: False)
+    monkeypatch.setattr(Starts, "advance", lambda *arguments: False)
     off = (
         1e-8 if "over time" in case else 1e-11
     )  # how long a step may be follows from the stretch of time that is looked at

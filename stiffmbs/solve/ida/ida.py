@@ -29,7 +29,6 @@ from .session import Session
 from .statistics import Statistics, Status, StepLog, failure_sentence
 
 if TYPE_CHECKING:
-    from .starting.after_event import EventRestarts
     from .starting.starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64*)", level=SHORT)
@@ -239,15 +238,15 @@ class NativeIda:
         return row
 
     def advance_past(
-        self, event_restarts: EventRestarts, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
+        self, starts: Starts, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
     ) -> tuple[int, Status]:
-        """Integrate as `advance` towards the first of some stops, and to later ones if `event_restarts` can restart there."""
+        """Integrate as `advance` towards the first of some stops, and to later ones if `starts` can restart there."""
         times = np.ascontiguousarray(times, dtype=float)
         self._check_rows(y_out, len(times))
         most = min(self._batch, self._look)
         at_times, at_stops, at_rows = addresses(times, stops, y_out)
         self._flag = self.run(
-            ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, event_restarts.table
+            ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, starts.table
         )
         return int(self.cells["served"]), self._status()
 

@@ -34,7 +34,6 @@ from .statistics import Status
 if TYPE_CHECKING:
     from ...compile.inputs.features import InputFeatures
     from ...dynamics.initial import InitialValues
-    from .starting.after_event import EventRestarts
     from .starting.starts import Starts
 
 
@@ -123,32 +122,32 @@ class NativeEngine(Engine):
                 self.recorder = None
 
     def begin_at(self, start: InitialValues, t: float) -> None:
-        """Start at consistent values."""
+        """See `Engine`."""
         self.ida.error_norm.filter_always(self._order.held)
         self._starts.begin(start, t, self.ida.begun, self._order.order)
-        self._take_up(self._starts, t)
+        self._take_up(t)
 
     def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun:
         """See `Engine`."""
         self.ida.error_norm.filter_always(self._order.held)
-        found = self._event_restarts.begin((q, u), t, ahead, self.ida.begun, self._order.order)
+        found = self._starts.restart((q, u), t, ahead, self.ida.begun, self._order.order)
         if found is None:  # a force is beyond its limits, unless this raises
             start = restarted(self._dynamics, t, q, u)
             refuse_beyond_limits(self._dynamics, t, start.q, start.u)
             self.begin_at(start, t)
             return Begun(t, False, True)
-        self._take_up(self._starts, found.t)
+        self._take_up(found.t)
         return found
 
     def _resume(self, newton: float) -> None:
         """Start again at the current unknowns, with a part of the tolerance that Newton's iteration may leave."""
         self.ida.error_norm.filter_always(self._order.held)
         self._starts.resume(newton, self._order.order)
-        self._take_up(self._starts, self.ida.t)
+        self._take_up(self.ida.t)
 
-    def _take_up(self, starts: Starts, t: float) -> None:
+    def _take_up(self, t: float) -> None:
         self.ida.begun_at(t)
-        self._stiffness, self._newton = starts.found()
+        self._stiffness, self._newton = self._starts.found()
         self._follow_stiffness(t)
         self._record_start(t)
 
@@ -190,19 +189,15 @@ class NativeEngine(Engine):
             self._resume(eased)  # IDA reads it only at a start
 
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
-        """Integrate to the first stop, or past stops at which compiled restarts apply; report at output times.
-
-        Ends early at an event or a failure. `Reached.passed` counts the stops at which it has restarted.
-        """
+        """See `Engine`. Goes past stops at which compiled restarts apply."""
         status, served, passed = Status.GOING, 0, 0
-        event_restarts = self._event_restarts if len(stops) > 1 and self.ida.may_pass else None
-        if event_restarts is None or not event_restarts.may_pass:
-            event_restarts, stops = None, stops[:1]
+        if not (len(stops) > 1 and self.ida.may_pass and self._starts.may_pass):
+            stops = stops[:1]
         times = times[: times.searchsorted(stops[-1], side="right")]
         while status is Status.GOING:
             times, stops = times[served:], stops[passed:]
             rows = allocated(len(times), self._width)
-            served, status, passed = self._advance(event_restarts, times, stops, rows)
+            served, status, passed = self._advance(times, stops, rows)
             *earlier, last = list(blocks(served)) or [slice(0, 0)]
             for block in earlier:
                 yield self._reached(times[block], rows[block], Status.GOING)
@@ -211,23 +206,21 @@ class NativeEngine(Engine):
             if status is Status.GOING:
                 self._adapt(stops[passed])
 
-    def _advance(
-        self, event_restarts: EventRestarts | None, times: np.ndarray, stops: Sequence[float], rows: np.ndarray
-    ) -> tuple[int, Status, int]:
-        """Integrate to the first stop, or beyond by `event_restarts`; return output times served, status, stops passed."""
-        if event_restarts is None:
+    def _advance(self, times: np.ndarray, stops: Sequence[float], rows: np.ndarray) -> tuple[int, Status, int]:
+        """Integrate to the first stop, or to the last of several; return output times served, status, stops passed."""
+        if len(stops) == 1:
             return *self.ida.advance(times, stops[0], rows), 0
-        before = self.ida.history.count
-        event_restarts.resume_after(self._gap)
-        served, status = self.ida.advance_past(event_restarts, times, np.array(stops), self._order.order, rows)
-        passed, steps = event_restarts.passed
+        before, starts = self.ida.history.count, self._starts
+        starts.resume_after(self._gap)
+        served, status = self.ida.advance_past(starts, times, np.array(stops), self._order.order, rows)
+        passed, steps = starts.passed
         if passed:
-            self._stiffness, self._newton = event_restarts.starts.found()
-            self._order.begin(event_restarts.t, before + steps)
+            self._stiffness, self._newton = starts.found()
+            self._order.begin(starts.t, before + steps)
         return served, status, passed
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report each step; end early at an event or a failure."""
+        """See `Engine`."""
         status = Status.GOING
         while status is Status.GOING:
             times, rows = np.empty(LOOP.most_steps), np.empty((LOOP.most_steps, self._width))
@@ -258,18 +251,11 @@ class NativeEngine(Engine):
 
         Returns False, with the state unchanged, if that needs a run.
         """
-        return self._event_restarts.advance((q, u), t, end, self._order.order)
+        return self._starts.advance((q, u), t, end, self._order.order)
 
     @cached_property
     def _starts(self) -> Starts:
         return self._make_starts()
-
-    @cached_property
-    def _event_restarts(self) -> EventRestarts:
-        from .starting.after_event import EventRestarts
-
-        least = NEWTON.precision / self._rtol
-        return EventRestarts(self._starts, self._dynamics, self._settings, least)
 
     def states(self, rows: np.ndarray) -> States:
         """See `Engine`."""
