@@ -9,26 +9,33 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...compile.equations import Equations
+from ...dynamics.algebraic_states import no_value_ahead
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.storage import allocated, blocks, release
+from ...errors import SolverError
 from ...model.settings import RunSettings
 from ..engine import Begun, Engine, Reached
 from ..error_control.error_test import ErrorControl
 from ..error_control.native.parameters import NEWTON, POLISHING
 from ..error_control.newton import Stiffness
+from ..error_control.precision import governed_by_rounding, too_fine
+from ..error_control.relaxation import RELAXATION, refuse_drift
 from ..error_control.stability_limit import StabilityLimitDetection
+from ..events.chattering import CHATTERING
 from ..events.refusals import refuse_beyond_limits
 from ..events.restart import restarted
 from ..events.whole_steps import WholeSteps
+from ..explicit.native.parameters import CONTROL
 from ..linear_solvers.linear_solver import LinearSolver
 from ..radau.collocation import radau
+from ..reasons import Reason
 from ..recorded_steps import Piece, StepRecorder
 from ..stiff_rows import States
+from ..suspect import suspect
 from ..trajectory import Grid, History, Recording, just_after
 from .connection import BDF, Formula
 from .ida import AT_THE_END, NativeIda
 from .native.parameters import LOOP
-from .refusals import refuse
 from .statistics import Status
 
 if TYPE_CHECKING:
@@ -278,8 +285,25 @@ class NativeEngine(Engine):
         return (WholeSteps.of(self._dynamics, self.equations, *kept),) if len(kept[0]) else ()
 
     def refuse(self, reached: Reached, grid: Grid) -> None:
-        """See `Engine`."""
-        refuse(self, self._dynamics, self._settings, reached, grid)
+        """See `Engine`: steps that rounding governs, failures, and drift from the constraints end a run."""
+        if failure := self._failure(reached, grid):
+            raise SolverError(Reason.NO_STEP.of(f"stopped at t = {reached.t:.9g} s: {failure}"))
+        if reached.t < grid.end and self.steps() >= RELAXATION.check_interval:
+            refuse_drift(self._dynamics, reached.t, *self.split(reached.y), self._settings)
+
+    def _failure(self, reached: Reached, grid: Grid) -> str:
+        """Return the reason why the run ends at this state, or an empty string."""
+        steps, dynamics = self.steps(), self._dynamics
+        endless = (grid.end - reached.t) * steps > CHATTERING.steps_ahead * (reached.t - grid.start)
+        by_rounding = steps > CONTROL.enough_steps and (endless or governed_by_rounding(self.statistics()))
+        if not (by_rounding or reached.failure):
+            return ""
+        q, u = self.split(reached.y)
+        missing = no_value_ahead(dynamics, reached.t, q, u) if reached.failure else ""
+        reason = missing or too_fine(dynamics, self._settings, reached.t, q)
+        if reason or not reached.failure:
+            return reason
+        return reached.failure + suspect(dynamics, reached.t, q, u)
 
     def present(self) -> np.ndarray:
         """Return a row of the same form for the current state."""
@@ -287,7 +311,7 @@ class NativeEngine(Engine):
 
     def note(self) -> str:
         """See `Engine`."""
-        notes = self._order.note(self.ida.history.count), super().note(), self.ida.output_correction.note()
+        notes = self._order.note(self.ida.history.count), self.watch.note(), self.ida.output_correction.note()
         return "; ".join(filter(None, notes))
 
     def steps(self) -> int:

@@ -12,9 +12,8 @@ from stiffmbs.solve import integrator
 from stiffmbs.solve.error_control.newton import Stiffness
 from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
-from stiffmbs.solve.ida import refusals
+from stiffmbs.solve.ida import native_engine
 from stiffmbs.solve.ida.native import error_norm, iteration, output_correction
-from stiffmbs.solve.ida.native_engine import NativeEngine
 from stiffmbs.solve.ida.starting.native import start
 from stiffmbs.solve.ida.starting.starts import newton_bounds
 from stiffmbs.solve.trajectory import Grid
@@ -76,7 +75,7 @@ def eased(newton, failures=1000, steps=1000):
     engine = Record(
         ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _resume=begun.append,
     )  # fmt: skip
-    NativeEngine._ease_newton(engine)
+    native_engine.NativeEngine._ease_newton(engine)
     return begun[-1]
 
 
@@ -90,7 +89,7 @@ def balance_between_steps():
     found = []
     ida = Record(correct_outputs=lambda *given: found.append(given[-1]), history=Record(count=0))
     engine = Record(_stiffness=Stiffness(1.0, 1.0), ida=ida, _dynamics=None, _rtol=1e-6, _order=Record(begin=nothing))
-    NativeEngine._follow_stiffness(engine, 0.0)
+    native_engine.NativeEngine._follow_stiffness(engine, 0.0)
     return found[0]
 
 
@@ -172,8 +171,8 @@ def first_check(module, name, check, counts):
 def at_a_step(engine):
     """Let an engine judge its steps."""
     reached = Record(t=0.0, y=np.zeros(1), failure="")
-    with patch.multiple(refusals, _failure=lambda *_: ""):
-        refusals.refuse(engine, None, None, reached, Grid(0.0, 1.0, None))
+    engine._failure, engine._dynamics, engine._settings = lambda *_: "", None, None
+    native_engine.NativeEngine.refuse(engine, reached, Grid(0.0, 1.0, None))
 
 
 def in_a_run(engine):
@@ -195,12 +194,12 @@ def steps_that_rounding_governs():
     """Return the thousands of steps up to which a run is not checked for a tolerance below rounding."""
 
     def engine(n):
-        return Record(steps=lambda: 1000 * n, statistics=dict, split=lambda y: (y, y))
+        return Record(steps=lambda: 1000 * n, statistics=dict, split=lambda y: (y, y), _dynamics=None, _settings=None)
 
     reached = Record(y=np.zeros(1), failure="", t=0.0)
     grid = Grid(0.0, 1.0, None)
-    with patch.multiple(refusals, governed_by_rounding=always, too_fine=lambda *_: "too fine"):
-        return count_while(lambda n: not refusals._failure(engine(n), None, None, reached, grid), range(100))
+    with patch.multiple(native_engine, governed_by_rounding=always, too_fine=lambda *_: "too fine"):
+        return count_while(lambda n: not native_engine.NativeEngine._failure(engine(n), reached, grid), range(100))
 
 
 def tolerance_of_a_counter():
@@ -242,7 +241,7 @@ DECISIONS = {
     "error_filter.no_estimate": largest_filtered_norm,
     "relaxation.of_positions": lambda: drift_of_positions(RunSettings(duration=1.0, rtol=1e-8)),
     "relaxation.of_velocities": lambda: drift_of_velocities(RunSettings(duration=1.0, rtol=1e-8), Record(bodies=[0])),
-    "relaxation.check_interval": lambda: first_check(refusals, "refuse_drift", at_a_step, range(0, 5000, 50)),
+    "relaxation.check_interval": lambda: first_check(native_engine, "refuse_drift", at_a_step, range(0, 5000, 50)),
     "divergence.followed_steps": lambda: first_check(integrator, "refuse_beyond_sense", in_a_run, range(0, 300_000, 5000)),
     "explicit_steps.enough_steps": steps_that_rounding_governs,
     "solve.error_control.tolerances:WHICH_TURN": tolerance_of_a_counter,

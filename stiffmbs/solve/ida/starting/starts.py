@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ....compile.equations import ABSENT, Equations
-from ....compile.machine.layout import packed
+from ....compile.machine.layout import DTYPES, fill, packed
 from ....compile.machine.object_code import SHORT
 from ....compile.machine.routines import Routine, together
 from ....compile.state import SETS
@@ -36,6 +37,10 @@ FUNCTIONS = {
     "set_newton": "IDASetNonlinConvCoef", "reinitialise": "IDAReInit", "set_first_step": "IDASetInitStep",
     "set_growth": "IDASetEtaFixedStepBounds", "set_highest_order": "IDASetMaxOrd",
 }  # fmt: skip
+UNUSED = dict.fromkeys(START, 0) | {
+    name: np.empty(0, dtype=DTYPES[START[name]]) for name in START if START[name] in DTYPES
+}
+"""Contents of columns that only restarts use, before the first of them."""
 OF_STIFFNESS = "of_positions", "of_velocities"
 """Cells of the fields of a `Stiffness`."""
 
@@ -44,8 +49,7 @@ class Starts:
     """Compiled starts of one integrator.
 
     `ida`: driver of IDA. `statistics`: counters of IDA. `may_pass`: true if one call may pass several breakpoints: no event
-    functions, and no forces that depend on multipliers. `table`: address of the memory of compiled code
-    (`stiffmbs.solve.ida.native.layouts.START`).
+    functions, and no forces that depend on multipliers.
     """
 
     def __init__(
@@ -53,17 +57,18 @@ class Starts:
         settings: RunSettings, control: ErrorControl,
     ) -> None:  # fmt: skip
         system, self._state = dynamics.system, dynamics.state
-        for term_set in ("motion", "tangent", "position", "event_function"):
+        for term_set in ("motion", "tangent"):
             self._state.load(term_set)
+        self._of_restarts = partial(_restarting, dynamics, settings)
         values: dict[str, Any] = {
             "dynamics": dynamics.table, "ida": ida.table, "error_norm": ida.error_norm.table, "n_watched": ida.watch.n,
             "rate": np.zeros(system.n_q), "kept": np.zeros(system.n_q + system.n_u + system.n_c), "sums": np.zeros(system.n_u),
             **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **statistics.arrays,
             **newton_bounds(settings.rtol, control.newton), "growth": control.growth,
-            **{name: ida.address(function) for name, function in FUNCTIONS.items()}, **_restarting(dynamics, settings),
+            **{name: ida.address(function) for name, function in FUNCTIONS.items()},
         }  # fmt: skip
-        self._kept, self._table = (values, ida), packed(START, values)
-        self._cells, self.table = self._table.view(START.cells)[0], self._table.ctypes.data
+        self._values, self._ida, self._table = values, ida, packed(START, {**UNUSED, **values})
+        self._cells, self._at = self._table.view(START.cells)[0], self._table.ctypes.data
         self._has_events = system.n_event_functions > 0
         self.may_pass = not self._has_events and not len(system.term("acceleration", "f_lam").row)
 
@@ -74,11 +79,20 @@ class Starts:
         """
         state = self._state
         state.q[:], state.u[:], state.a[:], state.lam[:] = start.q, start.u, start.acceleration, start.lam
-        _sound(_START.short_call(t, counted, highest_order, self.table))
+        _sound(_START.short_call(t, counted, highest_order, self._at))
 
     def resume(self, newton: float, highest_order: int) -> None:
         """Start at IDA's current unknowns, with a part of the tolerance that Newton's iteration may leave."""
-        _sound(_RESUME.short_call(newton, highest_order, self.table))
+        _sound(_RESUME.short_call(newton, highest_order, self._at))
+
+    @cached_property
+    def table(self) -> int:
+        """Address of the memory of compiled code for restarts, which is made at the first one."""
+        for term_set in ("position", "event_function"):
+            self._state.load(term_set)
+        self._values |= self._of_restarts()
+        fill(self._table, START, self._values)
+        return self._at
 
     def restart(
         self, state: tuple[np.ndarray, np.ndarray], t: float, ahead: float, counted: bool, highest_order: int
