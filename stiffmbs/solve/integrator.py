@@ -76,7 +76,9 @@ class Integrator(Generic[E]):
                 self.engine.begin_at(start, t)
                 self._started()
                 chattering.begin(t, start.q, start.u)
-            for reached in self._segment(t, stops[: LOOP.most_passed if passing else 1], grid):
+            ahead = stops[: LOOP.most_passed if passing else 1]
+            times = None if grid.times is None else grid.within(just_after(t), ahead[-1])
+            for reached in self.engine.advance(times, ahead):
                 del stops[: reached.passed]
                 self._breakpoints += reached.passed
                 yield reached if not reached.failure else self._explained(reached)
@@ -153,12 +155,6 @@ class Integrator(Generic[E]):
         """Replace a failure by one that names the chattering force, if there is one."""
         jumping = self._hovering.failed(reached.t, *self.engine.split(reached.y))
         return reached._replace(failure=jumping or reached.failure)
-
-    def _segment(self, t: float, stops: list[float], grid: Grid) -> Iterator[Reached]:
-        """Integrate from t to the first stop or past it, or to the first event."""
-        if grid.times is None:
-            return self.engine.by_steps(stops[0])
-        return self.engine.to_times(grid.within(just_after(t), stops[-1]), stops)
 
     def _at_once(self, before: float, t: float, grid: Grid, state: States) -> Iterator[Reached]:
         """Yield a state for output times from `before`, excluded, to t, up to rounding such as that of 7 * 0.1 s."""

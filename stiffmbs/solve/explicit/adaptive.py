@@ -84,24 +84,17 @@ class AdaptiveSteps(Engine):
         state.q[:], state.u[:] = start.q, start.u
         return Begun(t, not at_event, meets)
 
-    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+    def advance(self, times: np.ndarray | None, stops: Sequence[float]) -> Iterator[Reached]:
         """See `Engine`."""
-        self.work.report_at(times)
-        return self._advance(stops[0], False)
-
-    def by_steps(self, stop: float) -> Iterator[Reached]:
-        """See `Engine`."""
-        return self._advance(stop, True)
-
-    def _advance(self, stop: float, own_steps: bool) -> Iterator[Reached]:
         work, stable_step, most, self._status = self.work, self._stable_step, self._first, PAUSED
+        work.report_at(np.empty(0) if times is None else times)
         bounds = stable_step.begin(work, self._events)
         look_at, held_at = self._looks(most)
         while self._status in (PAUSED, UNSTABLE):
             wait, held = look_at - work.count("steps"), held_at - work.count("stiff_steps")
             if bounds:
                 wait, held = min(wait, stable_step.wait(work)), min(held, stable_step.held(work))
-            self._status = ADVANCE.call(stop, wait, held, own_steps, work.at)
+            self._status = ADVANCE.call(stops[0], wait, held, times is None, work.at)
             reason = self._checked(bounds)
             early = bounds and self._may_leave and work.count("steps") < look_at and work.count("stiff_steps") < held_at
             self.due = self._status == PAUSED and not early

@@ -195,8 +195,12 @@ class NativeEngine(Engine):
             eased = min(NEWTON.easiest, NEWTON.eased * self._newton)
             self._resume(eased)  # IDA reads it only at a start
 
-    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
-        """See `Engine`. Goes past stops at which compiled restarts apply."""
+    def advance(self, times: np.ndarray | None, stops: Sequence[float]) -> Iterator[Reached]:
+        """See `Engine`."""
+        return self._by_steps(stops[0]) if times is None else self._to_times(times, stops)
+
+    def _to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+        """Report at output times, and go past stops at which compiled restarts apply."""
         status, served, passed = Status.GOING, 0, 0
         if not (len(stops) > 1 and self.ida.may_pass and self._starts.may_pass):
             stops = stops[:1]
@@ -226,8 +230,8 @@ class NativeEngine(Engine):
             self._order.begin(starts.t, before + steps)
         return served, status, passed
 
-    def by_steps(self, stop: float) -> Iterator[Reached]:
-        """See `Engine`."""
+    def _by_steps(self, stop: float) -> Iterator[Reached]:
+        """Report each step."""
         status = Status.GOING
         while status is Status.GOING:
             times, rows = np.empty(LOOP.most_steps), np.empty((LOOP.most_steps, self._width))

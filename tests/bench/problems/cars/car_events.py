@@ -31,10 +31,10 @@ class _Watched:
     def __getattr__(self, name: str) -> Any:
         return getattr(self.engine, name)
 
-    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+    def advance(self, times: np.ndarray | None, stops: Sequence[float]) -> Iterator[Reached]:
         if self.ended is not None:
             self.waits.append(time.process_time() - self.ended)
-        for reached in self.engine.to_times(times, stops):
+        for reached in self.engine.advance(times, stops):
             self.ended = time.process_time()
             yield reached
 
