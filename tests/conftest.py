@@ -53,6 +53,9 @@ drafts.object_code = quickly_compiled
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--all", action="store_true", help="run every test that is marked as sampled")
+    parser.addoption(
+        "--share", default="0/1", metavar="K/N", help="of the tests chosen otherwise, run every N-th from number K on"
+    )
 
 
 @pytest.hookimpl(trylast=True)  # of what -k and -m leave
@@ -60,6 +63,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Leave out what is not sampled, unless all are asked for, and begin with the longest tests."""
     if not config.getoption("all"):
         _sample(config, items)
+    first, every_nth = map(int, config.getoption("share").split("/"))
+    config.hook.pytest_deselected(items=[item for number, item in enumerate(items) if number % every_nth != first])
+    items[:] = items[first::every_nth]
     items.sort(key=_seconds, reverse=True)  # the others keep their order
 
 

@@ -127,7 +127,7 @@ class IntegratedMotion:
 
         found: Any = solve_ivp(
             self._rates, (self.t, end), self.q, method="DOP853", rtol=KINEMATIC.tolerance, atol=KINEMATIC.tolerance, t_eval=[end],
-            first_step=min(end - self.t, self._longest) / 8, max_step=self._longest,
+            first_step=min(end - self.t, self._longest), max_step=self._longest,
         )  # fmt: skip
         if not found.success:
             raise SolverError(self._stuck(NOT_FINITE))

@@ -60,17 +60,19 @@ def solved_between_samples(
         return solve(dynamics, start, grid, settings, watch)
     dynamics.input_features(grid.start, grid.end)  # once for all intervals
     left = list(samples(system, grid))
+    watched, grid = grid.monitor, replace(grid, monitor=None)  # rows past a sample do not have its values yet
     acts, own = _acting(system), slice(system.first_state, None)
     parts: list[Trajectory] = []
-    now, t, idle = start, grid.start, 0
+    now, t, idle, finer = start, grid.start, 0, 1
     with Ending() as ending:
         if left[0].t == grid.start:
             values = next_values(dynamics, left[0], start.q, start.u)
             now, t = _restarted(dynamics, left.pop(0).t, start.q, start.u, values, settings)
         while left:
-            passes = grid.times is not None and grid.monitor is None  # rows past a sample do not have its values yet
+            passes = grid.times is not None or watched
             ahead = left[: min(max(idle, 1), LOOP.most_passed) if passes else 1]
-            found = solve(dynamics, now, _up_to(grid, t, [sample.t for sample in ahead]), settings, watch)
+            found = solve(dynamics, now, _up_to(grid, t, [sample.t for sample in ahead], finer), settings, watch)
+            finer = len(found.t) - 1 if len(ahead) == 1 else finer
             row, values = 0, now.q[own]
             for number, sample in enumerate(ahead, 1):
                 row = int(np.searchsorted(found.t, sample.t))
@@ -88,6 +90,8 @@ def solved_between_samples(
                     break
                 found.q[row + 1 :, own][:, ~acts] = values[~acts]
             parts.append(found)
+            if watched:
+                watched(*(column[1:] for column in (found.t, found.q, found.u)))
             if found.outcome is not Outcome.DONE:
                 break
             del left[:number]
@@ -167,14 +171,21 @@ def _restarted(
     return restarted(dynamics, just_after(t), after, u, settings.projection), just_after(t)
 
 
-def _up_to(grid: Grid, start: float, ends: Sequence[float]) -> Grid:
-    """Return the part of a grid from a time to the last of some samples, with all of them among its times."""
+def _up_to(grid: Grid, start: float, ends: Sequence[float], finer: int) -> Grid:
+    """Return the part of a grid from a time to the last of some samples, with all of them among its times.
+
+    `finer`: number of rows between two samples that are passed, if output is at all steps.
+    """
     end = ends[-1]
     inside = grid.stops[(grid.stops > start) & (grid.stops < end)]
+    if grid.times is None and len(ends) == 1:
+        return Grid(start, end, None, inside)
     if grid.times is None:
-        return Grid(start, end, None, inside, monitor=grid.monitor)
-    between = grid.times[(grid.times > start) & (grid.times < end)]
-    return Grid(start, end, np.union1d([start, *ends], between), inside, monitor=grid.monitor)
+        known = np.array([start, *ends])
+        between = (known[:-1, None] + np.diff(known)[:, None] * np.arange(1, finer) / finer).ravel()
+    else:
+        between = grid.times[(grid.times > start) & (grid.times < end)]
+    return Grid(start, end, np.union1d([start, *ends], between), inside)
 
 
 def _up_to_row(part: Trajectory, row: int) -> Trajectory:

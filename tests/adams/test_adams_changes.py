@@ -71,6 +71,7 @@ def test_numbers_of_parts_forces_and_markers_are_changed(run_with):
     np.testing.assert_allclose(found["PART_2.z"], 3 - G * t**2 / 2 + 8 / 4 * t**3 / 6, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_spring_is_changed(run_with):
     found = run_with("DEACTIVATE/JOINT, ID=1\nSPRINGDAMPER/7, K=8\nMARKER/10, QP=0,0,4\n" + RUN)
     t, omega, sag = found.time, 2.0, 2 * G / 8
@@ -88,6 +89,7 @@ def test_what_is_deactivated_may_be_of_a_kind_that_is_not_read(run_with):
     assert found["PART_2.z"][-1] == pytest.approx(3 - G / 2, abs=1e-7)
 
 
+@pytest.mark.long
 def test_two_runs_in_sequence_are_one(run_with):
     found = run_with("SIM/DYN, END=0.4, STEPS=4\nSIM/DYN, DURATION=0.6, DTOUT=0.1\n")
     np.testing.assert_allclose(found.time, np.linspace(0, 1, 11), atol=1e-12)

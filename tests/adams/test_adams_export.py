@@ -106,6 +106,7 @@ def test_a_dataset_written_anew_is_the_same(name):
     assert dataset_text(read_adams(written)).count("\n") == written.count("\n"), "a third time nothing is added"
 
 
+@pytest.mark.long
 def test_tables_continue_with_the_slope_of_their_ends_in_adams_too():
     """Adams would follow a parabola; the body leaves both tables at once."""
     text = BETWEEN["tables"].replace("smooth(t)", "5*smooth(b.x - 3.1) + sign(0*t)").replace("- 1.1", "- 4")

@@ -140,6 +140,7 @@ END
     np.testing.assert_allclose(solution["PART_3.x"], exact[0], atol=1e-6)
 
 
+@pytest.mark.long
 def test_the_force_between_two_markers_is_that_of_all_that_acts_there():
     """FX .. TZ(i, j, rm) and REQUEST/FORCE: joint, motion of the joint, and forces; of FX(i) the elements of all markers."""
     text = r"""MARKER/10, PART=1

@@ -48,6 +48,7 @@ def garbled(text, random):
     return "\n".join(lines)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 10))])
 @pytest.mark.sampled(11)
 def test_a_garbled_dataset_is_read_or_refused(tmp_path, seed):

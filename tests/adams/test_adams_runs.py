@@ -81,6 +81,7 @@ def test_a_motor_turns_many_times(kind):
     np.testing.assert_allclose(solution["MOTION_1.tz"], torque, atol=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("order", "travel", "speed"), [("ACCELERATION", 0.02135, 0.065), ("VELOCITY", 0.065, 0.1)])
 def test_a_slide_is_led_by_the_integral_of_a_step(order, travel, speed):
     """STEP from 0 at 0.2 s to 100 mm/s at 0.5 s: its integral at 1 s is 65 mm, twice integrated 21.35 mm."""
@@ -129,6 +130,7 @@ def test_three_motors_lead_the_body_123_angles():
         np.testing.assert_allclose(solution[f"PART_2.q{k}"] * sign, expected[k], atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_sleeve_that_a_motor_turns_starts_to_slide_as_its_joint_says():
     text = TWO + "JOINT/1, CYLINDRICAL, I=21, J=1, ICROT=20D, ICTRAN=0.1,3\nMOTION/1, JOINT=1, ROT, FUNC=7*TIME\n"
     solution = run(text + "VARIABLE/1, FUNC=AZ(21,1)")
@@ -158,6 +160,7 @@ def test_gears_share_a_torque(second):
     np.testing.assert_allclose(solution["PART_3.wz"], -rate / 3, atol=1e-6)
 
 
+@pytest.mark.long
 def test_couplers_share_a_force():
     """A drum of 0.2 m with a rope: s = 0.2 angle."""
     text = (
@@ -209,6 +212,7 @@ SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=32, J=15, FUNCTION=5
     np.testing.assert_allclose(solution["PART_2.wz"], gained / 0.2, atol=1e-5)
 
 
+@pytest.mark.long
 def test_a_nut_falls_along_its_spindle():
     text = TWO + "JOINT/1, CYLINDRICAL, I=21, J=1\nJOINT/2, SCREW, I=21, J=1, PITCH=0.3\n" + GRAVITY
     solution = run(text)

@@ -45,6 +45,7 @@ def swing(event):
     return found.t[-1], *found.y[:, -1]
 
 
+@pytest.mark.long
 def test_a_bar_is_let_go_where_a_sensor_says_so(run_with):
     """The usual script: SIMULATE, then DEACTIVATE what the sensor tells, then SIMULATE up to a time."""
     found = run_with(

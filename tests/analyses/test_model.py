@@ -89,6 +89,7 @@ def test_only_models_and_scenes_are_run(given):
             use(given)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", [str, Path])
 def test_files_are_solved_by_their_names(examples, kind):
     file = kind(examples / "bar_pendulum.yaml")

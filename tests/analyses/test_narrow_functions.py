@@ -43,6 +43,7 @@ def test_a_repeated_run_is_right(solver):
     np.testing.assert_allclose(found["b.x"], exact(0.01, 0.3), rtol=0, atol=1e-3, err_msg=str(found.notes))
 
 
+@pytest.mark.long
 def test_features_too_narrow_to_be_resolved_are_reported():
     """Some 200 000 steps would resolve it, and the run says that its results may be wrong."""
     found = stiffmbs.run(oscillator(1e-4, 0.3), duration=2.0, points=51, rtol=1e-6, solver="bdf")

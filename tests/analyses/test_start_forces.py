@@ -91,6 +91,7 @@ def test_a_mount_that_a_stage_adds_off_its_place_is_named(start: str) -> None:
     assert not starts(run(read_scene(STAGES.replace("START", start).replace("OFF", "0"))).notes)
 
 
+@pytest.mark.long
 def test_a_mount_in_space() -> None:
     (note,) = starts(run(read_scene(IN_SPACE)).notes)
     assert "'mount' starts with 5e+05 N, deflected by 5 mm" in note

@@ -50,6 +50,7 @@ def test_the_spring_that_is_wound_keeps_its_turns():
     assert again["spring.tz"][0] == pytest.approx(first["spring.tz"][-1], rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ending", ["csv", "nc", "npz"])
 def test_any_file_of_results_and_any_row(ending, tmp_path):
     if ending == "nc":
@@ -72,6 +73,7 @@ def test_the_time_at_the_start_is_that_of_the_state_unless_told():
     assert stiffmbs.run(scene, start_from=first.state(at=0.5), duration=0.5).time[0] == 0.5
 
 
+@pytest.mark.long
 def test_an_equilibrium_on_the_command_line_is_where_a_run_stays_at_rest(tmp_path):
     scene = str(EXAMPLES / "half_car.yaml")
     state, results = str(tmp_path / "state.npz"), str(tmp_path / "results.npz")

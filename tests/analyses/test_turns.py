@@ -57,6 +57,7 @@ run: {duration: 0.1, points: 11, rtol: 1e-7, solver: radau}
 """
 
 
+@pytest.mark.long
 def test_a_beam_moves_the_same_drawn_from_right_to_left():
     angle = math.atan2(0.2, 1)
     one = stiffmbs.run(read(BEAM, start="end", end="start", angle=angle))
@@ -79,6 +80,7 @@ def test_a_closed_frame_of_beams_starts_without_load():
     assert abs(stiffmbs.run(stiffmbs.read_scene(SQUARE))["energy.total"]).max() < 1e-12
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("turns", [1, -2])
 def test_a_bushing_between_described_angles_a_turn_apart_is_not_wound(turns):
     text = """
@@ -206,6 +208,7 @@ def test_what_read_an_angle_before_a_drive_keeps_its_turns_in_plane_and_space(tm
         np.testing.assert_allclose(again["p.angle"], drawn, atol=1e-6)
 
 
+@pytest.mark.long
 def test_joints_and_a_coupler_of_one_stage_have_the_same_turns():
     text = STAGE.replace("  p: {type: revolute, i: a, j: ground}\n", "")
     pin = "r: {type: revolute, i: a, j: {body: ground, angle: 1}}"
@@ -237,6 +240,7 @@ def test_a_restart_from_a_file_keeps_the_turns_of_what_a_stage_has_added(kind, t
             np.testing.assert_allclose(found[channel], wanted[channel][-6:], atol=1e-5)
 
 
+@pytest.mark.long
 def test_a_joint_that_a_stage_adds_is_checked_where_it_closes():
     text = """
 dimensions: 3

@@ -7,6 +7,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.analyses import conditions
+from stiffmbs.solve import sampling
 
 THROWN = """
 name: a ball that is thrown up
@@ -145,3 +146,40 @@ def test_all_looks_of_a_monitor_take_a_time_in_proportion_to_the_rows(monkeypatc
         monitor.look(np.array([k / count]), row, row)
     assert known[-1] > 0.9 * count
     assert sum(known) < 100 * count
+
+
+SAMPLED = """
+name: a ball that is thrown up, with a controller that begins to push at 0.5 s
+gravity: [0, -10]
+bodies: {ball: {mass: 2, inertia: 1, velocity: [1, 6]}}
+states:
+  count: {update: count + 1, period: 1 ms}
+  push: {update: "branch(t - 0.495, 0, 0, -4*ball.vy)", period: 10 ms}
+forces: {thrust: {type: force, i: ball, force: [0, push]}}
+requests: {height: ball.y, speed: ball.vy, samples: count}
+run: {rtol: 1e-9}
+stages:
+  - {until: {end: {request: CONDITION}}, run: {duration: 2, output: 0.25}}
+"""
+
+
+@pytest.mark.parametrize("solver", ["bdf", "projected", "auto"])
+@pytest.mark.parametrize(("condition", "t"), [("height, at_least: 1", 0.2), ("samples, at_least: 350", 0.349)])
+def test_samples_that_change_nothing_that_acts_end_no_step_before_a_condition(condition, t, solver, monkeypatch):
+    """The count of samples, which a condition reads, is right in all rows; none of the first 350 starts the solver anew."""
+    begun = []
+    restarted = sampling._restarted
+    monkeypatch.setattr(sampling, "_restarted", lambda *given: begun.append(given[1]) or restarted(*given))
+    found = ran(condition, SAMPLED, solver=solver)
+    assert found.time[-1] == pytest.approx(t, abs=1e-7)
+    assert len(begun) < 120, "two runs up to the condition, and those that locate it"
+    assert found["ball.y"][-1] == pytest.approx(6 * t - 5 * t**2, abs=1e-7)
+
+
+def test_samples_that_act_before_a_condition_start_the_solver_anew():
+    """From 0.5 s on each push is that of the speed 0 to 10 ms ago."""
+    t, v = 0.5, 1.0
+    while v - 0.01 * (10 + 2 * v) > -0.9:
+        t, v = t + 0.01, v - 0.01 * (10 + 2 * v)
+    found = ran("speed, at_most: -0.9", SAMPLED)
+    assert found.time[-1] == pytest.approx(t + (v + 0.9) / (10 + 2 * v), abs=1e-7)

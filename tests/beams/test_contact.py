@@ -40,6 +40,7 @@ def test_a_beam_that_falls_flat_rebounds_as_one_mass_and_keeps_its_energy(dimens
     assert np.ptp([found[f"rod.{node}.{up}"] for node in ("start", "node3", "end")], axis=0).max() < 1e-6
 
 
+@pytest.mark.long
 def test_a_point_load_on_an_elastic_foundation():
     """A long beam with shear that its weight keeps on the ground: the integral of P/pi (1 + EI/GA s^2)/(EI s^4 + k EI/GA s^2 + k)."""
     load = "  P: {type: force, i: rod.node20, force: [0, -0.3]}"
@@ -92,6 +93,7 @@ def test_the_schema_describes_contacts_of_beams():
     assert list(schema.iter_errors(yaml.safe_load(rod(2, 0.1).replace("stiffness: 1e4", "stifness: 1e4"))))
 
 
+@pytest.mark.long
 def test_a_cable_is_lifted_from_the_ground_as_a_catenary():
     """With the forces H and V at its end, V/w of its length is in the air."""
     found = at_rest("""

@@ -71,6 +71,7 @@ def test_the_error_of_a_motion_is_within_twice_the_estimate(name, form):
     compare(MOVING[name], 8, form, lambda scene: stiffmbs.run(scene, solver="radau"))
 
 
+@pytest.mark.long
 def test_verification_reports_the_discretisation(tmp_path):
     from click.testing import CliRunner
 
@@ -84,12 +85,14 @@ def test_verification_reports_the_discretisation(tmp_path):
     assert 2e-3 < result["channels"]["rod.end.x"]["discretisation"] < 2e-2
 
 
+@pytest.mark.long
 def test_an_odd_node_of_a_joint_is_kept_by_a_finer_beam():
     text = cantilever(5, force="[0, 5]").replace("i: strip.end, force", "i: strip.node3, force")
     verified = stiffmbs.verify(read_scene(text + "run: {duration: 0.01}"), solver="radau")
     assert "10 instead of 5 elements" in verified.verification[-1]
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("tolerance", "spare"), [("{tolerance: 1 mm}", 1e-3), ("{tolerance: 1e-5 m}", 1e-5), ("auto", 5.08e-4)]
@@ -101,6 +104,7 @@ def test_elements_by_a_tolerance(tolerance, spare):
     assert re.search(r"beam strip: \d+ elements, estimated position error", " ".join(found.notes))
 
 
+@pytest.mark.long
 def test_elements_by_a_tolerance_of_a_run_and_in_a_part():
     part = """
 gravity: [0, -9.81]
@@ -126,6 +130,7 @@ def test_a_number_for_each_interval():
         read_scene(text.replace("[2, 5]", "[2, 5, 1]"))
 
 
+@pytest.mark.long
 def test_bad_tolerances_are_reported(monkeypatch):
     monkeypatch.setattr("stiffmbs.analyses.beam_elements.MOST", 16)
     text = princeton(8, 13.345, 45)

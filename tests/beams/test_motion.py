@@ -121,6 +121,7 @@ def test_flying_spaghetti_in_the_plane():
     assert errors[1] < 2e-3 and errors[0] / errors[1] > 8
 
 
+@pytest.mark.long
 def test_whirl_of_a_shaft_with_a_disc():
     """Timoshenko shaft with rotary and gyroscopic inertia at 200 rad/s, from a p-version finite element model."""
     spin = 200
@@ -161,6 +162,7 @@ def test_whirl_of_the_rotor_of_the_examples(spin, expected):
     assert found == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_a_thick_cantilever_has_the_frequencies_of_timoshenko(dimensions):

@@ -154,6 +154,7 @@ def test_a_stiff_beam_in_rotation_is_steady():
     assert len(rotating(0.3, 4, stiffness=stiffness))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("drive", ["", "  motor: {type: drive, joint: axle, position: 5*t}"])
 def test_a_beam_on_a_rotating_hub_swings_in_its_plane_of_rotation_at_the_frequencies_of_the_rotating_frame(drive):
     """Ritz' method with the tension of a clamp at 0.5 m from the axis; `modes` names the analysis that has them."""

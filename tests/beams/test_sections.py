@@ -58,6 +58,7 @@ def output(state, name):
     return state.values["output"][first : first + 1]
 
 
+@pytest.mark.long
 @pytest.mark.sampled(12)
 @pytest.mark.parametrize(("dimensions", "n", "damping"), FORMS)
 def test_forces_follow_from_the_energy_and_derivatives_from_the_forces(dimensions, n, damping):
@@ -70,6 +71,7 @@ def test_forces_follow_from_the_energy_and_derivatives_from_the_forces(dimension
     assert term(state, "motion", "f") @ state.u == pytest.approx(lost - stored[0], rel=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("dimensions", "n", "damping"), [(2, 3, 0.3), (3, 5, 0.3)])
 def test_directional_derivatives_by_numbers_and_state(dimensions, n, damping):
     state = state_with(dimensions, n, damping)
@@ -126,6 +128,7 @@ def test_elements_form_groups_of_three_and_four():
         assert min(sizes) > 2 or n in (1, 2, 5)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("n", [3, 4, 7])
 def test_an_end_moment_rolls_a_beam_up_to_a_circle(n):
@@ -182,6 +185,7 @@ def test_the_princeton_beam():
     assert tip == pytest.approx([0.156587823, 0.015342258, -0.030361114], abs=1e-7)
 
 
+@pytest.mark.long
 def test_a_rubber_pendulum():
     found = stiffmbs.run(stiffmbs.read_scene(spectral(pendulum(8))), solver="radau")
     end = [found["rod.end.x"][-1], found["rod.end.y"][-1]]

@@ -73,12 +73,14 @@ def test_the_nodes_of_a_linear_cantilever_have_no_error(n):
     assert found["strip.end.angle"] == pytest.approx(1e-5 / 2, rel=1e-7)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("load", BEND)
 def test_a_curved_beam_bends_out_of_its_plane(load):
     tip = np.array([at_rest(bend(8, load, 5e6 / 6))[f"bend.end.{axis}"] for axis in "xyz"])
     assert np.max(np.abs(tip - BEND[load])) < 6e-4
 
 
+@pytest.mark.long
 def test_different_stiffness_in_bending_and_torsion_gives_second_order():
     """Richardson extrapolation then reaches the value of the shooting method."""
     expected = np.array([46.891925, 15.557786, 53.607369])
@@ -164,6 +166,7 @@ forces:
     assert found["bar.end.z"] - found["bar.start.z"] > 41.863725e-6
 
 
+@pytest.mark.long
 def test_the_result_does_not_depend_on_the_direction_in_which_a_beam_is_described():
     """A cantilever in space, in three orientations, with the same load in its own axes."""
     found = []

@@ -47,6 +47,7 @@ def test_a_beam_of_given_stiffnesses_is_that_of_reissner_and_simo(interpolation)
     assert twist(given, interpolation, 5e3) == pytest.approx(twist(given, interpolation, 0.0), rel=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("interpolation", ["pairs", pytest.param("spectral", marks=pytest.mark.long)])
 def test_energy_is_kept_by_a_twisting_strip(interpolation):
     """Forces are derivatives of the energy with the stretch; a damped strip has the same static twist."""

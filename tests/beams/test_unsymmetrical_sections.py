@@ -182,6 +182,7 @@ def by_superposition(constants, force, torque, at):
     return moved, rotation
 
 
+@pytest.mark.long
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("seed", range(6))
 @WAYS

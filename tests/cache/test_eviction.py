@@ -107,6 +107,7 @@ def limited(k):
     write_and_evict(k)
 
 
+@pytest.mark.long
 def test_processes_that_write_and_evict_at_once_end_well(directory):
     context = multiprocessing.get_context("spawn")
     writers = [context.Process(target=limited, args=(k,)) for k in range(2)]

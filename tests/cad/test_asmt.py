@@ -99,6 +99,7 @@ def test_a_motion_turns_j_relative_to_i(tmp_path):
     np.testing.assert_allclose(run["arm.wz"], 2.0, rtol=1e-9)
 
 
+@pytest.mark.long
 def test_a_later_start_is_in_the_laws(tmp_path):
     text = CRANK.replace("\t\tMotions\n", MOTION.replace("-2.0d*time", "-time*time"))
     late = text.replace("\t\ttend\n\t\t\t0.5", "\t\ttstart\n\t\t\t1\n\t\ttend\n\t\t\t1.5")
@@ -182,6 +183,7 @@ def test_a_damaged_row_of_results_is_refused(change, message):
         stored_results(f"{head}{label}{values}{change}{end}{rest}")
 
 
+@pytest.mark.long
 def test_the_force_between_teeth_acts_at_the_pitch_radius():
     """The torque of the mesh on wheel I is the force times its radius of 0.2 m, and the axles carry the force."""
     run = stiffmbs.run(load_cad(DATA / "shafts.asmt"), rtol=1e-9)

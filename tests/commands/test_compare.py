@@ -26,6 +26,7 @@ def compared(examples, tmp_path_factory):
     return json.loads(line), figure.read_text()
 
 
+@pytest.mark.long
 def test_the_json_is_the_one_that_was_agreed_on(compared, examples):
     content, _ = compared
     assert content["scene"] == str(examples / "cart_pendulum.yaml")
@@ -51,6 +52,7 @@ def test_tables_for_a_person(examples):
         assert words in result.output
 
 
+@pytest.mark.long
 def test_over_a_parameter(examples, tmp_path):
     figure = tmp_path / "over.png"
     result = invoke(

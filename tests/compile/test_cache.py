@@ -231,6 +231,7 @@ def test_after_warming_first_runs_compile_nothing(examples, monkeypatch):
     assert len(by_runs) > 50 and by_runs <= by_warming
 
 
+@pytest.mark.long
 def test_the_command_compiles_kinds_and_routines(directory, examples, monkeypatch):
     kinds, loops = warm.usual_kinds()[:1], units()[:1]
     monkeypatch.setattr(warm, "usual_kinds", lambda: kinds)
@@ -272,6 +273,7 @@ def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch, el
     assert record._entry(kind) != before
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("first", ["shared", "revolute_spherical"])
 def test_the_name_of_a_record_does_not_depend_on_what_was_imported_first(tmp_path, first):
     """Both modules ask for the same generic class of rods."""

@@ -15,6 +15,7 @@ PARTS = (
 )  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "ours, sympys", [(lambda parts: total(parts), sp.Add), (lambda parts: product(*parts), sp.Mul)]
 )

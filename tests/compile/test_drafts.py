@@ -340,7 +340,7 @@ SOLVERS = [
 ]
 
 
-@pytest.mark.sampled(7)
+@pytest.mark.sampled(11)
 @pytest.mark.long
 @pytest.mark.parametrize("scene", ["half_car", "stick_slip", "heavy_top"])
 @pytest.mark.parametrize(("solver", "settings"), SOLVERS)

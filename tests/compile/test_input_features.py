@@ -117,6 +117,7 @@ def test_a_sine_is_bounded_alike_at_each_frequency_and_by_half_a_turn_at_the_lea
     assert 0.5 < np.min(found.longest) * frequency < 1.0
 
 
+@pytest.mark.long
 def test_inputs_with_too_many_features_are_told_and_followed():
     assert "too many features" in features("sin(2e7*pi*t)").note
     assert not features("sin(2000*pi*t)").note
@@ -144,6 +145,7 @@ def test_corners_of_tables_of_tables_and_of_all_of_several():
     np.testing.assert_allclose(features("b.x*p(3 - t)", p=table).breakpoints, [1, 2, 3], atol=1e-9)
 
 
+@pytest.mark.long
 def test_nested_steps_take_no_longer_than_their_number():
     """Fourteen steps within each other, and a part that is written twice at each of fourteen levels."""
     nested = doubled = "t/10"
@@ -174,6 +176,7 @@ def test_the_curvature_of_a_force_jumps_at_the_points_of_a_curve():
     assert several.within(2.0, 4.0).bends == pytest.approx([3.5])
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "kind", ["leaves a point", "reaches a point", "leaves another function", "leaves a level in between"]

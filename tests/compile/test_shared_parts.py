@@ -46,6 +46,7 @@ def grown(rng, size):
             return rng.choice([sp.sin, sp.cos, sp.atan])(parts[0]) - sp.Abs(parts[1]) ** sp.Float(1.3)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("seed", range(6))
 def test_code_has_the_values_of_the_expressions(seed):

@@ -9,6 +9,7 @@ import pytest
 VARIABLE = "SYMPY_CACHE_SIZE"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("given", "expected"), [(None, "20000 False"), ("5000", "5000 True")])
 def test_derivations_have_a_larger_one_and_leave_the_environment_as_it_is(given, expected):
     script = (

@@ -92,6 +92,7 @@ def test_without_registration_a_scene_names_what_it_knows():
         stiffmbs.read_scene(IN_PLANE)
 
 
+@pytest.mark.long
 def test_schema_lists_them(registered):
     schema = json.loads(json.dumps(stiffmbs.scene_schema()))
     validator = jsonschema.Draft202012Validator(schema)

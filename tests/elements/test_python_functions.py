@@ -62,6 +62,7 @@ def test_the_motion_is_the_same_in_space():
     np.testing.assert_allclose(space["ball.wz"], plane["ball.omega"], atol=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(("way", "words"), [("differences", "central differences"), ("complex_step", "a complex step")])
 def test_a_note_tells_how_derivatives_are_computed(way, words):
@@ -87,6 +88,7 @@ def test_an_exception_ends_the_run_and_keeps_what_was_computed(settings):
     assert all(np.isfinite(values).all() for values in solution.values())
 
 
+@pytest.mark.long
 def test_a_function_is_called_again_in_the_next_run():
     made, limit = model(lambda x: law(x) if x[0] > limit[0] else 1 / 0), [0.2]
     assert stiffmbs.run(made, duration=1.0).outcome.name == "STOPPED"
@@ -188,6 +190,7 @@ def own(function):
     return made
 
 
+@pytest.mark.long
 def test_own_classes_call_functions_too():
     solution = stiffmbs.run(own(lambda x: -100 * x[0] - 4 * x[1]), duration=1.0, rtol=1e-9)
     w, d = np.sqrt(100 - 4), 2.0

@@ -147,6 +147,7 @@ def test_a_push_that_damping_ends_is_an_event_of_its_own(settings):
     assert prepare(scene, **settings).integrate().statistics["events"] == 3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "settings", [{"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}], ids=lambda s: s["solver"]
 )

@@ -26,6 +26,7 @@ def test_positions_are_as_accurate_as_asked(asked, solver):
     assert np.abs(found["bob.x"] - np.cos(angle)).max() < asked
 
 
+@pytest.mark.long
 def test_an_accuracy_that_is_not_reached_is_reported():
     found = stiffmbs.run(stiffmbs.read_scene(SCENE), solver="bdf", accuracy={"positions": "1e-16 m"})
     assert any("was not reached: reached positions" in note for note in found.notes)
@@ -85,6 +86,7 @@ def test_fixed_steps_are_judged_and_not_repeated(scheme, reached):
     assert not any("rtol" in note for note in found.notes)
 
 
+@pytest.mark.long
 def test_a_lost_solution_has_unknown_errors():
     asked = {"positions": "10 %"}
     found = stiffmbs.run(stiffmbs.read_scene(DOUBLE), solver="bdf", duration=30, accuracy=asked)
@@ -108,6 +110,7 @@ def test_stages_say_what_each_has_reached():
     assert sentence.count("reached") == 2
 
 
+@pytest.mark.long
 def test_a_verified_run_has_the_accuracy_asked_for():
     """The tolerance was that of the settings, whatever the accuracy."""
     asked = {"positions": "1e-6 m"}

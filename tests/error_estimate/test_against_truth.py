@@ -104,6 +104,7 @@ def test_a_drift_that_local_errors_do_not_show():
     assert any("the estimated error of b." in note for note in found.notes)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_a_prescribed_motion_has_no_error(solver):
     found = solved(CRANK, solver=solver, rtol=1e-4)
@@ -112,6 +113,7 @@ def test_a_prescribed_motion_has_no_error(solver):
     assert "positions to 12 digits" in found.estimate.sentence or found.estimate.relative < 1e-9
 
 
+@pytest.mark.long
 def test_forces_of_rounding_have_no_note():
     """A free body on an axis: the forces of the joint are 1e-60 N."""
     found = solved(
@@ -143,6 +145,7 @@ def test_a_lost_solution_is_reported():
     assert all(np.isnan(bar.over_time) for bar in found.errors.values())
 
 
+@pytest.mark.long
 def test_an_impact_shifts_the_time_of_the_next_ones():
     """A ball on a stiff floor, against a run with a much smaller tolerance."""
     found, fine = (
@@ -300,6 +303,7 @@ def test_a_ball_after_a_hundred_impacts(solver):
     assert 1 / 3 < ratio(found, "ball.vy", truth["ball.vy"]) < 3
 
 
+@pytest.mark.long
 def test_a_passage_of_a_singular_pose_is_not_lost():
     """Parallel cranks pass collinear poses, where rows of the constraints are dependent; the error is 2e-7 rad."""
     found = stiffmbs.run(load_scene(EXAMPLES / "four_bars.yaml"), solver="radau", duration=3, errors=True)

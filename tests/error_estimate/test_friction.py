@@ -52,6 +52,7 @@ def test_friction_at_a_reversal(static, velocity, how):
     assert (ratios > 0.5).all() and (ratios < 2.0).all()
 
 
+@pytest.mark.long
 def test_friction_at_a_reversal_between_outputs():
     """A node in a reversal gave its error to outputs away from it: 56 times the true one of a torque, 3 times that of a joint."""
     ratios = compared(TWO_BARS, ("g.torque", "p.fx", "q.fx"), solver="bdf", rtol=1e-3)

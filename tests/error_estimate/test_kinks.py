@@ -16,6 +16,7 @@ run: {{duration: 0.6, points: 61}}
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rtol", [1e-5, 1e-6])
 def test_knots_of_a_curve(rtol):
     """The quadrature by the points of the steps gave 5 and 23 times the true error."""

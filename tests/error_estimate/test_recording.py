@@ -23,6 +23,7 @@ def test_recording_changes_no_output(scene, solver):
     assert same(*runs) and runs[0].solver["steps"] == runs[1].solver["steps"]
 
 
+@pytest.mark.long
 def test_outputs_of_radau_do_not_depend_on_others():
     """A few outputs of a step were corrected one by one; the matrices for that stayed for the next steps."""
     few, many = (stiffmbs.run(four_bar("solver: radau, rtol: 1e-4", 1e10, 7e8), points=points) for points in (6, 501))

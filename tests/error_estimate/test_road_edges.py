@@ -31,6 +31,7 @@ def truth():
     return stiffmbs.run(stiffmbs.read_scene(QUARTER_CAR), solver="radau", rtol=1e-11, errors=False)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver, rtol", [("bdf", 1e-3), ("bdf", 1e-5), ("radau", 1e-4)])
 def test_edges_of_a_road(truth, solver, rtol):

@@ -14,6 +14,7 @@ WELL_DAMPED = (1e12, 7e9)
 LIGHTLY_DAMPED = (1e13, None)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", ["radau", "bdf"])
 @pytest.mark.parametrize("bushing", [WELL_DAMPED, LIGHTLY_DAMPED], ids=["1e12", "1e13"])

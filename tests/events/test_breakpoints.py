@@ -121,6 +121,7 @@ def test_an_output_time_may_be_a_rounding_behind_a_corner():
     assert solution["sled.vx"][[70, 100]] == pytest.approx([0.5, 1.1], rel=1e-6)  # 4 N / 2 kg, half the ramp's 0.5 s
 
 
+@pytest.mark.long
 def test_more_corners_than_samples_could_show():
     """60 000 tops of a sine of 100 Hz, in a run of 300 s."""
     found = breakpoints("max(0, sin(200*pi*t) - 0.9)", end=300.0)

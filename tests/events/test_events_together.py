@@ -40,6 +40,7 @@ def bar_onto_a_spring():
     return model
 
 
+@pytest.mark.long
 def test_an_event_is_not_met_again_behind_the_projection():
     """The bar meets the spring and leaves it, two events; at these ten tolerances there were 30 in all."""
     tolerances = np.geomspace(1e-2, 1e-7, 41)[12:22]

@@ -64,6 +64,7 @@ def test_friction_whose_moment_it_presses_itself(solver, mu, expected):
     assert abs(solution["b.vx"][-1] - expected) < 2e-5
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", ["bdf", "radau", "auto"])
 def test_friction_in_space_whose_moment_vanishes(solver):

@@ -239,6 +239,7 @@ def test_a_periodic_table_of_few_zones_turns(intervals, turns):
 TEETH = "{lines: true, ends: periodic, table: [[0, 0], [0.7, 0], [0.85, 1], [1, 0]]}"
 
 
+@pytest.mark.long
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize(
     ("how", "rtol", "allowed"),

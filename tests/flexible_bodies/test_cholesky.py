@@ -85,6 +85,7 @@ def test_assembled_matrices_are_those_of_scikit_fem(tmp_path, kind):
         assert own.toarray()[np.ix_(place, place)] == pytest.approx(other, abs=1e-12 * np.abs(other).max())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kinds", [("average", "average"), ("rigid", "average"), ("rigid", "rigid")])
 def test_static_modes_minimise_the_strain_energy(tmp_path, kinds):
     """Forces on free nodes are combinations of the functionals of average interfaces."""

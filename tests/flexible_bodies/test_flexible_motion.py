@@ -91,6 +91,7 @@ def _nodes(folder, solution):
 FREE = "velocity: [1, 2, 3]\n    omega: [30, 50, 200]"
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["radau", "projected"])
 def test_free_flight_keeps_energy_momentum_and_angular_momentum(folder, solver):
@@ -106,6 +107,7 @@ def test_free_flight_keeps_energy_momentum_and_angular_momentum(folder, solver):
     np.testing.assert_allclose(solution["energy.total"], solution["energy.total"][0], rtol=1e-8)
 
 
+@pytest.mark.long
 def test_interfaces_are_at_their_nodes(folder):
     solution = run(scene(folder, motion=FREE))
     model, position, velocity, _ = _nodes(folder, solution)
@@ -126,6 +128,7 @@ def test_solvers_agree(folder, solver):
     np.testing.assert_allclose(found["pin.fy"], expected["pin.fy"], atol=1e-4 * np.abs(expected["pin.fy"]).max())
 
 
+@pytest.mark.long
 def test_presolve_changes_nothing(folder):
     expected, found = (
         run(scene(folder, PIN, motion="omega: [0, 0, 20]", run__presolve=on)) for on in ("true", "false")
@@ -225,6 +228,7 @@ def test_the_clamped_bar_sags_by_its_weight(folder):
     assert found.channels["pin.fy"] == pytest.approx(MASS * 9.81, rel=1e-8)
 
 
+@pytest.mark.long
 def test_the_motion_is_the_same_in_another_frame(folder):
     expected = run(scene(folder, motion=FREE))
     turned = "orientation: {z: [0, 1, 0], x: [0, 0, 1]}\n    position: [3, 4, 5]\n    omega: [30, 50, 200]"

@@ -75,6 +75,7 @@ def job(path):
     return prepare(load_scene(path), load_scene(path).run.model_copy(update={"presolve": False, "formulation": "SI2"}))
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_terms_change_as_between_two_scenes(path, job, name):

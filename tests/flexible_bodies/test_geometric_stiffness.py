@@ -228,6 +228,7 @@ def test_a_load_beyond_buckling_is_noted(folder):
     assert any("buckles, outside the second-order theory: use a body of type: beam" in note for note in notes)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("presolve", ["true", "false"])
 def test_a_column_buckles_out_of_the_plane_of_its_loads(folder, presolve):
     """A guide holds the end in the weaker direction; in the other one a tiny start grows at the rate of the beam."""
@@ -252,6 +253,7 @@ def test_the_note_on_a_mesh_with_one_interface_does_not_miss_a_mesh(folder):
     assert note.endswith("this geometric stiffness is included")
 
 
+@pytest.mark.long
 def test_a_large_deflection_is_noted(folder):
     force = "forces: {P: {type: force, i: bar.b, force: [0, 0, F]}}\nrun: {duration: 0.1, points: 11, solver: radau}\n"
     damped = BODY + "    damping: 1\n"

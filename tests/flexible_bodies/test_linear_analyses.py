@@ -67,6 +67,7 @@ def test_equilibrium_is_the_static_solution_of_the_mesh(clamped):
     assert shown == pytest.approx(expected, rel=1e-5)
 
 
+@pytest.mark.long
 def test_frequency_response_is_that_of_the_mesh(clamped):
     """20 modes up to 20 kHz, 1 Hz to 2 kHz: three resonances in each direction, with damping by the stiffness."""
     path, stiffness, mass, entries = clamped

@@ -133,6 +133,7 @@ def test_files_that_are_no_mesh_are_refused(tmp_path, suffix, content):
         from_mesh(path, 1e-3, E, NU, DENSITY)
 
 
+@pytest.mark.long
 def test_200_damaged_archives_are_refused_or_read(tmp_path):
     model = bar(tmp_path, "hexahedron", along=3, across=1)
     whole = {"nodes": model.nodes, "K": model.stiffness.toarray(), "M": model.mass.toarray(), "end": np.arange(4)}

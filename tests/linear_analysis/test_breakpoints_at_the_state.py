@@ -98,6 +98,7 @@ forces:
 """
 
 
+@pytest.mark.long
 def test_a_body_hanging_on_a_spring_is_at_no_breakpoint():
     """No stiffness acts on the rotation about the spring's line, only rounding of that on the other rotations."""
     scene = stiffmbs.read_scene(HANGING)

@@ -181,6 +181,7 @@ forces:
         stiffmbs.equilibrium(stiffmbs.read_scene(scene))
 
 
+@pytest.mark.long
 def test_a_line_force_of_zero_length_balances_nothing():
     """It pulls the points together, and has no direction there that could balance the load across it."""
     scene = """
@@ -255,6 +256,7 @@ def test_a_drive_of_a_velocity_keeps_its_coordinate_in_the_search(scene, driven,
     assert driven(run.channels)[0] == pytest.approx(described, abs=1e-10)
 
 
+@pytest.mark.long
 def test_a_drive_of_a_velocity_keeps_its_coordinate_on_a_branch():
     """From standing upright, the elbow straight: the search leaves the unstable pose by a small move."""
     upright = ELBOW.replace("[0.5, 0], m", "[0, 0.5], angle: pi/2, m")
@@ -265,6 +267,7 @@ def test_a_drive_of_a_velocity_keeps_its_coordinate_on_a_branch():
     assert found.channels["lower.angle"] - found.channels["upper.angle"] == pytest.approx(0, abs=1e-10)
 
 
+@pytest.mark.long
 def test_drives_of_velocities_rest_in_equilibria_over_time():
     """A growing force lifts the arm; the elbow keeps its angle, and a prescribed velocity is noted."""
     base = ELBOW + "forces: {lift: {type: force, i: upper, force: [20*t, 0]}}\n"

@@ -157,6 +157,7 @@ def test_sensitivities(seed, dimensions, name):
     assert changed / units.factor((-1, 1, 2)) == pytest.approx(slope, rel=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(6)
 @pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
 @pytest.mark.parametrize("dimensions", [2, 3])

@@ -23,6 +23,7 @@ def test_a_free_body_that_spins_about_a_principal_axis(axis):
     assert values.real.max() == pytest.approx(np.sqrt(max(square, 0.0)), abs=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("part", [0.9, 1.1])
 def test_a_disc_that_rolls_upright_falls_below_its_critical_speed(examples, part):
     """Thin disc: l^2 = (m g R A - C (C + m R^2) w^2)/(A (A + m R^2)); Neimark and Fufaev (1972), chapter III."""

@@ -134,6 +134,7 @@ def test_a_speed_that_forces_tell(first):
     assert found.channels["sled.x"] == pytest.approx(0, abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_speed_that_forces_tell_to_a_rolling_wheel():
     """A disc of 2 kg rolls with v = r w, 3 N against 1.5 N s/m of air."""
     scene = """

@@ -293,6 +293,7 @@ run: {duration: 0.1}
 """
 
 
+@pytest.mark.long
 def test_a_derivative_of_a_reaction_without_a_unique_value_is_noted():
     """Two guides carry a load together: only the sum of their reactions is unique."""
     scene = stiffmbs.read_scene(GUIDED_TWICE)

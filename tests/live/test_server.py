@@ -233,6 +233,7 @@ def test_a_new_file_is_created_by_saving(tmp_path):
         page.close()
 
 
+@pytest.mark.long
 def test_each_start_has_a_new_token(scene):
     tokens = set()
     for _ in range(3):

@@ -18,6 +18,7 @@ from ..conftest import EXAMPLES
 TEXT = (EXAMPLES / "cart_pendulum.yaml").read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("numbers", [{}, {"L": "0.8 m"}, {"L": "0.8 m", "start": "10 deg"}])
 def test_results_are_those_of_a_run(numbers):
     solver = LiveSolver()
@@ -60,6 +61,7 @@ def test_only_chosen_channels_are_sent():
     assert {one["name"]: one["text"] for one in found["parameters"]}["L"] == "0.6 m"
 
 
+@pytest.mark.long
 def test_python_functions_need_consent():
     model = stiffmbs.Model()
     model.add("a", stiffmbs.Body(mass=1, inertia=1))
@@ -78,6 +80,7 @@ def request(**content):
     return Request({"text": TEXT, **content}, LiveSolver(), unwatched, lambda progress: None)
 
 
+@pytest.mark.long
 def test_a_band_holds_the_curves_of_a_sweep():
     answer = ANSWERS["sweep"](request(**SWEEP, channels=["rail.fy"]))
     (band,) = answer["bands"]
@@ -191,6 +194,7 @@ def edits(text, count, seed=0):
                 yield text[:k]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", [40, pytest.param(300, marks=pytest.mark.long)])
 def test_random_edits_do_not_end_the_worker(worker, count):
     made, answers = worker

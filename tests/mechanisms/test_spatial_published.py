@@ -85,6 +85,7 @@ def self_stress(mechanism, angles):
     return np.array([[*force, *(torque - cross(foot, force))] for foot, _ in hinges])
 
 
+@pytest.mark.long
 def test_bricard_has_one_redundant_equation_and_its_self_stress_is_not_determined(examples):
     found = stiffmbs.check(stiffmbs.load_scene(examples / "bricard.yaml"))
     assert (found.degrees_of_freedom, found.equations, found.rank) == (1, 30, 29)

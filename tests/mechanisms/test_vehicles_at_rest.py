@@ -26,6 +26,7 @@ def test_a_vehicle_stays_at_rest_on_a_level_road(name):
     assert np.ptp(run[f"{'body' if name == 'quarter_car' else 'chassis'}.{vertical}"]) < 1e-8
 
 
+@pytest.mark.long
 def test_the_half_car_from_its_rest_is_the_one_with_loads_by_hand():
     """The same car but for where its springs are in their laws: heights over the bump within a millimetre."""
     by_hand, sought = (stiffmbs.run(EXAMPLE_SCENES[name], duration=1.5) for name in ("half_car", "half_car_at_rest"))

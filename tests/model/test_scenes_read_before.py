@@ -104,6 +104,7 @@ def test_a_file_that_is_included_is_looked_at_each_time(scene, reads):
         stiffmbs.load_scene(scene)
 
 
+@pytest.mark.long
 def test_a_property_file_is_looked_at_each_time(scene, reads):
     for name in ("car.yaml", "car.tir"):
         shutil.copy(EXAMPLES / name, scene.parent)

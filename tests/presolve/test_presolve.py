@@ -62,6 +62,7 @@ def test_what_a_run_has_set_up_is_made_anew_for_other_coordinates(examples):
     np.testing.assert_allclose(with_all.q, with_fewer.q, atol=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("interruptions", [range(3, 4), range(3, 10**9)])
 def test_what_was_solved_before_an_interruption_is_kept_of_all_mechanisms(interruptions):
     calls = itertools.count(1)

@@ -308,6 +308,7 @@ def value_of(text, units):
     return evaluate(parse(text), names.__getitem__, VALUES, float, OF_NUMBERS)
 
 
+@pytest.mark.long
 @settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
 @given(TREES)
 def test_what_is_accepted_scales_as_its_dimension_says(text):

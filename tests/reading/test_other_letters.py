@@ -43,6 +43,7 @@ def solution():
     return stiffmbs.run(stiffmbs.read_scene(SCENE))
 
 
+@pytest.mark.long
 def test_the_motion_is_that_of_plain_names(solution):
     plain = stiffmbs.run(stiffmbs.read_scene(PLAIN))
     np.testing.assert_array_equal(solution["φ"], plain["f"])
@@ -88,6 +89,7 @@ def test_tables_of_studies_have_these_names(tmp_path):
     assert found["Theta"].attrs["long_name"] == "Θ" and found["final(phi)"].attrs["long_name"] == "final(φ)"
 
 
+@pytest.mark.long
 def test_datasets_are_in_ascii():
     found = written_dataset(stiffmbs.read_scene(SCENE))
     assert found.text.isascii() and found.commands.isascii() and "ASCII" in found.notes[-1]

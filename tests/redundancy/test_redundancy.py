@@ -241,6 +241,7 @@ def test_two_drives_that_disagree_are_an_error_that_names_both(second):
         stiffmbs.run(model, duration=1.0)
 
 
+@pytest.mark.long
 def test_a_drive_and_a_redundant_loop_do_not_disagree():
     """Turning through many poses of an over-constrained loop is no contradiction."""
     model = parallelogram(1.0)
@@ -342,6 +343,7 @@ def _here(body, at, direction, pose):
     return Marker(body=str(body), point=(c * dx + s * dy, -s * dx + c * dy), angle=direction - angle)
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(2, 5), st.integers(2, 7))
 def test_rank_of_random_loops_and_uniqueness_by_an_independent_matrix(seed, bodies, joints):
@@ -358,6 +360,7 @@ def test_rank_of_random_loops_and_uniqueness_by_an_independent_matrix(seed, bodi
     assert {channel.partition(".")[0] for channel in report.not_unique} == loose
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(2, 4), st.integers(2, 6))
 def test_remedies_make_reactions_unique(seed, bodies, joints):

@@ -304,6 +304,7 @@ def _here(model, body, at, turn):
     return Marker(body=body, point=tuple(back @ (at - placed.position)), orientation=product((w, -x, -y, -z), turn))
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(2, 4), st.integers(2, 6))
 def test_rank_of_random_loops_and_uniqueness_by_an_independent_matrix(seed, bodies, joints):

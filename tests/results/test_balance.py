@@ -57,6 +57,7 @@ def test_forces_balance_where_joints_are_closed(examples):
     assert np.max(np.abs(seen - expected)) < 0.01 * np.max(np.abs(expected))  # 0.028 with ten times an opening's force
 
 
+@pytest.mark.long
 def test_states_whose_forces_balance_are_left_alone(examples, monkeypatch):
     scene, rtol = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e7 N/m")]), 1e-4
     seen = stiffmbs.run(scene, solver="bdf", rtol=rtol)

@@ -92,6 +92,7 @@ def test_the_balance_is_in_the_summary_and_in_json(tmp_path):
     assert balance["work"] == pytest.approx(balance["change"], rel=1e-4) and not balance["conservative"]
 
 
+@pytest.mark.long
 def test_an_energy_that_changes_where_nothing_acts_is_told():
     solution = stiffmbs.run(sled(), duration=3.0, solver="projected", scheme="euler_cromer", step=0.1, output=0.1)
     assert any("energy balance is broken" in note for note in solution.notes)
@@ -299,6 +300,7 @@ run: {{duration: 30, points: 41, rtol: 1e-4}}
     assert "at t = 12.75 s 'block' exceeds 1e+04 times" in note
 
 
+@pytest.mark.long
 def test_the_balance_is_that_of_the_run_with_the_solver_that_auto_chose():
     """For the first part of a run of 5 s, `auto` chooses explicit steps: after many impacts the states are others."""
     scene = load_scene(EXAMPLES / "cam_follower.yaml")

@@ -313,6 +313,7 @@ def test_names_that_are_no_coordinates_are_refused(formula, sentence):
         stiffmbs.read_scene(SLIDER + f"forces: {{f: {{type: torque, i: bar, torque: {formula}}}}}")
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(("driven", "expected"), [(None, np.pi), ("-pi", -np.pi), ("3*pi", 3 * np.pi)])
 def test_half_a_turn_at_the_start_does_not_depend_on_rounding(driven, expected):

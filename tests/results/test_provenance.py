@@ -88,6 +88,7 @@ PAGES = [
 ]  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("command", PAGES, ids=lambda command: f"{command[0]}-{command[-1]}")
 def test_pages_and_figures_hold_the_scene_that_was_solved(folder, command):

@@ -45,6 +45,7 @@ def test_a_sliding_body_is_slowed_by_the_friction_factor_of_the_road():
     assert np.polyfit(found.time[30:], found["ball.vx"][30:], 1)[0] == pytest.approx(-0.4 * 0.5 * 9.81, rel=2e-3)
 
 
+@pytest.mark.long
 def test_a_ball_swings_in_a_bowl_like_a_pendulum_of_its_radius_less_that_of_the_ball():
     """Without friction: w^2 = g/(R - r), with the curvature 1/R at the bottom, along both axes, apart from (r/R)^2/2."""
     scene = ball(

@@ -146,6 +146,7 @@ def test_a_short_bump_at_speed_is_not_jumped_over():
     assert np.ptp(solution["wheel.z"][before]) < 1e-9
 
 
+@pytest.mark.long
 def test_a_wheel_lifts_off_behind_a_kerb_and_comes_down():
     solution = driven_over(StepRoad(start=5, length=0.3, rise=-0.2), 20.0, 5.0)
     assert solution.success

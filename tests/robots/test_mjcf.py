@@ -69,6 +69,7 @@ def test_accelerations_with_every_kind_of_joint_and_actuator(tmp_path, seed):
     assert worst_difference(path, compiled(EVERYTHING), seed) < 1e-6
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [pytest.param("reacher", marks=pytest.mark.long), "inverted_double_pendulum"])
 def test_accelerations_of_public_models(name):
     assert worst_difference(_public(name), compiled(_public(name)), 3) < 1e-9

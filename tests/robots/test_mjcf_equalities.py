@@ -114,6 +114,7 @@ TURNED = """<mujoco><compiler angle="radian"/><option jacobian="dense"><flag con
 </worldbody><actuator><position joint="k" kp="5"/></actuator>{}</mujoco>"""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "h", [4.0, *(pytest.param(x, marks=pytest.mark.long) for x in (0.3 - np.pi, 0.3 + 3 * np.pi, -9.0))]
 )

@@ -109,6 +109,7 @@ def displacements() -> tuple[np.ndarray, np.ndarray]:
     return t, exact.sol(t)[0]
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("points", [2, 2001])
@@ -277,6 +278,7 @@ def test_only_points_of_the_table_itself_have_a_note(argument: str, passed: bool
     assert bool(motion_notes(run(read_scene(DRIVEN.format(argument=argument))))) is passed
 
 
+@pytest.mark.long
 def test_points_of_a_long_table_are_compared_with_the_nearest_breakpoints() -> None:
     """A measured motion of 200 000 samples has as many breakpoints: no matrix of all pairs."""
     x = np.linspace(0.0, 10.0, 200_001)

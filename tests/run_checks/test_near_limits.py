@@ -29,6 +29,7 @@ def test_bodies_turned_beyond_use_are_told_with_the_first_instant(stiffness, lim
     assert solution.success and float(note.partition("t = ")[2].split()[0]) == pytest.approx(first, abs=2.6e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stiffness, limit", [((1, 1, 1, 2, 2, 2), np.pi), (FREE, np.pi / 2)])
 def test_within_use_nothing_is_told(stiffness, limit):
     solution = thrown(stiffness, 0.95 * limit * np.sqrt(2 / 0.1))

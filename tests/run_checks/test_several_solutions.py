@@ -100,6 +100,7 @@ def test_a_stop_where_loads_have_no_further_solution_names_the_friction(solver, 
     assert chatters or ("fr and fq" in solution.message and "use less friction" in solution.message)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_a_third_of_the_friction_has_no_note(solver):
     solution = stiffmbs.run(turned(1 / 3), solver=solver, rtol=1e-6, errors=False)

@@ -63,6 +63,7 @@ def test_narrow_python_functions_on_every_solver(places, width, how):
     assert found["ball.vx"][-1] == pytest.approx(behind(width, len(places)), abs=2e-3)
 
 
+@pytest.mark.long
 def test_a_function_without_narrow_features_is_left_alone():
     model = ball(1.0)
     assert not told(stiffmbs.run(model, duration=1.0, points=2))

@@ -30,6 +30,7 @@ class Tags(HTMLParser):
         self.words.append(data)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["cart_pendulum.yaml", "heavy_top.yaml"])
 def test_a_scene_a_report_and_a_solution_are_shown(examples, name):
     scene = stiffmbs.load_scene(examples / name)

@@ -170,6 +170,7 @@ def test_command_writes_all_channels_and_prints_them_as_json(tmp_path, monkeypat
     assert saved["top.q1"][-1] == cells["top.q1"]["last"]
 
 
+@pytest.mark.long
 def test_a_figure_in_space_is_a_path(tmp_path):
     pytest.importorskip("matplotlib")
     scene = stiffmbs.load_scene(EXAMPLES / "heavy_top.yaml")

@@ -61,6 +61,7 @@ def test_dynamics_give_the_same_motion_and_forces():
         np.testing.assert_allclose(dynamic[name], kinematic[name], atol=1e-6 * (1 + np.abs(kinematic[name]).max()))
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", ["kinematic", "bdf", "projected"])
 def test_a_motor_that_asks_for_more_than_a_rod_allows(solver):

@@ -62,6 +62,7 @@ def test_spurious_forces_between_steps_are_removed(rigid, stiffness):
     assert error(stiffmbs.run(pendulum("solver: bdf, rtol: 1e-4", stiffness)), rigid) < 0.01
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_simulations_and_followed_runs_correct_states_within_steps(rigid, solver):
@@ -227,6 +228,7 @@ def test_radau_closes_every_state_within_a_step(rigid_four_bar, stiffness, dampi
     assert not found.notes
 
 
+@pytest.mark.long
 def test_states_of_radau_that_stay_open_are_told():
     """One correction, in place of eight, does not suffice."""
     run = "solver: radau, rtol: 1e-4, errors: false, tuning: {polishing: {most_corrections: 1}}"

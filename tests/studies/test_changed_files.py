@@ -107,6 +107,7 @@ def test_packages_of_an_extended_environment_are_not_the_users_code(tmp_path, mo
     assert digests_of_code([lambda x: law(x)]).keys() == digests_of_code([lambda x: x]).keys()
 
 
+@pytest.mark.long
 def test_a_file_that_cases_name_is_part_of_the_store(tmp_path):
     text = WHEEL.format(road="{type: grid, file: a.txt}", mesh="", tyre=VERTICAL)
     (tmp_path / "scene.yaml").write_text(text)

@@ -144,6 +144,7 @@ def test_a_file_that_cannot_be_fitted_is_named(tmp_path, text, sentence):
         fit(stiffmbs.read_scene(SLED), tmp_path / "empty.csv", PARAMETERS)
 
 
+@pytest.mark.long
 def test_the_damping_of_least_mean_square_is_that_of_the_closed_form():
     """Over a long time the integral of x^2 is x0^2/2 (m/c + c/k), least at c = sqrt(m k)."""
     scene = stiffmbs.read_scene(SLED)
@@ -228,6 +229,7 @@ def test_a_fit_ends_where_steps_are_below_the_integration_error():
         assert found.standard_errors[name] == pytest.approx(error, rel=0.02)
 
 
+@pytest.mark.long
 def test_sensitivities_that_fail_are_not_tried_again(monkeypatch):
     tried = []
     monkeypatch.setattr(Gradients, "at", lambda _, point: refuse_derivatives(tried, point))

@@ -57,6 +57,7 @@ def test_steps_are_those_of_a_run(examples, name, settings):
         np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-13)  # pivots of the LU are those of the step alone
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("settings", [RK4, EULER], ids=["rk4", "euler_cromer"])
 def test_steps_in_one_call_or_after_a_reset_or_from_a_file_are_the_same(settings, tmp_path):
     sim, values = arm(settings), torques(40)

@@ -273,6 +273,7 @@ run: {duration: 0.6, rtol: 1e-8, points: 7}
 """
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(("name", "value"), [("a", 1.5), ("m", 1.3), ("I", 0.05)])
 def test_a_drive_whose_velocity_jumps_pushes_the_other_bodies(name, value):

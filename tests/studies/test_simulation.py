@@ -45,6 +45,7 @@ def test_failed_iterations_of_radau_do_not_restart_a_simulation(stages):
             assert sim[channel] == pytest.approx(expected[channel][k], abs=1e-9), (channel, k)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "radau"])
 def test_a_driven_body_is_where_its_drive_is(solver):
     """Positions and velocities within a step of radau were those of its polynomial, off by 5e-5 m and 1e-3 m/s."""

@@ -56,6 +56,7 @@ def test_compiled_starts_give_the_states_of_starts_by_python(case, examples, mon
     np.testing.assert_allclose(found, stepped(scene, name, value, settings), atol=off, rtol=off)
 
 
+@pytest.mark.long
 def test_a_controlled_cart_is_where_its_minimal_equations_have_it():
     """As right as one run at the same tolerance, for all its starts."""
     from tests.bench.problems.stepping import SCENE, control, reference

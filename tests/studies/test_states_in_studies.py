@@ -21,6 +21,7 @@ run: {duration: 0.5 s, points: 3}
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "values"), [("tau", [0.1, 0.5, 1.0, 0.1]), ("inputs.push", [0.0, 5.0, 0.0]), ("first", [0.0, 0.2])]
 )
@@ -32,6 +33,7 @@ def test_a_sweep_gives_what_single_runs_give(name, values):
     assert np.ptp(single) > 1e-3
 
 
+@pytest.mark.long
 def test_a_sweep_over_what_a_drive_follows():
     text = SCENE.replace("joints: {rail", "joints: {motor: {type: drive, joint: rail, position: push*lag}, rail")
     text = text.replace("first: 0.0", "first: 0.3").replace("push: 0.0", "push: 1.0")

@@ -76,6 +76,7 @@ def test_cams_begin_and_end_to_rise_before_and_after_the_cleat():
     assert x[found > 1e-4][-1] > 2.021 + SHIFT / 2
 
 
+@pytest.mark.long
 def test_an_oblique_cleat_is_met_by_one_track_first():
     """Tracks across the contact see the cleat at other places, which tilts the effective plane."""
     yaw, width, x = 0.5, 0.2, 1.9

@@ -70,6 +70,7 @@ def test_combined_slip_takes_from_both_forces_and_leaves_pure_ones():
     assert pure[1] < both["lateral"] < 0
 
 
+@pytest.mark.long
 def test_without_combined_coefficients_forces_stay_on_the_friction_ellipse():
     bare = TyreProperties(coefficients={name: x for name, x in PLAIN.items() if name[0] != "R"})
     found = bare.wrench(4000, slip=0.3, slip_angle=0.3)

@@ -117,6 +117,7 @@ def test_turn_slip_in_reverse_is_the_mirror_image_of_that_forward():
         assert back[name] == pytest.approx(sign * ahead[name], abs=1e-9 * scale), name
 
 
+@pytest.mark.long
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("hand", [1, -1])
 @pytest.mark.parametrize("seed", range(3))

@@ -62,6 +62,7 @@ def difference(one, other):
     return (np.abs(one - other) / np.abs(other).max(axis=0)).max()
 
 
+@pytest.mark.long
 @pytest.mark.sampled(12)
 @pytest.mark.parametrize("seed", range(12))
 def test_forces_and_torques_of_random_tyres(seed):

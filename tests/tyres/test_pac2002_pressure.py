@@ -107,6 +107,7 @@ SOFT = {
 }  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("given", [None, 1.8e5])
 @pytest.mark.parametrize("hand", [1.0, -1.0])

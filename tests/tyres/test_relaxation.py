@@ -152,6 +152,7 @@ def test_use_mode_chooses_the_forces(mode, acting):
     assert found["load"] > 3000
 
 
+@pytest.mark.long
 def test_uncombined_forces_are_those_of_each_slip_alone():
     found, by = at_slip(use_mode=3), TyreProperties(coefficients=SMALL)
     alone = by.wrench(found["load"], found["slip"], 0.0, found["camber"], 10.0)

@@ -112,6 +112,7 @@ def test_a_tyre_in_the_air_leaves_no_range(tyre):
     assert not any("leaves the valid ranges" in note for note in stiffmbs.run(model, duration=0.01).notes)
 
 
+@pytest.mark.long
 def test_the_deflection_at_a_load_is_that_of_the_curve():
     """At its points, and beyond them with the slope of its end."""
     numbers = {

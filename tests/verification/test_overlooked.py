@@ -96,6 +96,7 @@ def test_an_interrupted_second_run_leaves_the_first(no_search):
     assert "may be wrong from there on" in note
 
 
+@pytest.mark.long
 @pytest.mark.sampled(9)
 @pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
 @pytest.mark.parametrize("name", ["bouncing_ball", "cam_follower", "elastic_bearing", "half_car", "stick_slip"])
@@ -104,6 +105,7 @@ def test_runs_that_have_seen_everything_are_left_alone(name, how):
         assert not told(stiffmbs.run(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"), rtol=rtol, **how))
 
 
+@pytest.mark.long
 def test_a_corner_that_meets_the_ground_while_its_body_spins():
     """A random scene in which a body turns by 11 rad in a step of free flight."""
     described, _ = contacts._made(np.random.default_rng(9))

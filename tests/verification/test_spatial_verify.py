@@ -90,6 +90,7 @@ def test_a_chaotic_motion_is_told_with_the_time_from_which_it_is_not_known():
     assert np.max(apart[(found.time > parted) & (found.time < parted + 3)]) > 0.1
 
 
+@pytest.mark.long
 def test_a_body_that_only_turns_parts_by_its_orientation():
     """Let go next to the separatrix, Dzhanibekov's body turns over sooner or later by the errors of a loose tolerance."""
     scene = stiffmbs.load_scene(EXAMPLES / "dzhanibekov.yaml", [("bodies.nut.omega", "[0, 4, 1e-9]")])
@@ -115,6 +116,7 @@ def driven():
     )
 
 
+@pytest.mark.long
 def test_an_instant_without_reactions_keeps_its_pose(monkeypatch):
     report = Dynamics.report
 

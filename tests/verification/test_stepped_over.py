@@ -84,6 +84,7 @@ def test_nothing_is_found_along_runs_with_impacts_and_stiff_bushings(name):
     assert found.stretches == () and found.elsewhere == ()
 
 
+@pytest.mark.long
 def test_a_run_with_another_longest_step_where_the_scene_has_laws():
     assert prepare(body_at_a_bump()).dynamics.system.has_laws
     pendulum = prepare(stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml"))

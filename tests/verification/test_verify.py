@@ -68,6 +68,7 @@ def test_bars_hold_the_true_error_and_are_not_far_from_it(problem):
     assert np.median(medians) < 6
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_peaks_of_an_oscillator_lie_within_their_bars(solver):
     """1 m +- 0.3 m at 5 rad/s: every peak is known in closed form."""
@@ -117,6 +118,7 @@ def test_the_reference_that_bars_are_held_against_is_that_of_the_equations_of_mo
     np.testing.assert_allclose(exact["cart.x"], cart_pendulum_reference(exact.time)[0], atol=1e-12)
 
 
+@pytest.mark.long
 def test_the_error_over_time_holds_what_a_closed_form_says():
     for rtol in (1e-4, 1e-7):
         found = stiffmbs.verify(oscillator(), duration=5.0, rtol=rtol)
@@ -214,7 +216,7 @@ LONG = (
 @pytest.mark.parametrize(
     "path",
     [
-        pytest.param(path, marks=(pytest.mark.long, pytest.mark.sampled(5)) if path.stem in LONG else (), id=path.stem)
+        pytest.param(path, marks=pytest.mark.sampled(5 if path.stem in LONG else 2), id=path.stem)
         for path in EXAMPLE_SCENES.values()
     ],
 )
@@ -229,6 +231,7 @@ def test_clean_scenes_give_no_warning(path):
         assert any(part in note for note in warned), warned
 
 
+@pytest.mark.long
 def test_reactions_without_a_unique_value_have_no_bars():
     text = (EXAMPLES.parent / "docs" / "guide" / "four_bar.md").read_text(encoding="utf-8")
     scene = stiffmbs.read_scene("# parallelogram" + text.split("# parallelogram")[1].split("```")[0])
@@ -255,6 +258,7 @@ def test_a_short_run_of_hardly_any_motion_is_clean():
     assert stiffmbs.verify(example("cart_pendulum"), duration=1e-6).notes == ()
 
 
+@pytest.mark.long
 def test_an_impact_between_output_instants_is_seen():
     scene = example("bouncing_ball")
     coarse = stiffmbs.verify(scene, points=61)

@@ -44,6 +44,7 @@ def test_a_ramp_of_steering_ends_at_its_amplitude(sign):
     assert seen == pytest.approx(sign * np.clip(2e-3 * (time - 1), 0, 6e-3), abs=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("joint", "unit", "si"), [("prismatic", "mm", 1e-3), ("revolute", "deg", np.pi / 180)])
 def test_a_sine_with_dwell(joint, unit, si):
     given = {"amplitude": f"-12 {unit}", "frequency": "0.8 Hz", "dwell": "0.6 s", "begin": "0.7 s"}

@@ -53,6 +53,7 @@ def test_a_wheel_centre_on_the_right_of_a_left_part_is_refused():
         car(right=corner(parameters={"wheel_centre": [0, -0.76, 0.3]}))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("chassis", [CHASSIS, ASKEW])
 def test_mounts_on_the_other_sides_are_refused(chassis):
     """An anti-roll bar, and a driver's wheels; an inner differential may have its outputs along the car."""
@@ -95,6 +96,7 @@ def notes_of_the_car(folder, text):
     return [note for note in notes_of(stiffmbs.load_scene(folder / "car.yaml")) if ALIKE in note]
 
 
+@pytest.mark.long
 def test_tyres_that_are_not_mirrored_are_noted_by_axle(tmp_path):
     text = EXAMPLE_SCENES["car"].read_text()
     assert notes_of_the_car(tmp_path, text) == []

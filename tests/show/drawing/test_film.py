@@ -43,6 +43,7 @@ def test_instants_without_values_are_left_out():
     assert poses.resampled(np.array([1.0])).points["a"][0, 0] == pytest.approx(1)
 
 
+@pytest.mark.long
 def test_a_gif_has_a_picture_for_each_instant(tmp_path):
     path = tmp_path / "x.gif"
     result = run(
@@ -157,6 +158,7 @@ def test_a_legend_covers_no_plot():
     assert legend.y1 <= plot.y0
 
 
+@pytest.mark.long
 def test_plots_are_written_of_scenes_and_of_results(tmp_path):
     results = tmp_path / "r.npz"
     stiffmbs.run(EXAMPLES / "bar_pendulum.yaml", duration=0.5).save(results)

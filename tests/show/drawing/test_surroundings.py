@@ -131,6 +131,7 @@ bodies:
     assert not (np.linalg.norm(points - (0.33, 0.33, 0), axis=1) < 0.1).any()  # no plate
 
 
+@pytest.mark.long
 def test_forces_are_shown_in_the_plane_by_default():
     for text, seen in (
         (WHEEL % "{type: flat}", False),

@@ -55,6 +55,7 @@ def test_weights_integrate_powers_up_to_the_order(scheme):
         assert weights @ c ** (k - 1) == pytest.approx(1 / k, abs=1e-14)
 
 
+@pytest.mark.long
 def test_rk4_is_of_order_4(error_of):
     steps = np.array([0.02, 0.01, 0.005])
     assert slope(steps, [error_of("rk4", step=h, output=0.04)[0] for h in steps]) == pytest.approx(4, abs=0.15)
@@ -161,6 +162,7 @@ def test_steps_end_on_the_constraints(chain, rtol):
         assert np.max(np.abs(dynamics.state.vector("motion", "V"))) < 1e-3 * rtol + 1e-14
 
 
+@pytest.mark.long
 def test_frozen_factors_cost_no_accuracy(examples):
     """The mean (geometric) of the errors is that of full projections, to a tenth."""
     ratios = []

@@ -13,6 +13,7 @@ from tests.stress.families.structure.large_multipliers import nearly_repeated, s
 HOW = {"duration": 2.0, "points": 101, "rtol": 1e-7}
 
 
+@pytest.mark.long
 def test_steps_that_rounding_shortens_are_told_by_the_explicit_integrator():
     solution = stiffmbs.run(nearly_repeated(1e-7), solver="projected", scheme="dop853", **HOW)
     assert solution.outcome is Outcome.STOPPED
@@ -20,6 +21,7 @@ def test_steps_that_rounding_shortens_are_told_by_the_explicit_integrator():
     assert solution.message.endswith("or solver bdf")
 
 
+@pytest.mark.long
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("slope", [3e-8, 5e-8])
 @pytest.mark.parametrize("rtol", [3e-7, 5e-7, 1e-6])

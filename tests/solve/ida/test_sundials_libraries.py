@@ -59,6 +59,7 @@ def test_libraries_are_known_by_name_on_every_system(tmp_path, name, library):
     assert found == ([library] if library else [])
 
 
+@pytest.mark.long
 def test_scikit_sundae_is_not_imported():
     code = (
         "import sys; from stiffmbs.solve.ida.libraries import ida_libraries; "

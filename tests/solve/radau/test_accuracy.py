@@ -99,6 +99,7 @@ def test_constraints_give_way_less_than_the_method_errs():
     assert relaxed > 5 * own
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("c", [4e4, 2e5, 1e6])
 def test_forces_within_a_first_step_over_decaying_motions(c):

@@ -294,6 +294,7 @@ run: {duration: 10 s, points: 11, solver: radau}
     assert found["pushed.vx"][-1] == pytest.approx(1, abs=max(1e-4, 10 * rtol))
 
 
+@pytest.mark.long
 def test_the_car_axis_of_the_test_set():
     """Values at 3 s published by Mazzia and Magherini, Test Set for Initial Value Problem Solvers, release 2.4."""
     found = stiffmbs.run(stiffmbs.read_scene(CAR_AXIS), solver="radau", rtol=1e-8, points=2)

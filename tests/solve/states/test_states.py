@@ -110,6 +110,7 @@ def test_robertsons_reaction_keeps_its_mass_and_its_published_end():
     assert solution["a"] + solution["b"] + solution["c"] == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("solver", ["kinematic", "bdf", "projected"])
 def test_a_lag_follows_a_prescribed_motion(solver):

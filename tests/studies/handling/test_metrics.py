@@ -84,6 +84,7 @@ def inputs(time):
     return {"sweep": sweep * np.clip(41 - time, 0, 1), "cut off": sweep, "random": 0.1 * band, "pulse": pulse}
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("name", "lowest", "error"),

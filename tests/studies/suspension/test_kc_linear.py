@@ -198,6 +198,7 @@ def test_an_anti_roll_bar(rigid):
     check(kc({**parts, "bar": {"use": "anti_roll_bar", "mounts": mounts, "parameters": of_bar, **word}}, "front"), m, wheels, springs, "front")  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("axle", ["front", "rear"])
 def test_ackermann_of_front_and_rear_steering(axle):
     """Rear wheels that steer to the left turn the car to the right, about a point on the line of the front wheels."""

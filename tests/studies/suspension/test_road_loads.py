@@ -52,6 +52,7 @@ def test_a_run_of_another_model_is_refused():
         stiffmbs.road_loads(other, {})
 
 
+@pytest.mark.long
 def test_the_command_tells_time_and_case(tmp_path):
     scene = tmp_path / "block.yaml"
     scene.write_text(SCENE)
