@@ -62,21 +62,27 @@ class Engine(Protocol):
     4. An event ends the last step where an event function of `watch` changes its sign. A failure is the reason in the
        last `Reached`, or a SolverError after it.
     5. `refuse` raises a SolverError after a `Reached` from which the run is not to go on.
-
-    `long_step`: length above which ends of steps do not keep the balance of stiff forces on the constraints, s.
     """
 
     watch: EventSearch
-    long_step: float = np.inf
+
+    @property
+    def long_step(self) -> float:
+        """Length above which ends of steps do not keep the balance of stiff forces on the constraints, s."""
+        return np.inf
 
     def forget(self) -> None:
         """Discard what earlier runs have left, so that results do not depend on them; nothing by default."""
+        return
 
     def begin_run(self, features: InputFeatures, grid: Grid) -> None: ...
     def begin_at(self, start: InitialValues, t: float) -> None: ...
     def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun: ...
     def advance(self, times: np.ndarray | None, stops: Sequence[float]) -> Iterator[Reached]: ...
-    def refuse(self, reached: Reached, grid: Grid) -> None: ...
+
+    def refuse(self, reached: Reached, grid: Grid) -> None:
+        """Raise a SolverError if the run is not to go on; it goes on by default."""
+        return
 
     def states(self, rows: np.ndarray) -> States:
         """Return q and u of reported rows."""
