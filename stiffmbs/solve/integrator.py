@@ -189,7 +189,7 @@ def integrated(
                 log_step(reached.t, *step)
             watch(reached.t)
             grid.look(rows)
-            engine.watch.refuse_departures(reached.t)
+            engine.watch.refuse_departures()
             integrator.reached = reached
             engine.refuse(reached, grid)
             if pays and not pays(reached):
