@@ -60,6 +60,7 @@ SUBSYSTEMS = {
     "sensitivities": "sensitivity_equations.recorded:SENSITIVITIES",
     "stability_bound": "solve.explicit.stable_step:STABILITY_BOUND",
     "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
+    "stepping": "studies.stepping:STEPPING",
     "storage": "dynamics.storage:STORAGE",
     "velocity_jumps": "solve.events.discontinuity:VELOCITY_JUMP",
     "verification": "verification.parameters:VERIFICATION",

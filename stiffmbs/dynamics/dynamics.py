@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -84,6 +84,16 @@ class OutputRows:
         )  # fmt: skip
 
 
+class VariedInput(Protocol):
+    """Input whose value changes formulas of time (`stiffmbs.studies.varied_input`)."""
+
+    def catch_up(self) -> None:
+        """Give elements the current values before their features are determined."""
+
+    def is_calm(self, t: float, end: float) -> bool:
+        """Return True if features are not determined, but a step between two times, s, is known to meet none."""
+
+
 class Dynamics:
     """Block systems of one state, and the compiled routines that use them.
 
@@ -117,6 +127,7 @@ class Dynamics:
             judging[name] = np.array(system.term("output", name).source, dtype=np.int64)
             counts[f"n_{name}"] = len(judging[name])
         self.input_changes = 0
+        self._varied: VariedInput | None = None
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
         for_output = system.turned("output")
@@ -221,11 +232,24 @@ class Dynamics:
         """Return the features of the inputs between two times; they are cached for all runs within them."""
         if not self.system.has_inputs:
             return NO_FEATURES
+        self._catch_up()
         first, last, found = self._features
         if not first <= start <= end <= last:
             found = input_features(self.system, start, end)
             self._features = start, end, found
         return found.within(start, end)
+
+    def follow(self, varied: VariedInput) -> None:
+        """Take an input that changes formulas of time, whose elements follow when its features are determined."""
+        self._varied = varied
+
+    def meets_no_feature(self, t: float, end: float) -> bool:
+        """Return True if a step between two times meets no feature of an input that has changed since its features were determined."""
+        return self._varied is not None and self._varied.is_calm(t, end)
+
+    def _catch_up(self) -> None:
+        if self._varied:
+            self._varied.catch_up()
 
     def sides(self, t: float) -> tuple[float, float]:
         """Return the times just before and just after t if an input has a known breakpoint there, else t twice."""
@@ -239,6 +263,7 @@ class Dynamics:
     def input_end(self, start: float, end: float) -> InputEnd | None:
         """Return the first end of a formula of time between two times, cached for runs over the same interval."""
         if self.system.has_inputs and self._input_end[:2] != (start, end):
+            self._catch_up()
             self._input_end = start, end, first_input_end(self.system, start, end)
         return self._input_end[2]
 

@@ -64,7 +64,8 @@ def _linearised(dynamics: Dynamics, at: Evaluated, reach: float) -> Linearised:
     errors = ESTIMATE.difference * reach**2 * np.linalg.norm(of_moves, axis=(1, 2))
     stiff = np.flatnonzero((errors > ESTIMATE.large) & np.isfinite(errors))
     if len(stiff):
-        directions = np.linalg.svd(of_moves[stiff])[2]
+        of_stiff = of_moves[stiff]
+        directions = np.linalg.eigh(of_stiff.transpose(0, 2, 1) @ of_stiff)[1][:, :, ::-1].transpose(0, 2, 1)
         basis[stiff], rates[stiff] = _differences(dynamics, at.at(stiff), directions @ moves[stiff])
     return Linearised(basis, rates, left)
 

@@ -30,13 +30,10 @@ def solve(
 
 
 def bdf_integrator(
-    dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf"
+    dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None
 ) -> Integrator[NativeEngine]:
-    """Return the integrator of a system, which may be reused.
-
-    `memory`: name under which the dynamics keep the engine for the next integrator of that name.
-    """
-    return Integrator(dynamics, settings, driven(dynamics, settings, control, memory).engine)
+    """Return the integrator of a system, which may be reused."""
+    return Integrator(dynamics, settings, driven(dynamics, settings, control).engine)
 
 
 def refuse_untested_reactions(system: System, settings: RunSettings) -> None:

@@ -17,7 +17,7 @@ from ..analyses.start_from import StartFrom, in_pose_of, started_from, state_to_
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
 from ..elements.turns import TURN
-from ..errors import AssemblyError, ChannelError, InputError, SolverError, StiffmbsError
+from ..errors import AssemblyError, ChannelError, InputError, SolverError, StiffmbsError, prefixed
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.channels import channels_of, turns_of
 from ..results.files import written_whole
@@ -223,7 +223,7 @@ class Simulation:
     def step(self, dt: float, inputs: Inputs | None = None) -> None:
         """Advance by a time step, with inputs that are constant from now on.
 
-        If no input changes, `bdf` and `radau` keep their history, as in one run; otherwise they restart.
+        If no input changes, `bdf` and `radau` keep their history, as in one run; otherwise steps start by a Radau method.
 
         Parameters
         ----------
@@ -282,7 +282,8 @@ class Simulation:
         Raises
         ------
         InputError
-            If n or dt is not positive, or inputs have another shape, are unknown or not finite; nothing is changed.
+            If n or dt is not positive, or inputs have another shape, are unknown or not finite; nothing is changed. If the
+            scene refuses an input of a row; the steps of the rows before it are kept.
         SolverError
             If a step fails; the state is then that before this step.
         """
@@ -291,10 +292,11 @@ class Simulation:
         if not valid or n < 1 or not 0 < dt < math.inf:
             raise InputError(f"steps: found n = {n!r} and dt = {dt!r}, expected a number and a time greater than 0")
         rows, done = self._inputs.rows(inputs, n), 0
-        if self._inputs.affine and not (self._bounded or self._relaxed):
-            done = self._taken_together(dt, rows)
-        for row in rows[done:]:
-            self.step(dt, row)
+        if self._inputs.affine and not (self._inputs.of_time or self._bounded or self._relaxed):
+            done = self._taken_together(dt, rows[: self._inputs.valid_rows(rows)])
+        for k, row in enumerate(rows[done:], done):
+            with prefixed(f"row {k} of the inputs: "):
+                self.step(dt, row)
 
     def _taken_together(self, dt: float, rows: np.ndarray) -> int:
         """Take steps in one compiled call if the stepper can; return their number."""

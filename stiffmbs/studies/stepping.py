@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from ..analyses.job import Job
-from ..compile.inputs.features import InputFeatures
+from ..compile.inputs.features import NO_FEATURES, InputFeatures
 from ..compile.machine.layout import addresses
 from ..dynamics.held_inputs import HeldInputs
 from ..dynamics.initial import InitialValues
 from ..dynamics.native.parameters import CONSISTENCY
 from ..errors import SolverError
-from ..model.settings import RunSettings
 from ..results.joint_coordinates import JointCoordinates
 from ..solve import SOLVERS
 from ..solve.bdf import bdf_integrator
@@ -27,24 +27,39 @@ from ..solve.explicit.projected import scheme_of
 from ..solve.ida.native_engine import NativeEngine
 from ..solve.integrator import Integrator
 from ..solve.radau.radau import radau_integrator
-from ..solve.settings import changed, traits_of
+from ..solve.settings import traits_of
 from ..solve.stiff_rows import lengths_of_steps, projected
 from ..solve.trajectory import Grid, Outcome, just_after, just_before
-from ..tuning import in_use
+from ..tuning import in_use, tuned
 
-PART, FINEST = 0.01, 1e-12
-"""Part of the tolerance that restarts get, and the finest tolerance; errors of restarts accumulate."""
+
+@dataclass(frozen=True)
+class SteppingParameters:
+    """Parameters of the steps of a simulation whose inputs change."""
+
+    unchanged: int = 6
+    """Number of steps after a jump of inputs before the solver of the run starts; inputs that jump again make its start
+    useless. Source: evaluations of a start of `bdf` relative to those of a step that starts by a Radau method."""
+    reach: float = 0.02
+    """Part of a value by which the bounds of an input go beyond it, for which times without features of its formulas of time
+    are known. Source: slow changes of a speed, against the length of the times that wide bounds leave out."""
+    cells: int = 1024
+    """Number of intervals of the duration that are without such features, or not. Source: steps of a thousandth of it."""
+
+
+STEPPING = tuned("stepping", SteppingParameters())
 
 
 class StartedSteps:
-    """Restarts of IDA, each with the steps to the next instant, in one compiled call if possible.
+    """Starts of Radau methods, each with the steps to the next instant, in one compiled call if possible.
 
-    `q`, `u`: memory of the current state.
+    One-step methods need no history, so that their first step has the full order; it is as long as the last call left
+    it, and has the number of stages of that call. `q`, `u`: memory of the current state.
     """
 
     def __init__(self, job: Job, q: np.ndarray, u: np.ndarray) -> None:
         self._dynamics, self._q, self._u = job.dynamics, q, u
-        self._integrator = bdf_integrator(job.dynamics, _finer(job.settings), memory="starts")
+        self._integrator = radau_integrator(job.dynamics, job.settings, "starts")
         self._engine = self._integrator.engine
         self._features: InputFeatures | None = None
 
@@ -87,13 +102,6 @@ def _breaks(features: InputFeatures, t: float, end: float) -> bool:
     return len(between) > 0 and bool(np.any((between >= just_before(t)) & (between <= just_after(end))))
 
 
-def _finer(settings: RunSettings) -> RunSettings:
-    """Return the settings of a run with the tolerance of restarts."""
-    part = max(PART, min(1.0, FINEST / settings.rtol))
-    absolute = None if settings.atol is None else part * settings.atol
-    return changed(settings, {"rtol": part * settings.rtol, "atol": absolute})
-
-
 class Stepper(Protocol):
     """Stepper from consistent values.
 
@@ -130,8 +138,8 @@ def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
 class ImplicitSteps:
     """Steps of bdf or radau, as long as in one run, with interpolation in the last step.
 
-    After a jump of inputs, IDA restarts and ends a step at the end of the first simulation step, as inputs mostly jump
-    again there. `t`: time, s.
+    After a jump of inputs, steps of the simulation are those of `StartedSteps`, as inputs mostly jump again; the solver
+    starts if they do not. `t`: time, s.
     """
 
     def __init__(self, job: Job, integrator: Integrator[NativeEngine], start: InitialValues, t: float) -> None:
@@ -153,11 +161,11 @@ class ImplicitSteps:
             self._first, self._end = t, t + self._job.settings.duration
         elif self._changes == self._dynamics.input_changes:
             return
-        self._changes = self._dynamics.input_changes
         self._features = self._dynamics.input_features(self._first, self._end)
+        self._changes = self._dynamics.input_changes
 
     def _begin(self, start: InitialValues, t: float) -> None:
-        self._t, self._jumped, self._ended = t, False, False
+        self._t, self._jumped, self._since_jump = t, False, 0
         self._engine.ida.pause_after(1)
         self._steps: Iterator[Reached] = self._integrator.run(
             start, Grid(t, self._end, None).before_breakpoints(self._features)
@@ -170,16 +178,20 @@ class ImplicitSteps:
 
     def _advance(self, t: float) -> None:
         place = self._dynamics.sides(t)[0]
-        if self._jumped or self._ended:
-            self._look_through(self._t)
+        if self._jumped or self._since_jump:
+            calm = self._dynamics.meets_no_feature(self._t, t)
+            if not calm:
+                self._look_through(self._t)
             self.q[:], self.u[:] = self._integrator.closed(self._t, (self.q, self.u), self.length)
             begin = self._dynamics.sides(self._t)[1]
-            if self._jumped and t <= self._end:
+            if (self._jumped or self._since_jump < STEPPING.unchanged) and (calm or t <= self._end):
                 if place > just_after(begin):
-                    self._started.advance(begin, place, self._features)
+                    self._started.advance(begin, place, NO_FEATURES if calm else self._features)
                     self.length = t - self._t
-                self._t, self._present, self.time, self._jumped, self._ended = t, t, place, False, True
+                self._since_jump = 1 if self._jumped else self._since_jump + 1
+                self._t, self._present, self.time, self._jumped = t, t, place, False
                 return
+            self._look_through(begin)
             self._begin(restarted(self._dynamics, begin, self.q, self.u), begin)
         while self._t < place:
             reached = next(self._steps, None)
@@ -266,10 +278,12 @@ class FixedSteps:
 
     def _breaks(self, end: float) -> bool:
         """Return True if an input has a breakpoint up to a time, s; determine the features of inputs if they are not known."""
+        if self._dynamics.meets_no_feature(self._t, end):
+            return self._t != self.time
         if not self._first <= self._t < end <= self._end or self._changes != self._dynamics.input_changes:
             self._first, self._end = self._t, end + self._settings.duration
-            self._changes = self._dynamics.input_changes
             self._features = self._dynamics.input_features(self._first, self._end)
+            self._changes = self._dynamics.input_changes
         return self._t != self.time or _breaks(self._features, self._t, end)
 
     def _run(self, t: float) -> None:

@@ -14,8 +14,7 @@ from stiffmbs.solve.settings import changed
 from stiffmbs.studies.case_solver import CaseSolver, Task, written_scene
 from stiffmbs.studies.outputs import outputs_of
 from stiffmbs.studies.sensitivities.parameters import Parameter, Scenes
-from stiffmbs.studies.sensitivities.sensitivities import HELD, differentiable, sensitivities
-from stiffmbs.studies.stepping import FINEST
+from stiffmbs.studies.sensitivities.sensitivities import FINEST, HELD, differentiable, sensitivities
 
 from .benchmark import Row
 

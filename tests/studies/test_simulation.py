@@ -306,3 +306,50 @@ def test_an_invalid_value_leaves_the_inputs_as_they_were():
     with pytest.raises(InputError, match=r"push: found 'sqrt\(F\)'"):
         sim.set_inputs({"F": -1.0})
     assert sim.inputs == {"F": 4.0} and sim["sled.ax"] == pytest.approx(1.0)
+
+
+def test_a_scene_refuses_inputs_as_it_refuses_values_in_its_text(examples):
+    """Inputs beyond the values at which their linearity was tested are read with the scene, once for many."""
+    stiffness = "forces.spring.stiffness"
+    sim = simulation(examples / "cart_pendulum.yaml", inputs={stiffness: 270.0})
+    with pytest.raises(
+        InputError, match=r"input 'forces\.spring\.stiffness': found 1e\+300, expected a size below 1e\+100"
+    ):
+        sim.step(0.01, {stiffness: 1e300})
+    read, own = [], sim._inputs._solver.scene
+    sim._inputs._solver.scene = lambda values: read.append(values) or own(values)
+    for k in range(100):
+        sim.step(1e-6, {stiffness: 2e3 + 10.0 * k})
+    assert len(read) == 2 and sim.inputs == {stiffness: 2990.0}
+
+
+@pytest.mark.parametrize("settings", [{"solver": "bdf"}, {"solver": "projected", "scheme": "rk4", "step": 0.01}])
+def test_steps_end_before_a_row_that_the_scene_refuses(settings):
+    text = SLED.replace("F: 0 N", "F: 4").replace("force: [F, 0]", "force: [sqrt(F), 0]")
+    sim = simulation(stiffmbs.read_scene(text), inputs={"F": 4.0}, **settings)
+    with pytest.raises(InputError, match=r"row 2 of the inputs: push: found 'sqrt\(F\)'"):
+        sim.steps(4, [[1.0], [9.0], [-1.0], [2.0]], 0.01)
+    assert sim.t == pytest.approx(0.02) and sim.inputs == {"F": 9.0}
+    with pytest.raises(InputError, match=r"input 'F': found nan in row 1"):
+        sim.steps(2, [[1.0], [float("nan")]], 0.01)
+    assert sim.t == pytest.approx(0.02) and sim.inputs == {"F": 9.0}
+
+
+@pytest.mark.parametrize("settings", [{"solver": "bdf"}, {"solver": "projected", "scheme": "rk4", "step": 0.01}])
+def test_compiled_steps_end_before_such_a_row(settings, monkeypatch):
+    """The input is linear, and large values of it are refused; rows before are taken in one call."""
+    sim = simulation(stiffmbs.read_scene(SLED), inputs={"F": 0.0}, **settings)
+    own = sim._inputs._scene
+
+    def scene(values):
+        if values["F"] > 5000.0:
+            raise InputError("push: found a large force")
+        return own(values)
+
+    monkeypatch.setattr(sim._inputs, "_scene", scene)
+    with pytest.raises(InputError, match="row 2 of the inputs: push: found a large force"):
+        sim.steps(4, [[1.0], [4000.0], [6000.0], [2.0]], 0.01)
+    assert sim.t == pytest.approx(0.02) and sim.inputs == {"F": 4000.0}
+    with pytest.raises(InputError, match="push: found a large force"):
+        sim.step(0.01, {"F": 6000.0})
+    assert sim.t == pytest.approx(0.02) and sim.inputs == {"F": 4000.0}

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from .enclosure import ROUNDING
 from .of_time import Input, inputs_of
 from .pieces import Bounds, InputPieces
 from .zeros import FIRST_STRETCHES, SHORTEST_STRETCH, ZERO, TooMany, zeros
+
+if TYPE_CHECKING:
+    from .calm import RangedInput
 
 PIECES_OF_A_STEP = 7.0
 """Longest step in piece lengths: half a period of a sine."""
@@ -214,7 +218,7 @@ def breakpoints_from(inputs: Sequence[Input], start: float, end: float) -> np.nd
 def _passages(given: Input, start: float, end: float) -> Iterator[np.ndarray]:
     seen = set()
     for node in reading_order(given.tree):
-        for condition, levels in _conditions(given, node, start, end):
+        for condition, levels in conditions(given, node, start, end):
             key = ast.dump(condition), levels.tobytes()
             if (
                 key in seen
@@ -227,7 +231,9 @@ def _passages(given: Input, start: float, end: float) -> Iterator[np.ndarray]:
             yield zeros(values, ranges, start, end, levels)
 
 
-def _conditions(given: Input, node: ast.expr, start: float, end: float) -> Iterator[tuple[ast.expr, np.ndarray]]:
+def conditions(
+    given: Input | RangedInput, node: ast.expr, start: float, end: float
+) -> Iterator[tuple[ast.expr, np.ndarray]]:
     """Yield expressions and the levels that they cross at the breakpoints of a function or table."""
     match node:
         case ast.Call(ast.Name(name), [argument]) if name in given.tables:
@@ -248,7 +254,7 @@ def _breakpoints(call: ast.Call, breakpoints: Breakpoints) -> Iterator[ast.expr]
         yield call.args[i] if j is None else ast.BinOp(call.args[i], ast.Sub(), call.args[j])
 
 
-def _range(given: Input, part: ast.expr, start: float, end: float) -> tuple[float, float]:
+def _range(given: Input | RangedInput, part: ast.expr, start: float, end: float) -> tuple[float, float]:
     edges = np.linspace(start, end, FIRST_STRETCHES + 1)
     with np.errstate(all="ignore"):
         low, high = given.within(edges[:-1], edges[1:], part=part).value

@@ -58,25 +58,45 @@ class Input:
 
     def at(self, t: np.ndarray, part: ast.expr | None = None) -> np.ndarray:
         """Return the values of the expression, or of a part of it, at given times, shape (n,)."""
-        values = _Evaluation(t, self.values, self._of_arrays()).value(part or self.tree)
-        return np.broadcast_to(np.asarray(values, dtype=float), t.shape)
+        return evaluated_at(part or self.tree, t, self.values, self.tables)
 
     def within(self, low: np.ndarray, high: np.ndarray, order: int = 1, part: ast.expr | None = None) -> Enclosure:
         """Return ranges of the values and Taylor coefficients over time intervals."""
         t = Enclosure.of_time(low, high, order)
-        middle = _Evaluation((low + high) / 2, self.values, self._of_arrays())
-        tables = {name: _by_argument(table.values, table.enclosed) for name, table in self.tables.items()}
-        evaluation = _Ranges(t, self.values, _OF_ENCLOSURES | tables, middle, (high - low) / 2)
+        middle = _Evaluation((low + high) / 2, self.values, _of_arrays(self.tables))
+        evaluation = _Ranges(t, self.values, _of_enclosures(self.tables), middle, (high - low) / 2)
         return t.constant(evaluation.value(part or self.tree))
 
-    def _of_arrays(self) -> dict[str, Callable[..., object]]:
-        return _OF_ARRAYS | {name: table.values for name, table in self.tables.items()}
+
+def evaluated_at(
+    tree: ast.expr, t: np.ndarray, values: Mapping[str, float], tables: Mapping[str, TableRanges]
+) -> np.ndarray:
+    """Return the values of an expression at given times, shape (n,)."""
+    found = _Evaluation(t, values, _of_arrays(tables)).value(tree)
+    return np.broadcast_to(np.asarray(found, dtype=float), t.shape)
+
+
+def evaluated_within(
+    tree: ast.expr, low: np.ndarray, high: np.ndarray, order: int, values: Mapping[str, Any],
+    tables: Mapping[str, TableRanges],
+) -> Enclosure:  # fmt: skip
+    """Return ranges of the values and Taylor coefficients of an expression over time intervals; values may be enclosures."""
+    t = Enclosure.of_time(low, high, order)
+    return t.constant(_Evaluation(t, values, _of_enclosures(tables)).value(tree))
+
+
+def _of_arrays(tables: Mapping[str, TableRanges]) -> dict[str, Callable[..., object]]:
+    return _OF_ARRAYS | {name: table.values for name, table in tables.items()}
+
+
+def _of_enclosures(tables: Mapping[str, TableRanges]) -> dict[str, Callable[..., object]]:
+    return _OF_ENCLOSURES | {name: _by_argument(table.values, table.enclosed) for name, table in tables.items()}
 
 
 class _Evaluation:
     """Evaluation of parts of a formula in one algebra; repeated parts are evaluated once."""
 
-    def __init__(self, t: Any, values: Mapping[str, float], functions: Mapping[str, Callable[..., object]]) -> None:
+    def __init__(self, t: Any, values: Mapping[str, Any], functions: Mapping[str, Callable[..., object]]) -> None:
         self._t, self._values, self._functions = t, values, functions
         self._known: dict[str, object] = {}
 
@@ -147,9 +167,14 @@ NONE_GIVEN = Given()
 
 def given_to(system: System) -> Given:
     """Return the values of the inputs of a system's model."""
+    return given_in(system.outputs)
+
+
+def given_in(outputs: Mapping[str, Formula]) -> Given:
+    """Return the values of the inputs among the formulas of outputs."""
     constants: dict[str, float] = {}
     tables: dict[str, Table] = {}
-    for name, formula in system.outputs.items():
+    for name, formula in outputs.items():
         match formula.tree:
             case ast.Constant(float() as number):
                 constants[name] = number

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .enclosure import ROUNDING
+from .enclosure import ROUNDING, Enclosure
 from .of_time import Input
 
 OF_CHANGE = 3e-3
@@ -127,13 +127,7 @@ class InputPieces:
         if not self._rounding:
             largest = np.abs(found.value[np.isfinite(found.value)]).max(initial=0.0)
             self._rounding = max(ROUNDING * largest, np.finfo(float).tiny)
-        allowed = np.maximum(
-            OF_CHANGE * np.maximum(pieces.change, LEAST_PART * self.change), ALWAYS_ALLOWED * self.size
-        )
-        allowed = np.maximum(allowed, self._rounding)
-        lengths = np.where(_width(found[0]) <= 2 * allowed, np.inf, 0.0)
-        for k in (1, 2, 3):
-            lengths = np.fmax(lengths, 2 * (2 * allowed / _width(found[k])) ** (1 / k))
+        lengths = longest_pieces(found, pieces.change, self.change, self.size, self._rounding)
         return np.where(np.isnan(found.value).any(axis=0), np.inf, lengths)
 
     def _estimated(self, pieces: _Pieces, lengths: np.ndarray, open_ones: np.ndarray) -> np.ndarray:
@@ -148,6 +142,21 @@ class InputPieces:
             of_some = self._cut(pieces.where(sample), first=False).lengths
             lengths[chosen] = np.maximum(lengths[chosen], np.quantile(of_some, QUANTILE))
         return lengths
+
+
+def longest_pieces(
+    found: Enclosure, change: np.ndarray, whole: float, size: float, rounding: float = 0.0
+) -> np.ndarray:
+    """Return the longest parts of pieces that a cubic represents.
+
+    `found`: ranges of the input over the pieces. `change`, `whole`: its change around each piece, and in the whole run.
+    `size`: its largest absolute value. `rounding`: that of its ranges.
+    """
+    allowed = np.maximum(OF_CHANGE * np.maximum(change, LEAST_PART * whole), max(ALWAYS_ALLOWED * size, rounding))
+    lengths = np.where(_width(found[0]) <= 2 * allowed, np.inf, 0.0)
+    for k in (1, 2, 3):
+        lengths = np.fmax(lengths, 2 * (2 * allowed / _width(found[k])) ** (1 / k))
+    return lengths
 
 
 def _width(x: np.ndarray) -> np.ndarray:

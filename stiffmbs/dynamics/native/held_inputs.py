@@ -1,20 +1,21 @@
 """Inputs that are constant over a step, as numbers of forces."""
 
-from math import isfinite
+from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, floats
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.compile.machine.native.statuses import NOT_FINITE
 from stiffmbs.dynamics.native.views import held_inputs_view
+
+OUT_OF_BOUNDS: Final = -1
 
 
 @compiled
 def take_inputs(i, values):
-    """Set all inputs; return 1 if any has changed, 0 if none, and NOT_FINITE, with nothing changed, if one is not finite."""
+    """Set all inputs; return 1 if any has changed, 0 if none, and OUT_OF_BOUNDS, with nothing changed, if one is out of its bounds."""
     changed = 0
     for k in range(i.n):
-        if not isfinite(values[k]):
-            return NOT_FINITE
+        if not i.least[k] <= values[k] <= i.largest[k]:
+            return OUT_OF_BOUNDS
         if values[k] != i.value[k]:
             changed = 1
     if changed:

@@ -47,10 +47,10 @@ state; residuals of J u' = gamma, sizes of their terms, the least allowed residu
 equations among the acceleration terms."""
 
 HELD_INPUTS = Layout({
-    "n": INT, "value": FLOATS,
+    "n": INT, "value": FLOATS, "least": FLOATS, "largest": FLOATS,
     "n_numbers": INT, "number": INTS, "input": INTS, "offset": FLOATS, "slope": FLOATS,
 })  # fmt: skip
-"""Inputs that are constant over a step, and the numbers of forces that are affine in one: *number = offset + slope * value of the input."""
+"""Inputs that are constant over a step, with the bounds of their values, and the numbers of forces that are affine in one: *number = offset + slope * value of the input."""
 
 JOINT_COORDINATES = Layout({
     "state": INTS, "n": INT, "place": INTS, "rate_place": INTS, "counter": INTS,

@@ -193,7 +193,7 @@ class NativeIda:
 
     def forget(self) -> None:
         """Reset counters, history and pivots, as before the first start."""
-        self.begun, self._look = False, self._usual_batch
+        self.begun, self._look, self.cells["next_size"] = False, self._usual_batch, 0.0
         self.ask("IDAReInit", 0.0, self.y_vector, self.yp_vector)  # resets IDA's counters
         self._statistics.forget()
         for each in (self.history, self.whole_steps, self.output_correction, self.error_norm, self._formula):

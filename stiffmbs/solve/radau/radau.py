@@ -54,14 +54,14 @@ def solve(
     return integrated(radau_integrator(dynamics, settings), start, grid, watch)
 
 
-def radau_integrator(dynamics: Dynamics, settings: RunSettings) -> Integrator[NativeEngine]:
-    """Return the integrator of a system, which may be reused."""
-    return Integrator(dynamics, settings, driven(dynamics, settings, **driver()).engine)
+def radau_integrator(dynamics: Dynamics, settings: RunSettings, memory: str = "radau") -> Integrator[NativeEngine]:
+    """Return the integrator of a system, which may be reused; its dynamics keep the engine under the name `memory`."""
+    return Integrator(dynamics, settings, driven(dynamics, settings, **driver(memory)).engine)
 
 
-def driver() -> dict[str, Any]:
+def driver(memory: str = "radau") -> dict[str, Any]:
     """Return how an integrator is driven: arguments of `stiffmbs.solve.ida.choice.driven`."""
-    return {"control": CONTROL, "memory": "radau", "driver": driven_by_radau}
+    return {"control": CONTROL, "memory": memory, "driver": driven_by_radau}
 
 
 def of_radau(dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import numbers
 from collections.abc import Sequence
 from typing import Any, Final, Unpack
 
@@ -325,8 +326,10 @@ class JointSpace:
         InputError
             If an argument is invalid, or if no such coordinates are found.
         """
-        if not tolerance > 0.0:
-            raise InputError(f"tolerance: found {tolerance:g}, expected a number greater than 0")
+        if not (isinstance(tolerance, numbers.Real) and tolerance > 0.0):
+            raise InputError(f"tolerance: found {tolerance!r}, expected a number greater than 0")
+        if not (isinstance(most_iterations, numbers.Integral) and most_iterations > 0):
+            raise InputError(f"most_iterations: found {most_iterations!r}, expected a whole number greater than 0")
         wanted = Wanted.of(position, rotation, self._data.dimensions, self._size)
         here = self.q if q is None else self._array("q", q, self.coordinates)
         reach = Reach(

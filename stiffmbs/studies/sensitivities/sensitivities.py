@@ -28,11 +28,12 @@ from ...solve.settings import changed
 from ...solve.trajectory import Grid, Outcome
 from ...tuning import in_use
 from ..outputs import outputs_of
-from ..stepping import FINEST
 from .formulas import ZERO, Formula
 from .parameters import Parameter, Scenes, with_weights
 from .set_up import SetUp, breakpoint_rates
 
+FINEST = 1e-12
+"""Finest tolerance of a run."""
 TIGHTER = 1e-6
 """Ratio of the run's rtol to the requested one, down to `FINEST`.
 

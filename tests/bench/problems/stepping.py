@@ -1,4 +1,4 @@
-"""The cart-pendulum under a PD controller, 10 000 steps of 1 ms; it and two arms with new inputs at each step."""
+"""The cart-pendulum under a PD controller, 10 000 steps of 1 ms; it, two arms and a half car with new inputs at each step."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from stiffmbs import load_scene
 from stiffmbs.model.read_scene import read_scene
 
 from ..by_hand import cart_pendulum as hand
@@ -41,12 +42,22 @@ def reference(dt: float, steps: int) -> np.ndarray:
     return places
 
 
-SCENES = Path(__file__).parents[1] / "scenes"
+SCENES, EXAMPLES = Path(__file__).parents[1] / "scenes", Path(__file__).parents[3] / "examples"
 BENCHMARKS = (
     Stepping("stepping", SCENE, "F", control, ("cart.x", "cart.vx"), reference),
     InTheLoop("cart_in_the_loop", lambda: read_scene(SCENE), ("F",), 10.0),
     InTheLoop("arm_in_the_loop", lambda: SCENES / "arm.xml", tuple(f"m{k}_input" for k in range(1, 6)), 0.1),
     InTheLoop(
         "seven_joints_in_the_loop", lambda: SCENES / "seven_joints.xml", tuple(f"m{k}_input" for k in range(1, 8)), 0.1
+    ),
+    InTheLoop(
+        "half_car_in_the_loop",
+        lambda: load_scene(EXAMPLES / "half_car.yaml"),
+        ("V",),
+        16.0,
+        least=14.0,
+        steps=1000,
+        rounds=3,
+        schemes=("bdf", "radau"),
     ),
 )

@@ -16,6 +16,7 @@ import numpy as np
 import stiffmbs
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.studies.simulation import Simulation
+from stiffmbs.studies.stepping import ImplicitSteps
 
 from ..benchmark import Row
 
@@ -23,6 +24,7 @@ SCHEMES: dict[str, dict[str, Any]] = {
     "rk4": {"solver": "projected", "scheme": "rk4"},
     "euler_cromer": {"solver": "projected", "scheme": "euler_cromer"},
     "bdf": {"solver": "bdf"},
+    "radau": {"solver": "radau"},
 }
 CHECKED = 50
 """Steps over which states are compared with those of exact steps."""
@@ -41,6 +43,9 @@ class InTheLoop:
     inputs : tuple of str
     size : float
         Largest input.
+    least : float
+        Smallest input.
+    schemes : tuple of str
     step : float
         s.
     steps, rounds : int
@@ -53,23 +58,26 @@ class InTheLoop:
     step: float = 1e-3
     steps: int = 2000
     rounds: int = 5
+    least: float = 0.0
+    schemes: tuple[str, ...] = tuple(SCHEMES)
 
     def measured(self) -> list[Row]:
-        """Medians over rounds, by the processor's time; errors are those of joint coordinates after some steps."""
+        """Medians over rounds, by the processor's time; errors are those of joint coordinates, or of bodies without joints, after some steps."""
         model, values = self.model(), self._values()
         exact = self._after(self._simulation(model, EXACT), values)
         rows = []
-        for scheme, settings in SCHEMES.items():
+        for scheme in self.schemes:
+            settings = SCHEMES[scheme]
             sim = self._simulation(model, settings)
             off = float(np.abs(self._after(sim, values) - exact).max())
+            how = f"a call for each step, arrays of joints read{_evaluations(sim, self.step, values)}"
             rows += [
-                self._row(
-                    scheme, "a call for each step, arrays of joints read", off, partial(_arrays, sim, self.step, values)
-                ),
+                self._row(scheme, how, off, partial(_arrays, sim, self.step, values)),
                 self._row(scheme, "ten channels read by name", off, partial(_by_name, sim, self.step, values)),
             ]
-        together = self._simulation(model, SCHEMES["rk4"])
-        rows.append(self._row("rk4", "all steps in one call", 0.0, partial(_together, together, self.step, values)))
+        if "rk4" in self.schemes:
+            together = self._simulation(model, SCHEMES["rk4"])
+            rows.append(self._row("rk4", "all steps in one call", 0.0, partial(_together, together, self.step, values)))
         if isinstance(model, Path) and find_spec("mujoco"):
             rows.append(
                 self._row("mujoco rk4", "a call for each step, arrays read", *_mujoco(model, values, exact), peer=True)
@@ -81,16 +89,17 @@ class InTheLoop:
         return replace(self, steps=100, rounds=1).measured()
 
     def _values(self) -> np.ndarray:
-        return self.size * np.random.default_rng(0).random((self.steps, len(self.inputs)))
+        part = np.random.default_rng(0).random((self.steps, len(self.inputs)))
+        return self.least + (self.size - self.least) * part
 
     def _simulation(self, model: ModelData | Path, settings: dict[str, Any]) -> Simulation:
         fixed: dict[str, Any] = {"step": self.step} if settings.get("scheme") in ("rk4", "euler_cromer") else {}
-        return stiffmbs.simulation(model, inputs=dict.fromkeys(self.inputs, 0.0), **settings, **fixed)
+        return stiffmbs.simulation(model, inputs=dict.fromkeys(self.inputs, self.least), **settings, **fixed)
 
     def _after(self, sim: Simulation, values: np.ndarray) -> np.ndarray:
         for row in values[:CHECKED]:
             sim.step(self.step, row)
-        return sim.joint_coordinates
+        return sim.joint_coordinates if sim.joints else sim.q
 
     def _row(self, solver: str, how: str, off: float, take: Callable[[], object], peer: bool = False) -> Row:
         spent = []
@@ -100,6 +109,18 @@ class InTheLoop:
             spent.append(time.process_time() - begun)
         seconds = statistics.median(spent)
         return Row(solver, f"{how}: {1e6 * seconds / self.steps:.1f} us a step", off, seconds, peer)
+
+
+def _evaluations(sim: Simulation, step: float, values: np.ndarray) -> str:
+    """Return a clause on the residuals and matrices of some implicit steps; empty for explicit steps."""
+    if not isinstance(sim._stepper, ImplicitSteps):
+        return ""
+    spent = []
+    for row in values[:CHECKED]:
+        sim.step(step, row)
+        counted = sim._stepper._started._engine.ida.statistics()
+        spent.append(counted["residuals"] + counted["jacobians"])
+    return f", {np.mean(spent):.0f} evaluations, {max(spent)} at most"
 
 
 def _arrays(sim: Simulation, step: float, values: np.ndarray) -> None:

@@ -192,11 +192,20 @@ def solved_real(x):
 
 @compiled
 def extrapolated(x, c, h):
-    """Fill the stages from the polynomial of the last step, continued; zero after a start."""
+    """Fill the stages from the polynomial of the last step, continued.
+
+    After a start, they are zero, as rates may belong to motions that decay at once; or follow from the rates if a step of
+    known length is taken.
+    """
     n = x.n_all
     if x.h_past == 0.0:
-        for k in range(c.stages * n):
-            x.z[k] = 0.0
+        predicts = x.first > 0.0 and x.acting == 0
+        for i in range(c.stages):
+            z = shifted(x.z, i * n)
+            for k in range(x.n):
+                z[k] = h * c.nodes[i] * x.yp[k] if predicts else 0.0
+            for k in range(x.n, n):
+                z[k] = 0.0
         return
     p = collocation_view(ints(x.methods[x.method_past]))
     for i in range(c.stages):

@@ -3,7 +3,7 @@
 from math import sqrt
 from typing import Final
 
-from stiffmbs.compile.machine.native.access import compiled, equations_view, ints, state_view
+from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, ints, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import POSITION, SWITCH, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
@@ -209,12 +209,14 @@ def restarted_at_event(t, ahead, counted, highest_order, table):
 def advance_from(t, end, highest_order, table):
     """Start at the current state at t and integrate to `end`, where the current state is the result; return OK.
 
-    Too many steps, an event or a failure give another number.
+    The first step is as long as the last call has left it. Too many steps, an event or a failure give another number.
     """
     if restarted_at_event(t, 0.0, 0, highest_order, table) < 0:
         return int32(UNFINISHED)
-    ida = ints(start_view(table).ida)
+    w = start_view(table)
+    ida = ints(w.ida)
     c = native_ida_view(ida)
+    call_int(w.set_first_step, (c.memory, min(c.next_size, end - t)))
     call_int(c.stop_at, (c.memory, end))
     c.stopping = end
     clear_call(c)
@@ -225,5 +227,7 @@ def advance_from(t, end, highest_order, table):
         flag = stepped(c, ida, end)
     if flag != STOP_RETURN:
         return int32(UNFINISHED)
+    call_int(c.next_step_of, (c.memory, address_of(c.next_size)))
+    c.next_size = max(c.next_size, c.size)
     load(state_view(c.state), equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
     return int32(OK)
