@@ -14,7 +14,7 @@ from ..results.energy_balance_notes import PER_TOLERANCE, is_broken
 from ..solve import SOLVERS
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.missing_rows import reported
-from ..solve.sampling import samples
+from ..solve.sampling import restarts
 from ..solve.settings import near_constraints, traits_of
 from ..solve.trajectory import SAME_TIME, Outcome, Trajectory
 from .job import Job
@@ -132,14 +132,5 @@ def _weights_and_jumps(job: Job, steps: np.ndarray, rows: OutputRows, nodes: int
     system = job.dynamics.system
     allowed = absolute_tolerances(system, job.settings)[system.n_q :] + job.settings.rtol * np.abs(before)
     beyond = (np.abs(after - before) > PER_TOLERANCE * allowed).any(axis=1)
-    first, last = np.searchsorted(_restarts(job), (t[:-1, -1], t[1:, 0]))
+    first, last = np.searchsorted(restarts(job.dynamics, job.grid), (t[:-1, -1], t[1:, 0]))
     return weights, beyond | (last > first)
-
-
-def _restarts(job: Job) -> np.ndarray:
-    """Return the times at which a run restarts by inputs and samples, s."""
-    system, grid = job.dynamics.system, job.grid
-    found = grid.stops
-    if system.has_inputs:
-        found = grid.with_stops(job.dynamics.input_features(grid.start, grid.end).all_breakpoints)
-    return np.union1d(found, [sample.t for sample in samples(system, grid)]) if system.sampled.any() else found

@@ -14,6 +14,7 @@ from ..model.settings import LARGEST_RTOL, RunSettings
 from ..notes import NoteKind, Severity
 from ..results.error_bars import ErrorEstimate
 from ..solve.explicit import DOP853
+from ..solve.sampling import restarts
 from ..solve.settings import changed, misses_breakpoints, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback, Recording, Trajectory
 from ..tuning import in_use
@@ -96,7 +97,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     from .run import finished
 
     steps, system, grid = _steps(trajectory), job.dynamics.system, job.grid
-    breakpoints = job.dynamics.input_features(grid.start, grid.end).breakpoints if system.has_inputs else np.empty(0)
+    breakpoints = restarts(job.dynamics, grid)
     times, at = _with_steps(solution, trajectory, breakpoints)
     for settings, part, how in _of_second_runs(job.settings, trajectory):
         try:

@@ -20,6 +20,7 @@ from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..notes import Note, Severity
+from ..reading.units.display import SI_UNITS
 from ..redundancy.messages.presolve_report import StructureNotes, structure_notes
 from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
@@ -234,6 +235,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
         not_unique=structure.not_unique,
         requested=requested,
         figure=job.data.figure if isinstance(job.data, Scene) else None,
+        display=job.data.display if isinstance(job.data, Scene) else SI_UNITS,
         presolve=structure.of_presolve,
         provenance=provenance_of(job.data, job.settings, state=job.start_from),
         turns=turns_of(job.dynamics.system, rows.q),

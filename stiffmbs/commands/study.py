@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 @option("--of TEXT ...", "Output to keep: 'peak(rail.fy)', 'rms(bar.ax)', 'bar.x'", "outputs")
 @option("--workers INTEGER RANGE", "How many cases are solved at once.", default=1)
 @option("--processes", "Processes in place of threads.")
-@output_option("Write the table: .nc or .csv.")
+@output_option("Write the table, or a page: .nc, .csv or .html.")
 @option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @solving_options
 def study(
@@ -44,6 +44,8 @@ def study(
     Exit status: 0 done, 1 not all cases could be solved or the file could not be written, 2 the input is wrong.
     """
     from ..reading.variation import read_variation
+    from ..results.provenance import provenance_of
+    from ..show.page.study import write_study
     from ..studies.data_set import as_dict, text, write
     from ..studies.sweep import study_of
 
@@ -56,7 +58,15 @@ def study(
             ready = study_of(loaded, varied, sample, seed, outputs or None, {})
             with CaseBar() as watch:
                 data = _solved(ready, workers, processes, store, watch)
-    written = _write(output, store, data, write)
+
+    def write_data(path: Path, data: xarray.Dataset) -> None:
+        """Write the page or the table."""
+        if path.suffix == ".html":
+            write_study(path, data, provenance_of(loaded))
+        else:
+            write(path, data)
+
+    written = _write(output, store, data, write_data)
     click.echo(json.dumps(as_dict(scene, data)) if as_json else text(data))
     sys.exit(0 if written and bool((data["status"] == "done").all()) else Status.FAILED)
 

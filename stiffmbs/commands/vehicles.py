@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -14,6 +16,15 @@ from ..errors import InputError
 from .process import Status
 from .scene import CHANGES, assigned, in_file, is_written, option, output_option, pairs, refuse_file, refusing
 
+if TYPE_CHECKING:
+    from ..model.scene import Scene
+
+Result = TypeVar("Result")
+BASE = "base"
+"""Name of the scene itself among its variants."""
+VARIANT = "A variant, and a change of SCENE for it"
+_COMMA = re.compile(r",(?![^\[\]]*\])")
+"""Comma between changes, not within a list."""
 UNIT = "--unit DIMENSION=UNIT such as LENGTH=mm"
 
 
@@ -36,13 +47,14 @@ UNIT = "--unit DIMENSION=UNIT such as LENGTH=mm"
     default=None,
 )
 @option("--case NAME=SIZE ...", "Size of a load case; 0 omits it", "cases")
+@option("--variant NAME=PATH=VALUE[,...] ...", VARIANT, "variants")
 @option("--figure PATH", "Draw the curves: .png, .svg or .pdf.")
-@output_option("Write the curves: .csv.")
+@output_option("Write a page, or the curves: .html or .csv.")
 @option("--json", "Print one JSON object on one line instead of a table.", "as_json")
 @CHANGES
 def kc(
     scene: str, axle: str, points: int, body: str | None, steering: str | None, wheels: tuple[str, ...],
-    radius: float | None, cases: tuple[str, ...], figure: Path | None, output: Path | None, as_json: bool,
+    radius: float | None, cases: tuple[str, ...], variants: tuple[str, ...], figure: Path | None, output: Path | None, as_json: bool,
     changes: list[tuple[str, str]], **vehicle: Any,
 ) -> None:  # fmt: skip
     """Sweep an axle of SCENE on a test rig by equilibria, and print its kinematics and compliance.
@@ -54,10 +66,13 @@ def kc(
     lateral_parallel=2, brake=2 and traction=2 (kN), aligning=100 and aligning_parallel=100 (N m).  The suspensions have
     a body upright with the markers spindle and patch, as shipped parts have, or tyres on wheels with a revolute joint.
 
+    --variant NAME=PATH=VALUE compares SCENE, as base, with a changed one: a page has the curves of both.
+
     Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
     """
     from ..results.files import write_table
     from ..results.provenance import provenance_of
+    from ..show.page.kc import write_kc
     from ..show.style import write_sheet
     from ..show.suspension import kc_csv, kc_figure, kc_text
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
@@ -65,16 +80,29 @@ def kc(
 
     with refusing(scene, as_json):
         refuse_file("--figure", figure, scene, "figure")
-        refuse_file("-o", output, scene, "curves")
-        loaded = load_scene(scene, changes)
+        refuse_file("-o", output, scene, "curves of an axle")
+        _refuse_several(variants, output, figure)
+        scenes = _variants(scene, changes, variants)
         with in_file(scene):
             given = VehicleOptions(**vehicle)
             sizes = assigned("--case NAME=SIZE such as bump=40", cases, float)
-            found = kinematics_and_compliance(loaded, axle, points, body, steering, wheels, radius, given, **sizes)
-    origin = provenance_of(loaded)
-    written = is_written(output, lambda path: write_table(path, kc_csv(found), origin))
+            every = {
+                name: kinematics_and_compliance(loaded, axle, points, body, steering, wheels, radius, given, **sizes)
+                for name, loaded in scenes.items()
+            }
+    origins = {name: provenance_of(loaded) for name, loaded in scenes.items()}
+    found, origin = next(iter(every.values())), next(iter(origins.values()))
+
+    def write_curves(path: Path) -> None:
+        """Write the page, or the table."""
+        if path.suffix == ".html":
+            write_kc(path, every, origins)
+        else:
+            write_table(path, kc_csv(found), origin)
+
+    written = is_written(output, write_curves)
     written = is_written(figure, lambda path: write_sheet(path, kc_figure(found), origin=origin)) and written
-    click.echo(json.dumps(found.as_dict(scene)) if as_json else kc_text(scene, found))
+    _print(every, as_json, lambda one: one.as_dict(scene), lambda one: kc_text(scene, one))
     sys.exit(0 if written else Status.FAILED)
 
 
@@ -111,11 +139,11 @@ def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple
         raise SystemExit(1)
 
 
-def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
+def _case(text: str, option: str = "--case") -> tuple[str, list[tuple[str, str]]]:
     name, _, rest = text.partition("=")
-    changes = [tuple(change.split("=", 1)) for change in rest.split(",") if change]
+    changes = [tuple(change.split("=", 1)) for change in _COMMA.split(rest) if change]
     if not name or not changes or any(len(change) != 2 for change in changes):
-        raise InputError(f"--case {text}: found no changes, expected NAME=PATH=VALUE")
+        raise InputError(f"{option} {text}: found no changes, expected NAME=PATH=VALUE")
     return name, [(path, value) for path, value in changes]  # type: ignore[misc]
 
 
@@ -127,6 +155,7 @@ def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
 @option("--width FLOAT", "Width of the vehicle, m; by default the track plus 0.2 m.")
 @option("--length FLOAT", "Length of the vehicle, m; by default 1.6 wheelbases.")
 @option("--workers INTEGER RANGE", "Number of processes; by default one for each core.")
+@option("--variant NAME=PATH=VALUE[,...] ...", VARIANT, "variants")
 @option(
     "--set-test NAME=VALUE ...",
     "Change a parameter of a test, such as step_steer.speed='100 km/h', or of each test that has it, speed=30",
@@ -138,7 +167,7 @@ def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
 @CHANGES
 def handling(
     scene: str, tests: tuple[str, ...], body: str | None, steering: str | None, width: float | None,
-    length: float | None, workers: int | None, parameters: list[tuple[str, str]], output: Path | None, as_json: bool, changes: list[tuple[str, str]],
+    length: float | None, workers: int | None, variants: tuple[str, ...], parameters: list[tuple[str, str]], output: Path | None, as_json: bool, changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
     """Drive the car of SCENE through tests of the standards, and print their metrics.
 
@@ -146,30 +175,57 @@ def handling(
     (ISO 19365), lane_change (ISO 3888-1), obstacle_avoidance (ISO 3888-2), braking_in_a_turn (ISO 7975), straight_braking
     (ISO 21994), ride (ISO 2631-1). The scene's own driver, roads and start are left out.
 
+    --variant stiffer=parts.bar.k=2100 compares SCENE, as base, with a changed one: the page has both in its tables and charts.
+
     Exit status: 0 done, 1 a test was not done or the page could not be written, 2 the input is wrong.
     """
     from ..results.provenance import provenance_of
     from ..show.handling import handling_text, write_handling
     from ..studies.handling.study import handling as handled
 
+    chosen: dict[str, Any] = {"body": body, "steering": steering, "width": width, "length": length, "workers": workers}
     with refusing(scene, as_json):
         refuse_file("-o", output, scene, "report")
-        loaded = load_scene(scene, changes)
+        scenes = _variants(scene, changes, variants)
         with in_file(scene):
-            found = handled(
-                loaded,
-                tests or None,
-                body=body,
-                steering=steering,
-                width=width,
-                length=length,
-                workers=workers,
-                parameters=dict(parameters),
-            )
-    written = is_written(output, lambda path: write_handling(path, found, provenance_of(loaded)))
-    printed = found.as_dict(scene)
-    click.echo(json.dumps(printed) if as_json else handling_text(scene, found))
-    sys.exit(0 if written and printed["status"] == "done" else Status.FAILED)
+            found = {
+                name: handled(loaded, tests or None, parameters=dict(parameters), **chosen)
+                for name, loaded in scenes.items()
+            }
+    origins = {name: provenance_of(loaded) for name, loaded in scenes.items()}
+    units = next(iter(scenes.values())).units
+    written = is_written(output, lambda path: write_handling(path, found, origins, units))
+    _print(found, as_json, lambda one: one.as_dict(scene), lambda one: handling_text(scene, one))
+    done = not any(test.message for one in found.values() for test in one.tests.values())
+    sys.exit(0 if written and done else Status.FAILED)
+
+
+def _refuse_several(variants: tuple[str, ...], output: Path | None, figure: Path | None) -> None:
+    """Refuse variants with a table or a figure, which hold one axle."""
+    if variants and (figure or (output and output.suffix != ".html")):
+        raise InputError(
+            "--variant: found a table or a figure to write, expected a page, such as -o kc.html, which shows all variants"
+        )
+
+
+def _print(
+    found: Mapping[str, Result], as_json: bool, content: Callable[[Result], object], text: Callable[[Result], str]
+) -> None:
+    """Print the results of all variants, as JSON by their names or as text below them; a single result has no name."""
+    if as_json:
+        contents = {name: content(one) for name, one in found.items()}
+        click.echo(json.dumps(contents.get("", contents)))
+        return
+    for name, one in found.items():
+        click.echo(f"variant {name}\n{text(one)}" if name else text(one))
+
+
+def _variants(scene: str, changes: list[tuple[str, str]], variants: tuple[str, ...]) -> dict[str, Scene]:
+    """Return the scene with the changes of each variant by name; the scene itself, without a name, if there is none."""
+    if not variants:
+        return {"": load_scene(scene, changes)}
+    own = [_case(text, "--variant") for text in variants]
+    return {BASE: load_scene(scene, changes), **{name: load_scene(scene, [*changes, *of]) for name, of in own}}
 
 
 @click.command(short_help="Curves of a tyre; conversion of property files.")

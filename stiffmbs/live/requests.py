@@ -16,6 +16,7 @@ from ..comparison.table import text as comparison_text
 from ..errors import InputError
 from ..model.model_data import ModelData
 from ..reading.files.quoted import quoted
+from ..results.displayed import displayed
 from ..results.files import WRITERS, refuse_path, write
 from ..results.solution import Solution
 from ..show.verdict import verdict
@@ -95,7 +96,7 @@ def _sweep(request: Request) -> dict[str, object]:
     for k, value in enumerate(values):
         request.tell({"stage": f"case {k + 1} of {count}"})
         text = f"{value:.9g} {unit}".strip()
-        found = request.solved({**request.numbers, name: text}).solution
+        found = displayed(request.solved({**request.numbers, name: text}).solution)
         if found.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         (runs if found.outcome is Outcome.DONE else failed).append((text, found))

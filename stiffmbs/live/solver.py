@@ -15,8 +15,10 @@ from ..analyses.run import run, solved
 from ..elements.element import Element
 from ..errors import InputError, StiffmbsError
 from ..model.model_data import ModelData
+from ..model.parts.options import CHOOSE, OPTIONS, choices_of, words_chosen
 from ..model.read_scene import read_scene
 from ..model.scene import Scene
+from ..notes import Severity
 from ..reading.python_function import PythonFunction
 from ..results.solution import Solution
 from ..show.drawing.derive import drawing_of
@@ -59,6 +61,7 @@ class LiveSolver:
         self._read: tuple[str, Scene] | None = None
         self._cases: tuple[tuple[str, tuple[str, ...]], CaseSolver] | None = None
         self._allowed = False
+        self.span = (0.0, 0.0)  # start and end of the run under way, s; equal if unknown
         self.last: Solved | None = None
 
     @property
@@ -112,6 +115,8 @@ class LiveSolver:
         if self.last is not None and (self.last.text, self.last.numbers) == (text, asked):
             return self.last
         scene = self.scene(text, numbers)
+        begin = scene.run.start if isinstance(scene, Scene) else 0.0
+        self.span = (begin, begin + scene.whole_duration if isinstance(scene, Scene) else begin)
         if self._model is None and isinstance(scene, Scene) and not scene.stages:
             solution = solved(self._solver(text, tuple(numbers)).job(scene), watch)
         else:
@@ -148,7 +153,8 @@ def shown(found: Solved, channels: Sequence[str]) -> dict[str, object]:
     page = page_data(drawing_of(scene, along=poses), {"": poses}, solution, wanted, only=wanted, level=Z_BEST_SPEED)
     judged = verdict(solution)
     return {
-        "status": judged.status, "message": judged.headline, "notes": list(judged.to_check), "digits": judged.digits_words,
+        "status": judged.status, "message": judged.headline, "notes": list(judged.to_check),
+        "grave": sum(note.severity is not Severity.REMARK for note in judged.to_check), "choices": choices_in(scene), "digits": judged.digits_words,
         "lines": [f"{label}: {line}" for label, line in solver_lines(solution.solver)], "page": page,
         "parameters": parameters_of(scene), "name": solution.name, "end": float(solution.time[-1]),
     }  # fmt: skip
@@ -170,6 +176,18 @@ def parameters_of(scene: ModelData) -> list[dict[str, object]]:
         {"name": name, "value": value, "text": str(written[name])}
         for name, value in scene.parameters.items()
         if isinstance(value, float | int)
+    ]
+
+
+def choices_in(scene: ModelData) -> list[dict[str, object]]:
+    """Return the choices among the options of a scene: name, words, and the chosen one."""
+    written = scene.written if isinstance(scene, Scene) else None
+    if written is None:
+        return []
+    chosen = words_chosen(written.content.get(CHOOSE))
+    return [
+        {"name": name, "words": list(words), "chosen": chosen.get(name, next(iter(words)))}
+        for name, words in choices_of(written.content, OPTIONS).items()
     ]
 
 

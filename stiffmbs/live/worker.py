@@ -113,7 +113,8 @@ class Worker:
             if number < self._newest.number or number <= self._newest.stopped:
                 raise KeyboardInterrupt
             if t == t:
-                tell({"time": t})
+                start, end = self._solver.span
+                tell({"time": t, "start": start, "end": end})
 
         try:
             answer = answer_to(Request(message, self._solver, watch, tell))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, field_validator, model_validator
 
 from ..elements.element import Component
 from ..elements.requests.check import check_output
@@ -17,6 +17,7 @@ from ..reading.fields import Described
 from ..reading.files.unchanged import Unchanged
 from ..reading.formula.text import FormulaError
 from ..reading.table import Table
+from ..reading.units.display import DisplayUnits, checked_units
 from ..reading.units.units import Quantity, in_text
 from .beams.division import Beams
 from .files.stages import Stage, WrittenScene
@@ -60,6 +61,10 @@ class Scene(ModelData):
     )
     stages: tuple[Stage, ...] = Field((), description="consecutive runs, each with its own changes")
     figure: Figure | None = Field(None, description="the main plot of the scene")
+    units: dict[str, str] = Field(
+        default_factory=dict,
+        description="units of tables, plots and pages by dimension, such as {angle: deg, force: kN}",
+    )
     notes: tuple[str, ...] = Field((), description="text shown with every result")
     _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
     _written: WrittenScene | None = PrivateAttr(default=None)
@@ -67,6 +72,16 @@ class Scene(ModelData):
     _stage_scenes: tuple[Scene, ...] = PrivateAttr(default=())
     _held_at_start: Scene | None = PrivateAttr(default=None)
     _beams: Beams = PrivateAttr(default_factory=Beams)
+
+    @field_validator("units")
+    @classmethod
+    def _units_of_dimensions(cls, found: dict[str, str]) -> dict[str, str]:
+        return checked_units(found)
+
+    @property
+    def display(self) -> DisplayUnits:
+        """Units in which results are shown."""
+        return DisplayUnits(self.units)
 
     def check_requests(self) -> None:
         """Refuse invalid requests, and invalid variables, which are read as requests."""

@@ -121,8 +121,9 @@ JINJA, MATPLOTLIB, MESHIO, XARRAY = (
 )  # fmt: skip
 KINDS: dict[str, dict[str, dict[str, str]]] = {
     "results": {".csv": {}, ".npz": {}, ".nc": XARRAY, ".tab": {}, ".res": {}},
-    "cases": {".nc": XARRAY, ".csv": XARRAY},
+    "cases": {".nc": XARRAY, ".csv": XARRAY, ".html": {**XARRAY, **JINJA}},
     "curves": {".csv": {}},
+    "curves of an axle": {".csv": {}, ".html": JINJA},
     "tyre": {".tir": {}},
     "mode shapes": {".vtu": MESHIO, ".vtk": MESHIO},
     "deformation": {".xdmf": {}},

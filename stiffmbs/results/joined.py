@@ -59,6 +59,7 @@ def joined(name: str, solutions: Sequence[Solution]) -> Solution:
         requested=requested,
         presolve=_notes([s.presolve for s in solutions]),
         figure=first.figure,
+        display=first.display,
         provenance=first.provenance,
         turns={
             key: np.concatenate([s.turns.get(key, np.full(len(s.time), np.nan))[rows] for s, rows in pairs])

@@ -159,7 +159,7 @@ def _of_scene(data: ModelData) -> Content:
         return {}
     from ..model.model_text import written
 
-    values = {name: getattr(data, name) for name in ("start", "at_start", "stages", "figure", "notes", "run")}
+    values = {name: getattr(data, name) for name in ("start", "at_start", "stages", "figure", "units", "notes", "run")}
     defaults = {name: Scene.model_fields[name].get_default(call_default_factory=True) for name in values}
     return {name: written(value) for name, value in values.items() if value != defaults[name]}
 

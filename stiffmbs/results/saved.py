@@ -17,6 +17,7 @@ import numpy as np
 from ..errors import InputError
 from ..model.scene import Figure
 from ..notes import Note
+from ..reading.units.display import DisplayUnits
 from ..solve.trajectory import History, Outcome
 from .energy_balance import Balance
 from .error_bars import ErrorBar, ErrorEstimate
@@ -44,6 +45,7 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
         "errors": {channel: astuple(bar) for channel, bar in solution.errors.items()},
         "estimate": solution.estimate and astuple(solution.estimate),
         "figure": solution.figure and dict(solution.figure),
+        "display": dict(solution.display.chosen),
     }
     return {
         ABOUT: np.array(json.dumps(about, default=lambda number: number.item())),
@@ -87,6 +89,7 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
         history=History(*(arrays[HISTORY + part.name] for part in fields(History))),
         balance=Balance(**{name: array if array.ndim else array.item() for name, array in balance.items()}),
         figure=Figure(**about["figure"]) if about["figure"] else None,
+        display=DisplayUnits(about.get("display", {})),
         turns={name.removeprefix(TURNS): array for name, array in arrays.items() if name.startswith(TURNS)},
         provenance=from_json(str(arrays[PROVENANCE])) if PROVENANCE in arrays else None,
     )  # fmt: skip

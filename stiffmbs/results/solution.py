@@ -14,6 +14,7 @@ from ..errors import InputError, refuse_missing
 from ..methods import SolutionMethods
 from ..model.scene import Figure
 from ..notes import Note
+from ..reading.units.display import SI_UNITS, DisplayUnits
 from ..solve.trajectory import History, Outcome
 from .channels import named
 from .energy_balance import Balance
@@ -66,6 +67,8 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         Balance of energy and work.
     figure : Figure, optional
         Main plot of the scene, if it has one.
+    display : DisplayUnits
+        Units in which summaries, plots and pages show the channels; the channels themselves are in SI units.
     turns : mapping of str to ndarray
         Revolution counters of angles in space, rad, by element and number: ``spring/0``.
     provenance : Provenance, optional
@@ -89,6 +92,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     verification: tuple[str, ...] = ()
     discretisation: Mapping[str, float] = field(default_factory=dict)
     figure: Figure | None = None
+    display: DisplayUnits = SI_UNITS
     turns: Mapping[str, np.ndarray] = field(default_factory=dict)
     provenance: Provenance | None = None
 

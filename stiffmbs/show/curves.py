@@ -22,6 +22,10 @@ DIAGRAM: Final = (236, 84)
 (WIDTH, HEIGHT), (LEFT, RIGHT, TOP, BOTTOM), (SIDE, RADIUS) = CHART, AXES, DIAGRAM
 MOST_POINTS = 800
 """Number of intervals along a curve. The least and the greatest value in each are drawn, so that peaks are kept."""
+LEAST_SPAN = 1e-9
+"""Least span of an axis relative to its values: a smaller one is rounding."""
+CHARACTER = 7
+"""Width of a character of a label, pixels."""
 MOST_STEPS = 6
 """Number of steps of an axis."""
 BOLD = 0.9
@@ -35,6 +39,7 @@ class Curve:
     name: str
     x: np.ndarray
     y: np.ndarray
+    style: str = ""  # class of the style sheet; by default that of its place among the curves of a chart
 
 
 def round_step(span: float) -> float:
@@ -44,42 +49,66 @@ def round_step(span: float) -> float:
     return float(next(power * k for k in (1, 2, 5, 10) if power * k >= least * (1 - 1e-9)))
 
 
-def curve_chart(curves: Sequence[Curve], title: str, abscissa: str, peak: str = "", step_x: float | None = None) -> str:
+NO_MARKS = np.empty((0, 2))
+
+
+def curve_chart(
+    curves: Sequence[Curve],
+    title: str,
+    abscissa: str,
+    peak: str = "",
+    step_x: float | None = None,
+    marks: np.ndarray = NO_MARKS,
+    from_zero: bool = True,
+) -> str:
     """Return curves in one chart.
 
     `title`, `abscissa`: quantities with their units. `peak`: words at the peak of the first curve. `step_x`: distance of
-    the numbers below the chart.
+    the numbers below the chart. `marks`: points with triangles, shape (n, 2). `from_zero`: False for an
+    axis that need not contain zero.
     """
-    x = np.concatenate([curve.x for curve in curves])
-    known = np.concatenate([curve.y[np.isfinite(curve.y)] for curve in curves])
-    low, high = min(0.0, float(known.min(initial=0.0))), max(0.0, float(known.max(initial=0.0)))
-    step_y = round_step((high - low) or 1.0)
-    low, high = step_y * np.floor(low / step_y), step_y * np.ceil(high / step_y) if high > low else step_y
-    start, end = float(x.min()), float(x.max())
-    end = end if end > start else start + 1.0
+    x = np.concatenate([*(curve.x for curve in curves), marks[:, 0]])
+    known = np.concatenate([*(curve.y[np.isfinite(curve.y)] for curve in curves), marks[:, 1]])
+    low, high = _range(np.append(known, 0.0) if from_zero or not len(known) else known)
+    step_y = round_step(high - low)
+    low, high = step_y * np.floor(low / step_y + 1e-9), step_y * np.ceil(high / step_y - 1e-9)
+    start, end = _range(x[np.isfinite(x)])
+    marked_y = np.arange(round(low / step_y), round(high / step_y) + 1) * step_y
+    left = max(LEFT, *(int(9 + CHARACTER * len(_number(value, step_y))) for value in marked_y))
 
     def place(values_x: np.ndarray, values_y: np.ndarray) -> np.ndarray:
-        across = LEFT + (RIGHT - LEFT) * (values_x - start) / (end - start)
+        across = left + (RIGHT - left) * (values_x - start) / (end - start)
         return np.column_stack([across, BOTTOM - (BOTTOM - TOP) * (values_y - low) / (high - low)])
 
     def content() -> Iterator[str]:
         """Yield the parts of the figure."""
         yield _text(0, 13, title, "strong")
-        for value in np.arange(round(low / step_y), round(high / step_y) + 1) * step_y:
+        for value in marked_y:
             ((_, y),) = place(np.array([start]), np.array([value]))
-            yield f'<line x1="{LEFT}" x2="{RIGHT}" y1="{y:.1f}" y2="{y:.1f}" class="{"axis" if abs(value) < step_y / 2 else "grid"}"/>'
-            yield _text(LEFT - 7, y + 4, _number(value), "soft", "end")
+            yield f'<line x1="{left}" x2="{RIGHT}" y1="{y:.1f}" y2="{y:.1f}" class="{"axis" if abs(value) < step_y / 2 else "grid"}"/>'
+            yield _text(left - 7, y + 4, _number(value, step_y), "soft", "end")
         step = step_x or round_step(end - start)
         for value in np.arange(np.ceil(start / step - 1e-9), np.floor(end / step + 1e-9) + 1) * step:
             ((across, _),) = place(np.array([value]), np.array([low]))
-            yield _text(across, BOTTOM + 17, _number(value), "soft", "middle")
+            yield _text(across, BOTTOM + 17, _number(value, step), "soft", "middle")
         yield _text(RIGHT, HEIGHT - 4, abscissa, "soft", "end")
         for k, curve in enumerate(curves):
-            yield f'<path class="curve c{k}" d="{_path(place(*_thinned(curve.x, curve.y)))}"/>'
+            yield f'<path class="curve {curve.style or f"c{k}"}" d="{_path(place(*_thinned(curve.x, curve.y)))}"/>'
+        for across, y in place(*marks.T):
+            yield f'<path class="mark" d="M{across - 4:.1f},{y + 4:.1f}L{across + 4:.1f},{y + 4:.1f}L{across:.1f},{y - 4:.1f}Z"/>'
         if peak and np.isfinite(curves[0].y).any():
             yield from _marked(place, curves[0], peak)
 
     return _svg(WIDTH, HEIGHT, f"{title} over {abscissa}", content())
+
+
+def _range(values: np.ndarray) -> tuple[float, float]:
+    """Return the least and greatest value, apart by more than rounding."""
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+    size = max(abs(low), abs(high))
+    if high - low > LEAST_SPAN * size:
+        return low, high
+    return (low, low + (0.1 * size or 1.0))
 
 
 def _marked(place: object, curve: Curve, words: str) -> Iterator[str]:
@@ -157,8 +186,12 @@ def _path(points: np.ndarray) -> str:
     return "".join(words)
 
 
-def _number(value: float) -> str:
-    return f"{value:.6g}".replace("-", "\N{MINUS SIGN}") if abs(value) > 1e-12 else "0"
+def _number(value: float, step: float) -> str:
+    """Return the number at a mark of an axis, with as many digits as distinguish it from the next one."""
+    if abs(value) < step / 2:
+        return "0"
+    digits = max(6, int(np.ceil(np.log10(abs(value) / step))) + 1)
+    return f"{value:.{digits}g}".replace("-", "\N{MINUS SIGN}")
 
 
 def _text(x: float, y: float, text: str, kind: str, anchor: str = "start") -> str:

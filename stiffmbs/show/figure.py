@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import InputError, refuse_missing
 from ..model.scene import Figure
 from ..reading.units.quantity import LARGEST
+from ..results.displayed import displayed
 from ..results.files import refuse_path
 from ..results.solution import Solution
 from .style import dress, legend_below, new_sheet, stroke
@@ -97,11 +98,13 @@ def figure_of(
 
 
 def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> None:
-    """Draw the same channels of several runs, with one plot for each unit and a legend below.
+    """Draw the same channels of several runs in the display units of the first, with one plot for each unit and a legend below.
 
     `sheet`: empty sheet. `runs`: runs by their names in the legend; a single run may have no name. Raises InputError if
     a run has no such channel.
     """
+    first = next(iter(runs.values()))
+    runs = {name: displayed(run, first) for name, run in runs.items()}
     first = next(iter(runs.values()))
     units = [""] if figure.z else list(dict.fromkeys(first.unit(channel) for channel in figure.y))
     count = len(units) if len(units) <= MOST_PLOTS else 1

@@ -72,7 +72,7 @@ def _largest(loads: Sequence[Load]) -> str:
     if not loads:
         return "No element carries a force or torque."
     load = loads[0]
-    column = Column.of(load.unit, load.peak)
+    column = Column.of(load.unit, load.peak, load.display)
     what = "force" if load.unit == "N" else "torque"
     peak, unit = column.words(load.peak, load.bar), column.unit
     return f"The largest {what} is {peak} {unit}, in {load.element} at {load.time[load.peak_row]:.4g} s."

@@ -1,42 +1,35 @@
-"""Handling tests as text and as a page (needs jinja2 and matplotlib, the extra ``report``)."""
+"""Handling tests as text and as a page (needs jinja2, of the extra ``report``)."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..reading.units.display import DisplayUnits
 from ..reading.units.units import DIMENSIONS
 from ..results.files import write_text
+from ..studies.handling.known import Metrics
 from ..studies.handling.standards import TESTS
+from ..studies.handling.steering_inputs import BAR_OF
 from ..studies.handling.study import Handling, Tested
-from .handling_figure import handling_figure
-from .origin import page_with_origin
-from .page.data import environment
-from .style import data_url
+from .force_table import with_bar
+from .handling_charts import handling_charts
+from .page.page_of_tests import MINUS, Judgement, change, heads, page_of_tests, written_unit
+from .sections import MISSING, Section, Table
 
 if TYPE_CHECKING:
     from ..results.provenance import Provenance
 
 YES_OR_NO = " (1 yes, 0 no)"
 """End of the names of metrics that are answers."""
-PAGE = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>{{ name }}: handling</title><style>
-body { font-family: sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; }
-img { max-width: 100%; height: auto; } pre { overflow-x: auto; }
-table { border-collapse: collapse; } td, th { padding: 0.2em 0.8em; border-bottom: 1px solid #ccc; text-align: left; }
-</style></head><body><h1>{{ name }}: handling</h1>
-<p>Wheelbase {{ wheelbase }} m, track {{ track }} m; {{ steered }}; {{ measured }}.</p>
-{% for title, message, rows, figure in sections %}<h2>{{ title }}</h2>
-{% if message %}<p>Not done: {{ message }}</p>{% endif %}{% if rows %}
-<table><tr><th>metric</th><th>value</th><th>unit</th></tr>
-{% for row in rows %}<tr>{% for cell in row %}<td>{{ cell }}</td>{% endfor %}</tr>
-{% endfor %}</table><p><img src="{{ figure }}" alt="{{ title }}"></p>{% endif %}
-{% endfor %}</body></html>
-"""
+NOT_REACHED = "not reached"
+UNITS = {"angle": "deg", "velocity": "km/h"}
+"""Units of the page, unless the scene chooses others."""
 
 
 def handling_text(scene: str, found: Handling) -> str:
@@ -67,26 +60,102 @@ def _measured(found: Handling) -> str:
     return f"measured at the {name}, {ahead:.4g} m ahead of the rear axle, {height:.4g} m above the road"
 
 
-def write_handling(path: Path, found: Handling, origin: Provenance | None = None) -> None:
-    """Write the page of all tests with the origin of its results, completely or not at all.
+def write_handling(
+    path: Path, variants: Mapping[str, Handling], origins: Mapping[str, Provenance | None], units: Mapping[str, str]
+) -> None:
+    """Write the page of all tests of one or several variants of a car, completely or not at all.
 
-    Raises OSError if the file cannot be written.
+    `variants`: by name; a single one may have no name. `origins`: those of their results. `units`: units by dimension that
+    the scene chooses. Raises OSError if the file cannot be written.
     """
-    sections = [
-        (
-            _title(name, one),
-            one.message,
-            _rows(one),
-            data_url(handling_figure(found, name, one), "svg", 100) if one.runs else "",
-        )
-        for name, one in found.tests.items()
+    display = DisplayUnits({**UNITS, **units})
+    found = next(iter(variants.values()))
+    facts = (
+        ("Wheelbase", f"{found.car.wheelbase:.4g} m"),
+        ("Track", f"{found.car.track:.4g} m"),
+        ("Steering", _steered(found)),
+    )
+    sections = [_section(variants, name, display) for name in found.tests]
+    write_text(path, page_of_tests("Handling tests", found.name, facts, _judged(variants), sections, origins))
+
+
+def _judged(variants: Mapping[str, Handling]) -> Judgement:
+    """Return how many tests were done, and which answers were no."""
+    count = len(next(iter(variants.values())).tests)
+    failed, answers = [], []
+    for variant, found in variants.items():
+        of = f" ({variant})" if len(variants) > 1 else ""
+        for name, one in found.tests.items():
+            title = TESTS[name].title.partition(",")[0]
+            failed += [f"{title}{of} was not done: {one.message}."] if one.message else []
+            answers += [
+                (f"{title}{of}: {'' if value else 'not '}{metric.removesuffix(YES_OR_NO)}", bool(value))
+                for metric, (value, _) in one.metrics.items()
+                if metric.endswith(YES_OR_NO)
+            ]
+    denied, passed = ([name for name, yes in answers if yes is kind] for kind in (False, True))
+    further = (*failed, f"M{_measured(next(iter(variants.values())))[1:]}.")
+    done = f"{count} test{'s' if count > 1 else ''}" + (f" of {len(variants)} variants" if len(variants) > 1 else "")
+    if denied:
+        return Judgement("doubt", "! Not passed", f"{'; '.join(denied)}.", further)
+    if failed:
+        return Judgement("doubt", "! Incomplete", f"{len(failed)} of {done} could not be done.", further)
+    return Judgement("done", "\N{CHECK MARK} Completed", f"{'; '.join([done, *passed])}.", further)
+
+
+def _section(variants: Mapping[str, Handling], name: str, display: DisplayUnits) -> Section:
+    """Return the section of a test: its parameters, the metrics of all variants, and its charts."""
+    tested = {variant: found.tests[name] for variant, found in variants.items()}
+    first = next(iter(tested.values()))
+    missing = [
+        f"{variant} was not done: {one.message}" if variant else f"Not done: {one.message}"
+        for variant, one in tested.items()
+        if one.message
     ]
-    template = environment().from_string(PAGE)
-    page = template.render(
-        name=found.name, wheelbase=f"{found.car.wheelbase:.4g}", track=f"{found.car.track:.4g}", steered=_steered(found),
-        measured=_measured(found), sections=sections,
-    )  # fmt: skip
-    write_text(path, page_with_origin(page, origin))
+    rows = tuple(_compared([one.metrics for one in tested.values()], display))
+    tables = (Table(heads(list(variants)), rows),) if rows else ()
+    parameters = [f"Parameters: {', '.join(_parameters(name, first, display))}."] if first.parameters else []
+    return Section(
+        TESTS[name].title, (*missing, *parameters), tables, drawings=tuple(handling_charts(variants, name, display))
+    )
+
+
+def _compared(found: list[Metrics], display: DisplayUnits) -> Iterator[tuple[str, ...]]:
+    """Yield a row for each metric: its name, a value of each variant, the change between two, and the unit."""
+    for name in dict.fromkeys(name for metrics in found for name in metrics if not name.endswith(BAR_OF)):
+        unit = next(metrics[name][1] for metrics in found if name in metrics)
+        shown, factor = display.of(unit)
+        values = [metrics.get(name, (math.nan, ""))[0] for metrics in found]
+        cells = (_cell(metrics, name, factor) for metrics in found)
+        yield (
+            name.removesuffix(YES_OR_NO),
+            *cells,
+            *([MISSING] if name.endswith(YES_OR_NO) and len(found) == 2 else change(values)),
+            written_unit(shown),
+        )
+
+
+def _cell(metrics: Metrics, name: str, factor: float) -> str:
+    """Return a value with its error bar, an answer in words, or that it was not reached."""
+    if name not in metrics:
+        return MISSING
+    value = metrics[name][0]
+    if not np.isfinite(value):
+        return NOT_REACHED
+    if name.endswith(YES_OR_NO):
+        return "yes" if value else "no"
+    bar = metrics.get(name + BAR_OF, (math.nan, ""))[0]
+    return with_bar(value * factor, bar * factor) if bar > 0 else f"{value * factor:.4g}".replace("-", MINUS)
+
+
+def _parameters(name: str, one: Tested, display: DisplayUnits) -> Iterator[str]:
+    """Yield the parameters of a test with their units."""
+    for each in fields(TESTS[name].parameters):
+        value, unit = one.parameters.get(each.name), DIMENSIONS.get(each.metadata["dimension"], ("", ""))[1]
+        if value is not None:
+            shown, factor = display.of("" if unit == "1" else unit)
+            number = value * factor if isinstance(value, float) and factor != 1.0 else value
+            yield f"{each.name.replace('_', ' ')} {_number(number)} {written_unit(shown)}".rstrip()
 
 
 def _title(name: str, one: Tested) -> str:
@@ -111,7 +180,7 @@ def _number(value: object) -> str:
 def _rows(one: Tested) -> list[tuple[str, str, str]]:
     """Return the metrics as cells; a value without a number was not reached, and some are answers."""
     return [
-        _row(name, value, unit) if np.isfinite(value) else (name, "not reached", "")
+        _row(name, value, unit) if np.isfinite(value) else (name, NOT_REACHED, "")
         for name, (value, unit) in one.metrics.items()
     ]
 

@@ -13,6 +13,7 @@ from ..analyses.linearised.modes_table import HEADS, mode_rows
 from ..errors import StiffmbsError
 from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
+from ..results.displayed import displayed
 from ..results.solution import Solution, channel_ranges
 from .escaped import escaped
 from .style import data_url
@@ -82,9 +83,10 @@ def _of_solution(solution: Solution) -> str:
     """Return the final message of a run, its figure, and the range of every channel."""
     from .figure import drawn
 
-    ranges = channel_ranges(solution)
+    shown = displayed(solution)
+    ranges = channel_ranges(shown)
     rows = [
-        (name, solution.unit(name), *(f"{found[key]:.6g}" for key in ("first", "last", "min", "max")))
+        (name, shown.unit(name), *(f"{found[key]:.6g}" for key in ("first", "last", "min", "max")))
         for name, found in ranges.items()
     ]
     sentences = "".join(f"<p>{escape(sentence)}</p>" for sentence in (solution.message, *solution.notes))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..reading.units.display import SI_UNITS, DisplayUnits
 from ..results.digits import largest_bar
 from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution
@@ -34,6 +35,7 @@ class Load:
     bar: float  # bound on the error of the magnitude; nan if unknown
     unique: bool  # False if rigid bodies do not determine it
     excess: float = 0.0  # part of the bar for peaks between output instants
+    display: DisplayUnits = SI_UNITS
 
     @property
     def magnitude(self) -> np.ndarray:
@@ -108,7 +110,7 @@ def _load(solution: Solution, element: str, parts: Sequence[str], unit: str) -> 
     )
     unique = not any(name in solution.not_unique for name in names)
     values = np.column_stack([solution.channels[name] for name in names])
-    return Load(element, unit, solution.time, values, bar, unique, excess)
+    return Load(element, unit, solution.time, values, bar, unique, excess, solution.display)
 
 
 @dataclass(frozen=True)
@@ -119,8 +121,11 @@ class Column:
     factor: float  # of numbers in SI units
 
     @classmethod
-    def of(cls, unit: str, largest: float) -> Column:
-        """Return the unit in which a largest value has one to three digits before the point, at least the SI unit."""
+    def of(cls, unit: str, largest: float, display: DisplayUnits = SI_UNITS) -> Column:
+        """Return the unit that is chosen, or that in which a largest value has one to three digits before the point."""
+        chosen, factor = display.of(unit)
+        if chosen != unit:
+            return cls(chosen, factor)
         size, prefix = next((pair for pair in PREFIXES if largest >= pair[0]), (1.0, ""))
         return cls(prefix + unit, 1.0 / size)
 
@@ -154,5 +159,5 @@ def load_rows(loads: Sequence[Load], column: Column, about: dict[str, str]) -> I
         mean, rms = (column.words(value, float(np.nan_to_num(load.bar)) + error).partition(" ")[0]
                      for value, error in (load.over_time(power) for power in (1, 2)))  # fmt: skip
         share = load.peak / largest if largest > 0 else 0.0
-        at = f"{load.time[load.peak_row]:.6g}"
+        at = f"{load.time[load.peak_row]:.4g}"
         yield LoadRow(load.element, about.get(load.element, ""), peak, bar, at, mean, rms, share, load.unique)

@@ -89,7 +89,7 @@ def _about(element: object) -> str:
 
 
 def _group(unit: str, loads: Sequence[Load], about: dict[str, str], angle: DrivingAngle | None) -> Group:
-    column = Column.of(unit, loads[0].peak)
+    column = Column.of(unit, loads[0].peak, loads[0].display)
     rows = list(load_rows(loads, column, about))
     sparks = [spark_line(load.magnitude, load.time) for load in loads[:MOST_SHOWN]]
     return Group(
@@ -114,7 +114,7 @@ def _charts(loads: Sequence[Load], column: Column, angle: DrivingAngle | None) -
 def _over_angle(loads: Sequence[Load], angle: DrivingAngle) -> str:
     """Return the chart of loads over the driving angle, with a unit of its own: the start is not in it."""
     sizes = [load.magnitude[angle.order] for load in loads]
-    column = Column.of(loads[0].unit, float(np.nanmax(sizes)))
+    column = Column.of(loads[0].unit, float(np.nanmax(sizes)), loads[0].display)
     curves = [
         Curve(load.element, angle.sorted_degrees, size * column.factor) for load, size in zip(loads, sizes, strict=True)
     ]
@@ -129,7 +129,7 @@ def _quantity(load: Load, column: Column) -> str:
 
 
 def _tile(load: Load) -> Tile:
-    column = Column.of(load.unit, load.peak)
+    column = Column.of(load.unit, load.peak, load.display)
     name = "Largest force" if load.unit == "N" else "Largest torque"
     return Tile(
         name,
@@ -154,7 +154,7 @@ def _polar(scene: Scene, solution: Solution, loads: Sequence[Load], angle: Drivi
         return None
     step = round_step(largest)
     outer = step * np.ceil(largest / step)
-    column = Column.of("N", outer)
+    column = Column.of("N", outer, solution.display)
     words = f"{outer * column.factor:.4g} {column.unit}"
     drawings = [
         polar_chart(vectors, outer, f"{element} on {body}", f"axes of {body}", words)

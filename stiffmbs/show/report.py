@@ -18,6 +18,7 @@ from ..analyses.linearised.modes import NO_EQUILIBRIUM, modes
 from ..errors import InputError, StiffmbsError
 from ..model.scene import Figure, Scene
 from ..notes import Note
+from ..results.displayed import displayed
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import write_text
@@ -29,6 +30,7 @@ from .drawing.derive import drawing_of
 from .drawing.draw import marks_of
 from .drawing.poses import Poses, poses_of
 from .figure import drawn
+from .figure_charts import figure_charts, is_charted
 from .finding import finding, note_rows
 from .force_table import LOADS, with_bar
 from .html import MOST_ROWS
@@ -47,7 +49,7 @@ if TYPE_CHECKING:
 
 MOST_LINES = 5_000
 """Number of points above which a line drawing becomes a bitmap."""
-ENERGIES = Figure(title="energy (J)", y=("energy.kinetic", "energy.potential", "energy.total"))
+ENERGIES = Figure(title="energy", y=("energy.kinetic", "energy.potential", "energy.total"))
 
 
 def write_report(
@@ -72,7 +74,9 @@ def report_page(
     template, sheet = (page_file(f"report.{end}") for end in ("html", "css"))
     report, judged, origin = check(scene), verdict(solution), solution.provenance or provenance_of(scene)
     loads, unloaded = loads_of(solution)
-    figures = [drawn(solution, figure) for figure in relevant_figures(solution, scene.figure)]
+    figures = relevant_figures(solution, scene.figure)
+    charts = [chart for figure in figures if is_charted(figure) for chart in figure_charts(solution, figure)]
+    sheets = [drawn(solution, figure) for figure in figures if not is_charted(figure)]
     steps = [step_history(solution.history)] if len(solution.step_times) > 1 else []
     first = [differences_section(solution, *other, origin)] if other else []
     poses, shown = poses_of(scene, solution.time, solution.channels), scene.figure.y if scene.figure else ()
@@ -86,7 +90,7 @@ def report_page(
         title=solution.name or "Model", origin=origin, origin_section=origin_section(origin, text), sheet=sheet,
         solution=solution, verdict=judged, finding=finding(judged, solution, loads), check=report, settings=settings,
         peaks=_peaks(solution), energy=balance_words(solution.balance, float(solution.channels["energy.total"][0])),
-        figures=[_embedded(figure, points) for figure in figures], own_figure=scene.figure is not None, version=version("stiffmbs"),
+        charts=charts, figures=[_embedded(sheet, points) for sheet in sheets], figure_title=figures[0].title if figures else "", own_figure=scene.figure is not None, version=version("stiffmbs"),
         sections=_with_figures(sections), first=_with_figures(first), steps=[_embedded(figure, points) for figure in steps],
         counted=[f"{label}: {text}" for label, text in solver_lines(solution.solver)], violation=float(np.nanmax(solution.channels["constraint.position"])),
         **loads_shown(scene, solution, loads), unloaded=unloaded, notes=note_rows(solution.notes), modes=lines, moving=moving, modes_moving=shapes,
@@ -133,13 +137,17 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
     """Return a row for each channel: its least and greatest value with bars and times, and its error over time."""
     rows = []
     sizes = scales(solution.channels, 1.0, solution.requested)
-    for name, cell in channel_ranges(solution).items():
-        bar, noise = solution.errors.get(name, UNKNOWN), LOADS.zero * sizes[name]
+    shown = displayed(solution)
+    for name, cell in channel_ranges(shown).items():
+        bar, noise = (
+            shown.errors.get(name, UNKNOWN),
+            LOADS.zero * sizes[name] * solution.display.of(solution.unit(name))[1],
+        )
         verified = name in solution.errors
         rows.append(
             {
                 "name": name,
-                "unit": solution.unit(name),
+                "unit": shown.unit(name),
                 "min": with_bar(cell["min"], bar.least, noise) if verified else f"{cell['min']:.6g}",
                 "max": with_bar(cell["max"], bar.greatest, noise) if verified else f"{cell['max']:.6g}",
                 "t_min": f"{cell['t_min']:.6g}",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..results.displayed import displayed
 from ..results.listings import Difference, differences
 from ..results.scales import ROUNDING
 from ..results.solution import Solution
@@ -61,7 +62,8 @@ def differences_section(solution: Solution, name: str, other: Solution, origin: 
         if names
     ]
     head = f"{len(unequal)} of {len(found)} common channels differ from {name} by more than {ROUNDING:g} of their largest value."
-    rows = tuple(_row(one, solution, other) for one in unequal[:MOST_ROWS])
+    pair = displayed(solution), displayed(other, solution)
+    rows = tuple(_row(one, *pair) for one in unequal[:MOST_ROWS])
     tables = (
         Table(("changed", "this run", name), tuple(changed_values(origin or solution.provenance, other.provenance))),
         Table(("peak of", "this run", name, "change", "unit"), tuple(_changed_loads(solution, other))),
@@ -69,8 +71,8 @@ def differences_section(solution: Solution, name: str, other: Solution, origin: 
     )
     charts = [
         curve_chart(
-            [Curve("this run", solution.time, solution.channels[one.channel]), Curve(name, other.time, other.channels[one.channel])],
-            f"{one.channel}, {solution.unit(one.channel)}".rstrip(", "), "time, s",
+            [Curve(run_name, run.time, run.channels[one.channel]) for run_name, run in zip(("this run", name), pair, strict=True)],
+            f"{one.channel}, {pair[0].unit(one.channel)}".rstrip(", "), "time, s",
         )
         for one in unequal[:MOST_FIGURES]
     ]  # fmt: skip
@@ -98,7 +100,7 @@ def _leaves(path: str, value: object) -> Iterator[tuple[str, str]]:
         for key, part in value.items():
             yield from _leaves(f"{path}.{key}".lstrip("."), part)
     else:
-        yield path, str(value)
+        yield path, f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _changed_loads(solution: Solution, other: Solution) -> Iterator[tuple[str, ...]]:
@@ -108,14 +110,15 @@ def _changed_loads(solution: Solution, other: Solution) -> Iterator[tuple[str, .
     for element, unit in {**here, **there}:
         a, b = here.get((element, unit), 0.0), there.get((element, unit), 0.0)
         if abs(a - b) > ROUNDING * max(a, b):
-            column = Column.of(unit, max(a, b))
+            column = Column.of(unit, max(a, b), solution.display)
             change = f"{100 * (a - b) / b:+.3g} %" if b > 0 else MISSING
             yield element, f"{a * column.factor:.5g}", f"{b * column.factor:.5g}", change, column.unit
 
 
 def _row(one: Difference, solution: Solution, other: Solution) -> tuple[str, ...]:
+    factor = solution.display.of(Solution.unit(solution, one.channel))[1]
     values = (np.interp(one.t, run.time, run.channels[one.channel]) for run in (solution, other))
     return (
-        one.channel, f"{one.largest:.4g}", f"{one.relative:.2g}", solution.unit(one.channel), f"{one.t:.6g}",
+        one.channel, f"{one.largest * factor:.4g}", f"{one.relative:.2g}", solution.unit(one.channel), f"{one.t:.6g}",
         *(f"{value:.6g}" for value in values),
     )  # fmt: skip

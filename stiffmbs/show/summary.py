@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..results.displayed import displayed
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution, channel_ranges
@@ -212,10 +213,12 @@ def _print(scene: str, solution: Solution, console: Console | PlainConsole, all:
 def _print_loads(solution: Solution, console: Console | PlainConsole, say: Callable[[str], None], all: bool) -> None:
     n_elements = len(elements_of(solution))
     most = None if all or n_elements <= LOADS.most + 1 else LOADS.most
-    heads, *rows = force_rows(solution, most)
+    heads, *rows = force_rows(displayed(solution), most)
     if rows:
         largest = "" if most is None else f"the {most} largest of {n_elements} (--all shows all), "
-        say(f"force and torque on the first body, {largest}min .. max (N, N m):")
+        say(
+            f"force and torque on the first body, {largest}min .. max ({', '.join(solution.display.of(unit)[0] for unit in ('N', 'N m'))}):"
+        )
         if isinstance(console, PlainConsole):
             console.print(boxed([heads, *rows]))
         else:

@@ -78,7 +78,7 @@ ROUNDING = 1e-9
 
 def kc_text(scene: str, found: KinematicsAndCompliance) -> str:
     """Return all measures at the described heights, and the slopes of the curves there, as one table."""
-    lines = [f"{scene}: {found.axle.title} on a rig, {found.message}", *_words(found)]
+    lines = [f"{scene}: {found.axle.title} on a rig, {found.message}", *kc_words(found)]
     rows = [("", *_columns(found), "unit"), *measure_rows(found), *slope_rows(found)]
     width = max(len(row[0]) for row in rows)
     lines += [
@@ -89,7 +89,7 @@ def kc_text(scene: str, found: KinematicsAndCompliance) -> str:
     return "\n".join(lines)
 
 
-def _words(found: KinematicsAndCompliance) -> list[str]:
+def kc_words(found: KinematicsAndCompliance) -> list[str]:
     """Return the numbers of the vehicle that the measures refer to, and which are assumed."""
     vehicle = found.vehicle
     if not vehicle.wheelbase or vehicle.height is None or vehicle.front is None:
@@ -149,7 +149,7 @@ def kc_figure(found: KinematicsAndCompliance) -> Sheet:
     """Draw the page: the panels that apply to the axle, with wheel travel upwards as chassis engineers draw it."""
     from matplotlib.lines import Line2D
 
-    panels = [panel for panel in PANELS if panel.case in found.sweeps and _curves(found, panel)]
+    panels = [panel for panel in PANELS if panel.case in found.sweeps and curves_of(found, panel)]
     columns = min(COLUMNS, max(len(panels), 1))
     rows = max(1, -(-len(panels) // columns))
     figure = new_sheet((3.0 * columns, 2.3 * rows))
@@ -174,11 +174,11 @@ def kc_section(found: KinematicsAndCompliance) -> Section:
         Table(("slope there", *columns), tuple(slope_rows(found))),
     )
     sentence = f"Left and right differ by at most {found.asymmetry():.1e}, relative to their curves."
-    sentences = (found.message, *_words(found), *((sentence,) if len(found.axle.wheels) == 2 else ()))
+    sentences = (found.message, *kc_words(found), *((sentence,) if len(found.axle.wheels) == 2 else ()))
     return Section(f"Kinematics and compliance: {found.axle.title}", sentences, tables, (kc_figure(found),))
 
 
-def _curves(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, str, np.ndarray, np.ndarray]]:
+def curves_of(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, str, np.ndarray, np.ndarray]]:
     """Return the curves of a panel that have values, as measure, line style, abscissa and values."""
     sweep = found.sweeps[panel.case]
     curves = []
@@ -197,16 +197,16 @@ def _curves(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, str
 def _draw(axes: Axes, found: KinematicsAndCompliance, panel: Panel) -> None:
     """Draw one panel."""
     sweep = found.sweeps[panel.case]
-    for name, style, x, y in _curves(found, panel):
-        label = _worded(name) if style == STYLES[0] else None
+    for name, style, x, y in curves_of(found, panel):
+        label = worded(name) if style == STYLES[0] else None
         colour = f"C{panel.shown.index(name)}"
         axes.plot(*((y, x) if panel.upright else (x, y)), style, color=colour, linewidth=1.2, label=label)
     if len(panel.shown) > 1:
         axes.legend(fontsize=6, frameon=False)
-    own = f"{_worded(' / '.join(panel.shown))} ({found.unit(_of(panel.shown[0])) or '1'})"
+    own = f"{worded(' / '.join(panel.shown))} ({unit_of(found, panel.shown[0]) or '1'})"
     other = f"{sweep.case.swept} ({sweep.case.unit})"
     if panel.over:
-        other = f"{_worded(panel.over)} ({found.unit(_of(panel.over))})"
+        other = f"{worded(panel.over)} ({unit_of(found, panel.over)})"
     along, upwards = (own, other) if panel.upright else (other, own)
     axes.set_xlabel(along, fontsize=7)
     axes.set_ylabel(upwards, fontsize=7)
@@ -216,13 +216,15 @@ def _draw(axes: Axes, found: KinematicsAndCompliance, panel: Panel) -> None:
     axes.grid(alpha=0.3)
 
 
-def _of(name: str) -> str:
-    """Return the channel of a measure whose unit is asked for."""
-    return name if "." in name else f"wheel.{name}"
+def unit_of(found: KinematicsAndCompliance, name: str) -> str:
+    """Return the unit of a measure of a wheel or of the axle; empty for plain numbers."""
+    return found.unit(name if "." in name else f"wheel.{name}")
 
 
-def _worded(name: str) -> str:
-    return name.replace("axle.", "").replace("_", " ")
+def worded(name: str) -> str:
+    """Return the name of a measure in words."""
+    words = name.replace("axle.", "").replace("_", " ")
+    return words.replace("fvsa", "front-view swing arm").replace("svsa", "side-view swing arm")
 
 
 def road_loads_text(scene: str, found: RoadLoads) -> str:

@@ -133,6 +133,14 @@ def samples(system: System, grid: Grid) -> Iterator[Sample]:
     yield Sample(grid.end, np.empty(0, dtype=int))
 
 
+def restarts(dynamics: Dynamics, grid: Grid) -> np.ndarray:
+    """Return the times at which a run restarts by inputs and samples, s, in increasing order."""
+    system, found = dynamics.system, grid.stops
+    if system.has_inputs:
+        found = grid.with_stops(dynamics.input_features(grid.start, grid.end).all_breakpoints)
+    return np.union1d(found, [sample.t for sample in samples(system, grid)]) if system.sampled.any() else found
+
+
 def next_values(dynamics: Dynamics, sample: Sample, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return all states just after a sample, from coordinates and velocities just before it, shape (states,).
 

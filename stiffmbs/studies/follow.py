@@ -14,6 +14,7 @@ from ..elements.requests.order import units
 from ..errors import InputError
 from ..model.scene import Scene
 from ..model.settings import DEFAULT_POINTS, RunSettings, Settings, takes_settings
+from ..reading.units.display import SI_UNITS
 from ..results.channels import channels_of
 from ..results.energy_balance import energy_balance
 from ..results.provenance import provenance_of
@@ -115,5 +116,6 @@ def _so_far(job: Job, t: np.ndarray, states: States, lengths: np.ndarray, outcom
         solver={"name": job.settings.solver}, history=History(np.empty(0), np.empty(0, dtype=int)), not_unique=job.redundancy.not_unique,
         balance=energy_balance(system, rows),
         requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
+        display=job.data.display if isinstance(job.data, Scene) else SI_UNITS,
         provenance=provenance_of(job.data, job.settings, state=job.start_from),
     )  # fmt: skip

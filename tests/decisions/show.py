@@ -8,6 +8,7 @@ import numpy as np
 
 from stiffmbs.analyses.linearised import modes, modes_table
 from stiffmbs.notes import Note
+from stiffmbs.reading.units.display import SI_UNITS
 from stiffmbs.show import (
     curves,
     driving_angle,
@@ -27,6 +28,7 @@ from stiffmbs.show.drawing import as_json, bodies, deformed, derive, film, paint
 from stiffmbs.show.drawing.symbols import profiles, shared, spatial
 from stiffmbs.show.page import data
 from stiffmbs.show.page import modes as page_of_modes
+from stiffmbs.show.page import study as page_of_study
 from tests.decisions.common import BELOW, Reached, Record, module, nothing, reach, reached, refused
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 
@@ -243,7 +245,7 @@ def size_of_a_figure():
 
 def most_plots():
     def has_plots(count):
-        run = Record(unit=lambda channel: channel)
+        run = Record(unit=lambda channel: channel, display=SI_UNITS)
         sheet = Record(subplots=lambda rows, **_: reach(rows))
         shown = Record(z="", y=[str(k) for k in range(count)])
         return reached(lambda: figure.draw_runs(sheet, {"": run}, shown)) == count
@@ -266,7 +268,7 @@ def largest_silent_share():
 
 def most_loads():
     with patch.multiple(summary, elements_of=lambda _: range(100), force_rows=lambda _, most: reach(most)):
-        return reached(lambda: summary._print_loads(None, None, str, False))
+        return reached(lambda: summary._print_loads(Record(display=SI_UNITS), None, str, False))
 
 
 def smallest_torque():
@@ -278,7 +280,7 @@ def smallest_torque():
             for name, size in (("a", 1.0), ("b", torque))
             for part in ("fx", "fy", "torque")
         }
-        found = Record(channels=channels, requested={}, errors={}, not_unique=(), time=np.zeros(1))
+        found = Record(channels=channels, requested={}, errors={}, not_unique=(), time=np.zeros(1), display=SI_UNITS)
         return ("b", "N m") in [(load.element, load.unit) for load in loads.loads_of(found)[0]]
 
     return count_while(is_shown, BELOW)
@@ -343,7 +345,7 @@ def most_lines():
 def differences():
     """Return the numbers of rows and of figures of channels that differ."""
     one = Record(relative=1.0, channel="a")
-    run = Record(channels={"a": 0.0}, time=[0.0], unit=lambda _: "N", provenance=None)
+    run = Record(channels={"a": 0.0}, time=[0.0], unit=lambda _: "N", provenance=None, display=SI_UNITS)
     with patch.multiple(
         sections, differences=lambda *_: [one] * 100, _row=nothing, curve_chart=nothing, changed_values=lambda *_: (),
         _changed_loads=lambda *_: (), Table=lambda _heads, rows: Record(rows=rows),
@@ -358,6 +360,17 @@ def steps_of_an_axis():
 
 def points_of_a_curve():
     return len(curves._thinned(np.arange(10**4), np.zeros(10**4))[0])
+
+
+def least_span():
+    """Return the span of an axis about 1, in quarter octaves, down to which it is that of the values."""
+    return count_while(lambda span: curves._range(np.array([1.0, 1.0 + span]))[1] < 1.05, 0.01 * BELOW)
+
+
+def width_of_a_label():
+    curve = curves.Curve("", np.array([0.0, 1.0]), np.array([-1e9, -0.9e9]))
+    drawn = curves.curve_chart([curve], "", "", from_zero=False)
+    return float(drawn.partition('line x1="')[2].partition('"')[0])
 
 
 def bold_part():
@@ -391,7 +404,7 @@ def finest_bar():
 
 def rows_and_curves():
     """Return the numbers of loads in a table before it is folded, and in a chart."""
-    load = Record(unit="N", peak=1.0, magnitude=0.0, time=0.0, unique=True)
+    load = Record(unit="N", peak=1.0, magnitude=0.0, time=0.0, unique=True, display=SI_UNITS)
     with (
         patch.multiple(
             loads_shown, load_rows=lambda found, *_: found, spark_line=nothing, _charts=lambda found, *_: len(found)
@@ -416,10 +429,14 @@ def width_of_a_text():
         return reached(lambda: summary.summary(Record(name="")))
 
 
+def cases_of_a_table():
+    return len(page_of_study._table_of_cases([{"case": 0, "status": ""}] * 1000, (), ()).tables[0].rows)
+
+
 def width_of_a_page():
     panels = [Record(case="c")] * 20
     with (
-        patch.multiple(suspension, PANELS=panels, _curves=lambda *_: True),
+        patch.multiple(suspension, PANELS=panels, curves_of=lambda *_: True),
         patch("matplotlib.figure.Figure", lambda figsize, **_: reach(figsize[0])),
     ):
         return reached(lambda: suspension.kc_figure(Record(sweeps={"c": None})))
@@ -461,7 +478,8 @@ DECISIONS = {
     "show.drawing.painted:HEAD": longest_head,
     "show.drawing.picture:WIDTH": width_of_a_picture, "show.drawing.picture:HEIGHT": highest_picture,
     "show.drawing.picture:NARROWEST": narrowest_picture, "show.curves:MOST_STEPS": steps_of_an_axis,
-    "show.curves:MOST_POINTS": points_of_a_curve, "show.curves:BOLD": bold_part, "show.finding:LEAST_DIGITS": fewest_digits,
+    "show.curves:MOST_POINTS": points_of_a_curve, "show.curves:BOLD": bold_part,
+    "show.curves:LEAST_SPAN": least_span, "show.curves:CHARACTER": width_of_a_label, "show.finding:LEAST_DIGITS": fewest_digits,
     "show.loads:FINEST": finest_bar, "show.driving_angle:ROUNDED": missing_part_of_a_revolution,
     "show.loads_shown:MOST_SHOWN": lambda: rows_and_curves()[0],
     "show.loads_shown:MOST_CURVES": lambda: rows_and_curves()[1],
@@ -510,6 +528,7 @@ DECISIONS = {
     "show.report:MOST_LINES": most_lines,
     "show.sections:MOST_ROWS": lambda: differences()[0],
     "show.sections:MOST_FIGURES": lambda: differences()[1],
+    "show.page.study:MOST_CASES": cases_of_a_table,
     "show.summary:UNBROKEN": width_of_a_text,
     "show.suspension:COLUMNS": width_of_a_page,
     "show.suspension:ROUNDING": smallest_shown_measure,
@@ -523,7 +542,7 @@ EXPECTED = {
     "show.drawing.film:Playback.rate": 251, "show.drawing.painted:SYMBOLS_BEFORE": 0.03, "show.drawing.painted:FOREMOST": 0.004,
     "show.drawing.painted:FLOOR_DEPTH": -1000.0, "show.drawing.painted:SHADOW": 0.07, "show.drawing.painted:LONGEST_ARROW": 0.22,
     "show.drawing.painted:HEAD": 1.25, "show.drawing.picture:WIDTH": 8.0, "show.drawing.picture:HEIGHT": 6.0,
-    "show.drawing.picture:NARROWEST": 3.4, "show.curves:MOST_STEPS": 5, "show.curves:MOST_POINTS": 801, "show.curves:BOLD": 11,
+    "show.drawing.picture:NARROWEST": 3.4, "show.curves:MOST_STEPS": 5, "show.curves:MOST_POINTS": 801, "show.curves:BOLD": 11, "show.curves:LEAST_SPAN": 93, "show.curves:CHARACTER": 65,
     "show.finding:LEAST_DIGITS": 2, "show.loads:FINEST": 1e-5, "show.driving_angle:ROUNDED": 80, "show.loads_shown:MOST_SHOWN": 20, "show.loads_shown:MOST_CURVES": 4,
     "show.drawing.picture:MOST_NAMES": 60,
     "show.drawing.picture:MANY_NAMES": 6.495190528383289, "show.drawing.picture:SMALLEST": 4.5, "show.drawing.poses:FAR": 18,
@@ -540,5 +559,6 @@ EXPECTED = {
     "show.page.data:POSES_A_SECOND": 60, "show.page.data:CHANNEL_VALUES": 450, "show.page.data:MOST_INSTANTS": 2000,
     "show.page.modes:POINTS": 31, "show.page.modes:AMPLITUDE": 0.05, "show.report:MOST_LINES": 23, "show.sections:MOST_ROWS": 15,
     "show.sections:MOST_FIGURES": 3, "show.summary:UNBROKEN": 10000, "show.suspension:COLUMNS": 12.0, "show.suspension:ROUNDING": 119,
+    "show.page.study:MOST_CASES": 200,
     "show.tyre:SIZE": 16.5,
 }  # fmt: skip

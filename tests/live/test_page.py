@@ -117,6 +117,61 @@ def test_every_text_has_the_contrast_of_wcag_with_and_without_an_error(tab, open
     assert tab.run(browser.FAINT) == []
 
 
+def test_a_dark_page_has_the_contrast_of_wcag(tab, opened):
+    opened(TEXT)
+    tab.do("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+    try:
+        assert tab.run("getComputedStyle(document.body).backgroundColor") == "rgb(20, 23, 27)"
+        tab.run("document.getElementById('check').click()")
+        tab.wait("document.querySelector('#text pre').textContent.includes('degrees of freedom')")
+        assert tab.run(browser.FAINT) == []
+    finally:
+        tab.do("Emulation.setEmulatedMedia", features=[])
+
+
+def test_notes_results_and_errors_do_not_move_the_picture(tab, opened):
+    opened(TEXT)
+    place = "document.querySelector('.viewer').getBoundingClientRect().top"
+    before = tab.run(place)
+    tab.run("document.getElementById('notes').open = true")
+    assert tab.run(place) == before
+    tab.run("document.getElementById('check').click()")
+    tab.wait("document.querySelector('#text pre').textContent.includes('degrees of freedom')")
+    tab.run("document.getElementById('sweep').click()")
+    assert tab.run(place) == before
+    replace(tab, "mass: 10 kg", f"mass: {'ten' * 80}")
+    assert tab.run("LIVE.errors.length") == 1 and tab.run(place) == before
+    assert "ten" in tab.run("document.getElementById('headline').title")
+    assert float(tab.run("getComputedStyle(document.querySelector('.viewer')).opacity")) < 1
+
+
+OPTIONS = """
+options:
+  load:
+    none: {}
+    heavy: {forces: {push: {type: force, i: bar, force: [0, -50 N]}}}
+    "two parts": {forces: {push: {type: force, i: bar, force: [0, -90 N]}}}
+"""
+
+
+@pytest.mark.parametrize(
+    "written", ["", "choose: {load: none} # the load\n", "choose:\n  # of the load\n  load: none\n", "choose: {}\n"]
+)
+def test_a_selector_writes_its_choice_into_the_text(tab, opened, written):
+    opened(TEXT + OPTIONS + written)
+    select = "document.querySelector('#choices select')"
+    assert tab.run(f"[...{select}.options].map((one) => one.value)") == ["none", "heavy", "two parts"]
+    for word, text in (("heavy", "load: heavy"), ("two parts", 'load: "two parts"')):
+        before, answers = curve(tab), tab.run("LIVE.answers")
+        tab.run(f"(() => {{ const s = {select}; s.value = '{word}'; s.onchange(); }})()")
+        tab.wait(f"LIVE.answers > {answers}")
+        found = tab.run("LIVE.editor.state.doc.toString()")
+        assert (
+            text in found and found.count("choose:") == 1 and found.count("#") == (TEXT + OPTIONS + written).count("#")
+        )
+        assert tab.run(f"{select}.value") == word and tab.run("LIVE.errors") == [] and curve(tab) != before
+
+
 def test_every_control_is_reached_by_the_tab_key(tab, opened):
     opened(TEXT)
     tab.run("document.activeElement.blur()")

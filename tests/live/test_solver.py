@@ -206,3 +206,45 @@ def test_random_edits_do_not_end_the_worker(worker, count):
     made.take({"number": count + 1, "what": "solve", "text": short})
     assert answered(worker, answers, count + 1)["status"] == "done"
     assert not [answer for answer in answers if "please report" in answer.get("message", "")]
+
+
+def test_a_band_is_in_the_units_of_the_scene():
+    text = TEXT + "units: {force: kN}\n"
+    content = {
+        "text": text,
+        "what": "sweep",
+        "parameter": "L",
+        "low": 0.5,
+        "high": 0.7,
+        "count": 2,
+        "unit": "m",
+        "channels": ["rail.fy"],
+    }
+    (band,) = ANSWERS["sweep"](Request(content, LiveSolver(), unwatched, lambda _: None))["bands"]
+    assert 0.05 < max(band["high"]) < 1  # of some 100 N
+
+
+def test_choices_are_those_of_the_options():
+    options = "options:\n  load:\n    none: {}\n    heavy: {forces: {push: {type: force, i: bar, force: [0, -50 N]}}}\n"
+    for chosen, text in (("none", ""), ("heavy", "choose: {load: heavy}\n")):
+        found = shown(LiveSolver().solve(TEXT + options + text, {}, unwatched), [])
+        assert found["choices"] == [{"name": "load", "words": ["none", "heavy"], "chosen": chosen}]
+    assert shown(LiveSolver().solve(TEXT, {}, unwatched), [])["choices"] == []
+
+
+def test_notes_to_check_are_counted_without_remarks():
+    remark = TEXT + "notes: [a remark of the scene]\n"
+    found = shown(LiveSolver().solve(remark, {}, unwatched), [])
+    assert "a remark of the scene" in found["notes"]
+    assert found["grave"] == sum(note.severity.name != "REMARK" for note in found["notes"]) < len(found["notes"])
+
+
+def test_progress_has_the_span_of_the_run(worker):
+    made, answers = worker
+    made.take({"number": 1, "what": "solve", "text": LONG})
+    end = time.monotonic() + 60
+    while not (told := [one for one in answers if "time" in one]) and time.monotonic() < end:
+        time.sleep(0.01)
+    made.take({"number": 2, "what": "solve", "text": TEXT})
+    whole = stiffmbs.read_scene(LONG).run.duration
+    assert (told[0]["start"], told[0]["end"]) == (0.0, whole) and 0 < told[0]["time"] < whole

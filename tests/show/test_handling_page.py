@@ -1,29 +1,41 @@
-"""Page of handling tests: axes in words with units, cones and path of lane changes, answers in words, phones."""
+"""Page of handling tests: axes in words with units, cones of lane changes, answers in words, variants with their changes."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
 from stiffmbs.model.paths.lanes import STANDARDS
-from stiffmbs.show.handling import _steered, write_handling
-from stiffmbs.show.handling_figure import handling_figure
+from stiffmbs.reading.units.display import SI_UNITS, DisplayUnits
+from stiffmbs.show.curves import curve_chart
+from stiffmbs.show.handling import _cell, _steered, write_handling
+from stiffmbs.show.handling_charts import handling_charts
+from stiffmbs.show.page.page_of_tests import change
 from stiffmbs.studies.handling import study  # not its class Tested alone, which pytest would collect
 from stiffmbs.studies.handling.known import SEEN
-from stiffmbs.studies.handling.lane_changes import BEFORE, PART_1
+from stiffmbs.studies.handling.lane_changes import PART_1
 from stiffmbs.studies.handling.standards import TESTS
 
-CHANNELS = ("time", "vehicle.x", "vehicle.y", "vehicle.ay", "vehicle.az", "vehicle.yaw_rate", "vehicle.speed", SEEN)
-RUN = {name: np.linspace(0.0, 200.0, 5) for name in CHANNELS}
-METRICS = {"passed (1 yes, 0 no)": (1.0, ""), "largest yaw rate": (0.5, "rad/s"), "speed": (np.nan, "m/s")}
+CHANNELS = (
+    "time",
+    "vehicle.x",
+    *(f"vehicle.{name}" for name in ("y", "ax", "ay", "az", "yaw_rate", "speed", "sideslip", "roll")),
+    SEEN,
+)
+RUN = {name: np.linspace(0.0, 40.0, 401) for name in CHANNELS}
+METRICS = {
+    "passed (1 yes, 0 no)": (1.0, ""), "largest yaw rate": (0.5, "rad/s"), "speed": (np.nan, "m/s"), "gain": (2.0, "m/s^2/rad"),
+    "gain, error bar": (0.01, "m/s^2/rad"),
+}  # fmt: skip
+DEGREES = DisplayUnits({"angle": "deg", "velocity": "km/h"})
 
 
-def _found(angular: bool = True) -> Any:
+def found(angular: bool = True, tests: Any = ("lane_change", "ride"), **metrics: tuple[float, str]) -> Any:
     car: Any = SimpleNamespace(
         wheelbase=2.5,
         track=1.5,
@@ -33,42 +45,86 @@ def _found(angular: bool = True) -> Any:
         measured=(0.0, 0.0, 0.5),
         behind=lambda place: 1.2,
     )
-    return study.Handling("car", car, 0.1, {name: study.Tested(METRICS, [RUN]) for name in TESTS}, 1.8)
+    parameters = {"first": 0.2, "last": 3.0}
+    done = {name: study.Tested(METRICS | metrics, [RUN, RUN], parameters=parameters) for name in tests}
+    return study.Handling("car", car, 0.1, done, 1.8)
 
 
 @pytest.mark.parametrize("test", TESTS)
 def test_axes_have_words_and_units(test):
-    (axes,) = handling_figure(_found(), test, study.Tested(METRICS, [RUN, RUN])).axes
-    for label in (axes.get_xlabel(), axes.get_ylabel()):
-        assert re.fullmatch(r"[a-z ]+ \((s|m|m/s|m/s²|rad|rad/s)\)", label), label
-    assert len(axes.figure.legends) == 1
+    charts = handling_charts({"": found(tests=(test,))}, test, DEGREES)
+    assert charts
+    for chart in charts:
+        labels = re.findall(r'class="(?:strong|soft)" text-anchor="(?:start|end)">([^<]*[a-z][^<]*)<', chart)
+        assert len(labels) == 2
+        for label in labels:
+            assert re.match(r"[a-z ]+, (s|m|km/h|m/s²|deg|deg/s|Hz|deg/s/deg|m/s²/deg)(;.*)?$", label), label
 
 
-def test_steering_by_a_rack_is_in_metres():
-    (axes,) = handling_figure(_found(angular=False), "constant_speed", study.Tested(METRICS, [RUN])).axes
-    assert axes.get_ylabel() == "steering (m)" and not axes.figure.legends
+def test_steering_is_the_angle_of_the_wheels():
+    (chart, *_) = handling_charts({"": found(tests=("step_steer",))}, "step_steer", SI_UNITS)
+    assert "steer angle of the wheels, rad" in chart and ">4<" in chart and ">40<" in chart  # a tenth of the steering
 
 
 def test_lane_changes_have_cones_and_the_path():
-    (axes,) = handling_figure(_found(), "lane_change", study.Tested(METRICS, [RUN])).axes
-    lines = {line.get_label(): line.get_xydata() for line in axes.lines}
-    lanes = STANDARDS[PART_1](1.8)
-    assert {tuple(cone) for cone in lines["cones"]} == {
-        (x + BEFORE, y) for lane in lanes for x in (lane.start, lane.end) for y in (lane.left, lane.right)
-    }
-    for lane in lanes:
-        inside = (lines["path"][:, 0] >= lane.start + BEFORE) & (lines["path"][:, 0] <= lane.end + BEFORE)
-        assert inside.any() and np.all(
-            np.abs(lines["path"][inside, 1] - lane.centre) <= (lane.left - lane.right - 1.8) / 2
-        )
+    chart = handling_charts({"": found()}, "lane_change", DEGREES)[0]
+    assert chart.count('class="mark"') == 4 * len(STANDARDS[PART_1](1.8))
+    assert chart.count('class="curve path"') == 1 and "triangles: cones" in chart
 
 
-@pytest.mark.long
-def test_the_page_answers_in_words_and_fits_a_phone(tmp_path):
-    write_handling(tmp_path / "page.html", _found())
+def test_variants_have_colours_of_their_own():
+    chart = handling_charts({"base": found(), "other": found()}, "ride", DEGREES)[0]
+    assert [chart.count(f'class="curve c{k}"') for k in range(3)] == [2, 2, 0]
+
+
+def test_a_mark_lies_within_the_axes():
+    chart = curve_chart([], "y, m", "x, m", marks=np.array([[1.0, 5.0], [3.0, -5.0]]))
+    heights = [float(value) for value in re.findall(r'class="mark" d="M[\d.-]+,([\d.]+)', chart)]
+    assert len(heights) == 2 and all(34 <= value - 4 <= 212 for value in heights)
+
+
+def test_the_page_answers_in_words(tmp_path):
+    write_handling(tmp_path / "page.html", {"": found()}, {"": None}, {})
     page = (tmp_path / "page.html").read_text()
     assert "<td>passed</td><td>yes</td>" in page and "1 yes" not in page and "not reached" in page
-    assert 'name="viewport"' in page and "max-width: 100%" in page
+    assert "28.65</td><td>deg/s" in page and 'name="viewport"' in page and "Completed" in page
+    assert '0.03491 <span class="pm">± 0.00018</span></td><td>m/s²/deg' in page and "error bar" not in page
+
+
+def test_an_answer_in_the_negative_is_first(tmp_path):
+    given = found(**{"passed (1 yes, 0 no)": (0.0, "")})
+    write_handling(tmp_path / "page.html", {"": given}, {"": None}, {})
+    page = (tmp_path / "page.html").read_text()
+    assert "! Not passed" in page and "Double lane change: not passed" in page
+
+
+def test_a_test_that_failed_is_told_with_its_reason(tmp_path):
+    given = found()
+    given.tests["ride"] = study.Tested(message="no road")
+    write_handling(tmp_path / "page.html", {"": given}, {"": None}, {})
+    page = (tmp_path / "page.html").read_text()
+    assert "1 of 2 tests could not be done." in page and "Not done: no road" in page
+
+
+def test_variants_are_compared(tmp_path):
+    other = found(**{"largest yaw rate": (0.4, "rad/s")})
+    write_handling(tmp_path / "page.html", {"base": found(), "softer": other}, {"base": None, "softer": None}, {})
+    page = (tmp_path / "page.html").read_text()
+    assert "<th>base</th><th>softer</th><th>change</th>" in page
+    assert "<td>28.65</td><td>22.92</td><td>−20.0\N{NO-BREAK SPACE}%</td>" in page
+
+
+def test_a_scene_chooses_the_units_of_its_page(tmp_path):
+    write_handling(tmp_path / "page.html", {"": found()}, {"": None}, {"angle": "rad"})
+    assert "<td>0.5</td><td>rad/s</td>" in (tmp_path / "page.html").read_text()
+
+
+def test_cells():
+    assert _cell({}, "gain", 1.0) == "\N{EN DASH}"
+    assert _cell({"a": (-0.25, "")}, "a", 2.0) == "−0.5"
+    assert [list(change(pair)) for pair in ([1.0, 1.0001], [0.0, 1.0], [1.0], [-2.0, -3.0])] == [
+        ["0\N{NO-BREAK SPACE}%"], ["\N{EN DASH}"], [], ["−50.0\N{NO-BREAK SPACE}%"],
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -79,4 +135,4 @@ def test_the_page_answers_in_words_and_fits_a_phone(tmp_path):
     ],
 )
 def test_the_steer_angle_is_told_for_a_travel_or_a_turn(angular, words):
-    assert _steered(_found(angular)) == words
+    assert _steered(replace(found(angular))) == words

@@ -77,7 +77,7 @@ def test_a_page_holds_check_peaks_figures_and_settings(page_of):
 @pytest.mark.long
 def test_a_page_needs_nothing_from_elsewhere(page_of):
     page = page_of("cart_pendulum", "--duration", "2")
-    assert len(page.addresses) == 2  # the scene's figure, and steps
+    assert len(page.addresses) == 1  # steps of the solver
     for address in page.addresses:
         kind, content = re.fullmatch(r"data:image/([a-z+]+);base64,(.*)", address).groups()
         image = base64.b64decode(content)

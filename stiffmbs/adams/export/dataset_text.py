@@ -31,7 +31,7 @@ IN_FORMULAS = ("parameters", "tables", "variables", "roads")
 """Sections of a scene whose content is written where formulas and elements use it."""
 _IN_VIEW, _SOLVER = "a dataset has nothing of this kind; the motion is the same", "settings of this package"
 LEFT_OUT = {
-    "": dict.fromkeys(("figure", "notes", "vehicle", "path"), _IN_VIEW),
+    "": dict.fromkeys(("figure", "units", "notes", "vehicle", "path"), _IN_VIEW),
     "body": {"geometry": _IN_VIEW, "any_moments": _IN_VIEW, "markers": "nothing refers to them"},
     "state": {"scale": _SOLVER},
     "run": {"*": _SOLVER},

@@ -84,16 +84,21 @@ const LIVE = (() => {
     if (running && patient && performance.now() - begun < PATIENCE) { again = true; return; }
     const number = (it.asked = (it.asked ?? 0) + 1);
     running = true; begun = performance.now(); again = null;
-    const busy = setTimeout(() => { $("verdict").classList.add("busy"); $("stop").hidden = false; }, 400);
-    const answer = await ask({ what: "solve", channels: wanted(), preview: !it.shown }, ({ time, stage, page }) => {
+    const busy = setTimeout(() => { $("verdict").classList.add("busy"); $("stop").disabled = false; }, 400);
+    const reached = $("verdict").querySelector("progress");
+    reached.removeAttribute("value");
+    const answer = await ask({ what: "solve", channels: wanted(), preview: !it.shown }, ({ time, end, start, stage, page }) => {
       if (number !== it.asked) return;
       if (page) preview(page);
-      else $("headline").textContent = stage ?? `solving: t = ${Number(time.toPrecision(4))} s`;
+      else {
+        $("headline").textContent = stage ?? `solving: t = ${Number(time.toPrecision(4))} s${end ? ` of ${Number(end.toPrecision(6))} s` : ""}`;
+        if (end > start) reached.value = (time - start) / (end - start);
+      }
     });
     clearTimeout(busy);
     if (number !== it.asked) return false;
     running = false;
-    $("stop").hidden = true;
+    $("stop").disabled = true;
     $("verdict").classList.remove("busy");
     if (again) { solve(true); }
     await show(answer);
@@ -123,23 +128,26 @@ const LIVE = (() => {
     if (answer.status === "error") { verdict("error", answer.message, answer.line ? `line ${answer.line}` : ""); notes([], ""); return; }
     if (!answer.page) return;
     verdict(answer.status, answer.message, `${answer.name ? `${answer.name}, ` : ""}${Math.round(answer.seconds * 1000)} ms`);
-    notes(answer.notes, answer.digits, answer.lines);
+    notes(answer.notes, answer.digits, answer.lines, answer.grave);
     document.title = `${answer.name || $("name").textContent} - stiffmbs`;
     if (it.shown) await it.shown.replace(answer.page.head, answer.page.numbers);
     else { $("mechanism").replaceChildren(); it.preview?.end(); it.shown = await MOVING.show($("mechanism"), answer.page.head, answer.page.numbers, more); window.shown = it.shown; if (!matchMedia("(prefers-reduced-motion: reduce)").matches) it.shown.time.toggle(); }
     it.channels = it.shown.data.channels.columns.map((c) => c.name);
     sliders(answer.parameters);
+    choices(answer.choices);
   }
   function verdict(status, words, small = "") {
     $("verdict").className = status;
-    $("headline").textContent = words;
+    $("headline").textContent = $("headline").title = words;
     $("verdict").querySelector("small")?.remove();
     if (small) make("small", $("verdict"), { textContent: small });
   }
-  function notes(list, digits, lines = []) {
+  function notes(list, digits, lines = [], grave = 0) {
+    const several = (count, word) => `${count} ${word}${count > 1 ? "s" : ""}`;
     const all = [...list, ...(digits ? [digits] : []), ...lines];
     $("notes").hidden = !all.length;
-    $("notes").firstElementChild.textContent = list.length ? `${list.length} note${list.length > 1 ? "s" : ""} to check` : "nothing to check; solver statistics";
+    $("notes").firstElementChild.textContent = 
+      (grave ? `${several(grave, "note")} to check` : "nothing to check") + (list.length > grave ? `; ${several(list.length - grave, "remark")}` : "") + "; solver statistics";
     $("notes").lastElementChild.replaceChildren(...all.map((words) => make("li", null, { textContent: words })));
   }
   function mark(answer) {
@@ -234,14 +242,53 @@ const LIVE = (() => {
     return one;
   }
 
+  /* Choices among the options of the scene: a selector writes its word into the section 'choose' of the text. */
+  const WORD = /^(?!(?:true|false|yes|no|on|off|null)$)[A-Za-z_][\w.-]*$/i;
+  function choices(found) {
+    if ($("choices").dataset.of !== JSON.stringify(found.map(({ name, words }) => [name, words]))) {
+      $("choices").dataset.of = JSON.stringify(found.map(({ name, words }) => [name, words]));
+      $("choices").replaceChildren(...found.map(({ name, words }) => {
+        const label = make("label", null, { textContent: `${name} ` }), select = make("select", label);
+        select.append(...words.map((word) => make("option", null, { value: word, textContent: word })));
+        select.onchange = () => choose(name, select.value);
+        return label;
+      }));
+    }
+    $("choices").querySelectorAll("select").forEach((select, k) => { select.value = found[k].chosen; });
+  }
+  function choose(name, word) {
+    const doc = editor.state.doc, value = WORD.test(word) ? word : JSON.stringify(word);
+    const put = (from, to, insert) => editor.dispatch({ changes: { from, to, insert }, userEvent: "input.choice" });
+    for (let n = 1; n <= doc.lines; n++) {
+      const line = doc.line(n), flow = /^choose:\s*\{/.exec(line.text);
+      if (!/^choose:/.test(line.text)) continue;
+      const own = (text, before) => new RegExp(`(${before}["']?${RegExp.escape?.(name) ?? name.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")}["']?\\s*:\\s*)("[^"]*"|'[^']*'|[^,}#]*[^,}#\\s])`).exec(text);
+      if (flow) {
+        const at = own(line.text, "[{,]\\s*");
+        if (at) put(line.from + at.index + at[1].length, line.from + at.index + at[0].length, value);
+        else put(line.from + flow[0].length, line.from + flow[0].length, /^\s*\}/.test(line.text.slice(flow[0].length)) ? `${name}: ${value}` : `${name}: ${value}, `);
+        return;
+      }
+      for (let m = n + 1; m <= doc.lines && /^(\s|#|$)/.test(doc.line(m).text); m++) {
+        const entry = doc.line(m), at = own(entry.text, "^\\s+");
+        if (at) { put(entry.from + at.index + at[1].length, entry.from + at.index + at[0].length, value); return; }
+      }
+      put(line.to, line.to, `\n  ${name}: ${value}`);
+      return;
+    }
+    const last = doc.line(doc.lines);
+    put(doc.length, doc.length, `${last.text ? "\n" : ""}choose: {${name}: ${value}}\n`);
+  }
+
   /* Analyses and files */
   async function analyse(what, further = {}) {
     $("text").hidden = false;
+    $("notes").open = false;
     const pre = $("text").querySelector("pre");
     pre.textContent = "working";
-    $("stop").hidden = false;
+    $("stop").disabled = false;
     const answer = await ask({ what, ...further }, ({ time, stage }) => { pre.textContent = stage ?? `t = ${Number(time.toPrecision(4))} s`; });
-    $("stop").hidden = true;
+    $("stop").disabled = true;
     pre.textContent = answer.status === "superseded" ? "cancelled: a newer request was made" : answer.text ?? answer.message ?? answer.status;
     return answer;
   }

@@ -21,7 +21,7 @@ from .fields import plain
 from .formulas import Angles, Written, placement, point, request, turned
 
 ORDER = (
-    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests", "figure", "start", "at_start", "run", "stages", "notes",
+    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests", "figure", "units", "start", "at_start", "run", "stages", "notes",
 )  # fmt: skip
 """Sections of a converted scene, in the order of the file."""
 OF_STAGES = ("name", "dimensions", "start", "at_start", "run", "notes")
@@ -87,6 +87,7 @@ def _one_scene(data: PlanarData, angles: Angles) -> Written:
             "tables": plain(data.tables, angles),
             "variables": {name: request(found, angles) for name, found in data.variables.items()},
             "figure": _figure(data, requests, angles),
+            "units": dict(data.units),
             "start": _start(data.start),
             "at_start": _held_at_start(data, angles),
             "run": plain(data.run.model_dump(exclude_unset=True), angles),

@@ -13,6 +13,8 @@ from zlib import Z_BEST_COMPRESSION
 
 import numpy as np
 
+from ...reading.units.display import SI_UNITS
+from ...results.displayed import displayed
 from ...results.solution import Solution
 from ..drawing.as_json import drawing_json
 from ..drawing.painted import LONGEST_ARROW, largest_force
@@ -69,7 +71,7 @@ def page_data(
     """Return the two texts of a page: ``head``, JSON, and ``numbers``, both compressed.
 
     The runs, by their names in the legend, are drawn over each other, the first one in full colors. The channels of the
-    solution can be plotted, and those of `shown` are plotted first. The paths of the points `traces` are drawn first.
+    solution can be plotted in their display units, and those of `shown` are plotted first. The paths of the points `traces` are drawn first.
     `only` names the channels whose values are included, by default all; of the others only names and units are.
 
     The level of compression is 1 (fast) to 9 (small). `choose` is the label of a choice of one run that is shown and
@@ -79,14 +81,20 @@ def page_data(
     width = sum(7 * len(poses.points) + 3 * len(poses.forces) for poses in runs.values()) or 1
     most = max(50, min(MOST_POSES, POSE_VALUES // width))
     first = next(iter(runs.values()))
+    unit, factor = (solution.display if solution else SI_UNITS).of("N")
     head: dict[str, object] = {
         "drawing": drawing_json(drawing),
-        "longest": {"force": largest_force(drawing, first), "length": LONGEST_ARROW * drawing.size},
+        "longest": {
+            "force": largest_force(drawing, first),
+            "length": LONGEST_ARROW * drawing.size,
+            "unit": unit,
+            "factor": factor,
+        },
         "runs": [{"name": name, **_motion(poses, packed, most)} for name, poses in runs.items()],
         "choose": choose,
         "follow": followed_body(drawing, first),
         "traces": [{"body": anchor.body, "point": anchor.point.tolist()} for anchor in traces],
-        "channels": _channels(solution, packed, shown, only) if solution is not None else None,
+        "channels": _channels(displayed(solution), packed, shown, only) if solution is not None else None,
     }
     return {"head": packed_text(json.dumps(head, allow_nan=False).encode(), level), "numbers": packed.text(level)}
 

@@ -268,6 +268,12 @@ const MOVING = (() => {
     return found;
   }
 
+  /* Left upper corner of a name from its point, for its width and height, the nearest ones first. */
+  const SIDES_OF_NAMES = [7, 24, 44].flatMap((far) => [
+    (w, h) => [7, -far - h + 4], () => [7, far - 3], (w, h) => [-7 - w, -far - h + 4], (w) => [-7 - w, far - 3],
+    (w, h) => [far + 3, -h / 2], (w, h) => [-far - 3 - w, -h / 2], (w, h) => [-w / 2, -far - h], (w) => [-w / 2, far],
+  ]);
+
   /* The mechanism on a canvas; `load` shows other data and keeps the camera. */
   function view(place, time) {
     const canvas = make("canvas", place, {}, { tabindex: 0, role: "img" });
@@ -348,6 +354,7 @@ const MOVING = (() => {
           half.set(Math.max(half.x, Math.abs(corner.x)), Math.max(half.y, Math.abs(corner.y)), 0);
         }
       }));
+      place.style.setProperty("--shape", half.x / Math.max(half.y, 0.1 * reach));
       wide = 0;
       sun.castShadow = !flat;
       sun.intensity = flat ? 0 : 1.0;
@@ -429,11 +436,11 @@ const MOVING = (() => {
     /* The scale of forces: the length of an arrow of a round force on the screen. */
     function measure() {
       if (!scale) return;
-      const perNewton = ((data.longest.length / data.longest.force) * wide * camera.zoom) / (camera.right - camera.left);
-      const base = 10 ** Math.floor(Math.log10(90 / perNewton));
-      const round = [5, 2, 1].map((f) => f * base).find((f) => f * perNewton <= 90) ?? base;
-      Object.assign(scale.key.style, { width: `${round * perNewton}px`, height: "4px", verticalAlign: "3px" });
-      scale.words.textContent = `${Number(round.toPrecision(2))} N`;
+      const { force, length, unit, factor } = data.longest, perUnit = ((length / (force * factor)) * wide * camera.zoom) / (camera.right - camera.left);
+      const base = 10 ** Math.floor(Math.log10(90 / perUnit));
+      const round = [5, 2, 1].map((f) => f * base).find((f) => f * perUnit <= 90) ?? base;
+      Object.assign(scale.key.style, { width: `${round * perUnit}px`, height: "4px", verticalAlign: "3px" });
+      scale.words.textContent = `${Number(round.toPrecision(2))} ${unit}`;
     }
     function fit() {
       const w = place.clientWidth, h = place.clientHeight;
@@ -470,25 +477,42 @@ const MOVING = (() => {
       camera.updateMatrixWorld();
       renderer.render(scene, camera);
       measure();
-      for (const { name, label } of names) {
-        label.hidden = !state.names;
-        if (!state.names) continue;
-        const [x, y] = onScreen(name, t);
-        label.style.transform = `translate(${x + 7}px, ${y - (name.role === "body" ? 18 : -4)}px)`;
-      }
+      name(t);
       hover(t);
+    }
+    /* Place the names so that none covers another or the legend: each keeps its side as long as there is room, else takes
+       the nearest side that is free.  A name without room is hidden, and appears under the pointer. */
+    function name(t) {
+      if (!state.names) { names.forEach(({ label }) => { label.hidden = true; }); return; }
+      for (const one of names) {
+        if (!one.size) { one.label.hidden = false; one.size = [one.label.offsetWidth, one.label.offsetHeight]; }
+        one.at = onScreen(one.name, t);
+      }
+      const taken = legend.hidden ? [] : [[legend.offsetLeft, legend.offsetTop, legend.offsetWidth, legend.offsetHeight]];
+      const free = ([x, y, w, h]) => x >= 0 && y >= 0 && x + w <= wide && y + h <= high
+        && taken.every(([a, b, c, d]) => x >= a + c || a >= x + w || y >= b + d || b >= y + h);
+      for (const one of names) {
+        const [w, h] = one.size, box = (side) => { const [x, y] = SIDES_OF_NAMES[side](w, h); return [one.at[0] + x, one.at[1] + y, w, h]; };
+        const own = one.name.role === "body" ? 0 : 1, order = [one.side ?? own, own, ...SIDES_OF_NAMES.keys()];
+        one.side = order.find((side) => free(box(side)));
+        one.label.hidden = one.side === undefined;
+        if (one.label.hidden) continue;
+        const found = box(one.side);
+        taken.push(found);
+        one.label.style.transform = `translate(${found[0]}px, ${found[1]}px)`;
+      }
     }
     /* The name of what is nearest to the pointer: an element's point, else the body below it. */
     function hover(t) {
       tip.hidden = true;
-      if (!pointed || state.names) return;
+      if (!pointed) return;
       let best = 16, text = "";
-      for (const { name } of names) {
-        if (name.role === "body") continue;
+      for (const { name, label } of names) {
+        if (name.role === "body" || !label.hidden) continue;
         const [x, y] = onScreen(name, t), far = Math.hypot(x - pointed.x, y - pointed.y);
         if (far < best) [best, text] = [far, name.text];
       }
-      if (!text) {
+      if (!text && !state.names) {
         const ray = new THREE.Raycaster();
         ray.setFromCamera(new THREE.Vector2((2 * pointed.x) / wide - 1, 1 - (2 * pointed.y) / high), camera);
         let hit = ray.intersectObject(machines[0].root, true).find(({ object }) => object.isMesh)?.object;
@@ -680,7 +704,7 @@ const MOVING = (() => {
   /* Play, scrub, speed; and what is seen of the mechanism.  `load` shows other data. */
   function controls(place, time, shown) {
     const bar = make("div", place, { className: "controls" }, { role: "group", "aria-label": "time" });
-    const play = make("button", bar, { type: "button", textContent: "Play" });
+    const play = make("button", bar, { type: "button", className: "play", textContent: "Play" });
     const scrub = make("input", bar, { type: "range", min: 0, max: 1000, step: "any", value: 0 }, { "aria-label": "time" });
     const told = make("output", bar);
     const pick = (words, act) => {
@@ -714,7 +738,7 @@ const MOVING = (() => {
       };
       const forces = box("forces", (on) => { shown.state.forces = on; shown.explain(); each.hidden = !on; });
       const each = make("details", bar, { className: "each" });
-      make("summary", each, { textContent: "of" });
+      make("summary", each, { textContent: "which" });
       const switches = make("div", each);
       const named = box("names", (on) => { shown.state.names = on; shown.stale = true; });
       make("button", bar, { type: "button", textContent: "Whole mechanism" }).onclick = () => shown.home();

@@ -73,22 +73,28 @@ class HandlingTest(Generic[Test]):
     manoeuvres: Callable[[Known, Test], list[Manoeuvre]]  # returns the manoeuvres from `Known` and the parameters
     # returns the metrics from `Known`, the parameters and the runs of the manoeuvres
     metrics: Callable[[Known, Test, list[Run]], Metrics]
-    shown: tuple[str, str]  # channels on both axes of the test's figure
+    shown: tuple[tuple[str, str], ...]  # channels on the axes of the charts of the test: across, upwards
     ramped: bool = False  # True if it needs the slow ramp at its own speed
     # returns further metrics from `Known`, the parameters, those metrics and a function that solves one manoeuvre after another
     search: Callable[[Known, Test, Metrics, Callable[[Manoeuvre], Run]], Metrics] | None = None
 
 
+STEADY = (("vehicle.ay", SEEN), ("vehicle.ay", "vehicle.sideslip"), ("vehicle.ay", "vehicle.roll"))
+STEERED = tuple(("time", channel) for channel in (SEEN, "vehicle.yaw_rate", "vehicle.ay", "vehicle.sideslip"))
+COURSE = (("vehicle.x", SEEN), ("vehicle.x", "vehicle.ay"), ("vehicle.x", "vehicle.yaw_rate"))
+BRAKED = tuple(("time", channel) for channel in ("vehicle.speed", "vehicle.ax", "vehicle.yaw_rate", "vehicle.sideslip"))
+"""Channels of the charts of steady turns, of steering inputs, on courses, and of braking."""
+
 TESTS: dict[str, HandlingTest[Any]] = {
-    "constant_speed": HandlingTest("Slow ramp of steering, ISO 4138", ConstantSpeed(), constant_speed, of_constant_speed, ("vehicle.ay", SEEN), ramped=True),
-    "constant_radius": HandlingTest("Circle, ISO 4138", ConstantRadius(), constant_radius, of_constant_radius, ("vehicle.ay", SEEN)),
-    "step_steer": HandlingTest("Step of steering, ISO 7401", StepSteer(), step_steer, of_step_steer, ("time", "vehicle.yaw_rate"), ramped=True),
-    "frequency_response": HandlingTest("Sweep of steering, ISO 7401", FrequencySweep(), frequency, of_frequency, ("time", "vehicle.yaw_rate"), ramped=True),
-    "sine_with_dwell": HandlingTest("Sine with dwell, ISO 19365", SineWithDwell(), dwell, of_dwell, ("time", "vehicle.yaw_rate"), ramped=True),
-    "lane_change": HandlingTest("Double lane change, ISO 3888-1", LaneChange(), in_lanes(PART_1), of_lanes(PART_1), ("vehicle.x", "vehicle.y")),
-    "obstacle_avoidance": HandlingTest("Obstacle avoidance, ISO 3888-2", ObstacleAvoidance(), in_lanes(PART_2), of_lanes(PART_2), ("vehicle.x", "vehicle.y"), search=highest_entry_speed),
-    "braking_in_a_turn": HandlingTest("Braking on a circle, ISO 7975", BrakingInATurn(), braking_in_a_turn, of_braking_in_a_turn, ("time", "vehicle.yaw_rate")),
-    "straight_braking": HandlingTest("Straight-line braking, ISO 21994", StraightBraking(), straight_braking, of_straight_braking, ("time", "vehicle.speed")),
-    "ride": HandlingTest("Random road, ISO 2631-1", Ride(), ride, of_ride, ("time", "vehicle.az")),
+    "constant_speed": HandlingTest("Slow ramp of steering, ISO 4138", ConstantSpeed(), constant_speed, of_constant_speed, STEADY, ramped=True),
+    "constant_radius": HandlingTest("Circle, ISO 4138", ConstantRadius(), constant_radius, of_constant_radius, STEADY),
+    "step_steer": HandlingTest("Step of steering, ISO 7401", StepSteer(), step_steer, of_step_steer, STEERED, ramped=True),
+    "frequency_response": HandlingTest("Sweep of steering, ISO 7401", FrequencySweep(), frequency, of_frequency, STEERED, ramped=True),
+    "sine_with_dwell": HandlingTest("Sine with dwell, ISO 19365", SineWithDwell(), dwell, of_dwell, STEERED, ramped=True),
+    "lane_change": HandlingTest("Double lane change, ISO 3888-1", LaneChange(), in_lanes(PART_1), of_lanes(PART_1), COURSE),
+    "obstacle_avoidance": HandlingTest("Obstacle avoidance, ISO 3888-2", ObstacleAvoidance(), in_lanes(PART_2), of_lanes(PART_2), COURSE, search=highest_entry_speed),
+    "braking_in_a_turn": HandlingTest("Braking on a circle, ISO 7975", BrakingInATurn(), braking_in_a_turn, of_braking_in_a_turn, BRAKED),
+    "straight_braking": HandlingTest("Straight-line braking, ISO 21994", StraightBraking(), straight_braking, of_straight_braking, BRAKED[:2]),
+    "ride": HandlingTest("Random road, ISO 2631-1", Ride(), ride, of_ride, (("time", "vehicle.az"),)),
 }  # fmt: skip
 """All tests by name."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .car import Manoeuvre
@@ -18,6 +20,8 @@ LAST = 6.5
 """Amplitude of the last run over the unit A. ISO 19365."""
 RESPONSIVE = 5.0
 """Amplitude from which on the displacement counts, over the unit A. ISO 19365."""
+BAR_OF = ", error bar"
+"""End of the name of the error bar of a metric."""
 SETTLING = 4.0
 """Time after a sweep within which a car comes to rest, s; the response of a car that does not is fitted with its rest."""
 
@@ -35,7 +39,10 @@ def of_step_steer(known: Known, test: StepSteer, runs: list[Run]) -> Metrics:
         one = step_response(run["time"], run[SEEN] * known.ratio, run[f"vehicle.{channel}"])
         found |= {
             f"{label}, steady": (one.steady, "rad/s" if channel == "yaw_rate" else unit),
-            f"{label}, gain per steer angle of the wheels": (one.gain, unit),
+            f"{label}, gain per steer angle of the wheels": (
+                one.gain,
+                unit if channel == "yaw_rate" else f"{unit}/rad",
+            ),
             f"{label}, response time": (one.response_time, "s"),
             f"{label}, peak response time": (one.peak_time, "s"),
             f"{label}, overshoot": (100 * one.overshoot, "%"),
@@ -63,7 +70,7 @@ def frequency(known: Known, test: FrequencySweep) -> list[Manoeuvre]:
 
 def of_frequency(known: Known, test: FrequencySweep, runs: list[Run]) -> Metrics:
     """Return gain, resonance and delay of the yaw rate, and delay of the lateral acceleration, with their error bars."""
-    yaw, lateral = (_of_sweeps(known, runs, channel) for channel in ("yaw_rate", "ay"))
+    yaw, lateral = (response_of_sweeps(known.ratio, runs, f"vehicle.{channel}") for channel in ("yaw_rate", "ay"))
     found, at_1 = Metrics(), 1.0 if test.first <= 1.0 <= test.last else np.nan  # not outside of the sweep
     low = yaw.at(0.4)[0] if test.first <= 0.4 <= test.last else np.nan
     band = (yaw.frequency >= test.first) & (yaw.frequency <= test.last)
@@ -80,13 +87,16 @@ def of_frequency(known: Known, test: FrequencySweep, runs: list[Run]) -> Metrics
     )  # fmt: skip
     for name, value, error, unit in rows:
         found[name] = float(value), unit
-        found[f"{name}, error bar"] = (float(error) if np.isfinite(value) else np.nan), unit
+        found[f"{name}{BAR_OF}"] = (float(error) if np.isfinite(value) else np.nan), unit
     return found
 
 
-def _of_sweeps(known: Known, runs: list[Run], channel: str) -> FrequencyResponse:
-    """Return the mean response of both sweeps; its error bar contains both."""
-    up, down = (frequency_response(run["time"], run[SEEN] * known.ratio, run[f"vehicle.{channel}"]) for run in runs)
+def response_of_sweeps(ratio: float, runs: Sequence[Run], channel: str) -> FrequencyResponse:
+    """Return the mean response of a channel to the steer angle of the wheels in both sweeps; its error bar contains both.
+
+    `ratio`: steer angle of the wheels per unit of steering.
+    """
+    up, down = (frequency_response(run["time"], run[SEEN] * ratio, run[channel]) for run in runs)
     responses = [one.gain * np.exp(1j * one.phase) for one in (up, down)]
     mean = (responses[0] + responses[1]) / 2
     error = np.maximum(up.error, down.error) + np.abs(responses[0] - mean) / np.abs(mean)

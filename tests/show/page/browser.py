@@ -56,6 +56,28 @@ OVERLAPS = """
 """
 """Finds pairs of labels of one drawing (SVG) that cover each other."""
 
+SPLIT = """
+[...document.querySelectorAll("td")].flatMap((cell) => {
+  const texts = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT), found = [], range = document.createRange();
+  while (texts.nextNode()) for (const { 0: number, index } of texts.currentNode.textContent.matchAll(/\\d+\\.\\d+/g)) {
+    range.setStart(texts.currentNode, index); range.setEnd(texts.currentNode, index + number.length);
+    if (new Set([...range.getClientRects()].map((box) => box.top)).size > 1) found.push(number);
+  }
+  return found;
+})
+"""
+"""Finds numbers of tables that are broken over two lines."""
+
+COVERED_NAMES = """
+(() => {
+  const shown = [...document.querySelectorAll(".viewer .name:not(.tip), .viewer .legend")].filter((one) => one.checkVisibility());
+  const boxes = shown.map((one) => [one.textContent, one.getBoundingClientRect()]);
+  return boxes.flatMap(([text, p], k) => boxes.slice(0, k).filter(([, q]) => p.left < q.right && q.left < p.right && p.top < q.bottom && q.top < p.bottom)
+    .map(([other]) => [text, other]));
+})()
+"""
+"""Finds pairs of names of a picture that cover each other."""
+
 
 class Tab:
     """A page in a browser: its console, scripts run in it, pictures of it."""

@@ -8,8 +8,11 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs.commands.main import main
+from stiffmbs.show.handling import write_handling
 
 from ...conftest import EXAMPLES
+from ..test_handling_page import found
+from ..test_study_page import page_of
 from . import browser
 
 pytest.importorskip("jinja2")
@@ -229,10 +232,87 @@ def test_a_report_fits_its_screen_and_its_labels_are_apart(tab, opened):
             wide = "[...document.querySelectorAll('table, figure, p')].filter((one) => one.getBoundingClientRect().right > innerWidth + 1).length"
             assert tab.run(wide) == 0
             assert tab.run(browser.OVERLAPS) == []
+            assert tab.run(browser.SPLIT) == []
         assert [text for text in tab.run(browser.FAINT) if "kN" in text[0]] == []
     finally:
         tab.do("Emulation.clearDeviceMetricsOverride")
         tab.do("Emulation.setEmulatedMedia", features=[])
+
+
+@pytest.mark.long
+def test_names_in_a_picture_are_apart_while_it_moves(tab, opened):
+    """Also those of elements at one point, on a small screen, where names without room are left out."""
+    opened("animate", EXAMPLES / "crank_slider.yaml", "--set", "run.points=101")
+    names = "[...document.querySelectorAll('.viewer .name:not(.tip)')].filter((one) => one.checkVisibility()).length"
+    try:
+        for width, least in ((1400, 9), (390, 6)):
+            tab.do("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+            for part in (0, 0.3, 0.8):
+                tab.run(f"shown.time.set({part} * shown.time.end)")
+                tab.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+                assert tab.run(browser.COVERED_NAMES) == []
+                assert tab.run(names) >= least
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
+
+
+@pytest.mark.long
+def test_a_printed_report_has_all_columns_and_charts_side_by_side(tab, opened):
+    """On paper of A4, whose width is that of a narrow screen; the colours are those of the light theme."""
+    opened("report", EXAMPLES / "crank_slider.yaml", "--no-verify", "--set", "run.points=101")
+    columns = "getComputedStyle(document.querySelector('{}')).gridTemplateColumns.split(' ').length"
+    try:
+        tab.do("Emulation.setDeviceMetricsOverride", width=688, height=971, deviceScaleFactor=1, mobile=False)
+        tab.do(
+            "Emulation.setEmulatedMedia", media="print", features=[{"name": "prefers-color-scheme", "value": "dark"}]
+        )
+        assert [tab.run(columns.format(one)) for one in (".two", ".polar")] == [2, 4]
+        assert tab.run(
+            "[...document.querySelectorAll('.minor')].every((one) => one.checkVisibility() || one.closest('details:not([open])'))"
+        )
+        assert tab.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
+        assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT)] == [[], []]
+        assert tab.run("document.documentElement.scrollWidth") <= 688
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
+        tab.do("Emulation.setEmulatedMedia", media="", features=[])
+
+
+@pytest.mark.long
+def test_a_page_of_handling_tests_fits_its_screen(tab, tmp_path):
+    """Two variants, light and dark: nothing is cut, broken or faint, and no labels cover each other."""
+    path = tmp_path / "page.html"
+    variants = {name: found(tests=("step_steer", "lane_change", "constant_speed")) for name in ("base", "softer")}
+    write_handling(path, variants, dict.fromkeys(variants), {})
+    try:
+        for width, theme in ((1400, "light"), (390, "dark"), (390, "light")):
+            tab.do("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+            tab.do("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
+            tab.do("Page.navigate", url=f"file://{path}")
+            tab.wait("document.readyState === 'complete' && document.querySelector('footer')")
+            assert tab.run("document.documentElement.scrollWidth") <= width
+            assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
+        tab.do("Emulation.setEmulatedMedia", features=[])
+
+
+@pytest.mark.long
+def test_a_page_of_a_study_fits_a_phone(tab, tmp_path):
+    """Its table of cases scrolls by itself if it has many columns."""
+    pytest.importorskip("xarray")
+    page_of(tmp_path, (5, 3))
+    try:
+        tab.do("Emulation.setDeviceMetricsOverride", width=390, height=900, deviceScaleFactor=1, mobile=False)
+        tab.do("Page.navigate", url=f"file://{tmp_path / 'page.html'}")
+        tab.wait("document.readyState === 'complete' && document.querySelector('footer')")
+        tab.run(
+            "document.querySelectorAll('tr').forEach((row) => { for (let k = 0; k < 9; k++) row.append(row.lastElementChild.cloneNode(true)); })"
+        )
+        assert tab.run("document.documentElement.scrollWidth") <= 390
+        assert [tab.run(one) for one in (browser.OVERLAPS, browser.SPLIT, browser.FAINT)] == [[], [], []]
+    finally:
+        tab.do("Emulation.clearDeviceMetricsOverride")
 
 
 @pytest.mark.long

@@ -76,6 +76,17 @@ def test_error_bars_are_those_of_the_exact_solution(solver, rtol):
         assert 0.4 * true < found.errors[name].over_time < 2.5 * true + 1e-12, name
 
 
+@pytest.mark.parametrize("solver", ["bdf", "projected"])
+def test_a_force_that_samples_change_has_no_peak_between_equal_values(solver):
+    """Its greatest value between outputs is that of a sample: parabolas across the jumps were up to three times as high."""
+    scene = stiffmbs.read_scene(SCENE, [("Ts", "0.02"), ("Tf", "0.02")])
+    found = stiffmbs.run(scene, duration=1, output=0.05, rtol=1e-7, solver=solver, errors=True)
+    true = exact(np.arange(1, 51) * 0.02 + 1e-6, 0.02, 0.02)[2]
+    bar, shown = found.errors["push"], found["push"]
+    for beyond, told in ((true.max() - shown.max(), bar.greatest), (shown.min() - true.min(), bar.least)):
+        assert 0.9 * beyond <= told <= 1.2 * max(beyond, 0.0) + 1e-4
+
+
 def test_states_of_two_rates_are_sampled_at_their_own_times():
     changes = [("Ts", "0.05"), ("Tf", "0.02"), ("late", "0.005")]
     scene = stiffmbs.read_scene(SCENE, changes)

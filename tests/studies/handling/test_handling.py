@@ -26,7 +26,7 @@ from stiffmbs.studies.handling.parameters import (
 )
 from stiffmbs.studies.handling.standards import TESTS
 from stiffmbs.studies.handling.steady_state_cornering import ramp
-from stiffmbs.studies.handling.steering_inputs import _of_sweeps, dwell_formula
+from stiffmbs.studies.handling.steering_inputs import dwell_formula, response_of_sweeps
 
 EXAMPLES = Path(stiffmbs.__file__).parents[1] / "examples"
 CAR = EXAMPLES / "car.yaml"
@@ -76,7 +76,7 @@ def test_the_frequency_response_is_that_of_single_sines(found):
     scene = stiffmbs.load_scene(CAR)
     car = car_of(scene)
     known, runs = Known(car, car.wheelbase / found.ratio, 0, 1.8, {}), found.tests["frequency_response"].runs
-    responses = {name: _of_sweeps(known, runs, name) for name in ("yaw_rate", "ay")}
+    responses = {name: response_of_sweeps(known.ratio, runs, f"vehicle.{name}") for name in ("yaw_rate", "ay")}
     amplitude = float(np.max(np.abs(runs[0][SEEN])))
     for f in (0.3, 0.6):
         periods = int(np.ceil(4 * f))

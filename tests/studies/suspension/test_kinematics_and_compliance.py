@@ -211,3 +211,20 @@ def test_the_roll_centre_lies_in_the_plane_of_a_body_beside_the_origin(examples)
     found = json.dumps(stiffmbs.kinematics_and_compliance(scene, points=5, roll=2).as_dict(""))
     values = [float(value) for value in re.findall(r'"axle.roll_centre_lateral": \{"value": ([^,]+),', found)]
     assert values and values == pytest.approx([0.0] * len(values), abs=1e-6)
+
+
+@pytest.mark.long
+def test_a_page_has_the_curves_of_both_variants(tmp_path):
+    pytest.importorskip("jinja2")
+    scene = tmp_path / "axle.yaml"
+    scene.write_text(axle("double_wishbone", "rigid"))
+    given = ["kc", str(scene), "--points", "5"]
+    given += [word for name in NONE for word in ("--case", f"{name}=0" if name != "bump" else "bump=30")]
+    page = tmp_path / "kc.html"
+    refused = CliRunner().invoke(main, [*given, "-o", str(tmp_path / "kc.csv"), "--variant", "heavy=gravity=[0,0,-12]"])
+    assert refused.exit_code == 2 and "expected a page" in refused.output
+    result = CliRunner().invoke(main, [*given, "-o", str(page), "--variant", "heavy=gravity=[0,0,-12]"])
+    assert result.exit_code == 0 and "variant heavy" in result.output, result.output
+    text = page.read_text()
+    assert "<th>base</th><th>heavy</th><th>change</th>" in text and "Bump camber: travel, mm" in text
+    assert text.count('class="curve c1') > 3 and 'class="curve c1 other"' in text

@@ -1,0 +1,126 @@
+"""Page of kinematics and compliance of an axle, of one or several variants (needs jinja2, of the extra ``report``)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...results.files import write_text
+from ...studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
+from ..curves import Curve, curve_chart
+from ..sections import MISSING, Section, Table
+from ..suspension import PANELS, ROUNDING, SHOWN, Panel, curves_of, kc_words, measure_rows, slope_rows, unit_of, worded
+from .page_of_tests import Judgement, change, heads, page_of_tests, written_unit
+
+if TYPE_CHECKING:
+    from ...results.provenance import Provenance
+
+Variants = Mapping[str, KinematicsAndCompliance]
+TITLES = {
+    "bump": "Bump", "roll": "Roll", "steer": "Steering", "lateral": "Lateral force, outwards", "lateral_parallel": "Lateral force, to the left",
+    "brake": "Braking", "traction": "Traction", "aligning": "Aligning torque, inwards", "aligning_parallel": "Aligning torque, to the left",
+}  # fmt: skip
+"""Titles of the load cases."""
+
+
+def write_kc(path: Path, variants: Variants, origins: Mapping[str, Provenance | None]) -> None:
+    """Write the page, completely or not at all. `variants`: by name; a single one may have no name.
+
+    Raises OSError if the file cannot be written.
+    """
+    first = next(iter(variants.values()))
+    sections = [_described(variants), *(_of_case(variants, case) for case in TITLES if _has(variants, case))]
+    page = page_of_tests(
+        "Kinematics and compliance", f"{first.name}: {first.axle.title}", (), _judged(variants), sections, origins
+    )
+    write_text(path, page)
+
+
+def _has(variants: Variants, case: str) -> bool:
+    return any(case in found.sweeps for found in variants.values())
+
+
+def _judged(variants: Variants) -> Judgement:
+    """Return the number of load cases, and whether both sides are alike."""
+    first = next(iter(variants.values()))
+    further = [f"{name}: {found.message}".removeprefix(": ") for name, found in variants.items()]
+    cases = sum(_has(variants, case) for case in TITLES)
+    words = f"{cases} load cases on a test rig, from minus to plus their amplitudes"
+    if len(first.axle.wheels) == 2:
+        largest = max(found.asymmetry() for found in variants.values())
+        alike = (
+            "left and right are alike"
+            if largest < ROUNDING
+            else f"left and right differ by up to {largest:.1e} of their curves"
+        )
+        words = f"{words}; {alike}"
+    return Judgement("done", "\N{CHECK MARK} Completed", f"{words}.", (*further, *kc_words(first)))
+
+
+def _described(variants: Variants) -> Section:
+    tables = [measure_rows(found) for found in variants.values()]
+    return Section("At the described heights", (), (_table(variants, tables, ""),))
+
+
+def _of_case(variants: Variants, case: str) -> Section:
+    """Return the section of a load case: slopes of its curves at the described heights, and charts."""
+    sweep = next(found.sweeps[case] for found in variants.values() if case in found.sweeps)
+    rows = [[row for row in slope_rows(found) if row[0].startswith(f"{case}: ")] for found in variants.values()]
+    tables = (_table(variants, rows, f"{case}: "),) if SHOWN[case] else ()
+    charts = (chart for panel in PANELS if panel.case == case for chart in _charts(variants, panel))
+    sentence = f"Over the {sweep.case.swept}, {written_unit(sweep.case.unit)}. Slopes at the middle."
+    if len(next(iter(variants.values())).axle.wheels) == 2:
+        sentence += " Solid: left, dotted: right."
+    return Section(TITLES[case], (sentence,), tables, drawings=tuple(charts))
+
+
+def _table(variants: Variants, tables: list[list[tuple[str, ...]]], start: str) -> Table:
+    """Return the table of measures: all sides of one variant, or the left side, or axle, of several."""
+    if len(tables) == 1:
+        columns = [wheel.side for wheel in next(iter(variants.values())).axle.wheels]
+        names = ("measure", *columns, *(("axle",) if len(columns) == 2 else ()), "unit")
+        return Table(
+            names, tuple((worded(row[0].removeprefix(start)), *row[1:-1], written_unit(row[-1])) for row in tables[0])
+        )
+    by_name = [{row[0]: row for row in rows} for rows in tables]
+    found = []
+    for name in dict.fromkeys(name for rows in by_name for name in rows):
+        cells = [
+            next((cell for cell in rows[name][1:-1] if cell), MISSING) if name in rows else MISSING for rows in by_name
+        ]
+        values = [float(cell) if cell != MISSING else np.nan for cell in cells]
+        unit = next(rows[name][-1] for rows in by_name if name in rows)
+        found.append((worded(name.removeprefix(start)), *cells, *change(values), written_unit(unit)))
+    return Table(("measure, left or axle", *heads(list(variants))[1:]), tuple(found))
+
+
+def _charts(variants: Variants, panel: Panel) -> Iterator[str]:
+    """Yield a chart for each measure of a panel; a variant has one colour, its right side is dotted."""
+    first = next(iter(variants.values()))
+    for name in panel.shown:
+        curves = [
+            _curve(panel, k, style, x, y)
+            for k, found in enumerate(variants.values())
+            if panel.case in found.sweeps
+            for shown, style, x, y in curves_of(found, panel)
+            if shown == name
+        ]
+        if curves:
+            own = f"{worded(name)}, {written_unit(unit_of(first, name))}".removesuffix(", ")
+            case = next(found.sweeps[panel.case].case for found in variants.values() if panel.case in found.sweeps)
+            other = (
+                f"{worded(panel.over)}, {written_unit(unit_of(first, panel.over))}"
+                if panel.over
+                else f"{case.swept}, {written_unit(case.unit)}"
+            )
+            across, upwards = (own, other) if panel.upright else (other, own)
+            yield curve_chart(curves, f"{panel.title}: {upwards}", across)
+
+
+def _curve(panel: Panel, variant: int, style: str, x: np.ndarray, y: np.ndarray) -> Curve:
+    """Return a curve without rounding, with wheel travel upwards if the panel asks for it."""
+    across, upwards = (np.where(np.abs(part) > ROUNDING, part, 0.0) for part in ((y, x) if panel.upright else (x, y)))
+    return Curve("", across, upwards, f"c{variant % 4}" + ("" if style == "-" else " other"))

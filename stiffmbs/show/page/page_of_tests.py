@@ -1,0 +1,80 @@
+"""Page of tests of one or several variants of a scene: a finding, tables of metrics, and charts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..origin import origin_section
+from ..sections import MISSING, Section, Table, changed_values
+from .data import environment, page_file
+
+if TYPE_CHECKING:
+    from ...results.provenance import Provenance
+
+MINUS = "\N{MINUS SIGN}"
+CHANGE = "change"
+"""Head of the column of changes from the first to the second variant."""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Finding of a page of tests; `status` as of a `Finding`."""
+
+    status: str
+    mark: str
+    sentence: str
+    further: tuple[str, ...] = ()
+
+
+def page_of_tests(
+    kind: str, title: str, facts: Iterable[tuple[str, str]], judged: Judgement, sections: Sequence[Section],
+    origins: Mapping[str, Provenance | None], keys: Sequence[str] = (),
+) -> str:  # fmt: skip
+    """Return the page as HTML.
+
+    `kind`: the tests, above the title. `facts`: pairs of a name and a value. `origins`: those of the variants by name; a
+    single one may have no name. `keys`: names of the curves of
+    all charts, by default the variants.
+    """
+    first = next(iter(origins.values()))
+    return environment().from_string(page_file("tests.html")).render(
+        kind=kind, title=title, facts=facts, status=judged.status, mark=judged.mark, sentence=judged.sentence, further=judged.further,
+        variants=keys or list(origins), changed=_changed(origins), sections=sections, sheet=page_file("report.css"), version=version("stiffmbs"),
+        origin_section=origin_section(first) if first else "",
+    )  # fmt: skip
+
+
+def _changed(origins: Mapping[str, Provenance | None]) -> Table:
+    """Return the values of the scenes that differ between variants."""
+    first, *others = origins.values()
+    rows: dict[str, list[str]] = {}
+    for k, other in enumerate(others):
+        for path, own, text in changed_values(first, other):
+            rows.setdefault(path, [own] * len(origins))[k + 1] = text
+    return Table(("changed", *origins), tuple((path, *texts) for path, texts in rows.items()))
+
+
+def heads(variants: Sequence[str]) -> tuple[str, ...]:
+    """Return the heads of a table of metrics."""
+    names = variants if len(variants) > 1 else ("value",)
+    return ("metric", *names, *((CHANGE,) if len(variants) == 2 else ()), "unit")
+
+
+def change(values: Sequence[float]) -> Iterator[str]:
+    """Yield the change from the first of two values to the second, in percent; nothing for another number of values."""
+    if len(values) == 2:
+        a, b = values
+        known = np.isfinite(a) and np.isfinite(b) and a != 0
+        part = 100 * (b - a) / abs(a) if known else 0.0
+        words = f"{part:+.1f}" if abs(part) >= 0.05 else "0"
+        yield f"{words.replace('-', MINUS)}\N{NO-BREAK SPACE}%" if known else MISSING
+
+
+def written_unit(unit: str) -> str:
+    """Return a unit with raised powers: m/s²."""
+    return unit.replace("^2", "\N{SUPERSCRIPT TWO}").replace("^3", "\N{SUPERSCRIPT THREE}")
