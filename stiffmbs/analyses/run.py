@@ -28,8 +28,8 @@ from ..results.energy_balance_notes import broken_balance, is_broken
 from ..results.provenance import provenance_of
 from ..results.solution import Solution
 from ..run_checks.motion import several_solutions_note
-from ..run_checks.tables import left_by_requests, left_tables, refused_departure, stopped_at
-from ..solve.events.departures import Departure
+from ..run_checks.tables import left_by_requests, left_tables, stopped_at
+from ..solve.events.departures import Departure, refused_departure
 from ..solve.missing_rows import reported
 from ..solve.reasons import OF_STATUS, Reason
 from ..solve.suspect import suspect

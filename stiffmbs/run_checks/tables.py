@@ -29,8 +29,7 @@ from ..model.settings import RunSettings
 from ..notes import Note, NoteKind, of_users
 from ..reading.table import Table
 from ..results.channels import counters
-from ..solve.events.departures import ROUNDING, Departure, merged
-from ..solve.reasons import Reason
+from ..solve.events.departures import ROUNDING, Departure, merged, refused_departure
 from ..solve.settings import traits_of
 from ..solve.trajectory import Trajectory
 
@@ -93,23 +92,9 @@ def _arguments(tree: ast.expr, tables: Collection[str]) -> Iterator[tuple[str, a
                 yield label, argument
 
 
-def refused_departure(found: list[Departure]) -> Departure | None:
-    """Return the first departure from a table with ``beyond: error``, or None."""
-    errors = (each for each in found if each.table.beyond == "error")
-    return min(errors, key=lambda each: each.first, default=None)
-
-
 def stopped_at(first: Departure, trajectory: Trajectory) -> Trajectory:
     """Return a trajectory that ends at a departure, with the reason."""
-    return trajectory.stopped_after(int(np.searchsorted(trajectory.t, first.first, side="right")), _refusal(first))
-
-
-def _refusal(first: Departure) -> Note:
-    return Reason.LEFT_TABLE.of(
-        f"stopped at t = {first.first:.9g} s: the table '{first.label}' of '{first.element}' was left (beyond: error): its "
-        f"argument passes its {_end(first, int(first.beyond[1] > first.beyond[0]))}; expected more points, or another 'beyond'",
-        first.element,
-    )
+    return trajectory.stopped_after(int(np.searchsorted(trajectory.t, first.first, side="right")), first.refusal())
 
 
 def departure_notes(found: list[Departure]) -> Iterator[Note]:
@@ -129,13 +114,9 @@ def _notes(left: Departure) -> Iterator[Note]:
     values = [value for _, value in left.table.table]
     continued = float(curve(left.table)(np.array([reached]))[0])
     yield (EXTENDED if left.table.beyond else LEFT)(
-        left.element, label=left.label, duration=left.duration, first=left.first, reached=reached, end=_end(left, side),
+        left.element, label=left.label, duration=left.duration, first=left.first, reached=reached, end=left.end(side),
         beyond=left.beyond[side], continued=continued, least=min(values), greatest=max(values),
     )  # fmt: skip
-
-
-def _end(left: Departure, side: int) -> str:
-    return f"{('first', 'last')[side]} point at {left.extent[side]:.6g}"
 
 
 def _keeps_value(table: Table, side: int) -> bool:
@@ -212,7 +193,7 @@ def refuse_departure(system: System, t: float, q: np.ndarray, u: np.ndarray) -> 
     """Raise a SolverError if a state is outside a table with ``beyond: error``; names the table."""
     found = [*_at_states(system, np.array([t]), q[None], u[None]), *_of_time(system, t, t)]
     if first := refused_departure(found):
-        raise SolverError(_refusal(first))
+        raise SolverError(first.refusal())
 
 
 def _at_states(system: System, times: np.ndarray, q: np.ndarray, u: np.ndarray) -> Iterator[Departure]:

@@ -16,9 +16,10 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import ChatteringError, SolverError
 from ..model.settings import RunSettings
-from ..solve.events.chattering import Chattering
+from ..solve.engine import Reached
 from ..solve.events.native.parameters import INDISTINCT
-from ..solve.ida.native_engine import Reached
+from ..solve.ida.choice import driven
+from ..solve.ida.native_engine import NativeEngine
 from ..solve.integrator import Integrator
 from ..solve.radau.collocation import radau
 from ..solve.radau.radau import CONTROL, driven_by_radau
@@ -122,7 +123,7 @@ class Segment:
         return rows
 
 
-class Recorder(Integrator):
+class Recorder(Integrator[NativeEngine]):
     """Integrator that records its steps, which end at kinks of tables, as force derivatives are discontinuous there.
 
     Steps of `radau` are recorded at the nodes of its method of `STAGES` stages too. After a run that stopped because a
@@ -131,11 +132,11 @@ class Recorder(Integrator):
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
         self.nodes = radau(STAGES).nodes[:-1] if settings.solver == "radau" else np.empty(0)
-        if len(self.nodes):
-            super().__init__(dynamics, settings, CONTROL, memory="radau recorder", driver=driven_by_radau)
-        else:
-            super().__init__(dynamics, settings, memory="recorder")
-        self.engine.ida.watch.end_steps_at_kinks()
+        of_radau = CONTROL, "radau recorder", driven_by_radau
+        made = driven(dynamics, settings, *(of_radau if len(self.nodes) else (None, "recorder")))
+        super().__init__(dynamics, settings, made.engine)
+        self.equations = self.engine.equations
+        self.engine.watch.end_steps_at_kinks()
         self.segments: list[Segment] = []
         self.chatters = False
         self._numbers = 0
@@ -209,24 +210,15 @@ class Recorder(Integrator):
 
     def _accelerations(self, t: float, y: np.ndarray) -> np.ndarray:
         """Return the accelerations at a state."""
-        self.dynamics.state.q[:], self.dynamics.state.u[:] = self.split(y)
+        self.dynamics.state.q[:], self.dynamics.state.u[:] = self.engine.split(y)
         return self.dynamics.accelerate(t)[1].copy()
 
-    def _restarted(
-        self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
-    ) -> tuple[InitialValues, float]:
-        """Return consistent values for the segment, from which the engine starts once more."""
-        start, t = super()._restarted(q, u, before, t, ahead, chattering)
-        if start is None:
-            state = self.dynamics.state
-            values = state.q.copy(), state.u.copy(), state.a.copy(), state.lam.copy()
-            start = InitialValues(*values, (), self.dynamics.system.size)
-        return start, t
-
-    def _begin(self, start: InitialValues, t: float) -> None:
-        super()._begin(start, t)
+    def _started(self) -> None:
+        state = self.dynamics.state
+        values = state.q.copy(), state.u.copy(), state.a.copy(), state.lam.copy()
         if self.segments:
             self._end_before_the_jump(self.segments[-1])
+        start = InitialValues(*values, (), self.dynamics.system.size)
         self.segments.append(Segment(start, self.engine.present(), places=len(self.nodes)))
 
     def _end_before_the_jump(self, segment: Segment) -> None:
@@ -248,7 +240,7 @@ class Recorder(Integrator):
         """Copy a recorded y, or its change, into a state or a direction: coordinates, velocities and solved multipliers."""
         lam = self.equations.at["lam"]
         solved = lam != ABSENT
-        into.q[:], into.u[:] = self.split(y)
+        into.q[:], into.u[:] = self.engine.split(y)
         into.lam[solved] = y[lam[solved]]
 
     def _sides(self, segment: Segment, t: float, y: np.ndarray) -> list[int]:

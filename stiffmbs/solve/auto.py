@@ -23,17 +23,18 @@ from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..tuning import tuned
-from . import bdf
 from .cost import COSTS, ImplicitCost, of_explicit_step, of_kernels
+from .engine import Reached
 from .error_control.tolerances import absolute_tolerances
 from .events.restart import restarted
 from .explicit import DOP853
-from .explicit.adaptive import AdaptiveRun, Leaving
+from .explicit.adaptive import AdaptiveSteps
 from .explicit.integration import Integration
 from .explicit.stable_step import NOT_ASKED, Rates, rates_at
+from .ida.choice import driven
 from .ida.native.parameters import LOOP
-from .ida.native_engine import Reached
-from .integrator import Integrator, driven
+from .ida.native_engine import NativeEngine
+from .integrator import E, Integrator, integrated
 from .radau import radau
 from .reasons import Reason
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory, in_common, unwatched
@@ -161,7 +162,8 @@ class Implicit:
         """Change to an integrator, without steps at first; it stays to the end of the run if it is `final`."""
         self.name, self._final = name, final
         self.cost, self.growth, self.start = self._estimated(name or "bdf", final)
-        vars(self).pop("integrator", None)
+        for made in ("integrator", "engine"):
+            vars(self).pop(made, None)
 
     def choose(self, rates: Rates, explicit_steps: float, pieces: int) -> None:
         """Choose the integrator by the rates of the motion about a state, unless its linear solver is chosen.
@@ -191,22 +193,27 @@ class Implicit:
         return self._dynamics.kept(f"costs of {name}, {final}", self._settings, estimated)
 
     @cached_property
-    def integrator(self) -> Integrator:
+    def integrator(self) -> Integrator[NativeEngine]:
         """The integrator, without steps at first."""
-        return Integrator(self._dynamics, self._settings, **_driver(self.name))
+        return Integrator(self._dynamics, self._settings, self.engine)
+
+    @cached_property
+    def engine(self) -> NativeEngine:
+        """Its engine."""
+        return driven(self._dynamics, self._settings, **_driver(self.name)).engine
 
     def steps(self, t: float) -> Counted:
         """Return the steps of all segments, the last of which has reached the time t."""
-        if not self.integrator.steps():
+        if not self.integrator.engine.steps():
             return Counted(t, 0.0)
         counted = self.integrator.statistics()
         cost = self.cost.work(int(counted["residuals"]), int(counted["factorizations"]))
-        long = self.integrator.steps() if self.name == "radau" else 0
+        long = self.engine.steps() if self.name == "radau" else 0
         return Counted(t, cost, restarts=int(counted["breakpoints"]) + int(counted["events"]), long=long)
 
 
 def _driver(name: str) -> dict[str, Any]:
-    """Return how an integrator is driven (`stiffmbs.solve.integrator.driven`)."""
+    """Return how an integrator is driven (`stiffmbs.solve.ida.choice.driven`)."""
     return radau.driver() if name == "radau" else {}
 
 
@@ -219,7 +226,7 @@ class ImplicitCheck:
 
     def __init__(self, run: _AutoRun, t: float) -> None:
         self._run, self._implicit = run, run.implicit
-        self._counted, self._begun = self._implicit.steps(t), self._implicit.integrator.steps()
+        self._counted, self._begun = self._implicit.steps(t), self._implicit.engine.steps()
         self.rate, self.loss = np.inf, 0.0
         self._intervals: deque[Interval] = deque(maxlen=3)
         self._wait()
@@ -227,7 +234,7 @@ class ImplicitCheck:
     def __call__(self, reached: Reached) -> bool:
         """Add the loss since the last check; return True if the implicit integrator is kept."""
         t, run = reached.t, self._run
-        if self._implicit.integrator.steps() < self._next or t <= self._counted.time or run.is_breakpoint(t):
+        if self._implicit.engine.steps() < self._next or t <= self._counted.time or run.is_breakpoint(t):
             return True  # an event between two checks
         counted = self._implicit.steps(t)
         taken, self._counted = counted.since(self._counted), counted
@@ -248,14 +255,14 @@ class ImplicitCheck:
 
     def _wait(self) -> float:
         """Set the next check, before which average steps do not exceed the tolerable loss; return the remaining loss."""
-        integrator, run = self._implicit.integrator, self._run
+        engine, run = self._implicit.engine, self._run
         ahead = run.explicit_cost(run.remaining(self._counted.time), 0)
         left = max(self._implicit.start, AUTO.trial_loss * ahead) - self.loss
-        taken = integrator.steps() - self._begun
+        taken = engine.steps() - self._begun
         steps = min(left / self._implicit.cost.step, LOOP.most_steps)
         every = max(int(steps), int(AUTO.check_interval * taken), 1)
-        self._next = integrator.steps() + every
-        integrator.engine.ida.pause_after(every)
+        self._next = engine.steps() + every
+        engine.ida.pause_after(every)
         return left
 
 
@@ -327,47 +334,53 @@ class _AutoRun:
 
     def _explicit_segment(self, start: InitialValues, t: float) -> _Left | None:
         """Integrate explicitly from t; return the state at which implicit steps are to follow, or None at the end of the run."""
-        run = AdaptiveRun(DOP853, self._dynamics, start, self._rest(t), self._settings, self._watch)
-        before, counted = self._dynamics.state.evaluations, Counted(t, 0.0)
+        grid, settings, dynamics = self._rest(t), self._settings, self._dynamics
+        engine = AdaptiveSteps(
+            DOP853, dynamics, start, grid, settings, first=max(int(self.implicit.start / self.explicit_step), 1)
+        )
+        work, before, counted = engine.work, dynamics.state.evaluations, Counted(t, 0.0)
 
-        def leaves(work: Integration) -> bool:
-            """Compare the steps since the last check with the implicit integrator; return True if that is to follow."""
+        def stays(reached: Reached) -> bool:
+            """Compare the steps since the last check with the implicit integrator; return False if that is to follow."""
             nonlocal counted
             accepted, last = work.count("steps"), counted
-            if accepted == last.accepted:  # a return at output points only
-                return False
+            if not engine.due or accepted == last.accepted:  # a return at output points only
+                return True
             accelerations = work.count("accelerations")
-            others = self._dynamics.state.evaluations - before - accelerations  # such as those of event functions
+            others = dynamics.state.evaluations - before - accelerations  # such as those of event functions
             spent = self.explicit_step * accelerations / DOP853.stages + self._evaluation * others
             counted = Counted(work.t, spent, accepted, work.count("stiff_steps"))
             steps = counted.since(last)
             if NOT_ASKED < work.stable < work.h:  # the bound keeps the steps shorter than those counted as limited
                 steps = steps._replace(limited=steps.accepted)
-            return self._returns(steps, work.t) or self._tries_later(steps, counted, work)
+            return not (self._returns(steps, work.t) or self._tries_later(steps, counted, work))
 
-        trajectory = run.integrate(Leaving(max(int(self.implicit.start / self.explicit_step), 1), leaves))
-        stopped = trajectory.outcome is Outcome.STOPPED
-        if run.left and stopped and not has_fault(self._dynamics.system):
+        integrator = Integrator(dynamics, settings, engine)
+        trajectory = engine.ended(integrated(integrator, start, grid, self._watch, stays))
+        if engine.failed and trajectory.outcome is Outcome.STOPPED and not has_fault(dynamics.system):
             raise _ExplicitFailure(trajectory.message)
-        self._segments.append(replace(trajectory, solver=EXPLICIT))
-        if stopped or not run.left:
-            return None
-        return _Left(run.work.t, run.work.q.copy(), run.work.u.copy())
+        return self._left(integrator, replace(trajectory, solver=EXPLICIT))
 
     def _implicit_segment(self, start: InitialValues, t: float) -> _Left | None:
         """Integrate with the implicit integrator from t; return the state at which explicit steps follow, or None at the end of the run."""
         integrator = self.implicit.integrator
         check = ImplicitCheck(self, t)
-        trajectory = bdf.integrated(integrator, start, self._rest(t), self._watch, check)
-        self._segments.append(replace(trajectory, solver=self.implicit.name))
+        trajectory = integrated(integrator, start, self._rest(t), self._watch, check)
+        left = self._left(integrator, replace(trajectory, solver=self.implicit.name))
+        if left:
+            self._implicit_rate = check.rate
+            self._penalty = max(self.implicit.start + check.loss, 2.0 * self._penalty)
+            self._messages.append(
+                f"projected again from t = {left.t:.4g} s on (the steps of {self.implicit.name} had become too short)"
+            )
+        return left
+
+    def _left(self, integrator: Integrator[E], segment: Trajectory) -> _Left | None:
+        """Append a segment; return the state at which it was left, or None at the end of the run."""
+        self._segments.append(segment)
         reached = integrator.reached
-        if trajectory.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
+        if segment.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
             return None
-        self._implicit_rate = check.rate
-        self._penalty = max(self.implicit.start + check.loss, 2.0 * self._penalty)
-        self._messages.append(
-            f"projected again from t = {reached.t:.4g} s on (the steps of {self.implicit.name} had become too short)"
-        )
         return _Left(reached.t, *integrator.on_constraints(reached))
 
     def _rerun_with_bdf(self, start: InitialValues, stopped: Trajectory) -> None:
@@ -380,7 +393,7 @@ class _AutoRun:
 
     def _rerun_implicit(self, start: InitialValues, cause: str) -> None:
         """Integrate the whole run with the implicit integrator."""
-        trajectory = bdf.integrated(self.implicit.integrator, start, self._grid, self._watch)
+        trajectory = integrated(self.implicit.integrator, start, self._grid, self._watch)
         self._segments = [replace(trajectory, solver=self.implicit.name)]
         self._messages = [f"{self.implicit.name}, because {cause}"]
 

@@ -1,56 +1,39 @@
-"""IDA over the pieces of a run, restarted at breakpoints and events."""
+"""Runs in segments, from breakpoint to breakpoint and from event to event, by any engine."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..model.settings import RunSettings
-from .error_control.error_test import CHOSEN, ErrorControl
+from .engine import Engine, Reached
 from .events.chattering import Chattering, HoveringEvents
 from .events.discontinuity import Jumps
 from .events.native.parameters import SEARCH
-from .events.refusals import refuse_beyond_limits
-from .events.restart import restarted, straight_on
-from .events.whole_steps import WholeSteps
-from .ida.choice import Driven, driven_natively
+from .events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
+from .events.restart import straight_on
 from .ida.native.parameters import LOOP
-from .ida.native_engine import Reached
+from .step_logging import is_logged, log_step
 from .stiff_rows import States, projected
-from .trajectory import Grid, just_after
+from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory, just_after
 
-Driver = Callable[[Dynamics, RunSettings, ErrorControl], Driven]
-
-
-def driven(
-    dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf",
-    driver: Driver = driven_natively,
-) -> Driven:  # fmt: skip
-    """Return the equations with their engine, which the dynamics keep under the name `memory`."""
-    chosen = control or CHOSEN[dynamics.system.of_body.dimensions]
-    return dynamics.kept(memory, (settings, chosen), lambda: driver(dynamics, settings, chosen))
+E = TypeVar("E", bound=Engine)
 
 
-class Integrator:
-    """IDA over the pieces of a run, from breakpoint to breakpoint and from event to event.
+class Integrator(Generic[E]):
+    """An engine over the segments of a run, restarted at breakpoints and events.
 
-    `memory`: name under which the dynamics keep the engine for the next integrator of that name. `driver`: returns the
-    equations, their engine and the cost of its linear solver. `reached`: last return of the engine.
+    `reached`: last return of the engine.
     """
 
-    def __init__(
-        self, dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf",
-        driver: Driver = driven_natively,
-    ) -> None:  # fmt: skip
-        self.control = control or CHOSEN[dynamics.system.of_body.dimensions]
-        self.dynamics, self.settings = dynamics, settings
+    def __init__(self, dynamics: Dynamics, settings: RunSettings, engine: E) -> None:
+        self.dynamics, self.settings, self.engine = dynamics, settings, engine
         self.reached: Reached | None = None
-        found = driven(dynamics, settings, control, memory, driver)
-        self.equations, self.engine = found.equations, found.engine
-        self.engine.forget()
+        engine.forget()
         self._jumps = Jumps(dynamics, settings)
         self._of_inputs = ""
         self._events = self._breakpoints = 0
@@ -59,14 +42,9 @@ class Integrator:
         """Return the notes on inputs, velocity jumps and the engine."""
         return "; ".join(filter(None, (self._of_inputs, self._jumps.sentence(), self.engine.note())))
 
-    def split(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return q and u of a vector of unknowns."""
-        (q,), (u,) = self.equations.states(y[None, self.equations.independent])
-        return q, u
-
     def on_constraints(self, reached: Reached) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u that were reached; those after a long step are projected without a change of stiff forces."""
-        state, last = self.split(reached.y), self.engine.last_step()
+        state, last = self.engine.split(reached.y), self.engine.last_step()
         return self.closed(reached.t, state, last[0]) if last else state
 
     def closed(self, t: float, state: States, step: float) -> States:
@@ -81,70 +59,67 @@ class Integrator:
         t = grid.start
         self._jumps.clear()
         features = self.dynamics.input_features(grid.start, grid.end)
-        self.engine.ida.see_inputs(features, grid.end - grid.start)
+        self.engine.begin_run(features, grid)
         self._of_inputs = features.note
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
         self._hovering = HoveringEvents(self.dynamics, chattering, self.settings.rtol)
-        ready: InitialValues | None = start
-        self.engine.resume_after(2.0 * grid.aside)
         stops = [*(grid.with_stops(features.breakpoints) - grid.aside).tolist(), grid.end]
+        begun = False
         while stops:
             if just_after(t) >= stops[0]:
                 del stops[0]
                 continue
-            if ready:
-                refuse_beyond_limits(self.dynamics, t, ready.q, ready.u)
-                self._begin(ready, t)
-                chattering.begin(t, ready.q, ready.u)
-            for reached in self._segment(t, stops[: LOOP.most_passed if passing else 1], grid):
+            if not begun:
+                begun = True
+                refuse_beyond_limits(self.dynamics, t, start.q, start.u)
+                self.engine.watch.watch_for(self._hovering.band)
+                self.engine.begin_at(start, t)
+                self._started()
+                chattering.begin(t, start.q, start.u)
+            ahead = stops[: LOOP.most_passed if passing else 1]
+            times = None if grid.times is None else grid.within(just_after(t), ahead[-1])
+            for reached in self.engine.advance(times, ahead):
                 del stops[: reached.passed]
                 self._breakpoints += reached.passed
                 yield reached if not reached.failure else self._explained(reached)
                 if reached.t < stops[0] and not (reached.fired or reached.failure):
-                    chattering.look(reached.t, *self.split(reached.y), self.steps())
+                    chattering.look(reached.t, *self.engine.split(reached.y), self.engine.steps())
             if reached.failure:
                 return
             if reached.t < stops[0]:
-                chattering.note_event(reached.t, *self.split(reached.y), reached.fired[0] if reached.fired else -1)
+                chattering.note_event(
+                    reached.t, *self.engine.split(reached.y), reached.fired[0] if reached.fired else -1
+                )
             before = t = reached.t
             if t < grid.end:
                 q, u = self.on_constraints(reached)
                 if self._hovering.any:
-                    self._hovering.note(t, q, u, reached.fired, self.engine.ida.watch.farthest)
+                    self._hovering.note(t, q, u, reached.fired, self.engine.watch.farthest)
                 at_breakpoint = t >= stops[0]
                 if at_breakpoint:
                     before = t = t + 2.0 * grid.aside
                     yield from self._at_once(reached.t, t, grid, (q, u))
                     q = self.dynamics.system.of_body.moved(q, 2.0 * grid.aside * u)
-                ready, t = self._restarted(q, u, before, t, self._ahead(reached, stops[0]), chattering)
+                t = self._restarted(q, u, t, self._ahead(reached, stops[0]), chattering)
                 if not at_breakpoint:
                     state = self.dynamics.state
                     yield from self._at_once(before, t, grid, (state.q, state.u))
                 self._events += not at_breakpoint
                 self._breakpoints += at_breakpoint
 
-    def _begin(self, start: InitialValues, t: float) -> None:
-        self.engine.ida.watch.watch_for(self._hovering.band)
-        self.engine.begin_at(start, t)
-
-    def _restarted(
-        self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
-    ) -> tuple[InitialValues | None, float]:
-        """Restart at t from a state reached at `before`, past events within `ahead`.
-
-        Return consistent values to start from, or None if the engine has restarted, and their time. Raises SolverError if
-        there are none.
-        """
-        self.engine.ida.watch.watch_for(self._hovering.band)
-        begun = self.engine.begin_restart(q, u, t, ahead)
-        if begun is None:  # a force is beyond its limits, unless this raises
-            return restarted(self.dynamics, t, q, u), t
-        state = self.dynamics.state
+    def _restarted(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float, chattering: Chattering) -> float:
+        """Restart at t from a state, past events within `ahead`; return the time of the start."""
+        self.engine.watch.watch_for(self._hovering.band)
+        begun, state = self.engine.begin_restart(q, u, t, ahead), self.dynamics.state
+        self._started()
         if begun.jumps:
-            self._note_jump(before, q, u, ahead > 0.0)
+            self._note_jump(t, q, u, ahead > 0.0)
         if begun.meets:
             chattering.begin(begun.t, state.q.copy(), state.u.copy())
-        return None, begun.t
+        return begun.t
+
+    def _started(self) -> None:
+        """Do nothing more at a start, whose values are those of the current state."""
 
     def _note_jump(self, before: float, q: np.ndarray, u: np.ndarray, event: bool) -> None:
         """Note a jump at a restart; the current state is that after it.
@@ -176,34 +151,59 @@ class Integrator:
         ahead = straight_on(reached.t, last[0], self.settings.rtol) if last else 0.0
         return ahead if just_after(reached.t + ahead) < stop else 0.0
 
-    def steps(self) -> int:
-        """Return the number of steps so far."""
-        return self.engine.steps()
-
-    def whole_steps(self) -> tuple[WholeSteps, ...]:
-        """Return the steps that are to be checked after the run."""
-        kept = self.engine.ida.whole_steps.kept()
-        return (WholeSteps.of(self.dynamics, self.equations, *kept),) if len(kept[0]) else ()
-
     def _explained(self, reached: Reached) -> Reached:
         """Replace a failure by one that names the chattering force, if there is one."""
-        jumping = self._hovering.failed(reached.t, *self.split(reached.y))
+        jumping = self._hovering.failed(reached.t, *self.engine.split(reached.y))
         return reached._replace(failure=jumping or reached.failure)
-
-    def _segment(self, t: float, stops: list[float], grid: Grid) -> Iterator[Reached]:
-        """Integrate from t to the first stop or past it, or to the first event."""
-        if grid.times is None:
-            return self.engine.by_steps(stops[0])
-        return self.engine.to_times(grid.within(just_after(t), stops[-1]), stops)
 
     def _at_once(self, before: float, t: float, grid: Grid, state: States) -> Iterator[Reached]:
         """Yield a state for output times from `before`, excluded, to t, up to rounding such as that of 7 * 0.1 s."""
         times = grid.within(before, just_after(t))
         if len(times):
-            y = np.zeros(self.equations.n)
-            y[self.equations.independent] = self.equations.coordinates.state(*state)
-            yield Reached(times, np.tile(y[self.equations.independent], (len(times), 1)), t, y)
+            row, y = self.engine.unknowns(*state)
+            yield Reached(times, np.tile(row, (len(times), 1)), t, y)
 
     def statistics(self) -> dict[str, int | float | str]:
-        """Return the linear solver, IDA's counters, and the numbers of restarts at breakpoints and events."""
+        """Return the counters of the engine, and the numbers of restarts at breakpoints and events."""
         return {**self.engine.statistics(), "breakpoints": self._breakpoints, "events": self._events}
+
+
+def integrated(
+    integrator: Integrator[E],
+    start: InitialValues,
+    grid: Grid,
+    watch: ProgressCallback,
+    pays: Callable[[Reached], bool] | None = None,
+) -> Trajectory:
+    """Integrate with an integrator that may be reused; the contract is in `stiffmbs.solve.trajectory`.
+
+    `pays`: called after each return of the engine. The run ends at `integrator.reached` when it returns False.
+    """
+    engine, rows = integrator.engine, Rows.of(integrator.dynamics.system, grid)
+    rows.append(grid.start, start.q, start.u)
+    with Ending() as ending:
+        for reached in integrator.run(start, grid, passing=not is_logged()):
+            # multipliers are in no error test: those of the output times follow from the accelerations at q and u
+            rows.extend(reached.times, *engine.states(reached.rows))
+            if is_logged() and (step := engine.last_step()):
+                log_step(reached.t, *step)
+            watch(reached.t)
+            grid.look(rows)
+            engine.watch.refuse_departures()
+            integrator.reached = reached
+            engine.refuse(reached, grid)
+            if pays and not pays(reached):
+                break
+            if reached.t < grid.end and engine.steps() >= DIVERGENCE.followed_steps:
+                refuse_beyond_sense(integrator.dynamics, rows, reached.t, *engine.split(reached.y))
+    return Trajectory(
+        *rows.stored,
+        ending.outcome,
+        ending.message,
+        {**integrator.statistics(), "seconds": ending.seconds},
+        engine.history(),
+        integrator.note(),
+        whole_steps=engine.whole_steps(),
+        recorded=tuple(filter(None, [engine.recorded()])),
+        departures=engine.watch.departures(),
+    )

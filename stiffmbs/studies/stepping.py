@@ -18,13 +18,15 @@ from ..dynamics.native.parameters import CONSISTENCY
 from ..errors import SolverError
 from ..results.joint_coordinates import JointCoordinates
 from ..solve import SOLVERS
+from ..solve.bdf import bdf_integrator
+from ..solve.engine import Reached
 from ..solve.events.restart import restarted
 from ..solve.explicit.fixed import MANY_IN_LOOP, ONE_IN_LOOP, failed, solve_with_fixed_steps, steps_between
 from ..solve.explicit.integration import Integration
 from ..solve.explicit.projected import scheme_of
-from ..solve.ida.native_engine import Reached
+from ..solve.ida.native_engine import NativeEngine
 from ..solve.integrator import Integrator
-from ..solve.radau.radau import driver, radau_integrator
+from ..solve.radau.radau import radau_integrator
 from ..solve.settings import traits_of
 from ..solve.stiff_rows import lengths_of_steps, projected
 from ..solve.trajectory import Grid, Outcome, just_after, just_before
@@ -57,7 +59,7 @@ class StartedSteps:
 
     def __init__(self, job: Job, q: np.ndarray, u: np.ndarray) -> None:
         self._dynamics, self._q, self._u = job.dynamics, q, u
-        self._integrator = Integrator(job.dynamics, job.settings, **driver("starts"))
+        self._integrator = radau_integrator(job.dynamics, job.settings, "starts")
         self._engine = self._integrator.engine
         self._features: InputFeatures | None = None
 
@@ -83,10 +85,10 @@ class StartedSteps:
         start = restarted(self._dynamics, t, self._q, self._u)
         for reached in self._integrator.run(start, Grid(t, end, np.array([end]))):
             last = sound(self._integrator, reached)
-        self._q[:], self._u[:] = self._integrator.split(last.y)
+        self._q[:], self._u[:] = self._engine.split(last.y)
 
 
-def sound(integrator: Integrator, reached: Reached) -> Reached:
+def sound(integrator: Integrator[NativeEngine], reached: Reached) -> Reached:
     """Return the state that an integrator has reached. Raises SolverError if the integrator fails."""
     integrator.reached = reached
     if reached.failure:
@@ -125,7 +127,7 @@ class Stepper(Protocol):
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
     """Return a stepper: by the steps of bdf, radau or a scheme of fixed steps; by short runs otherwise, or with sampled states."""
-    made = {"bdf": Integrator, "radau": radau_integrator}.get(job.settings.solver)
+    made = {"bdf": bdf_integrator, "radau": radau_integrator}.get(job.settings.solver)
     if job.dynamics.system.sampled.any():
         return ShortRuns(job, start, t)
     if made is not None:
@@ -140,7 +142,7 @@ class ImplicitSteps:
     starts if they do not. `t`: time, s.
     """
 
-    def __init__(self, job: Job, integrator: Integrator, start: InitialValues, t: float) -> None:
+    def __init__(self, job: Job, integrator: Integrator[NativeEngine], start: InitialValues, t: float) -> None:
         self._job, self._dynamics, self._integrator = job, job.dynamics, integrator
         self._engine, self._changes = integrator.engine, self._dynamics.input_changes
         self._one_step = job.settings.solver == "radau"
@@ -209,7 +211,7 @@ class ImplicitSteps:
 
     def _at(self, t: float) -> tuple[np.ndarray, np.ndarray]:
         """Return q and u at a time within the last step; no error test of radau sees the drift of its polynomial."""
-        (q,), (u,) = self._integrator.equations.states(self._engine.ida.reported_at(t)[None])
+        (q,), (u,) = self._engine.states(self._engine.ida.reported_at(t)[None])
         return projected(self._dynamics, t, (q, u), self._last_step()) if self._one_step else (q, u)
 
     def jump(self) -> None:

@@ -20,7 +20,7 @@ from stiffmbs.model.model_data import ModelData
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import cost
-from stiffmbs.solve.integrator import driven
+from stiffmbs.solve.ida.choice import driven
 from stiffmbs.solve.subsystems import Subsystem
 
 from .drives import CARS

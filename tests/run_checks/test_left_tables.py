@@ -160,7 +160,7 @@ def test_a_run_stops_where_a_table_with_error_is_left(solver: str) -> None:
     assert timed.time[-1] == pytest.approx(0.2, abs=1e-9)
 
 
-@pytest.mark.parametrize("solver", ["bdf", "radau"])
+@pytest.mark.parametrize("solver", ["bdf", "radau", "projected", "auto"])
 def test_steps_end_soon_after_a_table_with_error_is_left(solver: str) -> None:
     """They went on to the end of the run, which was then refused."""
     seen: list[float] = []

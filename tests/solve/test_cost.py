@@ -4,7 +4,7 @@ import pytest
 
 from stiffmbs.analyses.job import prepare
 from stiffmbs.solve.cost import of_explicit_step
-from stiffmbs.solve.integrator import driven
+from stiffmbs.solve.ida.choice import driven
 from stiffmbs.solve.radau.radau import driver, of_radau
 from tests.bench.costs import SCENES
 

@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import simulation
-from stiffmbs.solve.ida.starting.after_event import EventRestarts
+from stiffmbs.solve.ida.starting.starts import Starts
 from stiffmbs.studies.stepping import STEPPING, ImplicitSteps, StartedSteps
 
 TOP = """
@@ -41,16 +41,16 @@ def stepped(scene, name, value, settings, steps=40):
 def test_compiled_starts_give_the_states_of_starts_by_python(case, examples, monkeypatch):
     source, name, value, settings = CASES[case]
     scene = stiffmbs.read_scene(source) if "\n" in source else stiffmbs.load_scene(examples / source)
-    done, advance = [], EventRestarts.advance
+    done, advance = [], Starts.advance
 
     def counted(*arguments):
         done.append(advance(*arguments))
         return done[-1]
 
-    monkeypatch.setattr(EventRestarts, "advance", counted)
+    monkeypatch.setattr(Starts, "advance", counted)
     found = stepped(scene, name, value, settings)
     assert sum(done) > 25, "starts that were compiled"
-    monkeypatch.setattr(EventRestarts, "advance", lambda *arguments: False)
+    monkeypatch.setattr(Starts, "advance", lambda *arguments: False)
     expected = stepped(scene, name, value, settings)  # by other first steps
     np.testing.assert_allclose(found, expected, atol=5e-8 * max(1.0, np.abs(found).max()), rtol=0)
 

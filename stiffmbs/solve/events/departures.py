@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 
 from ...compile.system import System
 from ...compile.written_values import table_arguments
+from ...notes import Note
 from ...reading.table import Table
+from ..reasons import Reason
 
 ROUNDING = 1e-9
 """Distance from the points of a table, relative to their range, that is no departure."""
@@ -45,6 +47,18 @@ class Departure:
         first, last = self.extent
         return max(self.beyond) > ROUNDING * (last - first)
 
+    def end(self, side: int) -> str:
+        """Return the first (0) or last (1) point in words."""
+        return f"{('first', 'last')[side]} point at {self.extent[side]:.6g}"
+
+    def refusal(self) -> Note:
+        """Return the reason why a run ends where the table is left."""
+        return Reason.LEFT_TABLE.of(
+            f"stopped at t = {self.first:.9g} s: the table '{self.label}' of '{self.element}' was left (beyond: error): its "
+            f"argument passes its {self.end(int(self.beyond[1] > self.beyond[0]))}; expected more points, or another 'beyond'",
+            self.element,
+        )
+
 
 def departures(system: System, found: Iterable[Sequence[float]]) -> tuple[Departure, ...]:
     """Return the departures from the lowest and highest value, time outside, and first time of each argument of a law."""
@@ -55,6 +69,12 @@ def departures(system: System, found: Iterable[Sequence[float]]) -> tuple[Depart
         if table is not None
     )
     return tuple(departure for departure in each if departure.matters)
+
+
+def refused_departure(found: Iterable[Departure]) -> Departure | None:
+    """Return the first departure from a table with ``beyond: error``, or None."""
+    errors = (each for each in found if each.table.beyond == "error")
+    return min(errors, key=lambda each: each.first, default=None)
 
 
 def merged(parts: Iterable[Departure]) -> Iterator[Departure]:

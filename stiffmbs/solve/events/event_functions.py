@@ -14,7 +14,7 @@ from ...compile.written_values import writer
 from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
 from .chattering import CHATTERING
-from .departures import Departure, departures
+from .departures import Departure, departures, refused_departure
 from .native.layouts import ALWAYS, EVENT_SEARCH, STEP_BOUND
 from .whole_steps import WHOLE
 
@@ -118,10 +118,10 @@ class EventSearch:
         found = zip(*(values[self.n_event_functions :].tolist() for values in self._extent.values()), strict=True)
         return departures(self._system, found)
 
-    def refuse_departures(self, t: float) -> None:
-        """Raise a SolverError if the steps up to t have left a table with ``beyond: error``."""
-        if left := [each for each in self.departures() if each.table.beyond == "error"]:
-            raise SolverError(f"stopped at t = {t:.9g} s: the table '{left[0].label}' of '{left[0].element}' was left")
+    def refuse_departures(self) -> None:
+        """Raise a SolverError if the steps so far have left a table with ``beyond: error``."""
+        if (left := self.departures()) and (first := refused_departure(left)):
+            raise SolverError(first.refusal())
 
     def note(self) -> str:
         """Return a sentence on a periodic law with more periods than steps; empty if there is none."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...compile.inputs.features import InputFeatures
 from ...compile.machine.native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED, UNSTABLE
 from ...dynamics.algebraic_states import no_value_ahead
 from ...dynamics.dynamics import Dynamics
@@ -15,14 +15,14 @@ from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
-from ..events.chattering import Chattering, HoveringEvents
-from ..events.discontinuity import Jumps
-from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
+from ..engine import Begun, Engine, Reached
+from ..events.refusals import refuse_beyond_limits
 from ..events.restart import restarted
+from ..events.whole_steps import WholeSteps
 from ..reasons import OF_STATUS, Reason
-from ..step_logging import is_logged, log_step
+from ..stiff_rows import States
 from ..suspect import suspect
-from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
+from ..trajectory import Grid, History, Outcome, Trajectory
 from .integration import REASONS, Integration, stiff_sentence
 from .native.parameters import CONTROL
 from .rounding import Rounding
@@ -42,174 +42,138 @@ class CheckParameters:
 CHECKS = tuned("explicit_checks", CheckParameters())
 
 
-class Leaving(NamedTuple):
-    """Condition for leaving a run to another solver: the first check, in steps of a segment, and the criterion."""
+class AdaptiveSteps(Engine):
+    """Engine of an embedded scheme.
 
-    first: int
-    pays: Callable[[Integration], bool]
-
-
-class AdaptiveRun:
-    """Integration with an embedded scheme, from breakpoint to breakpoint and from event to event.
-
-    Output times do not bound the steps; the states there come from the scheme's interpolant. Steps end at breakpoints
-    in time and at events of force laws (a contact closes). Other features of the inputs, which long steps of a motion
-    at rest would miss, bound them too. `left`: true if the run was left to another solver or failed.
+    Output times do not bound the steps; the states there come from the scheme's interpolant. Features of the inputs, which
+    long steps of a motion at rest would miss, bound them. `first`: steps of a segment up to the first check whether
+    another solver is to follow, if one may. `due`: True where such a check is due. `failed`: True after a failure of steps, which
+    another solver may take.
     """
 
     def __init__(
-        self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
+        self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, first: int | None = None
     ) -> None:  # fmt: skip
-        self.work = work = Integration(scheme, dynamics, start, grid, settings)
-        self.left = False
-        self._scheme, self._dynamics, self._start, self._grid = scheme, dynamics, start, grid
-        self._settings, self._watch = settings, watch
-        self._rows = Rows.of(dynamics.system, grid)
-        if grid.times is None:
-            self._rows.append(grid.start, start.q, start.u)
-        features = dynamics.input_features(grid.start, grid.end)
-        self._breakpoints, self._note = grid.with_stops(features.breakpoints), features.note
-        self._aside = grid.aside
-        work.step_bound.follow(features)
+        self.work = Integration(scheme, dynamics, start, grid, settings)
+        self.watch, self.due, self.failed = self.work.watch, False, False
+        self._scheme, self._dynamics, self._settings, self._end = scheme, dynamics, settings, grid.end
+        self._first, self._may_leave = min(first or self.work.capacity, self.work.capacity), first is not None
         self._stable_step = StableStep(scheme, dynamics)
-        self._jumps = Jumps(dynamics, settings)
-        self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
-        self._hovering = HoveringEvents(dynamics, self._chattering, settings.rtol)
         self._rounding = Rounding(dynamics, settings.rtol, grid.start, grid.end)
+        self._status, self._events = AT_END, 0
         self._begun = 0  # steps before the current segment
 
-    def integrate(self, leaving: Leaving | None = None) -> Trajectory:
-        """Integrate to the end, or until the run is left; the contract is in `stiffmbs.solve.trajectory`."""
-        work, status = self.work, AT_END
-        with Ending() as ending:
-            for breakpoint in (*self._breakpoints.tolist(), self._grid.end):
-                stop, status = breakpoint - self._aside if breakpoint < self._grid.end else breakpoint, AT_EVENT
-                while status == AT_EVENT and not self.left:
-                    status = self._segment(stop, leaving)
-                if status < 0 or self.left or breakpoint == self._grid.end:
-                    break
-                self._go_past(breakpoint)
-        if ending.outcome is Outcome.STOPPED:
-            self._store_rows()
-        if status < 0:
-            self.left = True
-            ending.stop(OF_STATUS[status].of(f"stopped at t = {work.t:.9g} s: {self._reason(status)}"))
-        elif work.count("stiff_steps") > CONTROL.stiff_part * work.count("steps"):
-            message = f"{ending.message}; {stiff_sentence(work)}"
-            ending.message = Reason.STIFF.of(message) if ending.outcome is Outcome.STOPPED else message
-        history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
-        statistics = {**self._statistics(), "seconds": ending.seconds}
-        note = "; ".join(filter(None, (self._note, self._jumps.sentence(), self.work.watch.note())))
-        return Trajectory(
-            *self._rows.stored,
-            ending.outcome,
-            ending.message,
-            statistics,
-            history,
-            note,
-            whole_steps=self.work.whole_steps(),
-            departures=self.work.watch.departures(),
-        )
+    def begin_run(self, features: InputFeatures, grid: Grid) -> None:
+        """See `Engine`."""
+        self.work.step_bound.follow(features)
 
-    def _reason(self, status: int) -> str:
-        state = self.work.t, self.work.q.copy(), self.work.u.copy()
-        missing = no_value_ahead(self._dynamics, *state) if status == NO_STATE else ""
-        return missing or REASONS[status] + suspect(self._dynamics, *state)
+    def begin_at(self, start: InitialValues, t: float) -> None:
+        """See `Engine`."""
+        self.work.t = t
+        self.work.begin(start)
 
-    def _segment(self, stop: float, leaving: Leaving | None) -> int:
-        """Integrate from consistent values to `stop`, to an event, or until the run is left; return the last status."""
-        work, advance, status = self.work, ADVANCE.call, PAUSED
-        most = min(leaving.first, work.capacity) if leaving else work.capacity
-        if work.count("steps") - self._begun <= CHECKS.now_and_then or self._events % CHECKS.now_and_then == 0:
-            self._chattering.begin(work.t, self._start.q, self._start.u)
-        self._begun = work.count("steps")
-        stable_step = self._stable_step
+    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun:
+        """See `Engine`. Steps end after an event. Only some restarts at events are checked for chattering forces."""
+        state, steps, at_event = self._dynamics.state, self.work.count("steps"), self._status == AT_EVENT
+        start = restarted(self._dynamics, t, q, u, self._settings.projection)
+        refuse_beyond_limits(self._dynamics, t, start.q, start.u)
+        self.begin_at(start, t)
+        self._events += at_event
+        meets = steps - self._begun <= CHECKS.now_and_then or self._events % CHECKS.now_and_then == 0
+        self._begun = steps
+        state.q[:], state.u[:] = start.q, start.u
+        return Begun(t, not at_event, meets)
+
+    def advance(self, times: np.ndarray | None, stops: Sequence[float]) -> Iterator[Reached]:
+        """See `Engine`."""
+        work, stable_step, most, self._status = self.work, self._stable_step, self._first, PAUSED
+        work.report_at(np.empty(0) if times is None else times)
         bounds = stable_step.begin(work, self._events)
-        look_at, held_at = self._looks(most, leaving) if bounds else (0, 0)
-        while status == PAUSED:
-            wait, held = most, self._held(most, leaving)
+        look_at, held_at = self._looks(most)
+        while self._status in (PAUSED, UNSTABLE):
+            wait, held = look_at - work.count("steps"), held_at - work.count("stiff_steps")
             if bounds:
-                wait = min(look_at - work.count("steps"), stable_step.wait(work))
-                held = min(held_at - work.count("stiff_steps"), stable_step.held(work))
-            status = advance(stop, wait, held, self._grid.times is None, work.at)
-            work.collect(self._rows)
-            if is_logged():
-                log_step(work.t, work.h)
-            self._watch(work.t)
-            self._grid.look(self._rows)
-            if work.t < self._grid.end and work.count("steps") >= DIVERGENCE.followed_steps:
-                refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u)
-            if status == UNSTABLE:
-                stable_step.ask(work, self._grid.end)
-                status = PAUSED
-                continue
-            if status == PAUSED:
-                self._chattering.look(work.t, work.q.copy(), work.u.copy(), work.count("steps"))
-                self._leave_to_rounding()
-                if bounds:
-                    stable_step.look(work, self._grid.end)
-                    if work.count("steps") < look_at and work.count("stiff_steps") < held_at and leaving:
-                        continue
-            most = min(2 * most, work.capacity) if leaving else most
-            if bounds:
-                look_at, held_at = self._looks(most, leaving)
-            if status == PAUSED and leaving and leaving.pays(work):
-                self.left = True
-                self._store_rows()
-                return status
-        if status == AT_EVENT and work.t < self._grid.end:
-            fired = work.fired()
-            self._hovering.note(work.t, work.q.copy(), work.u.copy(), fired, work.watch.farthest)
-            work.watch.watch_for(self._hovering.band)
-            self._restart()
-            self._events += 1
-            self._chattering.note_event(work.t, self._start.q, self._start.u, fired[0] if fired else -1)
-        return status
+                wait, held = min(wait, stable_step.wait(work)), min(held, stable_step.held(work))
+            self._status = ADVANCE.call(stops[0], wait, held, times is None, work.at)
+            reason = self._checked(bounds)
+            early = bounds and self._may_leave and work.count("steps") < look_at and work.count("stiff_steps") < held_at
+            self.due = self._status == PAUSED and not early
+            if self.due:
+                most = min(2 * most, work.capacity) if self._may_leave else most
+                look_at, held_at = self._looks(most)
+            fired = tuple(work.fired()) if self._status == AT_EVENT else ()
+            yield Reached(*work.collect(), work.t, work.y, fired)
+            if reason:
+                raise SolverError(reason)
 
-    def _leave_to_rounding(self) -> None:
-        """Stop if rounding errors limit the steps; another solver may continue."""
-        reason = self._rounding.look(self.work)
-        if reason:
-            self.left = True
-            raise SolverError(f"stopped at t = {self.work.t:.9g} s: {reason}")
+    def _checked(self, bounds: bool) -> str:
+        """Check the stability bound and the effect of rounding after a call; return why the run ends, or an empty string."""
+        work, reason = self.work, ""
+        if self._status == UNSTABLE:
+            self._stable_step.ask(work, self._end)
+        elif self._status == PAUSED:
+            if by_rounding := self._rounding.look(work):
+                reason = f"stopped at t = {work.t:.9g} s: {by_rounding}"
+            elif bounds:
+                self._stable_step.look(work, self._end)
+        elif self._status < 0:
+            state = work.t, work.q.copy(), work.u.copy()
+            missing = no_value_ahead(self._dynamics, *state) if self._status == NO_STATE else ""
+            sentence = missing or REASONS[self._status] + suspect(self._dynamics, *state)
+            reason = OF_STATUS[self._status].of(f"stopped at t = {work.t:.9g} s: {sentence}")
+        self.failed = bool(reason)
+        return reason
 
-    def _looks(self, most: int, leaving: Leaving | None) -> tuple[int, int]:
+    def _looks(self, most: int) -> tuple[int, int]:
         """Return the step count, and the count of steps limited by stability, at which the next check is due."""
-        return self.work.count("steps") + most, self.work.count("stiff_steps") + self._held(most, leaving)
+        return self.work.count("steps") + most, self.work.count("stiff_steps") + held(most, self._may_leave)
 
-    @staticmethod
-    def _held(most: int, leaving: Leaving | None) -> int:
-        """Return the number of steps limited by stability that makes an early check due."""
-        return max(1, most // CHECKS.now_and_then) if leaving else most
+    def states(self, rows: np.ndarray) -> States:
+        """See `Engine`."""
+        n_q = len(self.work.q)
+        return rows[:, :n_q], rows[:, n_q:]
 
-    def _go_past(self, breakpoint: float) -> None:
-        """Restart just after a breakpoint; output at it is the state before."""
-        self.work.t = min(breakpoint + self._aside, self._grid.end)
-        self._store_rows()
-        before = self._dynamics.system.of_body.moved(self.work.q, 2.0 * self._aside * self.work.u), self.work.u.copy()
-        self.work.q[:] = before[0]
-        self._restart()
-        self._dynamics.state.q[:], self._dynamics.state.u[:] = self._start.q, self._start.u
-        self._jumps.note(breakpoint, *before)
+    def split(self, y: np.ndarray) -> States:
+        """See `Engine`."""
+        n_q = len(self.work.q)
+        return y[:n_q].copy(), y[n_q:].copy()
 
-    def _restart(self) -> None:
-        """Restart from consistent values at the current time."""
-        work = self.work
-        self._start = restarted(self._dynamics, work.t, work.q, work.u, self._settings.projection)
-        refuse_beyond_limits(self._dynamics, work.t, self._start.q, self._start.u)
-        work.begin(self._start)
+    def unknowns(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `Engine`."""
+        y = np.concatenate([q, u])
+        return y, y
 
-    def _store_rows(self) -> None:
-        work, status = self.work, PAUSED
-        while status == PAUSED:
-            status = ADVANCE.call(work.t, 1, 1, self._grid.times is None, work.at)
-            work.collect(self._rows)
+    def steps(self) -> int:
+        """See `Engine`."""
+        return self.work.count("steps")
 
-    def _statistics(self) -> dict[str, int | float | str]:
+    def last_step(self) -> tuple[float, int]:
+        """See `Engine`."""
+        return self.work.span, 0
+
+    def history(self) -> History:
+        """See `Engine`."""
+        return History(np.concatenate([*self.work.step_times, np.empty(0)]), np.empty(0, dtype=int))
+
+    def whole_steps(self) -> tuple[WholeSteps, ...]:
+        """See `Engine`."""
+        return self.work.whole_steps()
+
+    def statistics(self) -> dict[str, int | float | str]:
+        """See `Engine`."""
         counted = {name: self.work.count(name) for name in ("steps", "rejected", "accelerations")}
-        return {
-            "scheme": self._scheme.name,
-            **counted,
-            "breakpoints": sum(t < self.work.t for t in self._breakpoints.tolist()),
-            "events": self._events,
-        }
+        return {"scheme": self._scheme.name, **counted}
+
+    def ended(self, trajectory: Trajectory) -> Trajectory:
+        """Return a trajectory with a sentence on steps that stability has limited, if these are many."""
+        work = self.work
+        if self._status < 0 or work.count("stiff_steps") <= CONTROL.stiff_part * work.count("steps"):
+            return trajectory
+        message = f"{trajectory.message}; {stiff_sentence(work)}"
+        stopped = trajectory.outcome is Outcome.STOPPED
+        return replace(trajectory, message=Reason.STIFF.of(message) if stopped else message)
+
+
+def held(most: int, may_leave: bool) -> int:
+    """Return the number of steps limited by stability that makes an early check due."""
+    return max(1, most // CHECKS.now_and_then) if may_leave else most

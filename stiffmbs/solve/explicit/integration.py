@@ -16,7 +16,7 @@ from ...model.settings import RunSettings
 from ..error_control.tolerances import absolute_tolerances
 from ..events.event_functions import EventSearch, StepBound
 from ..events.whole_steps import WholeSteps
-from ..trajectory import Grid, Rows
+from ..trajectory import Grid
 from .native.parameters import CONTROL
 from .scheme import Scheme, StepMemory
 
@@ -46,7 +46,8 @@ class Integration:
     - `capacity`: largest number of steps, and of rows, of one call.
     - `step_times`: ends of the steps of each call.
     - `watch`: event functions, and what the search for events has found.
-    - `t`: current time, s. `q`, `u`: current positions and velocities.
+    - `t`: current time, s. `q`, `u`: current positions and velocities, parts of `y`.
+    - `span`: length of the last step, s.
     - `h`: length of the next step, s. `stable`: longest step that stability allows, s; 0 if not computed.
     - `eliminates`: True if accelerations are computed by elimination where its pivots are accurate, False if by LU
       always.
@@ -54,16 +55,14 @@ class Integration:
     - `atol` of shape (n_q + n_u,): absolute tolerances.
     """
 
-    t, h, stable, eliminates = _Cell(float), _Cell(float), _Cell(float), _Cell(bool)
+    t, span, h, stable, eliminates = _Cell(float), _Cell(float), _Cell(float), _Cell(float), _Cell(bool)
 
     def __init__(
         self, scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
     ) -> None:
         self.scheme = scheme
-        n_q, n_times = len(start.q), 0 if grid.times is None else len(grid.times)
-        self._memory = memory = dynamics.kept(
-            f"steps of {scheme.name}", n_times, lambda: StepMemory(scheme, dynamics, n_times)
-        )
+        n_q = len(start.q)
+        self._memory = memory = dynamics.kept(f"steps of {scheme.name}", None, lambda: StepMemory(scheme, dynamics))
         self.capacity, self._n_q, self._dynamics = memory.capacity, n_q, dynamics
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been collected
@@ -72,11 +71,9 @@ class Integration:
         self.watch.follow_reactions(dynamics)
         self.watch.resolve(grid.end - grid.start)
         memory.renew(*addresses(self.watch.table, self.step_bound.table))
-        self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)
+        self.y, self.q, self.u, self.at = memory.y, memory.y[:n_q], memory.y[n_q:], address(memory.table)
         self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
         memory.atol[:] = self.atol
-        if grid.times is not None:
-            memory.times[:] = grid.times
         self._cells = cells = memory.cells
         cells["project"], cells["rtol"] = settings.projection, settings.rtol
         cells["longest"], cells["stable"] = settings.max_step or np.inf, np.inf
@@ -95,6 +92,10 @@ class Integration:
         cells["uncertain"], cells["distance"], cells["distance_of_end"] = 0, np.inf, np.inf
         self.watch.begin()
 
+    def report_at(self, times: np.ndarray) -> None:
+        """Report at these output times, s, from now on."""
+        self._memory.report_at(np.ascontiguousarray(times))
+
     def forget_rates(self) -> None:
         """Compute the rates at the current state again."""
         self._cells["rates_known"] = 0
@@ -112,15 +113,12 @@ class Integration:
         begin, end, y = self._memory.whole_steps.kept()
         return (WholeSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
 
-    def collect(self, rows: Rows) -> None:
-        """Append the rows and step ends of the last call, and release their memory for the next."""
-        count, before = self.count("rows"), self._collected
-        memory = self._memory
-        y = memory.row_y[:count]
-        rows.extend(memory.row_t[:count], y[:, : self._n_q], y[:, self._n_q :])
-        self._cells["rows"] = 0
-        self._collected = self.count("steps")
+    def collect(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return times and states of the rows of the last call, valid up to the next one; keep the ends of its steps."""
+        count, before, memory = self.count("rows"), self._collected, self._memory
+        self._cells["rows"], self._collected = 0, self.count("steps")
         self.step_times.append(memory.ends[np.arange(before, self._collected) % self.capacity])
+        return memory.row_t[:count], memory.row_y[:count]
 
 
 _USE_BDF = "the scene is stiff; use solver bdf or radau"

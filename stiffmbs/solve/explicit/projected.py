@@ -5,10 +5,11 @@ from __future__ import annotations
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...model.settings import RunSettings
+from ..integrator import Integrator, integrated
 from ..solver import Traits
 from ..trajectory import Grid, ProgressCallback, Trajectory
 from . import SCHEMES
-from .adaptive import AdaptiveRun
+from .adaptive import AdaptiveSteps
 from .euler_cromer import EULER_CROMER
 from .fixed import solve_with_fixed_steps
 from .integration import Integration
@@ -51,5 +52,6 @@ def solve(
     dynamics.forget_pivots()
     scheme = scheme_of(settings)
     if scheme.adaptive:
-        return AdaptiveRun(scheme, dynamics, start, grid, settings, watch).integrate()
+        engine = AdaptiveSteps(scheme, dynamics, start, grid, settings)
+        return engine.ended(integrated(Integrator(dynamics, settings, engine), start, grid, watch))
     return solve_with_fixed_steps(dynamics, Integration(scheme, dynamics, start, grid, settings), grid, settings, watch)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...compile.machine.layout import packed
+from ...compile.machine.layout import address, packed
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.native.parameters import CONSISTENCY
@@ -101,30 +101,28 @@ ADVANCE, END_AT_EVENT = together(
     advance="int64(float64, int64, int64, int64, int64*)",
     end_at_event="int32(int64*)",
 )
-WATCH, STEP_BOUND = (list(EXPLICIT).index(name) for name in ("watch", "step_bound"))
+WATCH, STEP_BOUND, TIMES = (list(EXPLICIT).index(name) for name in ("watch", "step_bound", "times"))
 """Columns of the table that each run sets."""
 
 
 class StepMemory:
-    """Arrays of explicit steps for a scheme and a number of output times, and their table.
-
-    `n_times`: output times; 0 for rows after each step.
+    """Arrays of explicit steps for a scheme, and their table.
 
     - `capacity`: largest number of steps, and of rows, of one call.
     - `y`, `end_rates`, `lam` of shapes (n_q + n_u,), (n_q + n_u,), (n_c,): current state, its rates, and multipliers
       at a start.
-    - `atol`, `times` of shapes (n_q + n_u,), (n_times,).
+    - `atol` of shape (n_q + n_u,).
     - `row_t`, `row_y`, `ends` of shapes (capacity,), (capacity, n_q + n_u), (capacity,).
     - `whole_steps`: steps that are checked after the run.
     - `table`: addresses and cells (`stiffmbs.solve.explicit.native.layouts.EXPLICIT`).
     - `cells`: cells of the table by name.
     """
 
-    def __init__(self, scheme: Scheme, dynamics: Dynamics, n_times: int) -> None:
+    def __init__(self, scheme: Scheme, dynamics: Dynamics) -> None:
         system, eliminated = dynamics.system, dynamics.eliminated
         n, events = system.n_q + system.n_u, system.n_event_functions
         self.capacity = capacity = max(1, min(LOOP.most_steps, LOOP.most_items // max(n, 1)))
-        self.y, self.lam, self.atol, self.times = np.zeros(n), np.zeros(system.n_c), np.zeros(n), np.zeros(n_times)
+        self.y, self.lam, self.atol = np.zeros(n), np.zeros(system.n_c), np.zeros(n)
         self.row_t, self.row_y, self.ends = np.empty(capacity), np.empty((capacity, n)), np.empty(capacity)
         stages, self.whole_steps = np.zeros((scheme.extended, n)), WholeStepLog(system, n)
         self.end_rates = stages[scheme.stages]
@@ -137,8 +135,7 @@ class StepMemory:
             "n_event_functions": events, "end_at_event": END_AT_EVENT.address if searched else 0,
             "lam": self.lam, "y": self.y, "y_before": np.zeros(n), "y_first": np.zeros(n), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
-            "n_times": n_times, "times": self.times,
-            "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
+            "times": np.empty(0), "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
             "watch": nothing, "step_bound": nothing, "whole_steps": self.whole_steps.table,
         }  # fmt: skip
         self.table = packed(EXPLICIT, self._arrays)
@@ -149,3 +146,8 @@ class StepMemory:
         self.table[:] = self._new
         self.table[[WATCH, STEP_BOUND]] = watch, step_bound
         self.whole_steps.forget()
+
+    def report_at(self, times: np.ndarray) -> None:
+        """Report at these output times, s, from now on."""
+        self._times = times
+        self.table[TIMES], self.cells["n_times"], self.cells["next_time"] = address(times), len(times), 0

@@ -10,7 +10,7 @@ from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 from ...sparse.elimination_order import elimination_order
-from ..error_control.error_test import ErrorControl
+from ..error_control.error_test import CHOSEN, ErrorControl
 from ..formulations import FORMULATIONS
 from ..linear_solvers.block_lu import BlockLU
 from ..linear_solvers.linear_solver import COSTS, LinearSolver
@@ -38,6 +38,18 @@ class Driven:
     def engine(self) -> NativeEngine:
         """Engine, made at its first use: its memory and its routines take time."""
         return self.make()
+
+
+Driver = Callable[[Dynamics, RunSettings, ErrorControl], Driven]
+
+
+def driven(
+    dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf",
+    driver: Driver | None = None,
+) -> Driven:  # fmt: skip
+    """Return the equations with their engine, which the dynamics keep under the name `memory`; with BDF by default."""
+    chosen, made = control or CHOSEN[dynamics.system.of_body.dimensions], driver or driven_natively
+    return dynamics.kept(memory, (settings, chosen), lambda: made(dynamics, settings, chosen))
 
 
 def driven_natively(dynamics: Dynamics, settings: RunSettings, control: ErrorControl) -> Driven:

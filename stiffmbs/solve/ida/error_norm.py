@@ -61,10 +61,6 @@ class ErrorNorm:
         """Filter all error estimates, or only those after many failed error tests."""
         self._cells["always"] = asked
 
-    def begin(self, growth: float) -> None:
-        """Allow a step to grow if the error test permits this factor, from the start on."""
-        self._cells["growth"], self._cells["equal_until"] = growth, 0
-
     def forget(self) -> None:
         """Forget failures of an earlier run."""
         for cell in self._cells.dtype.names:
@@ -105,10 +101,6 @@ class Iteration:
             },
         )  # fmt: skip
         return session.keep(made, libraries.SUNNonlinSolFree, "a nonlinear solver")
-
-    def begin(self) -> None:
-        """Forget measured rates and the last step before a start or restart of the integrator."""
-        self._cells["cj"], self._cells["growth"] = np.inf, -1.0
 
     def take_over(self, session: Session, solver: int) -> None:
         """Install the convergence test."""

@@ -29,7 +29,6 @@ from .session import Session
 from .statistics import Statistics, Status, StepLog, failure_sentence
 
 if TYPE_CHECKING:
-    from .starting.after_event import EventRestarts
     from .starting.starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64*)", level=SHORT)
@@ -57,7 +56,6 @@ class NativeIda:
       one excludes it from the error test and from Newton's convergence test.
     - `max_step`: largest step, s; 0 for none.
     - `renewal`: relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); IDA's own by default.
-    - `growth`: least factor by which a step is enlarged (IDASetEtaFixedStepBounds); IDA's own by default.
     - `formula`: BDF with IDA's own convergence test by default.
     - `reported`: unknowns returned at output times; all by default.
     - `y`, `yp` of shape (n,): solution at `t`, overwritten by every call. `output` of shape (n,): interpolated or queried values.
@@ -84,7 +82,6 @@ class NativeIda:
         *,
         max_step: float = 0.0,
         renewal: float | None = None,
-        growth: float = 2.0,
         formula: Formula | None = None,
         reported: np.ndarray | None = None,
     ) -> None:
@@ -119,7 +116,6 @@ class NativeIda:
         self.ask("IDASetMaxStep", max_step)
         if renewal is not None:
             self.ask("IDASetDeltaCjLSetup", renewal)
-        self._growth = growth
 
     def _packed(self) -> np.ndarray:
         functions = {name: self._session.libraries.address(function) for name, function in FUNCTIONS.items()}
@@ -204,26 +200,6 @@ class NativeIda:
             each.forget()
         self._assembled.forget()
 
-    def begin(
-        self, t: float, y: np.ndarray, yp: np.ndarray, first_step: float = 0.0, highest_order: int | None = None
-    ) -> None:
-        """Start or restart at consistent values.
-
-        `y`, `yp` of shape (n,). `first_step`: size of the first step, s; 0 lets IDA choose it. `highest_order`:
-        highest order from here on; IDA cannot lower it within a run.
-        """
-        if self.begun:
-            self._statistics.keep()
-        self.y[:], self.yp[:] = y, yp
-        self.ask("IDAReInit", t, self.y_vector, self.yp_vector)
-        self.ask("IDASetInitStep", first_step)
-        if highest_order is not None:
-            self.ask("IDASetMaxOrd", highest_order)
-        self.ask("IDASetEtaFixedStepBounds", 1.0, self._growth)
-        self.error_norm.begin(self._growth)
-        self._forget_step(t)
-        self.begun, self._flag = True, 0
-
     def begun_at(self, t: float) -> None:
         """Note a start or restart by compiled code."""
         self.history.begin(t)
@@ -262,15 +238,15 @@ class NativeIda:
         return row
 
     def advance_past(
-        self, event_restarts: EventRestarts, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
+        self, starts: Starts, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
     ) -> tuple[int, Status]:
-        """Integrate as `advance` towards the first of some stops, and to later ones if `event_restarts` can restart there."""
+        """Integrate as `advance` towards the first of some stops, and to later ones if `starts` can restart there."""
         times = np.ascontiguousarray(times, dtype=float)
         self._check_rows(y_out, len(times))
         most = min(self._batch, self._look)
         at_times, at_stops, at_rows = addresses(times, stops, y_out)
         self._flag = self.run(
-            ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, event_restarts.table
+            ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, starts.table
         )
         return int(self.cells["served"]), self._status()
 
@@ -340,15 +316,6 @@ class NativeIda:
         """Call a function of IDA that fills a vector, and return a copy of it."""
         self.ask(function, *arguments, self.output_vector)
         return self.output.copy()
-
-    def _forget_step(self, t: float) -> None:
-        """Forget the last step before a start or restart of the integrator at `t`."""
-        for cell, value in (("returned", t), ("internal", t), ("size", 0.0), ("tiny", 0), ("since_sample", 0)):
-            self.cells[cell] = value
-        self._samples[:] = np.nan
-        self.watch.begin()
-        self.iteration.begin()
-        self.history.begin(t)
 
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
         """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""

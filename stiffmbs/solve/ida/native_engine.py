@@ -4,54 +4,47 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...compile.equations import Equations
+from ...dynamics.algebraic_states import no_value_ahead
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.storage import allocated, blocks, release
+from ...errors import SolverError
 from ...model.settings import RunSettings
+from ..engine import Begun, Engine, Reached
 from ..error_control.error_test import ErrorControl
 from ..error_control.native.parameters import NEWTON, POLISHING
 from ..error_control.newton import Stiffness
+from ..error_control.precision import governed_by_rounding, too_fine
+from ..error_control.relaxation import RELAXATION, refuse_drift
 from ..error_control.stability_limit import StabilityLimitDetection
+from ..events.chattering import CHATTERING
+from ..events.refusals import refuse_beyond_limits
+from ..events.restart import restarted
+from ..events.whole_steps import WholeSteps
+from ..explicit.native.parameters import CONTROL
 from ..linear_solvers.linear_solver import LinearSolver
 from ..radau.collocation import radau
+from ..reasons import Reason
 from ..recorded_steps import Piece, StepRecorder
-from ..trajectory import History, Recording, just_after
+from ..stiff_rows import States
+from ..suspect import suspect
+from ..trajectory import Grid, History, Recording, just_after
 from .connection import BDF, Formula
 from .ida import AT_THE_END, NativeIda
 from .native.parameters import LOOP
 from .statistics import Status
 
 if TYPE_CHECKING:
+    from ...compile.inputs.features import InputFeatures
     from ...dynamics.initial import InitialValues
-    from .starting.after_event import Begun, EventRestarts
     from .starting.starts import Starts
 
 
-class Reached(NamedTuple):
-    """Progress of an integrator since its last report.
-
-    - `times`, `rows` of shapes (k,), (k, 2 * independent): output times (or ends of steps), and the independent
-      coordinates and velocities there (`stiffmbs.compile.equations.Equations.states` computes all of them).
-    - `y` of shape (n,): current time and unknowns.
-    - `fired`: event functions whose sign changes stopped the integrator; empty if none did.
-    - `failure`: reason of a failure; empty if there is none.
-    - `passed`: number of breakpoints at which the integrator restarted.
-    """
-
-    times: np.ndarray
-    rows: np.ndarray
-    t: float
-    y: np.ndarray
-    fired: tuple[int, ...] = ()
-    failure: str = ""
-    passed: int = 0
-
-
-class NativeEngine:
+class NativeEngine(Engine):
     """IDA through its C interface, `ida`, with the decisions between its calls.
 
     `equations`: equations in the order of the matrix. `dynamics`: its state is the working memory of residual and
@@ -65,17 +58,18 @@ class NativeEngine:
         tolerances, reported = control.tolerances(equations, settings), equations.independent
         self.ida = NativeIda(
             equations, dynamics.state, matrix, *tolerances, max_step=settings.max_step,
-            reported=reported, growth=control.growth,
+            reported=reported,
             formula=formula or BDF(control.predicted_residual),
             renewal=control.renewal,
         )  # fmt: skip
-        self._width, self._equations, self.matrix = len(reported), equations, matrix
+        self._width, self.equations, self.matrix = len(reported), equations, matrix
         self._by_radau = formula is not None
         self.recorder: StepRecorder | None = None
         self._rtol, self._settings = settings.rtol, settings
         self._make_starts = partial(self.ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
-        self.ida.watch.follow_reactions(dynamics)
+        self.watch = self.ida.watch
+        self.watch.follow_reactions(dynamics)
         self._order = StabilityLimitDetection(
             equations, settings, is_active=formula is None and settings.max_order is None
         )
@@ -91,28 +85,22 @@ class NativeEngine:
         self._newton, self._stiffness = 0.0, Stiffness(0.0, 0.0)
         self._counted = {"steps": 0, "convergence_failures": 0}
 
-    def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
-        """Start or restart at consistent values.
+    def begin_run(self, features: InputFeatures, grid: Grid) -> None:
+        """See `Engine`."""
+        self.ida.see_inputs(features, grid.end - grid.start)
+        self._gap = 2.0 * grid.aside
+        if grid.recorded.most:
+            self._record_steps(grid.recorded)
 
-        `newton` is the part of the tolerance that Newton's iteration may leave.  States within steps that are long for
-        the `stiffness` are corrected.
-        """
-        self._newton, self._stiffness = newton, stiffness
-        self.ida.ask("IDASetNonlinConvCoef", newton)
-        self.ida.error_norm.filter_always(self._order.held)
-        self._follow_stiffness(t)
-        self.ida.begin(t, y, yp, highest_order=self._order.order)
-        self._record_start(t)
-
-    def record_steps(self, bounds: Recording) -> None:
-        """Record the steps of the next run for an estimate of its errors, up to some work."""
+    def _record_steps(self, bounds: Recording) -> None:
+        """Record the steps of the run for an estimate of its errors, up to some work."""
         places = AT_THE_END
         if self._by_radau:
             from ..radau.memory import CHOSEN_FROM
 
             places = radau(max(CHOSEN_FROM) + 2).nodes[:-1]  # points at which the curve through fewer has defects
         self.ida.keep_steps(True, places)
-        system = self._equations.system
+        system = self.equations.system
         free = max(system.n_u - int(system.active.sum()), 0)
         evaluations = 1 + 2 * free + system.n_q - system.n_pose  # linearised equations are differences
         of_a_row = bounds.row + evaluations * (system.n_q + system.n_u + system.n_c)
@@ -124,7 +112,7 @@ class NativeEngine:
         if recorder is None:
             return ()
         self.ida.keep_steps(False)
-        return recorder.pieces(self._equations)
+        return recorder.pieces(self.equations)
 
     def _record_start(self, t: float) -> None:
         if self.recorder:
@@ -141,26 +129,32 @@ class NativeEngine:
                 self.recorder = None
 
     def begin_at(self, start: InitialValues, t: float) -> None:
-        """Start at consistent values."""
+        """See `Engine`."""
         self.ida.error_norm.filter_always(self._order.held)
         self._starts.begin(start, t, self.ida.begun, self._order.order)
-        self._take_up(self._starts, t)
+        self._take_up(t)
 
-    def resume_after(self, gap: float) -> None:
-        """Set the time from a stop to the restart after it, s."""
-        self._gap = gap
-
-    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
-        """Restart after a state and events within `ahead`, s; return None, without a start, if that is impossible."""
+    def begin_restart(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun:
+        """See `Engine`."""
         self.ida.error_norm.filter_always(self._order.held)
-        found = self._event_restarts.begin((q, u), t, ahead, self.ida.begun, self._order.order)
-        if found:
-            self._take_up(self._starts, found.t)
+        found = self._starts.restart((q, u), t, ahead, self.ida.begun, self._order.order)
+        if found is None:  # a force is beyond its limits, unless this raises
+            start = restarted(self._dynamics, t, q, u)
+            refuse_beyond_limits(self._dynamics, t, start.q, start.u)
+            self.begin_at(start, t)
+            return Begun(t, False, True)
+        self._take_up(found.t)
         return found
 
-    def _take_up(self, starts: Starts, t: float) -> None:
+    def _resume(self, newton: float) -> None:
+        """Start again at the current unknowns, with a part of the tolerance that Newton's iteration may leave."""
+        self.ida.error_norm.filter_always(self._order.held)
+        self._starts.resume(newton, self._order.order)
+        self._take_up(self.ida.t)
+
+    def _take_up(self, t: float) -> None:
         self.ida.begun_at(t)
-        self._stiffness, self._newton = starts.found()
+        self._stiffness, self._newton = self._starts.found()
         self._follow_stiffness(t)
         self._record_start(t)
 
@@ -181,7 +175,7 @@ class NativeEngine:
         ida = self.ida
         due = just_after(ida.t) < stop and self._order.due(ida.history.count)  # IDA does not start where it is to stop
         if due and self._order.changed(ida.samples, ida.history.count):
-            self.begin(ida.t, ida.y.copy(), ida.yp.copy(), self._newton, self._stiffness)
+            self._resume(self._newton)
         ida.look_after(self._order.wait(ida.history.count))
 
     def _ease_newton(self) -> None:
@@ -199,24 +193,22 @@ class NativeEngine:
         if failures > NEWTON.many_failures * max(steps, NEWTON.trusted) and self._newton < NEWTON.easiest:
             self._counted = counted
             eased = min(NEWTON.easiest, NEWTON.eased * self._newton)
-            self.begin(
-                self.ida.t, self.ida.y.copy(), self.ida.yp.copy(), eased, self._stiffness
-            )  # IDA reads it only at a start
+            self._resume(eased)  # IDA reads it only at a start
 
-    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
-        """Integrate to the first stop, or past stops at which compiled restarts apply; report at output times.
+    def advance(self, times: np.ndarray | None, stops: Sequence[float]) -> Iterator[Reached]:
+        """See `Engine`."""
+        return self._by_steps(stops[0]) if times is None else self._to_times(times, stops)
 
-        Ends early at an event or a failure. `Reached.passed` counts the stops at which it has restarted.
-        """
+    def _to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+        """Report at output times, and go past stops at which compiled restarts apply."""
         status, served, passed = Status.GOING, 0, 0
-        event_restarts = self._event_restarts if len(stops) > 1 and self.ida.may_pass else None
-        if event_restarts is None or not event_restarts.may_pass:
-            event_restarts, stops = None, stops[:1]
+        if not (len(stops) > 1 and self.ida.may_pass and self._starts.may_pass):
+            stops = stops[:1]
         times = times[: times.searchsorted(stops[-1], side="right")]
         while status is Status.GOING:
             times, stops = times[served:], stops[passed:]
             rows = allocated(len(times), self._width)
-            served, status, passed = self._advance(event_restarts, times, stops, rows)
+            served, status, passed = self._advance(times, stops, rows)
             *earlier, last = list(blocks(served)) or [slice(0, 0)]
             for block in earlier:
                 yield self._reached(times[block], rows[block], Status.GOING)
@@ -225,23 +217,21 @@ class NativeEngine:
             if status is Status.GOING:
                 self._adapt(stops[passed])
 
-    def _advance(
-        self, event_restarts: EventRestarts | None, times: np.ndarray, stops: Sequence[float], rows: np.ndarray
-    ) -> tuple[int, Status, int]:
-        """Integrate to the first stop, or beyond by `event_restarts`; return output times served, status, stops passed."""
-        if event_restarts is None:
+    def _advance(self, times: np.ndarray, stops: Sequence[float], rows: np.ndarray) -> tuple[int, Status, int]:
+        """Integrate to the first stop, or to the last of several; return output times served, status, stops passed."""
+        if len(stops) == 1:
             return *self.ida.advance(times, stops[0], rows), 0
-        before = self.ida.history.count
-        event_restarts.resume_after(self._gap)
-        served, status = self.ida.advance_past(event_restarts, times, np.array(stops), self._order.order, rows)
-        passed, steps = event_restarts.passed
+        before, starts = self.ida.history.count, self._starts
+        starts.resume_after(self._gap)
+        served, status = self.ida.advance_past(starts, times, np.array(stops), self._order.order, rows)
+        passed, steps = starts.passed
         if passed:
-            self._stiffness, self._newton = event_restarts.starts.found()
-            self._order.begin(event_restarts.t, before + steps)
+            self._stiffness, self._newton = starts.found()
+            self._order.begin(starts.t, before + steps)
         return served, status, passed
 
-    def by_steps(self, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report each step; end early at an event or a failure."""
+    def _by_steps(self, stop: float) -> Iterator[Reached]:
+        """Report each step."""
         status = Status.GOING
         while status is Status.GOING:
             times, rows = np.empty(LOOP.most_steps), np.empty((LOOP.most_steps, self._width))
@@ -261,7 +251,7 @@ class NativeEngine:
         unknown, size = self.ida.worst()
         if not 0.0 < size < np.inf:
             return ""
-        at, system = self._equations.at, self._equations.system
+        at, system = self.equations.at, self.equations.system
         for name, labels in (("q", system.of_body.positions), ("u", system.of_body.velocities)):
             for k in np.flatnonzero(at[name] == unknown).tolist():
                 return f"; the largest error was in {system.name_of(k, labels)}"
@@ -272,26 +262,60 @@ class NativeEngine:
 
         Returns False, with the state unchanged, if that needs a run.
         """
-        return self._event_restarts.advance((q, u), t, end, self._order.order)
+        return self._starts.advance((q, u), t, end, self._order.order)
 
     @cached_property
     def _starts(self) -> Starts:
         return self._make_starts()
 
-    @cached_property
-    def _event_restarts(self) -> EventRestarts:
-        from .starting.after_event import EventRestarts
+    def states(self, rows: np.ndarray) -> States:
+        """See `Engine`."""
+        return self.equations.states(rows)
 
-        least = NEWTON.precision / self._rtol
-        return EventRestarts(self._starts, self._dynamics, self._settings, least)
+    def split(self, y: np.ndarray) -> States:
+        """See `Engine`."""
+        (q,), (u,) = self.equations.states(y[None, self.equations.independent])
+        return q, u
+
+    def unknowns(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `Engine`."""
+        y = np.zeros(self.equations.n)
+        y[self.equations.independent] = self.equations.coordinates.state(q, u)
+        return y[self.equations.independent], y
+
+    def whole_steps(self) -> tuple[WholeSteps, ...]:
+        """See `Engine`."""
+        kept = self.ida.whole_steps.kept()
+        return (WholeSteps.of(self._dynamics, self.equations, *kept),) if len(kept[0]) else ()
+
+    def refuse(self, reached: Reached, grid: Grid) -> None:
+        """See `Engine`: steps that rounding governs, failures, and drift from the constraints end a run."""
+        if failure := self._failure(reached, grid):
+            raise SolverError(Reason.NO_STEP.of(f"stopped at t = {reached.t:.9g} s: {failure}"))
+        if reached.t < grid.end and self.steps() >= RELAXATION.check_interval:
+            refuse_drift(self._dynamics, reached.t, *self.split(reached.y), self._settings)
+
+    def _failure(self, reached: Reached, grid: Grid) -> str:
+        """Return the reason why the run ends at this state, or an empty string."""
+        steps, dynamics = self.steps(), self._dynamics
+        endless = (grid.end - reached.t) * steps > CHATTERING.steps_ahead * (reached.t - grid.start)
+        by_rounding = steps > CONTROL.enough_steps and (endless or governed_by_rounding(self.statistics()))
+        if not (by_rounding or reached.failure):
+            return ""
+        q, u = self.split(reached.y)
+        missing = no_value_ahead(dynamics, reached.t, q, u) if reached.failure else ""
+        reason = missing or too_fine(dynamics, self._settings, reached.t, q)
+        if reason or not reached.failure:
+            return reason
+        return reached.failure + suspect(dynamics, reached.t, q, u)
 
     def present(self) -> np.ndarray:
         """Return a row of the same form for the current state."""
         return np.concatenate([[self.ida.t, 1.0], self.ida.y, self.ida.yp])
 
     def note(self) -> str:
-        """Return a sentence on the integration for the user; empty if there is none."""
-        notes = self._order.note(self.ida.history.count), self.ida.watch.note(), self.ida.output_correction.note()
+        """See `Engine`."""
+        notes = self._order.note(self.ida.history.count), self.watch.note(), self.ida.output_correction.note()
         return "; ".join(filter(None, notes))
 
     def steps(self) -> int:

@@ -11,13 +11,13 @@ from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...model.settings import RunSettings
 from ...tuning import parameters_of, tuned
-from ..bdf import integrated, refuse_untested_reactions
+from ..bdf import refuse_untested_reactions
 from ..cost import ImplicitCost, least_solver, of_evaluation
 from ..error_control.error_test import ErrorControl
 from ..error_control.native.parameters import NEWTON
-from ..ida.choice import Driven, chosen, natural
+from ..ida.choice import Driven, chosen, driven, natural
 from ..ida.native_engine import NativeEngine
-from ..integrator import Integrator
+from ..integrator import Integrator, integrated
 from ..trajectory import Grid, ProgressCallback, Trajectory
 from .memory import Radau, pair_cost
 from .parameters import RADAU
@@ -54,13 +54,13 @@ def solve(
     return integrated(radau_integrator(dynamics, settings), start, grid, watch)
 
 
-def radau_integrator(dynamics: Dynamics, settings: RunSettings) -> Integrator:
-    """Return the integrator of a system, which may be reused."""
-    return Integrator(dynamics, settings, **driver())
+def radau_integrator(dynamics: Dynamics, settings: RunSettings, memory: str = "radau") -> Integrator[NativeEngine]:
+    """Return the integrator of a system, which may be reused; its dynamics keep the engine under the name `memory`."""
+    return Integrator(dynamics, settings, driven(dynamics, settings, **driver(memory)).engine)
 
 
 def driver(memory: str = "radau") -> dict[str, Any]:
-    """Return how an integrator is driven: arguments of `stiffmbs.solve.integrator.driven`."""
+    """Return how an integrator is driven: arguments of `stiffmbs.solve.ida.choice.driven`."""
     return {"control": CONTROL, "memory": memory, "driver": driven_by_radau}
 
 

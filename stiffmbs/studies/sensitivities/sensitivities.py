@@ -22,7 +22,7 @@ from ...results.requests import requested
 from ...sensitivity_equations.along_run import AlongRun, Instant, Side
 from ...sensitivity_equations.block_system import Change
 from ...sensitivity_equations.recorded import SENSITIVITIES, STAGES, Recorder
-from ...solve.bdf import integrated
+from ...solve.integrator import integrated
 from ...solve.missing_rows import reported
 from ...solve.settings import changed
 from ...solve.trajectory import Grid, Outcome

@@ -15,11 +15,11 @@ from stiffmbs.compile.equations import Equations
 from stiffmbs.compile.machine.routines import TERMS
 from stiffmbs.compile.terms import TERM_SETS
 from stiffmbs.model.model_data import ModelData
+from stiffmbs.solve.bdf import bdf_integrator
 from stiffmbs.solve.error_control.error_test import CHOSEN
 from stiffmbs.solve.formulations import FORMULATIONS
 from stiffmbs.solve.ida.choice import Driven
 from stiffmbs.solve.ida.native_engine import NativeEngine
-from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.linear_solvers.sparse_lu import SparseLU
 from stiffmbs.solve.trajectory import Trajectory
 from stiffmbs.sparse.elimination_order import elimination_order
@@ -45,7 +45,7 @@ def by_sparse_lu(job: Job) -> Job:
 
 def kernel_seconds(job: Job, trajectory: Trajectory) -> float:
     """What the residual and matrix kernels of a run by `bdf` take alone, at the state that it ended with."""
-    equations = Integrator(job.dynamics, job.settings).equations
+    equations = bdf_integrator(job.dynamics, job.settings).engine.equations
     table, _kept = job.dynamics.state.restricted(equations.used())
     form = equations.formulation
     return sum(
@@ -104,7 +104,7 @@ class LinearAlgebra:
         ratio = seconds / kernel_seconds(job, trajectory)
         setting = f"{told['steps']} steps, {told['factorizations']} factors, {ratio:.1f} times its kernels"
         return Row(
-            solver.partition(f", {Integrator(job.dynamics, job.settings).equations.n}")[0],
+            solver.partition(f", {bdf_integrator(job.dynamics, job.settings).engine.equations.n}")[0],
             setting,
             difference,
             seconds,

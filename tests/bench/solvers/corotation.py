@@ -24,8 +24,8 @@ from stiffmbs.compile.terms import TERM_SETS
 from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.model.settings import RunSettings
+from stiffmbs.solve.bdf import bdf_integrator
 from stiffmbs.solve.ida.native_engine import NativeEngine
-from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.radau.collocation import radau
 from stiffmbs.solve.radau.radau import radau_integrator
 
@@ -90,7 +90,7 @@ def rate(old: np.ndarray, new: np.ndarray) -> float:
 
 def states(job: Any, settings: Any, solver: str, grid: Any) -> tuple[Equations, np.ndarray]:
     """Return the equations of an integrator, and the time, order, unknowns and derivatives of each of its steps."""
-    create = radau_integrator if solver == "radau" else Integrator
+    create = radau_integrator if solver == "radau" else bdf_integrator
     integrator = create(job.dynamics, settings)
     engine = integrator.engine
     assert isinstance(engine, NativeEngine)
@@ -99,7 +99,7 @@ def states(job: Any, settings: Any, solver: str, grid: Any) -> tuple[Equations, 
     for _ in integrator.run(job.start, grid):
         kept.append(engine.ida.kept_steps())
     engine.ida.keep_steps(False)
-    return integrator.equations, np.concatenate(kept)
+    return integrator.engine.equations, np.concatenate(kept)
 
 
 def rates(job: Any, settings: Any, solver: str, grid: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -111,7 +111,7 @@ class _Alone:
     def seconds(self, dt: float, inputs: np.ndarray) -> float:
         """Time that the starts and steps with these inputs take."""
         self._q[:], self._u[:] = self._job.start.q, self._job.start.u
-        in_a_row, restarts = IN_A_ROW.call, self._steps._engine._event_restarts
+        in_a_row, restarts = IN_A_ROW.call, self._steps._engine._starts
         if restarts is None:
             raise SolverError("found a model that compiled starts do not serve, expected one without events")
         self._job.dynamics.state.q[:], self._job.dynamics.state.u[:] = self._q, self._u

@@ -19,8 +19,8 @@ def check_after_steps():
     """Return the steps up to the next check of implicit steps after 1000."""
     waits, counts = [], [0, 0, 1000, 1000]
     engine = Record(ida=Record(pause_after=waits.append))
-    integrator = Record(steps=lambda: counts.pop(0) if len(counts) > 1 else counts[0], engine=engine)
-    implicit = Record(integrator=integrator, steps=lambda t: Record(time=t), start=0.0, cost=Record(step=1.0))
+    engine.steps = lambda: counts.pop(0) if len(counts) > 1 else counts[0]
+    implicit = Record(engine=engine, steps=lambda t: Record(time=t), start=0.0, cost=Record(step=1.0))
     run = Record(implicit=implicit, explicit_cost=lambda *_: 0.0, remaining=lambda t: 0.0)
     check = auto.ImplicitCheck(run, 0.0)
     check._begun = 0
@@ -31,8 +31,8 @@ def check_after_steps():
 
 def tolerated_loss():
     """Return the loss of implicit steps that is tolerated, where explicit ones cost 1000."""
-    integrator = Record(steps=lambda: 0, engine=Record(ida=Record(pause_after=nothing)))
-    implicit = Record(integrator=integrator, steps=lambda t: Record(time=t), start=1.0, cost=Record(step=1.0))
+    engine = Record(steps=lambda: 0, ida=Record(pause_after=nothing))
+    implicit = Record(engine=engine, steps=lambda t: Record(time=t), start=1.0, cost=Record(step=1.0))
     run = Record(implicit=implicit, explicit_cost=lambda *_: 1000.0, remaining=lambda t: 0.0)
     return auto.ImplicitCheck(run, 0.0)._wait()
 

@@ -8,12 +8,12 @@ import numpy as np
 
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OPERATIONS
 from stiffmbs.model.settings import RunSettings
-from stiffmbs.solve import bdf
+from stiffmbs.solve import integrator
 from stiffmbs.solve.error_control.newton import Stiffness
 from stiffmbs.solve.error_control.relaxation import drift_of_positions, drift_of_velocities
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
+from stiffmbs.solve.ida import native_engine
 from stiffmbs.solve.ida.native import error_norm, iteration, output_correction
-from stiffmbs.solve.ida.native_engine import NativeEngine
 from stiffmbs.solve.ida.starting.native import start
 from stiffmbs.solve.ida.starting.starts import newton_bounds
 from stiffmbs.solve.trajectory import Grid
@@ -71,12 +71,11 @@ def eased(newton, failures=1000, steps=1000):
     """Return the Newton tolerance after a call with a number of failures."""
     begun = [newton]
     counted = {"steps": steps, "convergence_failures": failures}
-    ida = Record(counted=lambda: counted, usual_steps=0, t=0.0, y=np.zeros(1), yp=np.zeros(1))
+    ida = Record(counted=lambda: counted, usual_steps=0)
     engine = Record(
-        ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _stiffness=None,
-        begin=lambda t, y, yp, eased, stiffness: begun.append(eased),
+        ida=ida, _counted={"steps": 0, "convergence_failures": 0}, _newton=newton, _resume=begun.append,
     )  # fmt: skip
-    NativeEngine._ease_newton(engine)
+    native_engine.NativeEngine._ease_newton(engine)
     return begun[-1]
 
 
@@ -90,7 +89,7 @@ def balance_between_steps():
     found = []
     ida = Record(correct_outputs=lambda *given: found.append(given[-1]), history=Record(count=0))
     engine = Record(_stiffness=Stiffness(1.0, 1.0), ida=ida, _dynamics=None, _rtol=1e-6, _order=Record(begin=nothing))
-    NativeEngine._follow_stiffness(engine, 0.0)
+    native_engine.NativeEngine._follow_stiffness(engine, 0.0)
     return found[0]
 
 
@@ -157,36 +156,50 @@ def largest_filtered_norm():
         return count_while(is_estimate, 1e9 * DOUBLES[:100])
 
 
-def first_check_of_drift(name, counts):
-    """Return how many numbers of steps pass before a run of bdf makes a check for the first time."""
-    state = np.zeros((1, 1))
-    reached = Record(times=np.zeros(1), rows=state, t=0.0, y=np.zeros(1), failure="")
-    job = Record(system=Record(n_q=1, n_u=1))
+def first_check(module, name, check, counts):
+    """Return how many numbers of steps pass before a run of bdf makes a check of a module for the first time."""
 
     def unchecked(steps):
         made = []
-        integrator = Record(
-            dynamics=job, run=lambda *_, **__: [reached], equations=Record(states=lambda rows: (rows, rows)),
-            engine=Record(last_step=nothing, history=nothing, recorded=tuple, ida=Record(watch=Record(departures=nothing, refuse_departures=nothing))), steps=lambda: steps,
-            split=lambda y: (y, y), settings=None, statistics=dict, note=str, whole_steps=nothing,
-        )  # fmt: skip
-        checks = {"refuse_drift": nothing, "refuse_beyond_sense": nothing, name: lambda *_: made.append(1)}
-        with patch.multiple(bdf, _failure=lambda *_: "", **checks):
-            bdf.integrated(integrator, Record(q=np.zeros(1), u=np.zeros(1)), Grid(0.0, 1.0, None), nothing)
+        with patch.object(module, name, lambda *_: made.append(1)):
+            check(Record(steps=lambda: steps, split=lambda y: (y, y), statistics=dict))
         return not made
 
     return count_while(unchecked, counts)
 
 
+def at_a_step(engine):
+    """Let an engine judge its steps."""
+    reached = Record(t=0.0, y=np.zeros(1), failure="")
+    engine._failure, engine._dynamics, engine._settings = lambda *_: "", None, None
+    native_engine.NativeEngine.refuse(engine, reached, Grid(0.0, 1.0, None))
+
+
+def in_a_run(engine):
+    """Integrate to one step of an engine."""
+    state = np.zeros((1, 1))
+    reached = Record(times=np.zeros(1), rows=state, t=0.0, y=np.zeros(1))
+    more = {
+        "states": lambda rows: (rows, rows), "last_step": nothing, "history": nothing, "recorded": tuple, "refuse": nothing, "whole_steps": nothing,
+        "watch": Record(departures=nothing, refuse_departures=nothing),
+    }  # fmt: skip
+    for each, value in more.items():
+        setattr(engine, each, value)
+    job = Record(system=Record(n_q=1, n_u=1))
+    run = Record(dynamics=job, run=lambda *_, **__: [reached], engine=engine, statistics=dict, note=str)
+    integrator.integrated(run, Record(q=np.zeros(1), u=np.zeros(1)), Grid(0.0, 1.0, None), nothing)
+
+
 def steps_that_rounding_governs():
     """Return the thousands of steps up to which a run is not checked for a tolerance below rounding."""
 
-    def integrator(n):
-        return Record(steps=lambda: 1000 * n, statistics=dict, split=lambda y: (y, y), dynamics=None, settings=None)
+    def engine(n):
+        return Record(steps=lambda: 1000 * n, statistics=dict, split=lambda y: (y, y), _dynamics=None, _settings=None)
 
     reached = Record(y=np.zeros(1), failure="", t=0.0)
-    with patch.multiple(bdf, governed_by_rounding=always, too_fine=lambda *_: "too fine"):
-        return count_while(lambda n: not bdf._failure(integrator(n), reached, Grid(0.0, 1.0, None)), range(100))
+    grid = Grid(0.0, 1.0, None)
+    with patch.multiple(native_engine, governed_by_rounding=always, too_fine=lambda *_: "too fine"):
+        return count_while(lambda n: not native_engine.NativeEngine._failure(engine(n), reached, grid), range(100))
 
 
 def tolerance_of_a_counter():
@@ -228,8 +241,8 @@ DECISIONS = {
     "error_filter.no_estimate": largest_filtered_norm,
     "relaxation.of_positions": lambda: drift_of_positions(RunSettings(duration=1.0, rtol=1e-8)),
     "relaxation.of_velocities": lambda: drift_of_velocities(RunSettings(duration=1.0, rtol=1e-8), Record(bodies=[0])),
-    "relaxation.check_interval": lambda: first_check_of_drift("refuse_drift", range(0, 5000, 50)),
-    "divergence.followed_steps": lambda: first_check_of_drift("refuse_beyond_sense", range(0, 300_000, 5000)),
+    "relaxation.check_interval": lambda: first_check(native_engine, "refuse_drift", at_a_step, range(0, 5000, 50)),
+    "divergence.followed_steps": lambda: first_check(integrator, "refuse_beyond_sense", in_a_run, range(0, 300_000, 5000)),
     "explicit_steps.enough_steps": steps_that_rounding_governs,
     "solve.error_control.tolerances:WHICH_TURN": tolerance_of_a_counter,
 }  # fmt: skip

@@ -13,8 +13,7 @@ from stiffmbs.compile.inputs.features import NO_FEATURES
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import kinematic
 from stiffmbs.solve.driven_states import IntegratedMotion
-from stiffmbs.solve.explicit import fixed, rounding, stable_step
-from stiffmbs.solve.explicit.adaptive import AdaptiveRun
+from stiffmbs.solve.explicit import adaptive, fixed, rounding, stable_step
 from stiffmbs.solve.explicit.native import attempt, explicit_events, fastest_rate, interpolant, runge_kutta
 from stiffmbs.solve.explicit.native import start as explicit_start
 from stiffmbs.solve.explicit.rk4 import RK4
@@ -335,7 +334,7 @@ def fewest_steps_with_a_bound():
 
 
 DECISIONS = {
-    "explicit_checks.now_and_then": lambda: AdaptiveRun._held(800, True),
+    "explicit_checks.now_and_then": lambda: adaptive.held(800, True),
     "explicit_ends.close": largest_uncertain_pivot,
     "explicit_ends.harmful": largest_harmless_change,
     "explicit_ends.shorter": step_before_a_bifurcation,

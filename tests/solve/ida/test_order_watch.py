@@ -8,9 +8,9 @@ import pytest
 import stiffmbs
 from stiffmbs import Body, Bushing, Model
 from stiffmbs.analyses.job import prepare
+from stiffmbs.solve.bdf import bdf_integrator
 from stiffmbs.solve.error_control import stability_limit
 from stiffmbs.solve.ida.native.parameters import LOOP
-from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.trajectory import Grid
 from stiffmbs.tuning import parameters_of
 
@@ -93,11 +93,11 @@ def test_states_are_compared_with_the_cubics_of_least_squares():
 def test_ida_is_not_started_where_it_is_to_stop(monkeypatch):
     """It refuses to: an order that is to change there waits for the next start."""
     job = prepare(rod_on_bushing(1e4), duration=0.1, solver="bdf")
-    integrator = Integrator(job.dynamics, job.settings)
+    integrator = bdf_integrator(job.dynamics, job.settings)
     for _ in integrator.run(job.start, Grid(0.0, 0.1, np.array([0.1]))):
         pass
     engine, starts = integrator.engine, []
-    monkeypatch.setattr(engine, "begin", lambda *given: starts.append(given))
+    monkeypatch.setattr(engine, "_resume", lambda *given: starts.append(given))
     monkeypatch.setattr(stability_limit.StabilityLimitDetection, "due", lambda *_: True)
     monkeypatch.setattr(stability_limit.StabilityLimitDetection, "changed", lambda *_: True)
     engine._adapt(0.1)

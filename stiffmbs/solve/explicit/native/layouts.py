@@ -20,7 +20,7 @@ EXPLICIT = Layout({
     "started": INT_CELL, "rates_known": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_first": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
     "whole_steps": INTS, "repeats": FLOAT_CELL,
-    "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
+    "n_times": INT_CELL, "times": FLOATS, "next_time": INT_CELL,
     "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 })  # fmt: skip
 """Explicit integration between two calls: the state y = (q, u) now and before the last step of length `span`; its event

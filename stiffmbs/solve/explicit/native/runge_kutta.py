@@ -171,6 +171,8 @@ def _keep_whole(x, c, s, m):
 def advance(end, steps, held, own_steps, explicit):
     """Integrate towards `end` by at most `steps` steps, until stability has limited `held` of them or memory is full.
 
+    Rows of all output times so far are stored unless memory is full.
+
     Returns AT_END, AT_EVENT (a force has changed its law), PAUSED (call again), or a negative status.  After UNSTABLE
     (a step far beyond the stability limit), call again with that limit.
     """
@@ -182,12 +184,12 @@ def advance(end, steps, held, own_steps, explicit):
         start_steps(x, c, s, m)
         x.h = first_step(x, c, s, m, end)
     held += x.stiff_steps
+    stored = store_rows(x, c, s, m)
     for _ in range(steps):
-        if x.stiff_steps >= held or (own_steps and x.rows >= x.capacity):
-            return PAUSED
-        stored = store_rows(x, c, s, m)
         if stored < 1:
             return stored
+        if x.stiff_steps >= held or (own_steps and x.rows >= x.capacity):
+            return PAUSED
         if x.t >= end:
             return AT_END
         if x.at_event == AT_ANOTHER_LAW:
@@ -209,6 +211,7 @@ def advance(end, steps, held, own_steps, explicit):
         _keep_whole(x, c, s, m)
         if own_steps:
             store_step(x)
+        stored = store_rows(x, c, s, m)
         if x.stable == 0.0 and x.far_beyond > far_beyond:
             return UNSTABLE
         if x.steps >= CONTROL.enough_steps and _is_hopeless(x, end):

@@ -46,22 +46,20 @@ START = Layout({
     "of_positions": FLOAT_CELL, "of_velocities": FLOAT_CELL, "newton": FLOAT_CELL,
     "n_counters": INT, "counter": INTS, "counted": INTS, "count": INTS, "counts": INTS,
     "set_newton": INT, "reinitialise": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
-})  # fmt: skip
-"""Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): memory for rates of coordinates, and for a state; independent coordinates and velocities, and their
-positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
-term set; counter functions, their arguments, space for one number, and their sums; functions of SUNDIALS.  A start changes only
-both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave."""
-
-EVENT_RESTART = Layout({
-    "start": INTS, "n_event_functions": INT, "first_limit": INT, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
+    "n_event_functions": INT, "first_limit": INT, "n_counters_of_angles": INT, "angle_source": INTS, "angle_row": INTS,
     "reach": FLOAT_CELL, "along_q": FLOATS, "along_u": FLOATS, "q": FLOATS, "u": FLOATS, "values": FLOATS, "found": INTS,
     "t": FLOAT_CELL, "jumps": INT_CELL, "meets": INT_CELL,
     "amplified": FLOAT_CELL, "least": FLOAT_CELL, "largest_jump": FLOAT_CELL, "least_jump": FLOAT_CELL, "speed": FLOATS, "gap": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
 })  # fmt: skip
-"""Data of restarts of IDA after an event or a breakpoint (`stiffmbs.solve.ida.starting.native.breakpoints`): event functions, the first
+"""Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): memory for rates of coordinates, and for a state; independent coordinates and velocities, and their
+positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
+term set; counter functions, their arguments, space for one number, and their sums; functions of SUNDIALS.  A start changes only
+both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave.
+
+For restarts (`stiffmbs.solve.ida.starting.native.breakpoints`): event functions, the first
 of those that are limits of forces; revolution counters and their angles; a move to both sides of a state; memory for a
 state and event functions.  Cells: size of the move; time of the restart, 1 if velocities have jumped, 1 if event functions
-of velocities change sign between both sides.  For breakpoints passed in one call (`stiffmbs.solve.ida.starting.native.breakpoints`):
+of velocities change sign between both sides.  For breakpoints passed in one call:
 factor of long steps and least residual within them; largest velocity change without
 a report, relative to the velocities, and the least one in m/s, with factors from velocities to m/s; time from a stop to the
 restart after it; number of breakpoints passed, and steps before the last."""

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import Job, prepare
+from stiffmbs.solve.bdf import bdf_integrator
 from stiffmbs.solve.ida.native_engine import NativeEngine, Reached
-from stiffmbs.solve.integrator import Integrator
 
 from ...benchmark import Row
 from ...drives import CARS, SOLVERS, Car
@@ -31,10 +31,10 @@ class _Watched:
     def __getattr__(self, name: str) -> Any:
         return getattr(self.engine, name)
 
-    def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
+    def advance(self, times: np.ndarray | None, stops: Sequence[float]) -> Iterator[Reached]:
         if self.ended is not None:
             self.waits.append(time.process_time() - self.ended)
-        for reached in self.engine.to_times(times, stops):
+        for reached in self.engine.advance(times, stops):
             self.ended = time.process_time()
             yield reached
 
@@ -43,7 +43,7 @@ def _wait(job: Job) -> float:
     """The median over the events and breakpoints of one solution."""
     solved = job.subsystems[0] if job.subsystems else job
     solved.dynamics.forget_pivots()
-    integrator = Integrator(solved.dynamics, job.settings)
+    integrator = bdf_integrator(solved.dynamics, job.settings)
     watched = _Watched(integrator.engine)
     integrator.engine = watched  # type: ignore[assignment]
     for _ in integrator.run(solved.start, job.grid):

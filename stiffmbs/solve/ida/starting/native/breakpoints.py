@@ -3,7 +3,7 @@
 from math import sqrt
 from typing import Final
 
-from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, ints, state_view, view_of
+from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, ints, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import POSITION, SWITCH, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
@@ -13,7 +13,6 @@ from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past
 from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
-from stiffmbs.solve.ida.native.layouts import EVENT_RESTART
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
 from stiffmbs.solve.ida.starting.native.start import (
@@ -30,30 +29,30 @@ UNFINISHED: Final = -1
 
 
 @compiled
-def _long_step(w, b):
+def _long_step(w):
     """Return `stiffmbs.solve.error_control.newton.Stiffness.long_step` at the last start."""
     longest = float("inf")
-    if b.of_positions > 0.0:
-        longest = sqrt(w.amplified / b.of_positions)
-    if b.of_velocities > 0.0:
-        longest = min(longest, w.amplified / b.of_velocities)
+    if w.of_positions > 0.0:
+        longest = sqrt(w.amplified / w.of_positions)
+    if w.of_velocities > 0.0:
+        longest = min(longest, w.amplified / w.of_velocities)
     return longest
 
 
 @compiled
-def _limit(w, b, c):
+def _limit(w, c):
     """Set the step above which states within it are corrected, and the residual allowed after the correction."""
     correction = output_correction_view(c.output_correction)
-    fastest = max(b.of_positions, b.of_velocities * b.of_velocities)
-    correction.long = _long_step(w, b)
-    correction.enough = max(b.soft / fastest if fastest > 0.0 else float("inf"), w.least)
+    fastest = max(w.of_positions, w.of_velocities * w.of_velocities)
+    correction.long = _long_step(w)
+    correction.enough = max(w.soft / fastest if fastest > 0.0 else float("inf"), w.least)
 
 
 @compiled
-def _take_state(s, b, e, y, yp):
+def _take_state(s, w, e, y, yp):
     """Load the state from the unknowns; constant coordinates are as at the last start."""
     for k in range(s.n_q):
-        if b.leader[k] < 0:
+        if w.leader[k] < 0:
             s.q[k] = e.offset[k]
     for k in range(s.n_u):
         s.u[k] = 0.0
@@ -61,35 +60,54 @@ def _take_state(s, b, e, y, yp):
 
 
 @compiled
-def _same_offsets(s, b, e):
+def _same_offsets(s, w, e):
     """Return True if dependent coordinates keep the offsets of the last start, used for all rows of a call."""
     others = 0
     for k in range(s.n_q):
-        leader = b.leader[k]
+        leader = w.leader[k]
         others += e.offset[k] != s.q[k] - (e.q_ratio[k] * s.q[leader] if leader >= 0 else 0.0)
     return others == 0
 
 
 @compiled
-def _restarted_at_breakpoint(w, b, c, t):
+def _beyond_limits(w, s, t):
+    if w.first_limit == w.n_event_functions:
+        return False
+    values = evaluate(s, SWITCH, t)
+    beyond = 0
+    for k in range(w.first_limit, w.n_event_functions):
+        beyond += values[k] <= 0.0
+    return beyond > 0
+
+
+@compiled
+def _started(w, c, s, m, t, counted, highest_order):
+    """Start IDA at the current state, which is on the constraints; a negative number if nothing was started."""
+    if accelerated(s, m, t) < 0 or _beyond_limits(w, s, t):
+        return UNFINISHED
+    prepare(w, s, m, equations_view(c.equations), c, t)
+    if counted:
+        keep_counters(w)
+    return begun(w, c, t, highest_order)
+
+
+@compiled
+def _restarted_at_breakpoint(w, c, t, highest_order):
     """Restart at t from IDA's current state; a negative number, with IDA unchanged, leaves the restart to Python."""
-    m = dynamics_view(b.dynamics)
+    m = dynamics_view(w.dynamics)
     s = state_view(m.state)
     e = equations_view(c.equations)
-    _take_state(s, b, e, array_of(c, c.y), array_of(c, c.yp))
+    _take_state(s, w, e, array_of(c, c.y), array_of(c, c.yp))
     copied(w.u, s.u, s.n_u)
     add_rates(s, w.u, w.gap, s.q)
     if back_with_jump(w, s, m, t) < 0 or w.jumps:
         return UNFINISHED
     restart_counters(w, s, t)
-    if not _same_offsets(s, b, e):
+    if not _same_offsets(s, w, e) or _started(w, c, s, m, t, 1, highest_order) < 0:
         return UNFINISHED
-    if accelerated(s, m, t) < 0:
-        return UNFINISHED
-    prepare(b, s, m, e, c, t)
-    _limit(w, b, c)
-    keep_counters(b)
-    return begun(b, c, t)
+    _limit(w, c)
+    w.t = t
+    return OK
 
 
 def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table, ida):
@@ -97,8 +115,7 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
 
     Returns at a stop that Python has to handle; the table holds the number of stops passed.
     """
-    w = event_restart_view(table)
-    b = start_view(w.start)
+    w = start_view(table)
     c = native_ida_view(ida)
     s = state_view(c.state)
     clear_call(c)
@@ -117,26 +134,10 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
         open_ = s.n_c > 0 and c.size > output_correction_view(c.output_correction).long
         if open_ or same >= stops[w.passed + 1] or (c.served < count and times[c.served] <= same):
             return int32(flag)
-        if _restarted_at_breakpoint(w, b, c, t) < 0:
+        if _restarted_at_breakpoint(w, c, t, highest_order) < 0:
             return int32(flag)
-        call_int(b.set_highest_order, (c.memory, int32(highest_order)))
-        w.t = t
         w.passed += 1
         w.steps_before = c.recorded
-
-
-event_restart_view = view_of("EventRestart", EVENT_RESTART)
-
-
-@compiled
-def _beyond_limits(w, s, t):
-    if w.first_limit == w.n_event_functions:
-        return False
-    values = evaluate(s, SWITCH, t)
-    beyond = 0
-    for k in range(w.first_limit, w.n_event_functions):
-        beyond += values[k] <= 0.0
-    return beyond > 0
 
 
 @compiled
@@ -177,10 +178,10 @@ def back_with_jump(w, s, m, t):
 @compiled
 def restart_counters(w, s, t):
     """Set the revolution counters to the exact angles that they count."""
-    if w.n_counted > 0:
+    if w.n_counters_of_angles > 0:
         values = evaluate(s, POSITION, t)
-        for k in range(w.n_counted):
-            s.q[w.counted_row[k]] = values[w.counted_source[k]]
+        for k in range(w.n_counters_of_angles):
+            s.q[w.angle_row[k]] = values[w.angle_source[k]]
 
 
 def restarted_at_event(t, ahead, counted, highest_order, table):
@@ -188,25 +189,18 @@ def restarted_at_event(t, ahead, counted, highest_order, table):
 
     A negative number means that nothing was started, and Python determines the reason.
     """
-    w = event_restart_view(table)
-    b = start_view(w.start)
-    m = dynamics_view(b.dynamics)
+    w = start_view(table)
+    m = dynamics_view(w.dynamics)
     s = state_view(m.state)
-    c = native_ida_view(ints(b.ida))
+    c = native_ida_view(ints(w.ida))
     if back_with_jump(w, s, m, t) < 0:
         return int32(UNFINISHED)
     after = t
     if ahead > 0.0:
         after += moved_past(s, m, t, ahead, w.n_event_functions, w.q, w.values)
     restart_counters(w, s, after)
-    if accelerated(s, m, after) < 0 or _beyond_limits(w, s, after):
+    if _started(w, c, s, m, after, counted, highest_order) < 0:
         return int32(UNFINISHED)
-    prepare(b, s, m, equations_view(c.equations), c, after)
-    if counted:
-        keep_counters(b)
-    if begun(b, c, after) < 0:
-        return int32(UNFINISHED)
-    call_int(b.set_highest_order, (c.memory, int32(highest_order)))
     w.t = after
     w.meets = _meets(w, s, m, after) if w.n_event_functions > 0 else 0
     return int32(OK)
@@ -219,9 +213,10 @@ def advance_from(t, end, highest_order, table):
     """
     if restarted_at_event(t, 0.0, 0, highest_order, table) < 0:
         return int32(UNFINISHED)
-    b = start_view(event_restart_view(table).start)
-    c = native_ida_view(ints(b.ida))
-    call_int(b.set_first_step, (c.memory, min(c.next_size, end - t)))
+    w = start_view(table)
+    ida = ints(w.ida)
+    c = native_ida_view(ida)
+    call_int(w.set_first_step, (c.memory, min(c.next_size, end - t)))
     call_int(c.stop_at, (c.memory, end))
     c.stopping = end
     clear_call(c)
@@ -229,7 +224,7 @@ def advance_from(t, end, highest_order, table):
     for _ in range(LOOP.most_steps):
         if flag != OK:
             break
-        flag = stepped(c, ints(b.ida), end)
+        flag = stepped(c, ida, end)
     if flag != STOP_RETURN:
         return int32(UNFINISHED)
     call_int(c.next_step_of, (c.memory, address_of(c.next_size)))

@@ -113,11 +113,12 @@ def allow_remainder(w):
 
 
 @compiled
-def begun(w, c, t):
-    """Start IDA at the prepared unknowns, as `stiffmbs.solve.ida.ida.NativeIda.begin`; OK or a negative flag."""
+def begun(w, c, t, highest_order):
+    """Start IDA at the prepared unknowns, up to an order, which it cannot lower within a run; OK or a negative flag."""
     call_int(w.set_newton, (c.memory, w.newton))
     flag = call_int(w.reinitialise, (c.memory, t, c.y, c.yp))
     call_int(w.set_first_step, (c.memory, 0.0))
+    call_int(w.set_highest_order, (c.memory, int32(highest_order)))
     call_int(w.set_growth, (c.memory, 1.0, w.growth))
     norm = error_norm_view(w.error_norm)
     norm.growth = w.growth
@@ -198,9 +199,16 @@ def start(t, counted, highest_order, table):
     prepare(w, s, m, equations_view(c.equations), c, t)
     if counted:
         keep_counters(w)
-    flag = begun(w, c, t)
-    call_int(w.set_highest_order, (c.memory, int32(highest_order)))
-    return int32(flag)
+    return int32(begun(w, c, t, highest_order))
+
+
+def resume(newton, highest_order, table):
+    """Start IDA at its current unknowns, with a part of the tolerance for Newton's iteration; OK or a negative flag."""
+    w = start_view(table)
+    c = native_ida_view(ints(w.ida))
+    w.newton = newton
+    keep_counters(w)
+    return int32(begun(w, c, c.returned, highest_order))
 
 
 @compiled
