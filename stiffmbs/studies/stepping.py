@@ -127,10 +127,10 @@ class Stepper(Protocol):
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
     """Return a stepper: by the steps of bdf, radau or a scheme of fixed steps; by short runs otherwise, or with sampled states."""
-    made = {"bdf": bdf_integrator, "radau": radau_integrator}.get(job.settings.solver)
     if job.dynamics.system.sampled.any():
         return ShortRuns(job, start, t)
-    if made is not None:
+    if job.settings.solver in ("bdf", "radau"):
+        made = bdf_integrator if job.settings.solver == "bdf" else radau_integrator
         return ImplicitSteps(job, made(job.dynamics, job.settings), start, t)
     return FixedSteps(job, start, t) if traits_of(job.settings).fixed_steps else ShortRuns(job, start, t)
 
