@@ -155,6 +155,11 @@ class ImplicitSteps:
     def _started(self) -> StartedSteps:
         return StartedSteps(self._job, self.q, self.u)
 
+    @property
+    def _starts_soon(self) -> bool:
+        """True while inputs are likely to jump again."""
+        return self._jumped or self._since_jump < STEPPING.unchanged
+
     def _look_through(self, t: float) -> None:
         """Determine the features of the inputs once for all following steps, and again if formulas of time change."""
         if not self._first <= t < self._end:
@@ -184,7 +189,7 @@ class ImplicitSteps:
                 self._look_through(self._t)
             self.q[:], self.u[:] = self._integrator.closed(self._t, (self.q, self.u), self.length)
             begin = self._dynamics.sides(self._t)[1]
-            if (self._jumped or self._since_jump < STEPPING.unchanged) and (calm or t <= self._end):
+            if self._starts_soon and (calm or t <= self._end):
                 if place > just_after(begin):
                     self._started.advance(begin, place, NO_FEATURES if calm else self._features)
                     self.length = t - self._t

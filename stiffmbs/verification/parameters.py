@@ -30,6 +30,8 @@ class VerificationParameters:
     """Its limit, as a fraction of the channel's scale."""
     loose: float = 100.0
     """Its lower bound, in tolerances."""
+    of_state: float = 1e-3
+    """Least size of the rate of a state, in largest values of the state over the duration."""
     converges: float = 2.0
     """Smallest reduction of the error at a tolerance tighter by a factor of ten."""
     named: int = 3

@@ -108,14 +108,24 @@ def verified(job: Job, first: Solution, allowed: float) -> Solution:
         return _Verification(job, first, allowed).result()
 
 
+def _sizes(job: Job, first: Solution) -> dict[str, float]:
+    """Return the sizes of the channels; that of a rate of a state is at least a part of the state over the duration."""
+    gravity, time = float(np.linalg.norm(job.data.gravity)), float(np.ptp(first.time))
+    found = scales(first.channels, job.dynamics.system.size, first.requested, gravity)
+    for state in job.dynamics.system.states:
+        if f"{state}.rate" in found:
+            least = VERIFICATION.of_state * float(np.nanmax(np.abs(first[state]), initial=0.0)) / time
+            found[f"{state}.rate"] = max(found[f"{state}.rate"], least)
+    return found
+
+
 class _Verification:
     """Reruns with which one run is compared."""
 
     def __init__(self, job: Job, first: Solution, allowed: float) -> None:
         self._job, self._first = job, first
         self._begun, self._allowed = job.evaluations(), allowed
-        gravity = float(np.linalg.norm(job.data.gravity))
-        self._sizes = scales(first.channels, job.dynamics.system.size, first.requested, gravity)
+        self._sizes = _sizes(job, first)
         self._traits = traits_of(job.settings)
         self._exact = self._traits.exact
         self._dense: DenseSamples | None = None

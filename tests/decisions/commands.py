@@ -11,6 +11,7 @@ import numpy as np
 
 from stiffmbs.commands import process, progress
 from stiffmbs.live import app, page, requests, worker, workers
+from stiffmbs.reading.units.display import SI_UNITS
 from stiffmbs.robots.mjcf import model as mjcf
 from stiffmbs.robots.robot import RobotFault
 from stiffmbs.robots.scene import mechanism
@@ -38,7 +39,7 @@ def most_cases():
 
 
 def instants_of_a_band():
-    found = Record(outcome=Outcome.DONE, time=np.arange(5000.0), channels={})
+    found = Record(outcome=Outcome.DONE, time=np.arange(5000.0), channels={}, display=SI_UNITS)
     solved = Record(solution=found)
     request = Record(
         rest={}, number=lambda *_: 2.0, numbers={}, names=lambda _: (), tell=nothing, solved=lambda _: solved

@@ -11,7 +11,7 @@ import pytest
 from stiffmbs.compile.inputs.features import NO_FEATURES
 from stiffmbs.errors import SolverError
 from stiffmbs.solve.trajectory import Grid, Outcome
-from stiffmbs.studies import case_solver, executors, joint_pose, measured, optimise, simulation, stepping
+from stiffmbs.studies import case_solver, executors, joint_pose, measured, optimise, simulation, stepping, varied_input
 from stiffmbs.studies.fmu import build
 from stiffmbs.studies.sensitivities import formulas
 from tests.decisions.common import Record, executed, module, nothing, reach, reached, refused
@@ -165,14 +165,14 @@ def step_of_a_parameter(value):
     return (found.fget if isinstance(found, property) else found)(Record(value=value))
 
 
-def tolerance_of_sensitivities():
+def tolerance_of_sensitivities(rtol=1e-3):
     with patch.multiple(
         sensitivities,
         with_weights=lambda scenes, _: scenes,
         changed=lambda _, change: reach(change["rtol"]),
         prepare=nothing,
     ):
-        return reached(lambda: sensitivities.differentiated(Record(known=None), (), Record(rtol=1e-3)))
+        return reached(lambda: sensitivities.differentiated(Record(known=None), (), Record(rtol=rtol)))
 
 
 def longest_step_with_sensitivities():
@@ -210,9 +210,14 @@ def checks_of_drift():
     return len(checks)
 
 
-def tolerance_of_restarts(rtol):
-    with patch.object(stepping, "changed", lambda _, change: change["rtol"]):
-        return stepping._finer(Record(rtol=rtol, atol=None))
+def searched_for_features():
+    """Return the number of intervals without features that are looked for, and how far the bounds of an input of 1 go beyond it."""
+    found = Record(
+        _value=1.0, _least=np.inf, _largest=-np.inf, _end=0.0, _job=Record(settings=Record(duration=1.0)), _ranged=lambda *_: ()
+    )  # fmt: skip
+    with patch.object(varied_input, "CalmTimes", lambda *given: given[-1]):
+        varied_input.VariedInput._find(found, 0.0, 1.0)
+    return found._calm, found._largest - 1.0
 
 
 def cases_of_a_chunk(cases):
@@ -257,8 +262,12 @@ DECISIONS = {
     "studies.sensitivities.sensitivities:FEWEST": longest_step_with_sensitivities,
     "studies.sensitivities.sensitivities:AT_THE_LIMIT": longest_step_below_the_limit,
     "studies.simulation:DRIFT_CHECK_INTERVAL": checks_of_drift,
-    "studies.stepping:PART": lambda: tolerance_of_restarts(1e-3),
-    "studies.stepping:FINEST": lambda: tolerance_of_restarts(1e-11),
+    "studies.sensitivities.sensitivities:FINEST": lambda: tolerance_of_sensitivities(1e-11),
+    "stepping.unchanged": lambda: count_while(
+        lambda steps: stepping.ImplicitSteps._starts_soon.fget(Record(_jumped=False, _since_jump=steps)), range(100)
+    ),
+    "stepping.cells": lambda: searched_for_features()[0],
+    "stepping.reach": lambda: searched_for_features()[1],
     "studies.sweep:LARGEST_CHUNK": lambda: cases_of_a_chunk(10**6),
     "studies.sweep:CHUNKS_PER_WORKER": lambda: cases_of_a_chunk(32),
 }  # fmt: skip
@@ -273,6 +282,7 @@ EXPECTED = {
     "studies.sensitivities.parameters:STEP": 0.0001, "studies.sensitivities.parameters:ALMOST_ZERO": 1e-300,
     "studies.sensitivities.sensitivities:TIGHTER": 1e-09, "studies.sensitivities.sensitivities:FEWEST": 0.005,
     "studies.sensitivities.sensitivities:AT_THE_LIMIT": 26, "studies.simulation:DRIFT_CHECK_INTERVAL": 21,
-    "studies.stepping:PART": 1e-05, "studies.stepping:FINEST": 1e-12, "studies.sweep:LARGEST_CHUNK": 8,
+    "studies.sensitivities.sensitivities:FINEST": 1e-12, "stepping.unchanged": 6, "stepping.cells": 1024, "stepping.reach": 0.02,
+    "studies.sweep:LARGEST_CHUNK": 8,
     "studies.sweep:CHUNKS_PER_WORKER": 4,
 }  # fmt: skip

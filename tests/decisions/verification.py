@@ -9,6 +9,8 @@ import numpy as np
 from stiffmbs import tuning
 from stiffmbs.model.settings import RunSettings
 from stiffmbs.redundancy.sparse_matrix import SparseMatrix
+from stiffmbs.results.solution import Solution
+from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.verification import diagnostics, missed_events, verify
 from stiffmbs.verification.diagnostics import Comparison, divergence
 from stiffmbs.verification.missed_events import SteppedOver
@@ -215,6 +217,14 @@ def tightened():
     return count_while(is_looser, DOUBLES)
 
 
+def least_size_of_a_rate():
+    """Return the size of the rate of a state of 2 that is constant for 4 s."""
+    channels = {"a.x": np.full(2, 2.0), "a.x.rate": np.full(2, 1e-9)}
+    first = Solution("", np.array([0.0, 4.0]), channels, Outcome.DONE, "", (), {}, None, None)
+    system = Record(size=1.0, states=("a.x",))
+    return verify._sizes(Record(data=Record(gravity=(0.0, 0.0)), dynamics=Record(system=system)), first)["a.x.rate"]
+
+
 def begin_of_a_divergence():
     times = np.arange(200.0)
     return divergence(times, {"a": 1e-9 * DOUBLES[:200]}).begun
@@ -229,6 +239,7 @@ DECISIONS = {
     "verification.amplified": lambda: acceptable(1e-10),
     "verification.visible": lambda: acceptable(1e-6),
     "verification.loose": lambda: acceptable(1e-2),
+    "verification.of_state": least_size_of_a_rate,
     "verification.converges": lambda: count_while(lambda ratio: not converges(ratio), 1.05 ** np.arange(1, 100)),
     "verification.named": named_channels,
     "verification.diverged": lambda: count_while(
@@ -260,7 +271,7 @@ DECISIONS = {
 EXPECTED = {
     "verification.blown_up": 18, "verification.parts_of_implicit_steps": 3, "verification.parts": 5,
     "verification.most_values": 88, "verification.most_products": 126, "verification.amplified": 0.0001,
-    "verification.visible": 0.01, "verification.loose": 1, "verification.converges": 14, "verification.named": 3,
+    "verification.visible": 0.01, "verification.loose": 1, "verification.of_state": 5e-4, "verification.converges": 14, "verification.named": 3,
     "verification.diverged": 18, "verification.together": 62, "verification.sensitive": 15,
     "verification.tightest_rtol": 1e-13, "verification.clearly_tighter": 18, "verification.more_steps": 40000,
     "verification.least_steps": 1000, "verification.looks_ahead": 30, "verification.samples": 20000,

@@ -8,7 +8,7 @@ from stiffmbs.solve import sampling
 from stiffmbs.solve.ida.native import ida_loop
 from stiffmbs.solve.ida.statistics import StepLog
 from stiffmbs.solve.linear_solvers.native import block_lu, block_trial
-from stiffmbs.solve.trajectory import Outcome
+from stiffmbs.solve.trajectory import Grid, Outcome
 from tests.decisions.common import Record, always, never, nothing
 from tests.interpreted import interpreted
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
@@ -54,13 +54,13 @@ def samples_of_a_call():
     replaced = {
         "samples": lambda system, grid: [sampling.Sample(float(k), np.zeros(0, int)) for k in range(1, 20_000)],
         "next_values": lambda *_: at_rest, "_acting": lambda system: np.array([True]), "_joined": nothing,
-        "_up_to": lambda grid, t, ends: ends, "_up_to_row": lambda found, row: found,
+        "_up_to": lambda grid, t, ends, finer: ends, "_up_to_row": lambda found, row: found,
         "_restarted": lambda *_: (Record(q=at_rest), 0.0),
     }  # fmt: skip
     dynamics = Record(system=Record(sampled=np.array([True]), first_state=0), input_features=nothing)
     with interpreted(sampling, **replaced):
         sampling.solved_between_samples(
-            solve, dynamics, Record(q=at_rest, u=None), Record(start=0.0, end=1.0, times=[], monitor=None), None, None
+            solve, dynamics, Record(q=at_rest, u=None), Grid(0.0, 1.0, np.empty(0)), None, None
         )
     return max(taken)
 
