@@ -225,6 +225,12 @@ def _variants(scene: str, changes: list[tuple[str, str]], variants: tuple[str, .
     if not variants:
         return {"": load_scene(scene, changes)}
     own = [_case(text, "--variant") for text in variants]
+    names = [BASE, *(name for name, _ in own)]
+    for k, name in enumerate(names):
+        if name in names[:k]:
+            raise InputError(
+                f"--variant: found the name '{name}' twice, expected different ones ({BASE} is SCENE itself)"
+            )
     return {BASE: load_scene(scene, changes), **{name: load_scene(scene, [*changes, *of]) for name, of in own}}
 
 

@@ -213,6 +213,15 @@ def test_the_roll_centre_lies_in_the_plane_of_a_body_beside_the_origin(examples)
     assert values and values == pytest.approx([0.0] * len(values), abs=1e-6)
 
 
+@pytest.mark.parametrize("names", [("soft", "soft"), ("base", "soft")])
+def test_variants_have_different_names(tmp_path, names):
+    scene = tmp_path / "axle.yaml"
+    scene.write_text(axle("double_wishbone", "rigid"))
+    variants = [word for name in names for word in ("--variant", f"{name}=gravity=[0,0,-12]")]
+    refused = CliRunner().invoke(main, ["kc", str(scene), *variants])
+    assert refused.exit_code == 2 and f"found the name '{names[0]}' twice" in refused.output
+
+
 @pytest.mark.long
 def test_a_page_has_the_curves_of_both_variants(tmp_path):
     pytest.importorskip("jinja2")
