@@ -182,7 +182,7 @@ EXPECTED = {
     "error_estimate.restart": 21,
     "error_estimate.row": 50.0,
     "error_estimate.smooth": 27,
-    "error_estimate.intervals": 10,
+    "error_estimate.intervals": 48,
     "error_estimate.isolated": 25,
     "analyses.errors:MOST_REPEATS": 3,
 }  # fmt: skip
