@@ -93,12 +93,9 @@ def straightened(curve: Curve) -> Curve:
     before = _outlet(curve.x[0], curve.y[0], -curve.cos[0], -curve.sin[0], -curve.curvature[0])
     after[0] += curve.s[-1]
     signs = (-1.0, 1.0, 1.0, -1.0, -1.0, -1.0)
-    return Curve(
-        *(
-            np.concatenate([sign * there[:0:-1], here, beyond[1:]])
-            for sign, there, here, beyond in zip(signs, before, _values(curve), after, strict=True)
-        )
-    )
+    columns = zip(signs, before, _values(curve), after, strict=True)
+    s, x, y, cos, sin, curvature = (np.concatenate([k * back[:0:-1], on, out[1:]]) for k, back, on, out in columns)
+    return Curve(s, x, y, cos, sin, curvature)
 
 
 def _outlet(x: float, y: float, cos: float, sin: float, curvature: float) -> list[np.ndarray]:
