@@ -147,7 +147,7 @@ def _served(document: Any, data: ModelData | None, port: int, browser: bool) -> 
     token = secrets.token_urlsafe(24)  # another one for each start: whoever gets the port later learns nothing of use
     try:
         listening = _listening(port)
-    except (OSError, OverflowError) as error:
+    except (OSError, OverflowError, TypeError) as error:
         raise InputError(f"--port {port}: found a port that cannot be used ({error}), expected a free one") from None
     number = listening.getsockname()[1]
     loop = asyncio.new_event_loop()
@@ -182,7 +182,7 @@ def _listening(port: int) -> socket.socket:
         found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind((LOOPBACK, port))
         found.listen()
-    except (OSError, OverflowError):
+    except (OSError, OverflowError, TypeError):
         found.close()
         raise
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import os
 import queue
@@ -41,7 +42,7 @@ class Channel:
         if message.get("status") == "ended":
             self.ended = True
             for waiting in self._waiting.values():
-                waiting.put_nowait({"status": "error", "message": ENDED, "line": 0})
+                waiting.put_nowait(_ended())
         elif (found := self._waiting.get(int(message["number"]))) is not None:
             found.put_nowait(message)
 
@@ -52,6 +53,8 @@ class Channel:
         self._number += 1
         number, answers = self._number, asyncio.Queue[dict[str, object]]()
         self._waiting[number] = answers
+        if self.ended:  # since the worker was chosen
+            answers.put_nowait(_ended())
         try:
             put({**request, "number": number})
             while True:
@@ -61,6 +64,10 @@ class Channel:
                     return
         finally:
             del self._waiting[number]
+
+
+def _ended() -> dict[str, object]:
+    return {"status": "error", "message": ENDED, "line": 0}
 
 
 def arguments(file: Path | None) -> list[str]:
@@ -88,14 +95,15 @@ class Process:
             threading.Thread(target=loop_of_thread, daemon=True).start()
 
     def _listen(self) -> None:
+        """Pass answers on until the process ends, or until a line is no answer, as of a process killed while it wrote."""
         assert self._process.stdout is not None
-        for line in self._process.stdout:
-            self.channel.receive(json.loads(line))
+        with contextlib.suppress(ValueError):
+            for line in self._process.stdout:
+                self.channel.receive(json.loads(line))
+        self._process.kill()
         self._process.wait()
-        try:
+        with contextlib.suppress(RuntimeError):  # the server's loop is closed
             self.channel.receive({"status": "ended"})
-        except RuntimeError:  # the server's loop is closed
-            return
 
     def _write(self) -> None:
         """Write requests to the process: a thread of its own, as a process that does not read would block the server."""
@@ -105,7 +113,8 @@ class Process:
                 self._process.stdin.write(request)
                 self._process.stdin.flush()
             except (OSError, ValueError):
-                return  # the process has ended, which its listener reports
+                self._process.kill()  # it has ended, or reads nothing any more; its listener reports that
+                return
 
     def put(self, message: dict[str, object]) -> None:
         """Send a request."""

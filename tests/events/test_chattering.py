@@ -221,3 +221,15 @@ def test_friction_slides_on_the_belt_whose_speed_is_reached_not_where_belts_meet
     solution = solve(belts(), solver, duration=8.0, points=401)
     assert "'f' chatters" in solution.message
     assert abs(solution.t[-1] - SLIDES) < 0.05
+
+
+def test_a_jump_that_a_stiff_spring_nearly_balances_is_told():
+    """Where a spring changes the force by more than the jump leaves, within the distance of the check."""
+    model = Model()
+    model.add("block", Body(mass=1, inertia=1))
+    model.add("rail", Prismatic(i="block", j="ground"))
+    law = "branch(block.vx + 0.2, 1.5821*block.vx, 1.5821*block.vx, 1.68358 + 5.6743*(block.vx + 0.2))"
+    model.add("push", AppliedForce(i="block", force=(f"3.99*sin(5.3705*t) - 67.688*block.x - ({law})", 0)))
+    solution = solve(model, "dop853", rtol=1e-5)
+    assert not solution.success
+    assert "'push' chatters" in solution.message

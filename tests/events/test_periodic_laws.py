@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from stiffmbs import AppliedForce, Body, Model
+from stiffmbs.solve.ida.native import ida_events
+from tests.decisions.common import Record, always, nothing, searched
+from tests.interpreted import interpreted
 from tests.stress.case import Outcome
 from tests.stress.families.events import periodic_laws
 from tests.stress.fuzzers import laws
@@ -44,3 +47,21 @@ def test_random_laws_over_a_state(seed):
 def test_a_short_step_before_an_interval_does_not_hide_it(seed):
     """A step of 1e-12 s just before a narrow interval, after hundreds of others: rates over less time are rounding."""
     assert laws.trial(seed).outcome is Outcome.RIGHT
+
+
+def test_a_motion_that_is_only_extrapolated_has_no_note():
+    """Before a step its end is sought along the present accelerations, which differ by orders of magnitude after an impact."""
+    w = searched(longest=1e5, n_nodes=0)
+
+    def first_event(*_):
+        w.unresolved += 1
+        return 0.5
+
+    replaced = {
+        "go_ahead": nothing, "take_reactions": nothing, "evaluate_some": lambda *_: np.zeros(1), "note_mean_rates": nothing,
+        "suspicious": always, "first_event": first_event,
+    }  # fmt: skip
+    with interpreted(ida_events, **replaced):
+        ida_events._aim(Record(returned=0.0), w, Record(q=None), 1.0)
+    assert w.target < 0.5
+    assert w.unresolved == 0

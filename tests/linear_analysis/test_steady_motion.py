@@ -196,6 +196,23 @@ def test_a_speed_that_no_force_tells_is_refused(few_moves):
         stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0), speed="found"))
 
 
+@pytest.mark.parametrize("rate", [1e-3, 0.1])
+def test_a_slow_rotation_of_a_stiff_blade_is_steady(rate):
+    """Rounding of its stiffness exceeds the centrifugal forces, as 1e-7 N of 1e-8 to 1e-3 N."""
+    scene = stiffmbs.read_scene("""
+bodies:
+  hub: {mass: 1, inertia: 1}
+  rod: {type: beam, start: [0, 0], end: [1, 0], elements: 6, section: {type: rectangle, width: 40 mm, height: 15 mm}, material: {E: 70 GPa, density: 2700}}
+joints:
+  pin: {type: revolute, i: hub, j: ground}
+  clamp: {type: fixed, i: rod.start, j: hub}
+""")
+    found = stiffmbs.equilibrium(scene, motion=SteadyMotion(rotation=rate))
+    slowest = np.sort(np.abs(np.imag(found.eigenvalues)))[2]
+    still = np.sort(np.abs(np.imag(stiffmbs.equilibrium(scene, motion=SteadyMotion(rotation=1e-9)).eigenvalues)))[2]
+    assert slowest == pytest.approx(still, rel=1e-5)
+
+
 WRONG = [
     ({"rotation": (1, 0, 0)}, "the motion is not steady"),
     ({"velocity": (1, 0, 0)}, "joint 'hook' (equation x) does not allow this motion"),

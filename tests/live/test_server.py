@@ -212,6 +212,12 @@ def test_what_is_no_scene_is_refused(tmp_path, monkeypatch, name, expected):
     assert found.exit_code == 2 and expected in found.output and "Traceback" not in found.output
 
 
+@pytest.mark.parametrize("port", [-1, 65536, "8000", None])
+def test_what_is_no_port_is_refused(scene, port):
+    with pytest.raises(stiffmbs.InputError, match="expected a free one"):
+        stiffmbs.open(scene, port=port, browser=False)
+
+
 def test_a_taken_port_is_refused(page, scene):
     port = Client(page).host.split(":")[1]
     found = CliRunner().invoke(main, ["open", str(scene), "--no-browser", "--port", port])
@@ -301,6 +307,27 @@ def test_a_worker_that_does_not_read_does_not_block_the_server(scene, monkeypatc
             threading.Thread(target=_unanswered, args=(client,), daemon=True).start()
         time.sleep(0.5)
         assert client.ask("start")[0] == 200
+    finally:
+        page.close()
+
+
+BROKEN = {
+    "killed while it writes": 'sys.stdin.readline(); sys.stdout.write(\'{"number": 1, "sta\'); sys.stdout.flush()',
+    "no JSON": "sys.stdin.readline(); print('hello', flush=True); time.sleep(300)",
+    "no text": "sys.stdin.readline(); sys.stdout.buffer.write(b'\\xff\\n'); sys.stdout.flush(); time.sleep(300)",
+    "reads no more": "os.close(0); time.sleep(300)",
+    "writes no more": "os.close(1); time.sleep(300)",
+}
+
+
+@pytest.mark.parametrize("code", BROKEN.values(), ids=BROKEN)
+def test_a_broken_worker_is_reported_at_once(scene, monkeypatch, code):
+    from stiffmbs.live import workers
+
+    monkeypatch.setattr(workers, "arguments", lambda file: ["-c", f"import os, sys, time; {code}"])
+    page = stiffmbs.open(scene, browser=False)
+    try:
+        assert "ended unexpectedly" in Client(page).job("solve", "x" * 1_000_000)["message"]
     finally:
         page.close()
 

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 import stiffmbs
-from stiffmbs.model.paths.curves import curve_through
+from stiffmbs.model.paths.curves import circle, curve_through, straightened
 from stiffmbs.model.paths.lanes import STANDARDS, path_through
 
 from ..conftest import EXAMPLES
@@ -62,6 +63,30 @@ def test_a_lap_closes_and_its_curvature_is_that_of_the_circle():
     assert lap.s[-1] == pytest.approx(2 * np.pi * 50, rel=1e-5)
     assert lap.curvature == pytest.approx(np.full_like(lap.s, 0.02), rel=3e-3)
     assert (lap.x[0], lap.y[0]) == (lap.x[-1], lap.y[-1])
+
+
+def test_an_open_course_straightens_beyond_both_ends():
+    course = curve_through(np.array([[0, 0], [10, 4], [30, 5], [60, 0]]))
+    longer = straightened(course)
+    inside = (longer.s >= 0) & (longer.s <= course.s[-1])
+    assert longer.x[inside] == pytest.approx(course.x)
+    assert abs(course.curvature[0]) > 0.02
+    assert longer.curvature[[0, -1]] == pytest.approx([0, 0])
+    at = np.linspace(longer.s[0], longer.s[-1], 1000)
+    velocity = CubicSpline(longer.s, np.stack([longer.x, longer.y], axis=1))(at, 1)
+    heading = np.unwrap(np.arctan2(velocity[:, 1], velocity[:, 0]))
+    assert np.sin(heading) == pytest.approx(CubicSpline(longer.s, longer.sin)(at), abs=1e-3)
+    assert np.gradient(heading, at) == pytest.approx(CubicSpline(longer.s, longer.curvature)(at), abs=1e-3)
+
+
+@pytest.mark.long
+def test_the_driver_goes_straight_on_from_the_end_of_a_circle():
+    quarter = circle(80, 20, 30, 0.25)
+    path = "{circle: 80 m, turns: 0.25, speed: [[0, 14 m/s], [150, 15 m/s]]}"
+    run = driven("circle", ("V", "15"), ("path", path), ("use.driver.pace", "profile"), duration=20)
+    assert run["driver.station"][-1] > quarter.s[-1] + 80
+    assert abs(run["driver.lateral_error"][-1]) < 0.005
+    assert run["driver.speed"][-1] == pytest.approx(15, abs=0.1)
 
 
 @pytest.mark.long

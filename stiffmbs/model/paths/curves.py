@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,8 @@ MOST_STATIONS = 2000
 """Largest number of stations of a curve."""
 SAMPLES = 8
 """Points between two stations with which the arc length is measured."""
+OUTLET = 20.0
+"""Length beyond each end of an open curve over which its curvature falls to zero, m."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +84,45 @@ def curve_through(points: np.ndarray, closed: bool = False) -> Curve:
     return _closing(found) if closed else found
 
 
+def straightened(curve: Curve) -> Curve:
+    """Return an open curve whose curvature falls linearly to zero beyond both ends, over `OUTLET`.
+
+    A spline through its stations continues it by straight lines, along which its directions and curvatures are constant.
+    """
+    after = _outlet(curve.x[-1], curve.y[-1], curve.cos[-1], curve.sin[-1], curve.curvature[-1])
+    before = _outlet(curve.x[0], curve.y[0], -curve.cos[0], -curve.sin[0], -curve.curvature[0])
+    after[0] += curve.s[-1]
+    signs = (-1.0, 1.0, 1.0, -1.0, -1.0, -1.0)
+    columns = zip(signs, before, _values(curve), after, strict=True)
+    s, x, y, cos, sin, curvature = (np.concatenate([k * back[:0:-1], on, out[1:]]) for k, back, on, out in columns)
+    return Curve(s, x, y, cos, sin, curvature)
+
+
+def _outlet(x: float, y: float, cos: float, sin: float, curvature: float) -> list[np.ndarray]:
+    """Return the values of a clothoid from a place to a straight line."""
+    s = np.linspace(0.0, OUTLET, SAMPLES + 1)
+
+    def heading(at: np.ndarray) -> np.ndarray:
+        turned: np.ndarray = np.arctan2(sin, cos) + curvature * (at - at**2 / (2 * OUTLET))
+        return turned
+
+    dx, dy = _places(s, heading)
+    return [s, x + dx, y + dy, np.cos(heading(s)), np.sin(heading(s)), curvature * (1 - s / OUTLET)]
+
+
+def _values(curve: Curve) -> tuple[np.ndarray, ...]:
+    return curve.s, curve.x, curve.y, curve.cos, curve.sin, curve.curvature
+
+
+def _places(s: np.ndarray, heading: Callable[[np.ndarray], np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Return x and y from the first station on, by Gauss quadrature of the direction."""
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    half = np.diff(s)[:, None] / 2
+    within = heading((s[1:] + s[:-1])[:, None] / 2 + half * nodes)
+    x, y = (np.concatenate([[0.0], np.cumsum((half * weights * of(within)).sum(axis=1))]) for of in (np.cos, np.sin))
+    return x, y
+
+
 def _closing(curve: Curve) -> Curve:
     for values in (curve.x, curve.y, curve.cos, curve.sin, curve.curvature):
         values[-1] = values[0]
@@ -101,10 +143,7 @@ def circle(radius: float, entry: float, transition: float, turns: float) -> Curv
         on_circle = np.maximum(at - entry - transition, 0.0)
         return (along**2 / (2 * transition) if transition else 0.0) / radius + on_circle / radius
 
-    nodes, weights = np.polynomial.legendre.leggauss(6)
-    half = np.diff(s)[:, None] / 2
-    within = heading((s[1:] + s[:-1])[:, None] / 2 + half * nodes)
-    x, y = (np.concatenate([[0.0], np.cumsum((half * weights * of(within)).sum(axis=1))]) for of in (np.cos, np.sin))
+    x, y = _places(s, heading)
     part = np.clip((s - entry) / transition, 0.0, 1.0) if transition else (s >= entry).astype(float)
     angle = heading(s)
     return Curve(s, x, y, np.cos(angle), np.sin(angle), part / radius)

@@ -12,7 +12,7 @@ from ...errors import InputError
 from ...reading.fields import Described, located
 from ...reading.files.yaml_text import Content
 from ...reading.units import si
-from .curves import Curve, circle, curve_through
+from .curves import Curve, circle, curve_through, straightened
 from .lanes import LENGTH, STANDARDS, path_through
 
 PATH = "path"
@@ -23,7 +23,8 @@ Station = tuple[si.Length, si.Velocity]
 class Path(Described):
     """Section ``path``: one course on the road's x-y plane, which the part `driver` follows with ``path: course``.
 
-    The course is a spline through `points`, or a `circle`, or leads through the `lanes` of a standard. It becomes the
+    The course is a spline through `points`, or a `circle`, or leads through the `lanes` of a standard. Beyond the ends of
+    an open one its curvature falls to zero over 20 m, and straight lines follow. It becomes the
     tables ``path_x path_y path_cos path_sin path_curvature`` over the arc length, for use in formulas.
     """
 
@@ -78,7 +79,7 @@ def with_path(raw: dict[str, object], parameters: Mapping[str, object]) -> dict[
     tables = raw.get("tables") or {}
     own = tables_of(curve)
     if path.speed:
-        own[f"{PATH}_speed"] = {"table": [list(station) for station in path.speed]}
+        own[f"{PATH}_speed"] = {"table": [list(station) for station in path.speed], "beyond": "hold"}
         if len(path.speed) == 1:
             own[f"{PATH}_speed"]["table"].append([path.speed[0][0] + 1.0, path.speed[0][1]])
     for name in own:
@@ -89,6 +90,7 @@ def with_path(raw: dict[str, object], parameters: Mapping[str, object]) -> dict[
 
 def tables_of(curve: Curve) -> Content:
     """Return position, direction and curvature over the arc length, by the names of their tables."""
+    curve = curve if curve.closed else straightened(curve)
     ends = {"x": "not-a-knot", "y": "not-a-knot"}
     return {
         f"{PATH}_{name}": {

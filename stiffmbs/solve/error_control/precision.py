@@ -52,7 +52,7 @@ def _held_too_little(dynamics: Dynamics, settings: RunSettings, t: float, q: np.
     jacobian = system.term("motion", "C_q")
     entries = state.values["motion"][jacobian.source]
     slopes = np.sqrt(np.bincount(jacobian.row, entries**2, minlength=system.n_c))
-    slopes[~(system.active & system.holonomic)] = np.inf
+    slopes[~(system.active & system.holonomic) | np.isnan(slopes)] = np.inf
     row = int(np.argmin(slopes))
     rounding = np.finfo(float).eps * max(1.0, float(np.abs(q[: system.n_pose]).max()))
     name, tolerance = _tolerance(settings)

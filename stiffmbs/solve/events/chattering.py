@@ -53,7 +53,8 @@ class Chattering:
 
     def __init__(self, dynamics: Dynamics, end: float, rtol: float) -> None:
         self._dynamics, self._end = dynamics, end
-        self._reach = min(max(JUMP.larger_move, CHATTERING.stays_within * rtol), CHATTERING.stays_within_at_most)
+        farthest = min(max(JUMP.larger_move, CHATTERING.stays_within * rtol), CHATTERING.stays_within_at_most)
+        self._reaches = (JUMP.larger_move, farthest)  # far from a jump, stiff forces may hide it
         self._any = dynamics.system.n_event_functions > 0
         self._events: deque[float] = deque(maxlen=2 * CHATTERING.window + 1)
         self._count = 0
@@ -74,8 +75,8 @@ class Chattering:
         Raises ChatteringError if a force drives the motion back from both sides of its discontinuity. Raises
         SolverError if the steps are too short to reach the end.
         """
-        if self._any:
-            self.refuse(t, q, u, sliding(self._dynamics, t, q, u, self._reach))
+        for reach in self._reaches if self._any else ():
+            self.refuse(t, q, u, sliding(self._dynamics, t, q, u, reach))
         since, before = self._mark or (t, steps)
         if steps - before < CHATTERING.steps_seen:
             self._mark = since, before
@@ -86,7 +87,7 @@ class Chattering:
             raise SolverError(
                 f"stopped at t = {t:.9g} s: the last {steps - before} steps covered only {t - since:.3g} s, and the rest of the run would take "
                 f"at least {CHATTERING.steps_ahead:.0e} more; look for a singularity: a force that divides by "
-                "a velocity at rest, a jump without a breakpoint, or a mechanism that locks"
+                "a velocity at rest, a jump without a breakpoint, or a mechanism that locks; or the tolerance is below the rounding of the coordinates"
             )
 
     def note_event(self, t: float, q: np.ndarray, u: np.ndarray, event_function: int) -> None:

@@ -188,7 +188,9 @@ def in_steady_motion(imbalance=0.0):
     state = Record(q=np.zeros(1), unchanged=nullcontext)
     dynamics = Record(state=state, system=system, assemble=times.append)
     motion = Record(carried=lambda _: np.ones(1))
-    with patch.object(steady, "balance_at", lambda *_: Record(imbalance=imbalance, left=np.zeros(1))):
+    with patch.object(
+        steady, "balance_at", lambda *_: Record(left=np.array([imbalance]), allowed=np.zeros(1), largest=1.0)
+    ):
         balances = not refused(lambda: steady._refuse_unsteady(dynamics, 0.0, motion))
     return times[0], balances
 

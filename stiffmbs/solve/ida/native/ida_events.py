@@ -186,7 +186,9 @@ def _aim(c, w, s, ahead):
         go_ahead(c, s, ahead * w.node[node])
         take_reactions(w, s, t + ahead * w.node[node])
         keep_row(w, s, node)
+    unresolved = w.unresolved
     place = first_event(w, s, t, ahead)
+    w.unresolved = unresolved  # this motion is extrapolated only
     for k in range(w.n):
         w.found[k] = 0
     least = max(NEXT_STEP.short_of * w.longest, 10.0 * INDISTINCT * abs(t))
