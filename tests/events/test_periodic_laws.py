@@ -44,3 +44,18 @@ def test_random_laws_over_a_state(seed):
 def test_a_short_step_before_an_interval_does_not_hide_it(seed):
     """A step of 1e-12 s just before a narrow interval, after hundreds of others: rates over less time are rounding."""
     assert laws.trial(seed).outcome is Outcome.RIGHT
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
+def test_peaks_of_a_velocity_whose_tolerance_is_a_period(solver):
+    """A velocity of 1700 m/s at rtol 1e-3, and a law that repeats every 8.6 m/s: most peaks were passed without an event."""
+    model = Model(gravity=(0, 0))
+    model.add("clock", Body(mass=1, inertia=1, position=(0, 1), velocity=(1700, 0)))
+    model.add("pushed", Body(mass=1, inertia=1))
+    model.add("wind", AppliedForce(i="clock", force=(33.5, 0)))
+    model.add("push", AppliedForce(i="pushed", force=("step(sin(0.73*clock.vx), 0.9999, 0, 0.99995, 1)", 0)))
+    solution = model.run(duration=5, points=2, solver=solver, rtol=1e-3, errors=False)
+    turn = 0.73 * (1700 + 33.5 * np.linspace(0, 5, 2_000_001))
+    z = np.clip((np.sin(turn) - 0.9999) / 0.00005, 0, 1)
+    impulse = np.trapezoid(z * z * (3 - 2 * z), dx=5 / 2_000_000)
+    assert solution["pushed.vx"][-1] == pytest.approx(impulse, rel=0.01)
