@@ -179,7 +179,7 @@ def test_an_event_beyond_the_noise_of_its_function_counts():
     assert hovering.band == 0
 
 
-@pytest.mark.parametrize("part, factor", [(0.1, 2), (0.9, 0)])
+@pytest.mark.parametrize("part, factor", [(-0.8, 2), (0.95, 0)])
 def test_a_band_to_which_a_restart_returns_is_widened(part, factor):
     """Velocities of I3, which no error test includes, left the band in the first step after each of thousands of restarts."""
     hovering, job, noise = noted([0], np.array([0.9]))

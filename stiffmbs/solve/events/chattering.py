@@ -15,6 +15,7 @@ from ...dynamics.friction_loads import REMEDY, ambiguous_loads_clause
 from ...errors import ChatteringError, SolverError
 from ...tuning import tuned
 from .discontinuity import JUMP, noise_of, sliding
+from .native.parameters import SEARCH
 
 
 @dataclass(frozen=True)
@@ -191,7 +192,7 @@ class HoveringEvents:
                 self.band[hovering] = noise[hovering]
 
     def taken_back(self, t: float) -> bool:
-        """Return True if a restart, to the current state, has taken functions far back into the bands that they had left.
+        """Return True if a restart, to the current state, has taken functions back into the bands that they had left.
 
         The step had larger errors than its tolerance, as velocities have that no error test includes: the bands are doubled.
         """
@@ -199,7 +200,7 @@ class HoveringEvents:
             return False
         state = self._dynamics.state
         state.evaluate("event_function", t)
-        back = abs(state.values["event_function"][: len(self.band)]) < 0.5 * self._left
+        back = abs(state.values["event_function"][: len(self.band)]) < (1.0 - SEARCH.margin) * self._left
         self.band[back] = 2.0 * self._left[back]
         return bool(back.any())
 
