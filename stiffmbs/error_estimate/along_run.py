@@ -18,7 +18,7 @@ from .evaluated import Evaluated, evaluated
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
 from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
-from .transport import INNER, Transport
+from .transport import OF_BDF, Transport
 
 
 @dataclass(frozen=True)
@@ -164,8 +164,8 @@ def _with_inner(
     A curve stretches a stiff spring by its own error: 1e-8 m are 100 kN at 1e13 N/m. Where its defects are a large part of the
     motion, the points within a step become those of its collocation, by Newton's iteration.
     """
-    system, steps, inner = dynamics.system, np.arange(len(recorded.sizes)), INNER - 1
-    t, z = curve_of_bdf(recorded).at(np.tile(radau(INNER).nodes[:-1], (len(steps), 1)), steps)
+    system, steps, inner = dynamics.system, np.arange(len(recorded.sizes)), OF_BDF.stages - 1
+    t, z = curve_of_bdf(recorded).at(np.tile(OF_BDF.nodes[:-1], (len(steps), 1)), steps)
     q, u = (np.ascontiguousarray(each) for each in (z[:, : system.n_q], z[:, system.n_q :]))
     before = np.full(len(steps), np.inf)
     while True:
@@ -216,10 +216,10 @@ def _transported(transport: Transport, each: _Prepared, error: np.ndarray) -> tu
     errors, slopes = transport.along(each.points, each.sizes, each.defects, error)
     if each.piece.points == 1:
         errors, slopes = errors[:, -1:], slopes[:, -1:]
-    starts = error[None], np.full((1, len(error)), np.nan)
-    return tuple(
-        np.vstack([start, of_points.reshape(-1, len(error))])
-        for start, of_points in zip(starts, (errors, slopes), strict=True)
+    unknown = np.full((1, len(error)), np.nan)
+    return (
+        np.vstack([error[None], errors.reshape(-1, len(error))]),
+        np.vstack([unknown, slopes.reshape(-1, len(error))]),
     )
 
 

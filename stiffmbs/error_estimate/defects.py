@@ -57,9 +57,12 @@ class Points:
     def with_inner(self, t: np.ndarray, states: np.ndarray, exact: np.ndarray) -> Points:
         """Return the points with others within each step, in rows of their order."""
         inner = len(t) // len(self.sizes)
-        whole = ((ours, theirs) for ours, theirs in ((self.t, t), (self.states, states), (self.exact, exact)))
         return replace(
-            self, points=inner + 1, **dict(zip(("t", "states", "exact"), (woven(*each) for each in whole), strict=True))
+            self,
+            points=inner + 1,
+            t=woven(self.t, t),
+            states=woven(self.states, states),
+            exact=woven(self.exact, exact),
         )
 
     def changes(self, change: np.ndarray) -> np.ndarray:
@@ -120,6 +123,7 @@ def curve_of_bdf(of: Points) -> Curve:
     first, uneven = _windows(sizes, ESTIMATE.points)
     window = first[~uneven, None] + np.arange(ESTIMATE.points)
     even = Curve.through(t[window], of.states[window], *t[ends[~uneven]].T)
-    coefficients = np.zeros((len(steps), ESTIMATE.points, of.states.shape[1]))
-    coefficients[:, :4], coefficients[~uneven] = curve.coefficients, even.coefficients
+    ours, theirs = curve.coefficients.shape[1], even.coefficients.shape[1]
+    coefficients = np.zeros((len(steps), max(ours, theirs), of.states.shape[1]))
+    coefficients[uneven, :ours], coefficients[~uneven, :theirs] = curve.coefficients[uneven], even.coefficients
     return replace(curve, coefficients=coefficients)

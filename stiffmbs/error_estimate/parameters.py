@@ -15,11 +15,11 @@ class EstimateParameters:
     """
 
     work: float = 1e6
-    """Evaluations of the equations times unknowns up to which every run estimates its error, in about 0.2 s.
-
-    Linearising the equations at a step (of radau: at a point of a step) takes two of them for each degree of freedom."""
-    row: float = 500.0
-    """Work at a step (of radau: at a point of a step) that does not depend on the unknowns, in the same unit; about 0.1 ms."""
+    """Evaluations of the equations times unknowns up to which every run estimates its error, in about 0.2 s."""
+    row: float = 50.0
+    """Work at a step (of radau: at a point of a step) that does not depend on the unknowns, in the same unit; about 10 us."""
+    solution: float = 2.0
+    """Further work there for n unknowns, in n^1.5: the growth of factors with little fill-in."""
     restart: float = 2.5e4
     """Work at a restart, in the same unit; about 5 ms."""
     difference: float = 1e-7
@@ -27,9 +27,9 @@ class EstimateParameters:
     beside: float = 1e-3
     """Distance from an event within which the equations are not linearised, in lengths of the piece that it ends or starts."""
     points: int = 6
-    """Accepted states on the polynomial from which the defect of a step of bdf follows."""
+    """Accepted states on the polynomial that gives the states within a step of bdf."""
     uneven: float = 10.0
-    """Ratio of the steps on that polynomial above which the formula of the step gives its defect."""
+    """Ratio of the steps on that polynomial above which the ends of the step give them."""
     converged: float = 1e-6
     """Last correction of an iteration for the change of an error over a step, relative to this change."""
     smooth: float = 0.1

@@ -21,10 +21,8 @@ from .coordinates import as_rows, typical, with_rates
 from .evaluated import Evaluated
 from .parameters import ESTIMATE
 
-INNER = 3
-"""Points of the collocation over a step of bdf."""
-AT_ONCE = 1e15
-"""Inverse of a step in which only constraints act, 1/s."""
+OF_BDF = radau(3)
+"""Method of the collocation over a step of bdf."""
 
 
 class Transport:
@@ -85,7 +83,8 @@ class Transport:
 
     def tangent(self, at: Evaluated, rates: np.ndarray) -> np.ndarray:
         """Return the part of some rates that is tangent to the constraints at some states, shape (n, full)."""
-        return AT_ONCE * self.corrections(at, AT_ONCE, rates)
+        cj = 1.0 / np.finfo(float).eps  # in so short a step, only constraints act
+        return cj * self.corrections(at, cj, rates)
 
     def _parts(self, rates: np.ndarray) -> list[slice]:
         """Return parts of the steps that are in memory at once."""

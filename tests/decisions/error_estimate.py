@@ -9,9 +9,8 @@ import numpy as np
 
 from stiffmbs.analyses import errors as of_runs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.error_estimate import along_run, defects, estimate, interpolated, kinks, linearised, transport, vibrations
+from stiffmbs.error_estimate import along_run, defects, estimate, kinks, restarts, transport
 from stiffmbs.error_estimate.accuracy import Accuracy
-from stiffmbs.error_estimate.along_run import _Prepared
 from stiffmbs.error_estimate.evaluated import evaluated
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.settings import RunSettings
@@ -25,19 +24,18 @@ from tests.solve.test_parameter_thresholds import DOUBLES, count_while
 SCENE = "{bodies: {a: {mass: 1, inertia: 1}}}"
 
 
-def largest_displacement():
-    """Return the displacement by which a free body is linearised."""
+def shift_of_time():
+    """Return the shift of time by which a motion is seen to depend on time itself."""
     dynamics = prepare(read_scene(SCENE)).dynamics
-    at = evaluated(dynamics, np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
-    moved = []
+    at, times = evaluated(dynamics, np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3))), []
 
-    def noted(*states):
-        moved.append(np.abs(states[2]).max())
-        return evaluated(*states)
+    def noted(_, t, *states):
+        times.append(t[0])
+        return evaluated(dynamics, t, *states)
 
-    with patch.object(linearised, "evaluated", noted):
-        linearised.linearised(dynamics, at, 0.0)
-    return moved[0]
+    with patch.object(restarts, "evaluated", noted):
+        restarts.is_autonomous(dynamics, at)
+    return max(times)
 
 
 def piece(h):
@@ -47,67 +45,27 @@ def piece(h):
     return Piece(t, zeros, zeros, zeros, zeros, np.ones(len(t), dtype=int), 1, ())
 
 
-def row_beside_an_event():
-    """Return the row of 10,000 equal steps after an event at which the first state is linearised."""
-    prepared = _Prepared(piece(np.ones(10_000)), None, None, None, [], np.zeros(0), True)
-    return prepared.within(np.zeros(1, dtype=int))[0]
+def points(h):
+    """Return the points of a free body at rest and steps of given lengths."""
+    t = np.append(0.0, np.cumsum(h))
+    zeros, system = np.zeros((len(t), 6)), prepare(read_scene(SCENE)).dynamics.system
+    return defects.Points(system, 1, t, zeros, zeros, np.ones(6))
 
 
-def windows(h):
-    """Return the numbers of points of the polynomials, and the steps whose formulas give the defects."""
-    widths, by_formula = [], []
-
-    def noted(nodes, at):
-        widths.append(nodes.shape[1])
-        return np.zeros(nodes.shape)
-
-    rates = Record(
-        states=np.zeros((len(h) + 1, 2)), width=2, changes=lambda change: change, defects=lambda change, _: change
-    )
-    with (
-        patch.object(defects, "slope_weights", noted),
-        patch.object(defects, "_of_formula", lambda *asked: by_formula.append(asked[2]) or np.zeros(2)),
-    ):
-        defects.of_bdf(piece(h), rates, False)
-    return widths, by_formula
+def degree(h):
+    """Return the degree of the curve through recorded states in the last step, 3 of its ends alone."""
+    states = np.random.default_rng(0).random((len(h) + 1, 6))
+    return np.flatnonzero(defects.curve_of_bdf(replace(points(h), states=states)).coefficients[-1].any(axis=1))[-1]
 
 
-def turning(rate):
-    """Return the tangent spaces of 100 states of a vibration of a given angular frequency."""
-    one = np.broadcast_to(np.eye(2), (100, 2, 2))
-    return linearised.Linearised(one, rate * one @ np.array([[0.0, 1.0], [-1.0, 0.0]]), one)
-
-
-def is_resolved(rate):
-    t = np.arange(100.0)
-    block = transport.Block(np.array([0, 99]), np.zeros(0), np.array([99.0]))
-    return vibrations.are_resolved(turning(rate), t, np.arange(100), [block]).all()
-
-
-def spectra():
-    made = []
-    with patch.object(np.linalg, "eigvals", lambda m: made.append(len(m)) or np.zeros(m.shape[:2])):
-        is_resolved(1.0)
-    return made[0]
-
-
-def is_interpolated(curvature):
-    """Return True if a matrix M of a' = M a, zero at the ends of an interval of 1 s and small in its middle, is interpolated."""
-    one, rates = np.ones((3, 1, 1, 1)), np.zeros((3, 1, 1, 1))
-    rates[1] = -curvature
-    return interpolated._are_on_a_line(one, rates, one[0], np.array([[0.0], [0.5], [1.0]]), 0)[0]
-
-
-def linearised_nodes():
-    """Return the number of states, of 97 with the same matrices, at which equations are linearised."""
-    at = Record(t=np.arange(97.0), at=lambda chosen: chosen)
-
-    def constant(dynamics, chosen, reach):
-        return linearised.Linearised(*3 * [np.ones((len(chosen), 1, 1))])
-
-    with patch.object(interpolated, "linearised", constant):
-        dynamics = Record(system=Record(n_pose=1))
-        return interpolated.linearised_along(dynamics, at, np.zeros(1, dtype=int), 0.0).computed.sum()
+def transport_of(count):
+    """Return the number of steps in memory at once, and the tolerance, of a transport over a number of points."""
+    dynamics, given = prepare(read_scene(SCENE)).dynamics, []
+    at = evaluated(dynamics, np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
+    with patch.object(transport, "Stages", lambda *of: given.append(of[-1])):
+        found = transport.Transport(dynamics, at)
+        found._of(count)
+    return found._parts(np.zeros((1, count, 6)))[0].stop, given[0]
 
 
 def is_smooth(error, kinks_of_100=1):
@@ -125,20 +83,12 @@ def intervals():
 
     def noise(t, q, u):
         calls.append(len(t))
-        return np.sin(1e9 * t)[:, None]
+        return 1e9 * np.sin(1e9 * t)[:, None] * np.ones(6)
 
-    t, zeros = np.arange(17.0), np.zeros((17, 1))
-    rates = Record(states=zeros, exact=zeros, typical=np.ones(1), changes_in=lambda rows: np.zeros((1, 1, 1)))
-    defects = np.append(np.zeros(10), np.append(1.0, np.zeros(6)))[:, None]
-    piece = Piece(t, zeros, zeros, zeros, zeros, t, 1, ())
-    along_run._resolve_kinks(piece, rates, defects, defects.copy(), noise)
+    rates, of = np.zeros((16, 3, 6)), replace(points(np.ones(48)), points=3)
+    rates[10] = 1.0
+    along_run._over_kinks(of, rates, lambda _, rates: np.abs(rates).max(axis=(1, 2)), noise)
     return calls[-1] // len(kinks.GAUSS_NODES)
-
-
-def is_near(distance):
-    """Return True if the ends of steps are near enough to Radau nodes."""
-    ends = transport.RADAU_NODES + np.array([distance, 0.0, 0.0])
-    return len(transport._rows(np.append(0.0, ends), 0)) == 4
 
 
 def is_lost(error):
@@ -191,22 +141,14 @@ def restarts_that_are_kept():
 
 DECISIONS = {
     "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.most,
-    "error_estimate.difference": largest_displacement,
-    "error_estimate.beside": row_beside_an_event,
-    "error_estimate.points": lambda: windows(np.ones(20))[0][0],
-    "error_estimate.uneven": lambda: count_while(lambda ratio: not windows(np.append(np.ones(20), ratio))[1], DOUBLES),
-    "error_estimate.block": lambda: transport._rows(np.arange(100.0), 0)[-1],
-    "error_estimate.spectra": spectra,
-    "error_estimate.resolved": lambda: count_while(lambda rate: not is_resolved(0.25 * rate), DOUBLES),
-    "error_estimate.turn": lambda: count_while(lambda rate: is_resolved(1e-2 * rate), DOUBLES),
-    "error_estimate.operations": lambda: count_while(lambda steps: vibrations.are_affordable(1e3 * steps, 10), DOUBLES),
-    "error_estimate.apart": linearised_nodes,
-    "error_estimate.interpolated": lambda: count_while(lambda part: is_interpolated(1e-4 * part), DOUBLES),
+    "error_estimate.difference": shift_of_time,
+    "error_estimate.beside": lambda: along_run._away_from_events(piece(np.ones(10_000)), True)[0],
+    "error_estimate.points": lambda: 1 + degree(np.ones(20)),
+    "error_estimate.uneven": lambda: count_while(lambda ratio: degree(np.append(np.ones(20), ratio)) > 3, DOUBLES),
     "error_estimate.smooth": lambda: count_while(lambda part: is_smooth(1e-3 * part), DOUBLES),
     "error_estimate.intervals": intervals,
     "error_estimate.isolated": lambda: count_while(lambda count: not is_smooth(1.0, count), range(1, 101)),
     "error_estimate.row": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.row,
-    "error_estimate.off_node": lambda: count_while(lambda part: is_near(1e-3 * part), DOUBLES),
     "error_estimate.lost": lambda: count_while(lambda error: not is_lost(1e-3 * error), DOUBLES),
     "error_estimate.tolerances": lambda: count_while(lambda error: not noted("positions", 1e-6 * error), DOUBLES),
     "error_estimate.large": lambda: count_while(lambda error: not noted("forces", 1e-4 * error), DOUBLES),
@@ -214,7 +156,9 @@ DECISIONS = {
     "error_estimate.smallest_rtol": lambda: Accuracy({"forces": "1e-20 %"}).first_rtol(1.0),
     "error_estimate.aim": lambda: next_rtol(100.0),
     "error_estimate.slope": lambda: next_rtol(100.0),
-    "error_estimate.numbers_at_once": lambda: transport.at_once(100),
+    "error_estimate.numbers_at_once": lambda: transport_of(3)[0],
+    "error_estimate.converged": lambda: transport_of(3)[1],
+    "error_estimate.solution": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.solution,
     "error_estimate.second": lambda: of_runs._part_of_second(1e-6),
     "error_estimate.restart": restarts_that_are_kept,
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
@@ -224,13 +168,6 @@ EXPECTED = {
     "error_estimate.difference": 1e-07,
     "error_estimate.beside": 10, "error_estimate.points": 6,
     "error_estimate.uneven": 14,
-    "error_estimate.block": 8.0,
-    "error_estimate.spectra": 16,
-    "error_estimate.resolved": 9,
-    "error_estimate.turn": 17,
-    "error_estimate.operations": 54,
-    "error_estimate.interpolated": 31,
-    "error_estimate.off_node": 29,
     "error_estimate.lost": 23,
     "error_estimate.tolerances": 27,
     "error_estimate.large": 27,
@@ -238,13 +175,14 @@ EXPECTED = {
     "error_estimate.smallest_rtol": 1e-13,
     "error_estimate.aim": 8.549879733383488e-08,
     "error_estimate.slope": 8.549879733383488e-08,
-    "error_estimate.numbers_at_once": 400,
+    "error_estimate.numbers_at_once": 111111,
+    "error_estimate.converged": 1e-06,
+    "error_estimate.solution": 2.0,
     "error_estimate.second": 0.1,
     "error_estimate.restart": 21,
-    "error_estimate.row": 500.0,
-    "error_estimate.apart": 13,
+    "error_estimate.row": 50.0,
     "error_estimate.smooth": 27,
-    "error_estimate.intervals": 16,
+    "error_estimate.intervals": 48,
     "error_estimate.isolated": 25,
     "analyses.errors:MOST_REPEATS": 3,
 }  # fmt: skip

@@ -30,8 +30,6 @@ FAST = 0.4
 directions."""
 MOST_CORRECTIONS = 40
 """Number of corrections after which the matrix of all stages is factored."""
-ROUNDING = 1e-12
-"""Size of a correction, in that of the changes, which cannot become smaller."""
 
 
 @compiled
@@ -193,7 +191,7 @@ def _iterated(c, h, s, rates, x, tolerance, renewed):
         if size == 0.0 or (number > 0 and size <= tolerance * _largest(c, shifted(x, last), 1)):
             return True
         if not isfinite(size) or (number > 1 and not renewed and size > FAST * FAST * earlier):
-            return size <= ROUNDING * _largest(c, x, c.stages)
+            return False
         earlier, before = before, size
     return False
 

@@ -101,9 +101,7 @@ class NativeEngine(Engine):
             places = radau(max(CHOSEN_FROM) + 2).nodes[:-1]  # points at which the curve through fewer has defects
         self.ida.keep_steps(True, places)
         system = self.equations.system
-        free = max(system.n_u - int(system.active.sum()), 0)
-        evaluations = 1 + 2 * free + system.n_q - system.n_pose  # linearised equations are differences
-        of_a_row = bounds.row + evaluations * (system.n_q + system.n_u + system.n_c)
+        of_a_row = bounds.row + bounds.solution * (system.n_q + system.n_u + system.n_c) ** 1.5
         self.recorder = StepRecorder(bounds, 1 + len(places), of_a_row)
 
     def recorded(self) -> tuple[Piece, ...]:

@@ -10,8 +10,10 @@ from stiffmbs.errors import SolverError
 from stiffmbs.sensitivity_equations import along_run, jumps
 from stiffmbs.sensitivity_equations.along_run import Touches
 from stiffmbs.sensitivity_equations.jumps import Jumps, Shifted, State
+from stiffmbs.sensitivity_equations.native import stages
 from stiffmbs.sensitivity_equations.recorded import Recorder
 from tests.decisions.common import Reached, Record, nothing
+from tests.interpreted import interpreted
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
 
 
@@ -177,7 +179,24 @@ def error_of_derivatives(derivative):
         return Touches._off_differences(own, 0.0, np.zeros(1), np.zeros(1), None, 1.0)[0]
 
 
+def corrections(ratio, renewed):
+    """Return the number of corrections, each a part of the last one, after which factors are given up."""
+    made = []
+    table = Record(n=1, stages=1, correction=np.zeros(1))
+    replaced = {
+        "_take_residual": nothing, "_corrected_apart": lambda _: made.append(ratio ** len(made)),
+        "_largest": lambda _c, _values, _stages: made[-1],
+    }  # fmt: skip
+    with interpreted(stages, **replaced):
+        assert not stages._iterated(table, 1.0, None, None, np.zeros(1), 0.0, renewed)
+    return len(made)
+
+
 DECISIONS = {
+    "sensitivity_equations.native.stages:MOST_CORRECTIONS": lambda: corrections(0.9, True),
+    "sensitivity_equations.native.stages:FAST": lambda: count_while(
+        lambda ratio: corrections(ratio, False) == 3, HALVES
+    ),
     "sensitivities.rounding": lambda: ended()[0],
     "sensitivities.furthest": lambda: count_while(lambda duration: ended(duration, (0,))[1] > 1, HALVES),
     "sensitivities.short": lambda: count_while(lambda short: not suspicious(short=short), HALVES),
@@ -211,6 +230,7 @@ DECISIONS = {
     ),
 }
 EXPECTED = {
+    "sensitivity_equations.native.stages:MOST_CORRECTIONS": 40, "sensitivity_equations.native.stages:FAST": 6,
     "sensitivities.rounding": 1e-13, "sensitivities.furthest": 94, "sensitivities.short": 14,
     "sensitivities.sudden": 14, "sensitivities.jump": 40, "sensitivities.felt": 40, "sensitivities.halvings": 13,
     "sensitivities.left": 5, "sensitivities.roundings": 40, "sensitivities.most_numbers": 111,
