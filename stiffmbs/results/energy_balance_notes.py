@@ -17,6 +17,7 @@ from ..dynamics.storage import with_gaps
 from ..model.settings import RunSettings
 from ..notes import Note, NoteKind, Severity
 from ..reading.files.quoted import MOST_LISTED
+from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.settings import traits_of
 from .energy_balance import Balance, potentials
 
@@ -148,7 +149,8 @@ def _negligible(system: System, rows: OutputRows, settings: RunSettings) -> floa
         force = np.nanmax(np.abs(rows.values[:, system.term("output", "reaction").source]), initial=0.0)
         weight = np.nanmax(np.abs(system.mass[None, :] * rows.acceleration[:1]), initial=0.0)
         stored = np.nanmax(np.abs(rows.values[:, system.term("output", "potential").source]), initial=0.0)
-    return float(OF_TOLERANCE * settings.rtol * system.size * max(force, weight) + OF_POTENTIAL * stored)
+    resting = 0.5 * system.mass @ absolute_tolerances(system, settings)[system.n_q :] ** 2
+    return float(OF_TOLERANCE * settings.rtol * system.size * max(force, weight) + OF_POTENTIAL * stored + resting)
 
 
 def _where(system: System, balance: Balance, rows: OutputRows, k: int) -> str:

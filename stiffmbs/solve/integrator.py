@@ -111,6 +111,8 @@ class Integrator(Generic[E]):
         """Restart at t from a state, past events within `ahead`; return the time of the start."""
         self.engine.watch.watch_for(self._hovering.band)
         begun, state = self.engine.begin_restart(q, u, t, ahead), self.dynamics.state
+        if self._hovering.taken_back(begun.t):
+            self.engine.watch.watch_for(self._hovering.band)
         self._started()
         if begun.jumps:
             self._note_jump(t, q, u, ahead > 0.0)

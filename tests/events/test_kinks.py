@@ -58,6 +58,14 @@ def braked(t):
     return -2 / 11 / (slow - fast) * (slow * np.exp(slow * t) - fast * np.exp(fast * t))
 
 
+@EVERY
+def test_a_drive_sets_a_body_at_rest_in_motion(how):
+    """Just after that time, the velocity is rounding, and no measure of the first step."""
+    solution = stiffmbs.run(sled("step(t, 0.4, 0, 0.43, -0.38)"), duration=0.7, points=2, **{"rtol": 1e-9} | how)
+    assert solution.message == "completed"
+    assert solution["sled.x"][-1] == pytest.approx(-0.38, abs=1e-6)
+
+
 KINKS = {
     "at an output": (1.0, "2*max(t - 1, 0)", {"output": 0.01}),
     "between outputs": (1.0, "2*max(t - 1, 0)", {"points": 7}),

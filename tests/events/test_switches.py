@@ -179,6 +179,16 @@ def test_an_event_beyond_the_noise_of_its_function_counts():
     assert hovering.band == 0
 
 
+@pytest.mark.parametrize("part, factor", [(-0.8, 2), (0.95, 0)])
+def test_a_band_to_which_a_restart_returns_is_widened(part, factor):
+    """Velocities of I3, which no error test includes, left the band in the first step after each of thousands of restarts."""
+    hovering, job, noise = noted([0], np.array([0.9]))
+    hovering.note(0.0, job.start.q, job.start.u, [0], np.array([1.0]))
+    job.dynamics.state.q[0] = part * noise[0]
+    assert hovering.taken_back(0.0) == (factor > 0)
+    assert hovering.band == factor * noise
+
+
 def test_a_former_parameter_of_masking_is_told():
     with pytest.raises(InputError, match="events are no longer left out after a number of steps"):
         solve(window(), "radau", tuning={"masking": {"few_steps": 1}})

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 import stiffmbs
-from stiffmbs import Body, Marker, Model, Prismatic, SpringDamper
+from stiffmbs import AppliedForce, Body, Marker, Model, Prismatic, Revolute, SpringDamper
 from stiffmbs.analyses.load_scene import load_scene
 from stiffmbs.commands.main import main
 from stiffmbs.compile.compile_model import compile_model
@@ -349,3 +349,15 @@ def test_a_jump_of_a_drive_of_any_size_is_no_work(solver: dict[str, str], speed:
     found = stiffmbs.run(stiffmbs.read_scene(BY_A_KINK.replace("SPEED", str(speed))), errors=False, **solver)
     assert not any("energy balance" in note for note in found.notes)
     assert found.balance.scale == pytest.approx(0.5 * speed**2)
+
+
+def test_rounding_of_a_mechanism_at_rest_is_no_energy() -> None:
+    """The positions of I3, divided by short steps, give velocities of 1e-60 m/s, and a doubt about 1e-56 J."""
+    model = Model(gravity=(0, 0))
+    model.add("b", Body(mass=1, inertia=0.1, position=(0.3, 0)))
+    model.add("a", Body(mass=1, inertia=0.1, position=(0.6, 0)))
+    model.add("h", Revolute(i="b", j="ground"))
+    model.add("k", Revolute(i=Marker(body="a", point=(0.3, 0)), j="b"))
+    model.add("f", AppliedForce(i="a", force=(0, "max(-a.vy, 0)")))
+    found = model.run(duration=0.2, points=2, formulation="I3", rtol=1e-9, presolve=False)
+    assert found.message == "completed"

@@ -15,6 +15,7 @@ from ...dynamics.friction_loads import REMEDY, ambiguous_loads_clause
 from ...errors import ChatteringError, SolverError
 from ...tuning import tuned
 from .discontinuity import JUMP, noise_of, sliding
+from .native.parameters import SEARCH
 
 
 @dataclass(frozen=True)
@@ -168,6 +169,7 @@ class HoveringEvents:
     def __init__(self, dynamics: Dynamics, chattering: Chattering, rtol: float) -> None:
         self._dynamics, self._chattering, self._rtol = dynamics, chattering, rtol
         self.band = np.zeros(dynamics.system.n_event_functions)
+        self._left = self.band
 
     @property
     def any(self) -> bool:
@@ -180,7 +182,8 @@ class HoveringEvents:
         Raises ChatteringError if a force drives the motion back from both sides of its discontinuity; names the element.
         """
         passed = np.array(fired, dtype=np.int64)
-        at_zero = passed[self.band[passed] == 0.0]
+        at_zero, self._left = passed[self.band[passed] == 0.0], np.zeros_like(self.band)
+        self._left[passed] = self.band[passed]
         self.band[passed] = 0.0
         if len(at_zero):
             noise = noise_of(self._dynamics, t, q, u, self._rtol, farthest)
@@ -188,6 +191,19 @@ class HoveringEvents:
             if len(hovering):
                 self._chattering.refuse(t, q, u, sliding(self._dynamics, t, q, u))
                 self.band[hovering] = noise[hovering]
+
+    def taken_back(self, t: float) -> bool:
+        """Return True if a restart, to the current state, has taken functions back into the bands that they had left.
+
+        The step had larger errors than its tolerance, as velocities have that no error test includes: the bands are doubled.
+        """
+        if not self._left.any():
+            return False
+        state = self._dynamics.state
+        state.evaluate("event_function", t)
+        back = abs(state.values["event_function"][: len(self.band)]) < (1.0 - SEARCH.margin) * self._left
+        self.band[back] = 2.0 * self._left[back]
+        return bool(back.any())
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
         """Return a sentence on a force that drives the motion back from both sides of its jump; empty if there is none."""

@@ -77,13 +77,13 @@ class _Around:
         SWITCHES.short_call(self.t, size, q, u, along_q, along_u, self._count, address(found), self._table)
         return found
 
-    def change(self, size: float, of_velocities: bool = False) -> np.ndarray:
-        """Return the median of three changes: a jump, where another function vanishes, is in one of them."""
+    def changes(self, size: float, of_velocities: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """Return the median of three changes, as a jump, where another function vanishes, is in one; and if they have one sign."""
         values = [self.values(place * size, of_velocities) for place in (-2.0, -1.0, 1.0, 2.0)]
-        before, here, after = (abs(there - behind) for behind, there in pairwise(values))
-        before, after = 2.0 * before, 2.0 * after
-        found: np.ndarray = np.maximum(np.minimum(before, here), np.minimum(np.maximum(before, here), after))
-        return found
+        before, here, after = (there - behind for behind, there in pairwise(values))
+        one_way = (before * here > 0.0) & (here * after > 0.0)
+        before, here, after = 2.0 * abs(before), abs(here), 2.0 * abs(after)
+        return np.maximum(np.minimum(before, here), np.minimum(np.maximum(before, here), after)), one_way
 
     def side(self, size: float) -> _Side:
         """Return the event functions, accelerations and rates after a move of a size."""
@@ -142,16 +142,16 @@ def noise_of(
     state = dynamics.state
     with state.unchanged():
         around = _Around(dynamics, t, q, u)
-        noise = around.change(SEARCH.precision)
+        noise = around.changes(SEARCH.precision)[0]
         if dynamics.system.switches_by_reactions:
-            rough, pressed = around.change(rtol), []
+            rough, pressed = around.changes(rtol)[0], []
             for lam in (state.lam.copy(), state.lam + 1.0):
                 state.lam[:] = lam
                 state.evaluate("event_function", t)
                 pressed.append(state.values["event_function"][: len(noise)].copy())
             noise = np.where(pressed[0] != pressed[1], np.maximum(rough, noise), noise)
-        slow = around.change(rtol, of_velocities=True)
-        for k in np.flatnonzero((noise < farthest) & (farthest <= slow)).tolist():
+        slow, one_way = around.changes(rtol, of_velocities=True)
+        for k in np.flatnonzero(one_way & (noise < farthest) & (farthest <= slow)).tolist():
             at_zero = around.at_zero(JUMP.larger_move, k)
             if not _rates_differ([at_zero.sides(size) for size in (JUMP.larger_move, SEARCH.precision)], k):
                 noise[k] = slow[k]

@@ -91,7 +91,7 @@ class NextStepParameters:
     soon: float = 1e-2
     """Passage relative to the time to the next stop above which IDA's first steps are short enough."""
     passage_steps: float = 16.0
-    """Least number of steps of BDF in a passage with periodic laws."""
+    """Least number of steps of BDF in a passage with periodic laws, the errors of which add up."""
     first_part: float = 0.125
     """First step of order 1, as a fraction of such a step."""
     lifted: float = 1e-6

@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.events.native.bounds import bounded_by_feature, departed, event_search_view, repeats
-from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
+from stiffmbs.solve.events.native.parameters import EPSILON, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, next_row, step_bound_view, whole_steps_view
 from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
@@ -94,7 +94,11 @@ def _see_inputs(c, stop):
         if c.look_at_start and event_search_view(c.watch).n_turns > 0:
             w = event_search_view(c.watch)
             w.narrow += bounded_by_feature(w)
-            error_norm_view(c.error_norm).repeats = repeats(w, t, t < w.passed)
+            shared = repeats(w, t, t < w.passed)
+            if shared > 1.0 and not c.repeat:
+                # changes of the step keep BDF at order 1 where a law rises, with errors of one sign in all steps
+                shared *= NEXT_STEP.passage_steps
+            error_norm_view(c.error_norm).repeats = shared
         if longest == float("inf") and c.stopping == stop:
             return
         call_int(c.next_step_of, (c.memory, address_of(c.next_size)))

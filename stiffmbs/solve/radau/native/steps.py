@@ -48,7 +48,10 @@ def set_weights(x):
 
 @compiled
 def first_step(x):
-    """Return a first step by the rates of the state, the longest of Hairer, Norsett, Wanner I, ch. II.4."""
+    """Return a first step by the rates of the state, the longest of Hairer, Norsett, Wanner I, ch. II.4.
+
+    A state below its tolerance counts as one tolerance: that of a motion that has just begun is rounding.
+    """
     if x.first > 0.0:
         return x.first
     of_state = size_in_tolerances(x, x.y)
@@ -56,7 +59,7 @@ def first_step(x):
     if min(of_state, of_rates) <= FIRST_STEP.small:
         return FIRST_STEP.short
     order = collocation_view(ints(x.methods[0])).stages
-    return min(of_state / of_rates, (FIRST_STEP.part / of_rates) ** (1.0 / (1.0 + order)))
+    return min(max(of_state, 1.0) / of_rates, (FIRST_STEP.part / of_rates) ** (1.0 / (1.0 + order)))
 
 
 @compiled
