@@ -1,0 +1,69 @@
+"""Equations of a linearly implicit Euler step, and memory for it, shared with compiled code."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compile.equations import Equations
+from ...compile.formulation import Block, Formulation, Product
+from ...compile.machine.layout import packed
+from ...compile.machine.routines import together
+from ...dynamics.dynamics import Dynamics
+from ...errors import InputError
+from ..ida.choice import chosen
+from ..linear_solvers.sparse_lu import SparseLU
+from .native.layouts import LINEARLY_IMPLICIT
+
+STEP = Formulation(
+    name="linearly implicit step",
+    unknowns=("q", "u", "lam"),
+    residual_set="motion",
+    matrix_set="tangent",
+    residual=(Product("q", +1, "rate"), Product("u", +1, "f"), Product("lam", -1, "V")),
+    matrix=(
+        Block("q", "q", "E", constant=0, cj=1), Block("q", "u", "Z", -1), Block("q", "q", "rate_q", -1), Block("q", "u", "rate_u", -1),
+        Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
+        Block("u", "lam", "J.T"), Block("lam", "q", "V_q"), Block("lam", "u", "J"),
+    ),
+)  # fmt: skip
+"""[E/h - rate_q, -Z - rate_u, 0; -f_q, M/h - f_u, J^T; V_q, J, 0] [dq; du; lam] = [rate; f; -V], with cj = 1/h.
+
+It is evaluated at the positions q + h Z u, so that dq of a body is h Z du: the constraints of velocities hold after the
+step, and those of positions up to h^2 |du|.
+"""
+LINEAR_STEP, ARRAY_OF = together(
+    "stiffmbs.solve.explicit.native.linearly_implicit",
+    linear_step="int32(float64, float64, int64*)",
+    array_of="int64(int64)",
+)
+
+
+class LinearlyImplicit:
+    """Memory of linearly implicit steps of a system.
+
+    `table`: addresses for compiled code (`stiffmbs.solve.explicit.native.layouts.LINEARLY_IMPLICIT`).
+    """
+
+    def __init__(self, dynamics: Dynamics, columns: int) -> None:
+        system = dynamics.system
+        if system.forces_by_reactions:
+            raise InputError(
+                f"Linearly implicit steps know no reactions at their start, on which the forces of {', '.join(system.forces_by_reactions)} depend. "
+                "Use solver bdf or radau, or scheme rk4."
+            )
+        for term_set in ("motion", "tangent"):
+            dynamics.state.load(term_set)
+        self._equations = equations = Equations(STEP, system)
+        solver, _ = chosen(equations)
+        self._solver = memory = solver.memory(ARRAY_OF.address)
+        if memory.needed:
+            memory.known["setup_pivots"], memory.known["solve_pivots"] = SparseLU.factor.address, SparseLU.solve.address
+        self._equations_table, self._lists = equations.table()
+        n = system.n_q + system.n_u
+        self._arrays = {
+            "state": dynamics.state.table, "equations": self._equations_table, "columns": columns,
+            "setup": solver.factor.address, "solve": solver.solve.address, "solver": np.array([memory.content.ctypes.data]),
+            "entries": memory.factors["a"], "ready": np.frombuffer(memory.known, dtype=np.int64)[memory.known.dtype.fields["ready"][1] // 8 :], "b": np.zeros(equations.n), "x": np.zeros(equations.n),
+            "start": np.zeros(n), "whole": np.zeros(n),
+        }  # fmt: skip
+        self.table = packed(LINEARLY_IMPLICIT, self._arrays)
