@@ -11,6 +11,7 @@ from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
 from ...errors import InputError
 from ..ida.choice import chosen
+from ..linear_solvers.linear_solver import Memory
 from ..linear_solvers.sparse_lu import SparseLU
 from .native.layouts import LINEARLY_IMPLICIT
 
@@ -63,7 +64,16 @@ class LinearlyImplicit:
         self._arrays = {
             "state": dynamics.state.table, "equations": self._equations_table, "columns": columns,
             "setup": solver.factor.address, "solve": solver.solve.address, "solver": np.array([memory.content.ctypes.data]),
-            "entries": memory.factors["a"], "ready": np.frombuffer(memory.known, dtype=np.int64)[memory.known.dtype.fields["ready"][1] // 8 :], "b": np.zeros(equations.n), "x": np.zeros(equations.n),
+            "entries": memory.factors["a"], **_cells(memory), "b": np.zeros(equations.n), "x": np.zeros(equations.n),
             "start": np.zeros(n), "whole": np.zeros(n),
         }  # fmt: skip
         self.table = packed(LINEARLY_IMPLICIT, self._arrays)
+
+
+def _cells(memory: Memory) -> dict[str, np.ndarray]:
+    """Return the cells of a linear solver by name, as arrays; the pivots of a sparse LU always depend on earlier ones."""
+    words, fields = np.frombuffer(memory.known, dtype=np.int64), memory.known.dtype.fields or {}
+    depends = np.ones(1, dtype=np.int64)
+    return {
+        name: words[fields[name][1] // 8 :] if name in fields else depends for name in ("ready", "refused", "refined")
+    }

@@ -78,11 +78,16 @@ def _semi_implicit(x, s, m, h):
 
 @compiled
 def _linearly_implicit(x, s, h):
-    """Take a linearly implicit step, with the pivots of the last step if there was one; 0 or a negative status."""
+    """Take a linearly implicit step; 0 or a negative status.
+
+    Earlier factors are forgotten at a start, unless the solutions by new ones are the same to the last bit.
+    """
     load_state(s, x.y)
     if not x.rates_known:
-        ready = linear_view(x.linear).ready
-        ready[0] = 0
+        p = linear_view(x.linear)
+        if p.refused[0] != 0 or p.refined[0] != 0:
+            ready = p.ready
+            ready[0] = 0
     status = call_int(x.linear_step, (x.t_before, h, x.linear))
     _keep(x, s)
     x.rates_known = 1

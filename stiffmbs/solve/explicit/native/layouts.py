@@ -13,11 +13,11 @@ SCHEME = Layout({
 """Coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
 
 LINEARLY_IMPLICIT = Layout({
-    "state": INTS, "equations": INTS, "columns": INT, "setup": INT, "solve": INT, "solver": INTS, "entries": FLOATS, "ready": INTS,
+    "state": INTS, "equations": INTS, "columns": INT, "setup": INT, "solve": INT, "solver": INTS, "entries": FLOATS, "ready": INTS, "refused": INTS, "refined": INTS,
     "b": FLOATS, "x": FLOATS, "start": FLOATS, "whole": FLOATS,
 })  # fmt: skip
-"""Linearly implicit steps (`stiffmbs.solve.explicit.linearly_implicit`): equations and their linear solver, whose cell `ready` is
-0 if no pivots are known; state at the start of a step, and after one step without extrapolation."""
+"""Linearly implicit steps (`stiffmbs.solve.explicit.linearly_implicit`): equations and their linear solver, with its
+cells `ready` (0 if no pivots are known), `refused` and `refined` (not 0 if its solutions depend on earlier factors); state at the start of a step, and after one step without extrapolation."""
 
 EXPLICIT = Layout({
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT_CELL,
