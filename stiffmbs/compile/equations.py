@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from .coordinates import FIXED, Coordinates, all_independent
-from .formulation import Formulation
+from .formulation import Block, Formulation
 from .machine.layout import held_once, packed
 from .machine.native.tables import EQUATIONS
 from .system import System, Term
@@ -35,6 +35,7 @@ class Equations:
             "q": independent, "u": self.coordinates.independent_u,
             "mu": system.holonomic & solved_for, "lam": solved_for,
             "x": np.isin(np.arange(system.n_q), system.algebraic_coordinates),
+            "s": np.arange(system.n_q) >= system.n_pose,
         }  # fmt: skip
         self.at: dict[str, np.ndarray] = {}
         self.n = 0
@@ -146,22 +147,39 @@ class Equations:
         lines = []
         for line in self.formulation.matrix:
             source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
+            through = np.full(len(source), ABSENT)
+            if line.through:
+                of_first, column, through = self._joined(column, line)
+                source, row = source[of_first], row[of_first]
             (at_row, of_row), (at_column, of_column) = (
                 self.carried(line.rows, row),
                 self.carried(line.columns, column),
             )
             kept, factor = (at_row != ABSENT) & (at_column != ABSENT), of_row * of_column
-            parts = (at_row, at_column, source, line.constant * factor, line.cj * factor)
+            parts = (at_row, at_column, source, line.constant * factor, line.cj * factor, through)
             lines.append(tuple(part[kept] for part in parts))
-        row, column, source, constant, cj = (np.concatenate([line[k] for line in lines]) for k in range(5))
+        row, column, source, constant, cj, through = (np.concatenate([line[k] for line in lines]) for k in range(6))
         place = column * self.n + row
         order = np.argsort(place, kind="stable")
         new = np.diff(place[order], prepend=-1) > 0
         self.pattern = held_once(place[order][new] % self.n), held_once(place[order][new] // self.n)
         slot = np.empty(len(place), dtype=np.int32)
         slot[order] = np.cumsum(new) - 1
-        self._slot, self._source = held_once(slot), held_once(source.astype(np.int32))
-        self._constant, self._cj = held_once(constant.astype(float)), held_once(cj.astype(float))
+        source, single = source.astype(np.int32), through == ABSENT
+        self._slot, self._source = held_once(slot[single]), held_once(source[single])
+        self._constant, self._cj = held_once(constant[single].astype(float)), held_once(cj[single].astype(float))
+        products = {"slot": slot, "source": source, "through": through.astype(np.int32), "factor": constant.astype(float)}
+        self._products = {f"p_{name}": held_once(part[~single]) for name, part in products.items()}
+
+    def _joined(self, column: np.ndarray, line: Block) -> tuple[np.ndarray, ...]:
+        """Return the entry of the first block of each product, with column and source of the second one."""
+        source, row, to = self._block(self.formulation.matrix_set, line.through, "q")
+        order = np.argsort(row, kind="stable")
+        first, end = np.searchsorted(row[order], column, "left"), np.searchsorted(row[order], column, "right")
+        count = end - first
+        of_first = np.repeat(np.arange(len(column)), count)
+        second = order[np.arange(len(of_first)) - np.repeat(np.cumsum(count) - count, count) + first[of_first]]
+        return of_first, to[second], source[second]
 
     @property
     def slots_with_rates(self) -> np.ndarray:
@@ -172,7 +190,8 @@ class Equations:
         """Return the groups whose values are used, for the term sets of the residual and of the matrix."""
         residual_set, matrix_set = self.formulation.residual_set, self.formulation.matrix_set
         groups = {residual_set: self._writing(residual_set, self._r_source)}
-        of_matrix = self._writing(matrix_set, self._source)
+        sources = self._source, self._products["p_source"], self._products["p_through"]
+        of_matrix = self._writing(matrix_set, np.concatenate(sources))
         return groups | {matrix_set: groups.get(matrix_set, False) | of_matrix}
 
     def _writing(self, term_set: str, sources: np.ndarray) -> np.ndarray:
@@ -208,6 +227,7 @@ class Equations:
             "n_plain": self._n_plain, "n_with_y": self._n_with_y, "n_with_yp": self._n_with_yp,
             "r_row": self._r_row, "r_source": self._r_source, "r_operand": self._r_operand, "r_factor": self._r_factor,
             "integrated": self.formulation.integrated, "n_slots": len(self.pattern[0]), "n_entries": len(self._slot), **lists,
+            "n_products": len(self._products["p_slot"]), **self._products,
             "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
             "n_moving_q": len(self._index["moving_q"]), "n_moving_u": len(self._index["moving_u"]), "offset": self._offset,
             "q_ratio": self.coordinates.ratio, "u_ratio": self.coordinates.u_ratio, **self._index,

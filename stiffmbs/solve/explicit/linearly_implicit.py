@@ -17,20 +17,21 @@ from .native.layouts import LINEARLY_IMPLICIT
 
 STEP = Formulation(
     name="linearly implicit step",
-    unknowns=("q", "u", "lam"),
+    unknowns=("u", "s", "lam"),
     residual_set="motion",
     matrix_set="tangent",
-    residual=(Product("q", +1, "rate"), Product("u", +1, "f"), Product("lam", -1, "V")),
+    residual=(Product("u", +1, "f"), Product("s", +1, "rate"), Product("lam", -1, "V")),
     matrix=(
-        Block("q", "q", "E", constant=0, cj=1), Block("q", "u", "Z", -1), Block("q", "q", "rate_q", -1), Block("q", "u", "rate_u", -1),
-        Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "q", "f_q", -1), Block("u", "u", "f_u", -1),
-        Block("u", "lam", "J.T"), Block("lam", "q", "V_q"), Block("lam", "u", "J"),
+        Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "u", "f_u", -1), Block("u", "u", "f_q", -1, through="Z"),
+        Block("u", "s", "f_q", -1), Block("u", "lam", "J.T"),
+        Block("s", "s", "E", constant=0, cj=1), Block("s", "s", "rate_q", -1), Block("s", "u", "rate_u", -1), Block("s", "u", "rate_q", -1, through="Z"),
+        Block("lam", "u", "J"), Block("lam", "u", "V_q", through="Z"), Block("lam", "s", "V_q"),
     ),
 )  # fmt: skip
-"""[E/h - rate_q, -Z - rate_u, 0; -f_q, M/h - f_u, J^T; V_q, J, 0] [dq; du; lam] = [rate; f; -V], with cj = 1/h.
+"""[M/h - f_u - h f_q Z, -f_q, J^T; -rate_u - h rate_q Z, E/h - rate_q, 0; J + h V_q Z, V_q, 0] [du; ds; lam] = [f; rate; -V].
 
-It is evaluated at the positions q + h Z u, so that dq of a body is h Z du: the constraints of velocities hold after the
-step, and those of positions up to h^2 |du|.
+It is evaluated at the positions q + h Z u, so that those of bodies change by h Z du and are condensed; s are all other
+coordinates, and cj = 1/h. The constraints of velocities hold after the step, and those of positions up to h^2 |du|.
 """
 LINEAR_STEP, ARRAY_OF = together(
     "stiffmbs.solve.explicit.native.linearly_implicit",

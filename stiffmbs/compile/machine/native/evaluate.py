@@ -141,6 +141,13 @@ def add_entries(e, values, cj, a):
         a[e.m_slot[k]] += values[e.m_source[k]] * (e.m_constant[k] + e.m_cj[k] * cj)
 
 
+@compiled
+def add_matrix_products(e, values, h, a):
+    """Add the products of two blocks times h = 1 / cj to a matrix."""
+    for k in range(e.n_products):
+        a[e.p_slot[k]] += h * e.p_factor[k] * values[e.p_source[k]] * values[e.p_through[k]]
+
+
 def terms(t, term_set, state):
     """Compute all terms of a set at the state in the table."""
     evaluate(state_view(state), term_set, t)

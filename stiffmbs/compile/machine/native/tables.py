@@ -33,6 +33,7 @@ EQUATIONS = Layout({
     "r_row": INDICES, "r_source": INDICES, "r_operand": INDICES, "r_factor": FLOATS,
     "n_slots": INT, "n_constant": INT, "n_entries": INT,
     "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
+    "n_products": INT, "p_slot": INDICES, "p_source": INDICES, "p_through": INDICES, "p_factor": FLOATS,
     "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
     "at_mu": INTS, "at_lam": INTS, "at_x": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,

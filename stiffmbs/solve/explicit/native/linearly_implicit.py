@@ -4,7 +4,7 @@ from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, ints, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
-from stiffmbs.compile.machine.native.evaluate import MOTION, add_entries, add_products, evaluate
+from stiffmbs.compile.machine.native.evaluate import MOTION, add_entries, add_matrix_products, add_products, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.compile.machine.native.statuses import FAILED, NO_MEMORY, NOT_FINITE, OK, SINGULAR
@@ -17,7 +17,9 @@ def _euler(p, s, e, t, h):
     end = t + h
     add_rates(s, s.u, h, s.q)
     take_unit_length(s)
-    add_entries(e, evaluate(s, e.matrix_set, end), 1.0 / h, p.entries)
+    tangent = evaluate(s, e.matrix_set, end)
+    add_entries(e, tangent, 1.0 / h, p.entries)
+    add_matrix_products(e, tangent, h, p.entries)
     outcome = call_int(p.setup, (p.solver, 0))
     if outcome != OK:
         return NO_MEMORY if outcome == FAILED else SINGULAR
@@ -26,12 +28,11 @@ def _euler(p, s, e, t, h):
     for k in range(e.n):
         if not isfinite(p.x[k]):
             return NOT_FINITE
-    change = shifted(p.x, s.n_q)  # of velocities
     for k in range(s.n_u):
-        s.u[k] += change[k]
-    for k in range(s.n_pose, s.n_q):
-        s.q[k] += p.x[k]
-    add_rates(s, change, h, s.q)
+        s.u[k] += p.x[k]
+    for k in range(s.n_q - s.n_pose):
+        s.q[s.n_pose + k] += p.x[s.n_u + k]
+    add_rates(s, p.x, h, s.q)
     take_unit_length(s)
     return 0
 
