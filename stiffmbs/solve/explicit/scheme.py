@@ -73,6 +73,12 @@ class Scheme:
         """True if the error estimate uses the stage at the end of the step."""
         return any(self.stages in row for row in self.errors)
 
+    def work(self, steps: int) -> dict[str, int]:
+        """Return the work of fixed steps, under the name of its counter."""
+        if self.columns:
+            return {"factorizations": self.columns * (self.columns + 1) // 2 * steps}
+        return {"accelerations": self.stages * steps}
+
     @cached_property
     def _arrays(self) -> dict[str, Any]:
         return {
