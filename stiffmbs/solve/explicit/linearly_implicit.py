@@ -48,10 +48,12 @@ class LinearlyImplicit:
 
     def __init__(self, dynamics: Dynamics, columns: int) -> None:
         system = dynamics.system
-        if system.forces_by_reactions:
+        by_reactions = [f"forces.{name}" for name in system.forces_by_reactions]
+        by_reactions += [f"states.{system.states[k - system.first_state]}" for k in sorted({*system.term("tangent", "rate_lam").row.tolist()})]
+        if by_reactions:
             raise InputError(
-                f"Linearly implicit steps know no reactions at their start, on which the forces of {', '.join(system.forces_by_reactions)} depend. "
-                "Use solver bdf or radau, or scheme rk4."
+                f"{' and '.join(by_reactions)}: depend on reactions of joints, which a linearly implicit step does not know at its start; "
+                "use solver bdf or radau, or scheme rk4"
             )
         for term_set in ("motion", "tangent"):
             dynamics.state.load(term_set)
