@@ -168,7 +168,12 @@ class Equations:
         source, single = source.astype(np.int32), through == ABSENT
         self._slot, self._source = held_once(slot[single]), held_once(source[single])
         self._constant, self._cj = held_once(constant[single].astype(float)), held_once(cj[single].astype(float))
-        products = {"slot": slot, "source": source, "through": through.astype(np.int32), "factor": constant.astype(float)}
+        products = {
+            "slot": slot,
+            "source": source,
+            "through": through.astype(np.int32),
+            "factor": constant.astype(float),
+        }
         self._products = {f"p_{name}": held_once(part[~single]) for name, part in products.items()}
 
     def _joined(self, column: np.ndarray, line: Block) -> tuple[np.ndarray, ...]:

@@ -49,10 +49,13 @@ class LinearlyImplicit:
     def __init__(self, dynamics: Dynamics, columns: int) -> None:
         system = dynamics.system
         by_reactions = [f"forces.{name}" for name in system.forces_by_reactions]
-        by_reactions += [f"states.{system.states[k - system.first_state]}" for k in sorted({*system.term("tangent", "rate_lam").row.tolist()})]
+        by_reactions += [
+            f"states.{system.states[k - system.first_state]}"
+            for k in sorted({*system.term("tangent", "rate_lam").row.tolist()})
+        ]
         if by_reactions:
             raise InputError(
-                f"{' and '.join(by_reactions)}: depend on reactions of joints, which a linearly implicit step does not know at its start; "
+                f"A linearly implicit step does not know reactions of joints at its start, on which {' and '.join(by_reactions)} depend; "
                 "use solver bdf or radau, or scheme rk4"
             )
         for term_set in ("motion", "tangent"):
