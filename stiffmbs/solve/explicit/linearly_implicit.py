@@ -25,7 +25,7 @@ STEP = Formulation(
         Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "u", "f_u", -1), Block("u", "u", "f_q", -1, through="Z"),
         Block("u", "s", "f_q", -1), Block("u", "lam", "J.T"),
         Block("s", "s", "E", constant=0, cj=1), Block("s", "s", "rate_q", -1), Block("s", "u", "rate_u", -1), Block("s", "u", "rate_q", -1, through="Z"),
-        Block("lam", "u", "J"), Block("lam", "u", "V_q", through="Z"), Block("lam", "s", "V_q"),
+        Block("lam", "u", "J"),
     ),
 )  # fmt: skip
 """[M/h - f_u - h f_q Z, -f_q, J^T; -rate_u - h rate_q Z, E/h - rate_q, 0; J + h V_q Z, V_q, 0] [du; ds; lam] = [f; rate; -V].
