@@ -6,12 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
+from .condensed_positions import CondensedPositions
 from .coordinates import FIXED, Coordinates, all_independent
 from .formulation import Block, Formulation
 from .machine.layout import held_once, packed
 from .machine.native.tables import EQUATIONS
 from .system import System, Term
-from .terms import TERM_SETS
+from .terms import TERM_AXES, TERM_SETS
 
 ABSENT = FIXED
 """Position of a coordinate or multiplier that is not among the unknowns."""
@@ -145,46 +146,38 @@ class Equations:
 
     def _compile_matrix(self) -> None:
         lines = []
-        for line in self.formulation.matrix:
+        for line in (each for each in self.formulation.matrix if not _is_condensed(each)):
             source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
-            through = np.full(len(source), ABSENT)
-            if line.through:
-                of_first, column, through = self._joined(column, line)
-                source, row = source[of_first], row[of_first]
             (at_row, of_row), (at_column, of_column) = (
                 self.carried(line.rows, row),
                 self.carried(line.columns, column),
             )
             kept, factor = (at_row != ABSENT) & (at_column != ABSENT), of_row * of_column
-            parts = (at_row, at_column, source, line.constant * factor, line.cj * factor, through)
+            parts = (at_row, at_column, source, line.constant * factor, line.cj * factor)
             lines.append(tuple(part[kept] for part in parts))
-        row, column, source, constant, cj, through = (np.concatenate([line[k] for line in lines]) for k in range(6))
-        place = column * self.n + row
+        row, column, source, constant, cj = (np.concatenate([line[k] for line in lines]) for k in range(5))
+        condensed = self._condensed()
+        by_row, by_velocity = condensed.place
+        place = np.concatenate([column, self.at["u"][by_velocity] if len(by_row) else by_row]) * self.n
+        place += np.concatenate([row, by_row])
         order = np.argsort(place, kind="stable")
         new = np.diff(place[order], prepend=-1) > 0
         self.pattern = held_once(place[order][new] % self.n), held_once(place[order][new] // self.n)
         slot = np.empty(len(place), dtype=np.int32)
         slot[order] = np.cumsum(new) - 1
-        source, single = source.astype(np.int32), through == ABSENT
-        self._slot, self._source = held_once(slot[single]), held_once(source[single])
-        self._constant, self._cj = held_once(constant[single].astype(float)), held_once(cj[single].astype(float))
-        products = {
-            "slot": slot,
-            "source": source,
-            "through": through.astype(np.int32),
-            "factor": constant.astype(float),
-        }
-        self._products = {f"p_{name}": held_once(part[~single]) for name, part in products.items()}
+        self._condensed_lists = condensed.lists(slot[len(row) :])
+        self._slot, self._source = held_once(slot[: len(row)]), held_once(source.astype(np.int32))
+        self._constant, self._cj = held_once(constant.astype(float)), held_once(cj.astype(float))
 
-    def _joined(self, column: np.ndarray, line: Block) -> tuple[np.ndarray, ...]:
-        """Return the entry of the first block of each product, with column and source of the second one."""
-        source, row, to = self._block(self.formulation.matrix_set, line.through, "q")
-        order = np.argsort(row, kind="stable")
-        first, end = np.searchsorted(row[order], column, "left"), np.searchsorted(row[order], column, "right")
-        count = end - first
-        of_first = np.repeat(np.arange(len(column)), count)
-        second = order[np.arange(len(of_first)) - np.repeat(np.cumsum(count) - count, count) + first[of_first]]
-        return of_first, to[second], source[second]
+    def _condensed(self) -> CondensedPositions:
+        """Return the condensed entries of all blocks."""
+        lines = [np.empty((4, 0))]
+        for line in filter(_is_condensed, self.formulation.matrix):
+            source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
+            at = self.at[line.rows][row]
+            lines.append(np.stack([at, column, source, np.full(len(at), line.constant)])[:, at != ABSENT])
+        row, column, source, factor = np.concatenate(lines, axis=1)
+        return CondensedPositions.of(self.system, *(part.astype(np.int64) for part in (row, column, source)), factor)
 
     @property
     def slots_with_rates(self) -> np.ndarray:
@@ -195,7 +188,7 @@ class Equations:
         """Return the groups whose values are used, for the term sets of the residual and of the matrix."""
         residual_set, matrix_set = self.formulation.residual_set, self.formulation.matrix_set
         groups = {residual_set: self._writing(residual_set, self._r_source)}
-        sources = self._source, self._products["p_source"], self._products["p_through"]
+        sources = self._source, *(self._condensed_lists[f"{name}_source"] for name in ("straight", "turned"))
         of_matrix = self._writing(matrix_set, np.concatenate(sources))
         return groups | {matrix_set: groups.get(matrix_set, False) | of_matrix}
 
@@ -232,12 +225,17 @@ class Equations:
             "n_plain": self._n_plain, "n_with_y": self._n_with_y, "n_with_yp": self._n_with_yp,
             "r_row": self._r_row, "r_source": self._r_source, "r_operand": self._r_operand, "r_factor": self._r_factor,
             "integrated": self.formulation.integrated, "n_slots": len(self.pattern[0]), "n_entries": len(self._slot), **lists,
-            "n_products": len(self._products["p_slot"]), **self._products,
+            **self._condensed_lists,
             "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
             "n_moving_q": len(self._index["moving_q"]), "n_moving_u": len(self._index["moving_u"]), "offset": self._offset,
             "q_ratio": self.coordinates.ratio, "u_ratio": self.coordinates.u_ratio, **self._index,
         }  # fmt: skip
         return packed(EQUATIONS, values), [part for part in lists.values() if isinstance(part, np.ndarray)]
+
+
+def _is_condensed(line: Block) -> bool:
+    """Return True for a block of derivatives by q in columns of velocities."""
+    return line.columns == "u" and TERM_AXES.get(line.block, "")[1:] == "q"
 
 
 def entry_lists(

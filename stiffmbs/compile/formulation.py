@@ -29,7 +29,7 @@ class Product(NamedTuple):
 class Block(NamedTuple):
     """One line of a matrix: in `rows` and `columns`, (constant + cj * cj-part) * block.
 
-    With `through`, the name of a block that follows it, it is constant / cj * block @ through.
+    A block of columns q in the columns u is condensed: positions of bodies change by Z u / cj.
     """
 
     rows: str
@@ -37,7 +37,6 @@ class Block(NamedTuple):
     block: str
     constant: float = 1.0
     cj: float = 0.0
-    through: str = ""
 
 
 class Formulation(NamedTuple):

@@ -22,9 +22,9 @@ STEP = Formulation(
     matrix_set="tangent",
     residual=(Product("u", +1, "f"), Product("s", +1, "rate"), Product("lam", -1, "V")),
     matrix=(
-        Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "u", "f_u", -1), Block("u", "u", "f_q", -1, through="Z"),
+        Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "u", "f_u", -1), Block("u", "u", "f_q", -1),
         Block("u", "s", "f_q", -1), Block("u", "lam", "J.T"),
-        Block("s", "s", "E", constant=0, cj=1), Block("s", "s", "rate_q", -1), Block("s", "u", "rate_u", -1), Block("s", "u", "rate_q", -1, through="Z"),
+        Block("s", "s", "E", constant=0, cj=1), Block("s", "s", "rate_q", -1), Block("s", "u", "rate_u", -1), Block("s", "u", "rate_q", -1),
         Block("lam", "u", "J"),
     ),
 )  # fmt: skip

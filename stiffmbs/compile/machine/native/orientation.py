@@ -62,6 +62,16 @@ def add_rates(s, u, factor, target):
 
 
 @compiled
+def add_by_rotation(s, body, factor, row, slot, a):
+    """Add factor * row Z to three slots of a, with four derivatives by a body's quaternion in `row`."""
+    p, followed = shifted(s.q, N_Q * body + 3), shifted(s.followed, N_U * body + 3)
+    half = 0.5 * factor
+    a[slot[0]] += half * followed[0] * (p[0] * row[1] - p[1] * row[0] + p[3] * row[2] - p[2] * row[3])
+    a[slot[1]] += half * followed[1] * (p[0] * row[2] - p[2] * row[0] + p[1] * row[3] - p[3] * row[1])
+    a[slot[2]] += half * followed[2] * (p[0] * row[3] - p[3] * row[0] + p[2] * row[1] - p[1] * row[2])
+
+
+@compiled
 def take_unit_length(s):
     """Normalise the quaternions."""
     if s.spatial:

@@ -2,9 +2,9 @@
 
 from math import isfinite
 
-from stiffmbs.compile.machine.native.access import compiled, equations_view, ints, shifted, state_view
+from stiffmbs.compile.machine.native.access import compiled, equations_view, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
-from stiffmbs.compile.machine.native.evaluate import MOTION, add_entries, add_matrix_products, add_products, evaluate
+from stiffmbs.compile.machine.native.evaluate import MOTION, add_condensed, add_entries, add_products, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.compile.machine.native.statuses import FAILED, NO_MEMORY, NOT_FINITE, OK, SINGULAR
@@ -19,7 +19,7 @@ def _euler(p, s, e, t, h):
     take_unit_length(s)
     tangent = evaluate(s, e.matrix_set, end)
     add_entries(e, tangent, 1.0 / h, p.entries)
-    add_matrix_products(e, tangent, h, p.entries)
+    add_condensed(s, e, tangent, h, p.entries)
     outcome = call_int(p.setup, (p.solver, 0))
     if outcome != OK:
         return NO_MEMORY if outcome == FAILED else SINGULAR
