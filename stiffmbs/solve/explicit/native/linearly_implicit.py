@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.native.access import compiled, equations_view, shi
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import MOTION, add_condensed, add_entries, add_products, evaluate
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
+from stiffmbs.compile.machine.native.orientation import move, take_unit_length
 from stiffmbs.compile.machine.native.statuses import FAILED, NO_MEMORY, NOT_FINITE, OK, SINGULAR
 from stiffmbs.solve.explicit.native.stages import linear_view, load_state
 
@@ -15,8 +15,7 @@ from stiffmbs.solve.explicit.native.stages import linear_view, load_state
 def _euler(p, s, e, t, h):
     """Take a step of length h from time t, linearised at the positions of constant velocities; 0 or a negative status."""
     end = t + h
-    add_rates(s, s.u, h, s.q)
-    take_unit_length(s)
+    move(s, s.u, h)
     tangent = evaluate(s, e.matrix_set, end)
     add_entries(e, tangent, 1.0 / h, p.entries)
     add_condensed(s, e, tangent, h, p.entries)
@@ -32,8 +31,7 @@ def _euler(p, s, e, t, h):
         s.u[k] += p.x[k]
     for k in range(s.n_q - s.n_pose):
         s.q[s.n_pose + k] += p.x[s.n_u + k]
-    add_rates(s, p.x, h, s.q)
-    take_unit_length(s)
+    move(s, p.x, h)
     return 0
 
 
