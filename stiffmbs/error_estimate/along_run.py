@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import compress, pairwise
 
 import numpy as np
 
@@ -13,16 +12,13 @@ from ..dynamics.dynamics import Dynamics, OutputRows
 from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
 from .closed import Closed, closed
-from .coordinates import displaced, displacements
-from .defects import Rates, curve_of_bdf, of_bdf, of_radau, slope_weights
+from .coordinates import displaced, displacements, width
+from .defects import Points, curve_of_bdf, woven
 from .evaluated import Evaluated, evaluated
-from .interpolated import Along, linearised_along
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
-from .linearised import Linearised
 from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
-from .transport import Block, blocks_of_bdf, blocks_of_radau, integrated, transported
-from .vibrations import are_affordable, are_resolved, step_by_step
+from .transport import INNER, Transport
 
 
 @dataclass(frozen=True)
@@ -51,39 +47,37 @@ class StateErrors:
     restarts: np.ndarray
 
 
+LocalErrors = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
 @dataclass(frozen=True)
 class _Prepared:
-    """Piece with its evaluated states, the defects of its steps, their blocks and the rows of the nodes of these.
+    """Piece with its evaluated states, the points of its steps at which errors are transported, and the defects there.
 
-    `at_ends`: defects at the rows themselves, zero at the start. `opened`: True if it starts after an event.
+    - `points` of shape (steps, points, 2 + 2 unknowns): `Transport.rows` of states; the last point of each step is its end.
+    - `defects` of shape (steps, points, full): at these points.
+    - `at_rows` of shape (rows, full): defects at the recorded rows, zero at the start.
     """
 
     piece: Piece
     states: Evaluated
+    points: np.ndarray
     defects: np.ndarray
-    at_ends: np.ndarray
-    blocks: list[Block]
-    rows: np.ndarray
-    opened: bool
+    at_rows: np.ndarray
 
-    def within(self, rows: np.ndarray) -> np.ndarray:
-        """Return the rows at which to linearise: near an event, where displacements cross it, the nearest ones further away."""
-        t = self.piece.t
-        near = ESTIMATE.beside * (t[-1] - t[0])
-        first = int(np.searchsorted(t, t[0] + near)) if self.opened else 0
-        last = int(np.searchsorted(t, t[-1] - near, side="right")) - 1 if self.piece.fired else len(t) - 1
-        return np.clip(rows, first, max(first, last))
+    @property
+    def sizes(self) -> np.ndarray:
+        """Lengths of the steps, s."""
+        return np.diff(self.piece.t[:: self.piece.points])
 
 
 @dataclass(frozen=True)
 class _Found:
-    """Errors at rows of a piece, the tangent spaces at the nodes of its blocks, and a mask of the blocks taken step by step."""
+    """Errors and their rates, at all rows of a piece but for the rate at its start, which is NaN."""
 
     piece: _Prepared
-    space: Linearised
     errors: np.ndarray
-    rows: np.ndarray
-    step_wise: np.ndarray
+    slopes: np.ndarray
 
 
 def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> StateErrors:
@@ -92,40 +86,30 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     t, q, u = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("t", "q", "u"))
     steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
     states = evaluated(dynamics, t, q, u, (steps, rtol))
-    prepared = [
-        _prepared(
-            dynamics, piece, states.at(slice(first, first + len(piece.t))), k > 0 and bool(pieces[k - 1].fired), rtol
-        )
-        for k, (piece, first) in enumerate(zip(pieces, starts, strict=False))
-    ]
-    nodes = np.concatenate([first + each.within(each.rows) for each, first in zip(prepared, starts, strict=False)])
-    reach = max((block.times[-1] for each in prepared for block in each.blocks), default=0.0)
-    counts = np.cumsum([len(each.rows) for each in prepared])
-    along = linearised_along(dynamics, states.at(nodes), np.append(0, counts[:-1]), float(reach))
+    transport = Transport(dynamics, states)
     found: list[_Found] = []
-    error, shift, done = np.zeros(along.space.basis.shape[1]), 0.0, 0
-    for k, each in enumerate(prepared):
-        own, done = along.at(slice(done, done + len(each.rows))), done + len(each.rows)
+    error, shift = np.zeros(width(dynamics.system)), 0.0
+    for k, (piece, first) in enumerate(zip(pieces, starts, strict=False)):
+        opened = k > 0 and bool(pieces[k - 1].fired)
+        each = _prepared(dynamics, transport, piece, states.at(slice(first, first + len(piece.t))), opened, rtol)
         if k:
-            error, shift = _restarted(dynamics, prepared[k - 1], each, error, shift)
-        errors, of_errors, step_wise = _transported(dynamics, each, own, error)
+            error, shift = _restarted(dynamics, found[-1].piece, each, error, shift)
+        errors, slopes = _transported(transport, each, error)
         error = errors[-1]
-        errors = errors + shift * motion(dynamics.system, each.states.at(of_errors))
-        found.append(_Found(each, own.space, errors, of_errors, step_wise))
+        found.append(_Found(each, errors + shift * motion(dynamics.system, each.states), slopes))
     errors = np.concatenate([each.errors for each in found])
-    nodes = np.concatenate([first + each.rows for each, first in zip(found, starts, strict=False)])
     fired = np.array([bool(piece.fired) for piece in pieces])
     left_out = np.zeros(len(t) + 1, dtype=bool)
     left_out[starts[1:][fired] - 1] = True
     left_out[starts[1:]] = True
-    lost, restarts = _are_lost(dynamics.system, q[nodes], errors), t[starts[1:-1]]
-    recorded = t[nodes], q[nodes], u[nodes], states.rows.at(nodes)
+    lost, restarts = _are_lost(dynamics.system, q, errors), t[starts[1:-1]]
     if lost.any():
-        return StateErrors(*recorded, q[nodes], u[nodes], errors, left_out[nodes], lost, restarts)
+        return StateErrors(t, q, u, states.rows, q, u, errors, left_out[:-1], lost, restarts)
     q_better, u_better, fails = (
-        np.concatenate(parts) for parts in zip(*(_without_errors(dynamics, each) for each in found), strict=True)
+        np.concatenate(parts)
+        for parts in zip(*(_without_errors(dynamics, transport, each) for each in found), strict=True)
     )
-    return StateErrors(*recorded, q_better, u_better, errors, left_out[nodes] | fails, lost, restarts)
+    return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out[:-1] | fails, lost, restarts)
 
 
 def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
@@ -135,124 +119,112 @@ def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
     return np.asarray(~(np.abs(of_poses) <= ESTIMATE.lost * scale).all(axis=1))
 
 
-def _prepared(dynamics: Dynamics, piece: Piece, states: Evaluated, opened: bool, rtol: float) -> _Prepared:
-    rates, step = Rates(dynamics.system, states), float(np.diff(piece.t[:: piece.points]).max())
+def _prepared(
+    dynamics: Dynamics, transport: Transport, piece: Piece, states: Evaluated, opened: bool, rtol: float
+) -> _Prepared:
+    recorded, unknowns = Points.of(dynamics.system, piece.points, states), transport.rows(states)
+    step = float(recorded.sizes.max())
 
     def at(t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         return motion(dynamics.system, evaluated(dynamics, t, q, u, (np.full(len(t), step), rtol)))
 
-    if piece.points > 1:
-        defects = of_radau(piece, rates)
-        blocks = blocks_of_radau(piece.t, _integrals_of_radau(piece, rates, defects, at))
-        at_ends = np.vstack([np.zeros_like(defects[0, :1]), defects.reshape(-1, defects.shape[2])])
-    else:
-        defects, at_ends = of_bdf(piece, rates, opened)
-        _resolve_kinks(piece, rates, defects, at_ends, at)
-        blocks = blocks_of_bdf(piece.t, defects)
-    is_node = np.zeros(len(piece.t), dtype=bool)
-    for block in blocks:
-        is_node[block.nodes] = True
-    return _Prepared(piece, states, defects, at_ends, blocks, np.flatnonzero(is_node), opened)
+    points = recorded
+    if piece.points == 1:
+        ends = unknowns[_away_from_events(piece, opened)]
+        points, unknowns = _with_inner(dynamics, transport, recorded, states, ends, rtol)
+    defects = points.defects(bool(piece.fired))
+    of_points = unknowns[1:].reshape(*defects.shape[:2], -1)
+
+    def local_errors(steps: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        found = transport.apart(of_points[steps], points.sizes[steps], rates)
+        return np.asarray(np.abs(found[:, -1] / points.typical).max(axis=1))
+
+    means = _over_kinks(points, defects, local_errors, at)
+    of_rows = defects if piece.points > 1 else defects[:, -1:]
+    at_rows = np.vstack([np.zeros_like(defects[0, :1]), of_rows.reshape(-1, defects.shape[2])])
+    return _Prepared(piece, states, of_points, means, at_rows)
 
 
-def _integrals_of_radau(piece: Piece, rates: Rates, defects: np.ndarray, at: Motion) -> np.ndarray:
-    """Return the integrals of the defects at the points of steps of radau, shape (steps, points, full).
+def _away_from_events(piece: Piece, opened: bool) -> np.ndarray:
+    """Return the rows at whose states to linearise: near an event, where displacements cross it, the nearest further away."""
+    t = piece.t
+    near = ESTIMATE.beside * (t[-1] - t[0])
+    first = int(np.searchsorted(t, t[0] + near)) if opened else 0
+    last = int(np.searchsorted(t, t[-1] - near, side="right")) - 1 if piece.fired else len(t) - 1
+    return np.clip(np.arange(len(t)), first, max(first, last))
 
-    Defects in steps over kinks become NaN.
+
+def _with_inner(
+    dynamics: Dynamics, transport: Transport, recorded: Points, states: Evaluated, ends: np.ndarray, rtol: float
+) -> tuple[Points, np.ndarray]:
+    """Return the points of the steps of bdf, of which those within are on a curve through recorded states, and their unknowns.
+
+    `states`, `ends`: recorded states, and rows of unknowns to linearise at.
+
+    A curve stretches a stiff spring by its own error: 1e-8 m are 100 kN at 1e13 N/m. Where its defects are a large part of the
+    motion, the points within a step become those of its collocation, by Newton's iteration.
     """
-    ends = piece.t[:: piece.points]
-    local, exact = integrated(np.diff(ends), defects), rates.changes(rates.exact)[1:].reshape(defects.shape)
-    missed, scale = not_smooth(exact, np.diff(ends), local)
-    sizes = np.abs(local / rates.typical).max(axis=(1, 2))
-    steps = np.flatnonzero(missed | dominant(sizes))
+    system, steps, inner = dynamics.system, np.arange(len(recorded.sizes)), INNER - 1
+    t, z = curve_of_bdf(recorded).at(np.tile(radau(INNER).nodes[:-1], (len(steps), 1)), steps)
+    q, u = (np.ascontiguousarray(each) for each in (z[:, : system.n_q], z[:, system.n_q :]))
+    before = np.full(len(steps), np.inf)
+    while True:
+        within = evaluated(dynamics, t, q, u, (np.full(len(t), recorded.sizes.max()), rtol))
+        exact = np.hstack([within.q_rates, within.acceleration])
+        found, unknowns = recorded.with_inner(t, np.hstack([within.q, within.u]), exact), transport.rows(within)
+        defects, motions = found.defects(False), found.changes(exact).reshape(len(steps), inner, -1)
+        off, of_motion = (np.abs(each / found.typical).max(axis=(1, 2)) for each in (defects, motions))
+        open_ = np.flatnonzero((off > ESTIMATE.large * of_motion) & (off < ESTIMATE.smooth * before))
+        if not len(open_):
+            return found, woven(ends, unknowns)
+        rows = (open_[:, None] * inner + np.arange(inner)).ravel()
+        own = np.concatenate([unknowns.reshape(len(steps), inner, -1), ends[1:, None]], axis=1)
+        moves = transport.apart(own[open_], found.sizes[open_], defects[open_])
+        q[rows], u[rows] = displaced(
+            system, within.q[rows], within.u[rows], -moves[:, :-1].reshape(len(rows), moves.shape[2])
+        )
+        at_ends = displaced(system, states.q[1 + open_], states.u[1 + open_], -moves[:, -1])
+        ends[1 + open_] = transport.rows(evaluated(dynamics, recorded.t[1 + open_], *at_ends))
+        before = off
+
+
+def _over_kinks(points: Points, defects: np.ndarray, local_errors: LocalErrors, at: Motion) -> np.ndarray:
+    """Return the defects at the points of steps, those over kinks with the same integrals as the defects of a curve.
+
+    The latter become NaN in `defects`. `local_errors`: sizes of the errors of some steps with some defects, from their starts.
+    """
+    method, ends, rows, sizes = radau(points.points), points.ends, points.rows, points.sizes
+    local = sizes[:, None, None] * (np.linalg.inv(method.derivative) @ defects)
+    exact = points.changes(points.exact)[1:].reshape(defects.shape)
+    missed, scale = not_smooth(exact, sizes, local)
+    before, found = local_errors(np.arange(len(sizes)), defects), defects.copy()
+    steps = np.flatnonzero(missed | dominant(before))
     if len(steps):
-        rows = steps[:, None] * piece.points + np.arange(piece.points + 1)
-        curve = Curve.through(piece.t[rows], rates.states[rows], ends[steps], ends[steps + 1])
-        places, most = np.append(0.0, radau(piece.points).nodes), ESTIMATE.intervals * len(piece.t)
-        found = rates.changes_in(rows) - integrals_of_motion(curve, places, piece.q.shape[1], at, scale, most)[0]
-        kept = missed[steps] | (np.abs(found / rates.typical).max(axis=(1, 2)) < sizes[steps])
-        local[steps[kept]], defects[steps[kept]] = found[kept], np.nan
-    return local
+        curve = Curve.through(points.t[rows[steps]], points.states[rows[steps]], ends[steps], ends[steps + 1])
+        places, most = np.append(0.0, method.nodes), ESTIMATE.intervals * len(points.t)
+        exact, _ = integrals_of_motion(curve, places, points.system.n_q, at, scale, most)
+        rates = method.derivative @ (points.changes_in(rows[steps]) - exact) / sizes[steps, None, None]
+        kept = missed[steps] | (local_errors(steps, rates) < before[steps])
+        found[steps[kept]], defects[steps[kept]] = rates[kept], np.nan
+    return found
 
 
-def _resolve_kinks(piece: Piece, rates: Rates, defects: np.ndarray, at_ends: np.ndarray, at: Motion) -> None:
-    """Integrate the defects of the steps of bdf that are far above the others; those at the ends of these steps become NaN.
-
-    Defects that it increases are left: a curve through a few states is not in balance with stiff forces.
-    """
-    h, most = np.diff(piece.t)[:, None], ESTIMATE.intervals * len(piece.t)
-    sizes, done = np.abs(h * defects[1:] / rates.typical).max(axis=1), np.zeros(len(h), dtype=bool)
-    while len(steps := np.flatnonzero(dominant(sizes) & ~done)) and len(steps) <= most:
-        done[steps] = True
-        scale = rates.typical * sizes[~done].max(initial=np.finfo(float).tiny)
-        curve, places = curve_of_bdf(piece, rates, steps), np.array([0.0, 1.0])
-        exact, most = integrals_of_motion(curve, places, piece.q.shape[1], at, scale, most)
-        found = (rates.changes_in(steps[:, None] + np.arange(2)) - exact)[:, 0]
-        now = np.abs(found / rates.typical).max(axis=1)
-        kept = now < sizes[steps]
-        steps = steps[kept]
-        sizes[steps], defects[steps + 1], at_ends[steps + 1] = now[kept], found[kept] / h[steps], np.nan
+def _transported(transport: Transport, each: _Prepared, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the errors at all rows of a piece, from that at its start, and their rates."""
+    errors, slopes = transport.along(each.points, each.sizes, each.defects, error)
+    if each.piece.points == 1:
+        errors, slopes = errors[:, -1:], slopes[:, -1:]
+    starts = error[None], np.full((1, len(error)), np.nan)
+    return tuple(
+        np.vstack([start, of_points.reshape(-1, len(error))])
+        for start, of_points in zip(starts, (errors, slopes), strict=True)
+    )
 
 
-def _transported(
-    dynamics: Dynamics, each: _Prepared, along: Along, error: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the errors at rows of a piece, from that at its start, these rows, and a mask of the blocks taken step by step."""
-    t, rows, blocks, space = each.piece.t, each.rows, each.blocks, along.space
-    place = np.full(len(t), -1)
-    place[rows] = np.arange(len(rows))
-    step_wise = np.zeros(len(blocks), dtype=bool)
-    if each.piece.points == 1 and are_affordable(len(t), len(error)):
-        step_wise = ~are_resolved(space, t, rows, blocks)
-    errors, of_errors = [error[None]], [rows[:1]]
-    for first, last in pairwise([0, *1 + np.flatnonzero(np.diff(step_wise)), len(blocks)]):
-        begin, end = int(blocks[first].nodes[0]), int(blocks[last - 1].nodes[-1])
-        own = slice(place[begin], place[end] + 1)
-        if step_wise[first]:
-            found, at = _step_by_step(dynamics, each, along.at(own), slice(begin, end + 1), errors[-1][-1])
-        else:
-            found, at = transported(blocks[first:last], space, place, errors[-1][-1])[own], rows[own]
-        errors.append(found[1:])
-        of_errors.append(at[1:])
-        if not first:
-            errors[0], of_errors[0] = found[:1], at[:1]
-    return np.concatenate(errors), np.concatenate(of_errors), step_wise
-
-
-def _step_by_step(
-    dynamics: Dynamics, each: _Prepared, along: Along, steps: slice, error: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the errors at all rows of some steps of a piece, from that at their start, and these rows."""
-    rows, t = np.arange(steps.start, steps.stop), each.piece.t[steps]
-    nodes = each.rows[(each.rows >= steps.start) & (each.rows < steps.stop)]
-    if (along.computed[1:] & along.computed[:-1]).any():  # matrices between nodes are not near a line
-        at = each.states.at(each.within(rows))
-        nodes, along = rows, linearised_along(dynamics, at, np.zeros(1, dtype=int), float(np.diff(t).max()))
-    knots = along.computed.copy()
-    knots[[0, -1]] = True
-    return step_by_step(t, each.defects[steps], along.space.at(knots), nodes[knots] - steps.start, error), rows
-
-
-def _without_errors(dynamics: Dynamics, found: _Found) -> Closed:
-    """Return q and u at rows of a piece without their errors, closed at the ends of blocks, and a mask of failures."""
-    each, errors, rows = found.piece, found.errors, found.rows
-    at = each.states.at(rows)
-    q, u = displaced(dynamics.system, at.q, at.u, -errors)
-    open_ = np.zeros(len(rows), dtype=bool)
-    places = np.searchsorted(rows, each.rows)
-    slopes = np.full((len(each.rows), errors.shape[1]), np.nan)
-    own = list(compress(each.blocks, ~found.step_wise))
-    for size in {len(block.nodes) for block in own}:
-        some = [block for block in own if len(block.nodes) == size]
-        nodes, times = np.array([block.nodes for block in some]), np.array([block.times for block in some])
-        times = np.hstack([np.zeros((len(some), 1)), times])
-        of_nodes, ends = errors[np.searchsorted(rows, nodes)], np.searchsorted(each.rows, nodes)
-        for k in range(1, size):
-            slopes[ends[:, k]] = np.einsum("bn,bnf->bf", slope_weights(times, k), of_nodes)
-    slopes -= each.at_ends[each.rows]
-    step = float(np.diff(each.piece.t).max())
-    q[places], u[places], open_[places] = closed(dynamics, at.at(places), found.space, errors[places], slopes, step)
-    return q, u, open_
+def _without_errors(dynamics: Dynamics, transport: Transport, found: _Found) -> Closed:
+    """Return q and u at the rows of a piece without their errors, closed, and a mask of failures."""
+    each = found.piece
+    return closed(dynamics, transport, each.states, found.errors, found.slopes, each.at_rows, float(each.sizes.max()))
 
 
 def _restarted(
@@ -271,6 +243,6 @@ def _restarted(
     on_left = just_before(dynamics, before.states, before.piece.fired)
     error, late = after_restart(dynamics, last, first, before.piece.fired, error, on_left)
     shift -= late
-    if is_autonomous(dynamics, after.states.at(after.rows)):
+    if is_autonomous(dynamics, after.states):
         return error, shift
     return error + shift * motion(system, first)[0], 0.0

@@ -13,35 +13,36 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.native.parameters import CONSISTENCY
-from .coordinates import displaced
+from .coordinates import as_rows, displaced, typical
 from .evaluated import Evaluated, evaluated
-from .linearised import Linearised, linearised, rate_changes
 from .parameters import ESTIMATE
 from .restarts import motion
+from .transport import Transport
 
 Closed: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Positions and velocities, one state per row, and a mask of those whose stiff forces say nothing."""
 
 
 def closed(
-    dynamics: Dynamics, at: Evaluated, space: Linearised, errors: np.ndarray, slopes: np.ndarray, step: float
-) -> Closed:
+    dynamics: Dynamics, transport: Transport, at: Evaluated, errors: np.ndarray, slopes: np.ndarray, defects: np.ndarray,
+    step: float,
+) -> Closed:  # fmt: skip
     """Return q and u of states without their errors (dq, du, ds), closed onto the equations where that is possible, and where not.
 
-    `slopes`: e' - d at the states, NaN where they are unknown. `step`: longest step, s; as in a stiff projection, the matrix of a
+    `slopes`, `defects`: e' and d at the states, NaN where they are unknown. `step`: longest step, s; as in a stiff projection, the matrix of a
     part of it separates the directions that are stiff.
     """
     (q, u), open_ = displaced(dynamics.system, at.q, at.u, -errors), np.zeros(len(errors), dtype=bool)
-    known = np.flatnonzero(np.isfinite(slopes).all(axis=1))
-    if not space.n or not len(known):
+    known = np.flatnonzero(np.isfinite(slopes + defects).all(axis=1))
+    if not len(known):
         return q, u, open_
-    rows, space = np.arange(len(known)), space.at(known)
-    iteration = _Iteration(dynamics, at.at(known), space, errors[known], slopes[known], CONSISTENCY.step_parts / step)
-    iteration.take(rows, space)
+    rows, cj = np.arange(len(known)), CONSISTENCY.step_parts / step
+    iteration = _Iteration(dynamics, transport, at.at(known), errors[known], slopes[known], defects[known], cj)
+    iteration.take(rows, at.at(known))
     rows = iteration.open(rows)
     while len(rows):
         sizes = iteration.sizes[rows]
-        iteration.take(rows, linearised(dynamics, iteration.states(rows), step))
+        iteration.take(rows, iteration.states(rows))
         rows = iteration.open(rows[iteration.sizes[rows] < CONSISTENCY.restored * sizes])
     q[known], u[known], open_[known] = iteration.q, iteration.u, iteration.fails
     return q, u, open_
@@ -51,16 +52,17 @@ class _Iteration:
     """Newton's iteration of many states; `q`, `u` and `sizes` are the states with the least residuals so far, and these."""
 
     def __init__(
-        self, dynamics: Dynamics, at: Evaluated, space: Linearised, errors: np.ndarray, slopes: np.ndarray, cj: float
-    ) -> None:
-        self._dynamics, self._at, self._left, self._cj = dynamics, at, space.left, cj
-        self._errors, self._slopes = errors, slopes
-        everywhere = np.arange(len(errors))
-        there, self._residuals, self.sizes = self._looked_at(everywhere, errors, slopes)
-        self.q, self.u = there.q.copy(), there.u.copy()
-        of_errors, of_motion = (self._size(everywhere, each) for each in (slopes, motion(dynamics.system, at)))
+        self, dynamics: Dynamics, transport: Transport, at: Evaluated, errors: np.ndarray, slopes: np.ndarray,
+        defects: np.ndarray, cj: float,
+    ) -> None:  # fmt: skip
+        self._dynamics, self._transport, self._at, self._cj = dynamics, transport, at, cj
+        self._typical = typical(dynamics.system, at.q, at.u)
+        self._errors, self._slopes, self._defects = errors, slopes, defects
+        of_errors, of_motion = (self._size(each) for each in (slopes, motion(dynamics.system, at)))
         self._much = np.maximum(of_errors, ESTIMATE.large * of_motion)
         self._enough = np.maximum(ESTIMATE.large * of_errors, ESTIMATE.difference * of_motion)
+        there, self._residuals, self.sizes = self._looked_at(np.arange(len(errors)), errors, slopes)
+        self.q, self.u = there.q.copy(), there.u.copy()
 
     @property
     def fails(self) -> np.ndarray:
@@ -75,15 +77,13 @@ class _Iteration:
         """Return the states of some rows."""
         return evaluated(self._dynamics, self._at.t[rows], self.q[rows], self.u[rows])
 
-    def take(self, rows: np.ndarray, space: Linearised) -> None:
-        """Iterate with the matrices of some rows while that brings them nearer to the equations."""
-        matrices = space.left @ (self._cj * space.basis - space.rates)
+    def take(self, rows: np.ndarray, at: Evaluated) -> None:
+        """Iterate with the matrices at some states while that brings these rows nearer to the equations."""
         errors, slopes, residuals = self._errors[rows], self._slopes[rows], self._residuals[rows]
         last, going = [np.full(len(rows), np.inf), self.sizes[rows]], np.arange(len(rows))
         going = going[self.sizes[rows] > self._enough[rows]]
         while len(going):
-            change = np.linalg.solve(matrices[going], space.left[going] @ residuals[going, :, None])
-            change = -(space.basis[going] @ change)[..., 0]
+            change = -self._transport.corrections(at.at(going), self._cj, residuals[going])
             errors[going] += change
             slopes[going] += self._cj * change
             there, residuals[going], sizes = self._looked_at(rows[going], errors[going], slopes[going])
@@ -103,9 +103,13 @@ class _Iteration:
         """Return the states without some errors, the residuals e' - F(z) + F(z - e) - d and their sizes."""
         at = self._at.at(rows)
         there = evaluated(self._dynamics, at.t, *displaced(self._dynamics.system, at.q, at.u, -errors))
-        residuals = slopes + rate_changes(self._dynamics.system, at, there)
-        return there, residuals, self._size(rows, residuals)
+        residuals = (
+            slopes
+            - self._defects[rows]
+            + as_rows(self._dynamics.system, there.q_rates - at.q_rates, there.acceleration - at.acceleration)
+        )
+        return there, residuals, self._size(residuals)
 
-    def _size(self, rows: np.ndarray, rates: np.ndarray) -> np.ndarray:
-        """Return the largest tangent component of some rates."""
-        return np.asarray(np.abs(self._left[rows] @ rates[..., None]).max(axis=(1, 2)))
+    def _size(self, rates: np.ndarray) -> np.ndarray:
+        """Return the largest part of some rates in those that are large for the motion."""
+        return np.asarray(np.abs(rates / self._typical).max(axis=1))

@@ -1,102 +1,96 @@
-"""Defects of a curve through the recorded states: z' - F(t, z), integrated over the parts of each step."""
+"""Defects of the recorded states: their errors as those of the collocation equations over each step.
+
+At the points z_i of a step of length h, from z_0, these are d_i = sum_j D_ij (z_j - z_0) / h - F(z_i), the residual of a Radau method.
+As in Newton's iteration, the error does not depend on the points within a step to first order.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..compile.system import System
 from ..solve.radau.collocation import radau
-from ..solve.recorded_steps import Piece
-from .coordinates import as_rows, typical, width
+from .coordinates import as_rows, typical
 from .evaluated import Evaluated
 from .kinks import Curve
 from .parameters import ESTIMATE
 
 
-class Rates:
-    """Differences of given rates from those of the equations at evaluated states, as rows (dq, du, ds)."""
+@dataclass(frozen=True)
+class Points:
+    """States of a piece at the ends of its steps and at `points` places of each, and their rates.
 
-    def __init__(self, system: System, at: Evaluated) -> None:
-        self._system = system
-        self.states = np.hstack([at.q, at.u])
-        self.exact = np.hstack([at.q_rates, at.acceleration])
-        self.typical = typical(system, at.q, at.u)
+    `t` of shape (rows,); `states`, `exact` of shape (rows, n_q + n_u): (q, u) and (q', u') of the equations. `typical` of shape
+    (full,): sizes of changes (dq, du, ds) that are large.
+    """
+
+    system: System
+    points: int
+    t: np.ndarray
+    states: np.ndarray
+    exact: np.ndarray
+    typical: np.ndarray
+
+    @classmethod
+    def of(cls, system: System, points: int, at: Evaluated) -> Points:
+        """Return the points of evaluated states."""
+        exact = np.hstack([at.q_rates, at.acceleration])
+        return cls(system, points, at.t, np.hstack([at.q, at.u]), exact, typical(system, at.q, at.u))
 
     @property
-    def width(self) -> int:
-        """Length of a row."""
-        return width(self._system)
+    def ends(self) -> np.ndarray:
+        """Times of the ends of the steps, s."""
+        return self.t[:: self.points]
 
-    def defects(self, rates: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Return the defects of rates (q', u') at some of the states."""
-        return self.changes(rates - self.exact[rows])
+    @property
+    def sizes(self) -> np.ndarray:
+        """Lengths of the steps, s."""
+        return np.diff(self.ends)
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Rows of the start and the points of each step, shape (steps, points + 1)."""
+        return np.arange(len(self.sizes))[:, None] * self.points + np.arange(self.points + 1)
+
+    def with_inner(self, t: np.ndarray, states: np.ndarray, exact: np.ndarray) -> Points:
+        """Return the points with others within each step, in rows of their order."""
+        inner = len(t) // len(self.sizes)
+        whole = ((ours, theirs) for ours, theirs in ((self.t, t), (self.states, states), (self.exact, exact)))
+        return replace(
+            self, points=inner + 1, **dict(zip(("t", "states", "exact"), (woven(*each) for each in whole), strict=True))
+        )
 
     def changes(self, change: np.ndarray) -> np.ndarray:
         """Return changes of (q, u) as rows (dq, du, ds)."""
-        n_q = self._system.n_q
-        return as_rows(self._system, change[:, :n_q], change[:, n_q:])
+        n_q = self.system.n_q
+        return as_rows(self.system, change[:, :n_q], change[:, n_q:])
 
     def changes_in(self, rows: np.ndarray) -> np.ndarray:
-        """Return the changes of the states since the first of each `rows`, shape (steps, places, full); `rows` has one place more."""
+        """Return the changes of the states since the first of `rows` of points, shape (steps, points, full)."""
         change = self.states[rows[:, 1:]] - self.states[rows[:, :1]]
         return self.changes(change.reshape(-1, change.shape[2])).reshape(*change.shape[:2], -1)
 
+    def defects(self, over_event: bool) -> np.ndarray:
+        """Return the defects at the points of all steps, shape (steps, points, full).
 
-def slope_weights(nodes: np.ndarray, at: int | np.ndarray) -> np.ndarray:
-    """Return the weights of values at nodes in the derivative of their polynomial at one of these nodes.
-
-    `nodes` of shape (n, k); `at` of shape (n,): index of a node in each row. Berrut and Trefethen, SIAM Review 46 (2004).
-    """
-    count, k = nodes.shape
-    span = nodes[:, -1:] - nodes[:, :1]
-    x = (nodes - nodes[:, :1]) / span
-    apart = x[:, :, None] - x[:, None, :] + np.eye(k)
-    barycentric = 1.0 / apart.prod(axis=2)
-    rows, at = np.arange(count), np.broadcast_to(at, count)
-    distances = x[rows, at][:, None] - x
-    distances[rows, at] = 1.0
-    weights = barycentric / barycentric[rows, at][:, None] / distances
-    weights[rows, at] = 0.0
-    weights[rows, at] = -weights.sum(axis=1)
-    return np.asarray(weights / span)
+        `over_event`: True if an event ends the piece, where the rates may be those after it.
+        """
+        rows, sizes = self.rows, self.sizes[:, None, None]
+        exact = self.changes(self.exact[rows[:, 1:].ravel()]).reshape(len(rows), self.points, -1)
+        found = np.asarray(radau(self.points).derivative @ self.changes_in(rows) / sizes - exact)
+        if over_event and self.points > 1:
+            found[-1, -1] = found[-1, -2]
+        return found
 
 
-def of_bdf(piece: Piece, rates: Rates, opened: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean defects of the steps of bdf, and those at their ends, shape (rows, full); row 0, the start, is zero.
-
-    The curve is the polynomial through the neighbouring accepted states, integrated by the trapezoid rule. Where steps
-    change a lot the formula of the step gives the defect. `opened`: True if the piece starts after an event, where the
-    forces of row 0 may be those before it.
-    """
-    t, steps = piece.t, len(piece.t) - 1
-    points = ESTIMATE.points
-    found = np.zeros((steps + 1, rates.width))
-    at_ends = np.zeros_like(found)
-    by_formula = np.ones(steps, dtype=bool)
-    h = np.diff(t)
-    if steps + 1 >= points:
-        ends = np.arange(1, steps + 1)
-        first, by_formula = _windows(h, points)
-        window = first[:, None] + np.arange(points)
-        sides = []
-        for rows in (ends - 1, ends):
-            slopes = np.einsum("nk,nkj->nj", slope_weights(t[window], rows - first), rates.states[window])
-            sides.append(rates.defects(slopes, rows))
-        if opened:  # the law of an event's other side may hold at its instant
-            sides[0][0] = sides[1][0]
-        if piece.fired:
-            sides[1][-1] = sides[0][-1]
-        found[1:], at_ends[1:] = 0.5 * (sides[0] + sides[1]), sides[1]
-    for n in 1 + np.flatnonzero(by_formula):
-        row = np.array([n])
-        change = _of_formula(piece, rates.states, int(n))
-        given = np.concatenate([piece.q_rates[n], piece.u_rates[n]])
-        at_end = n == steps and bool(piece.fired)
-        remainder = np.zeros(found.shape[1]) if at_end else rates.defects(given[None], row)[0]
-        found[n] = at_ends[n] = rates.changes(change[None])[0] + remainder
-    return found, at_ends
+def woven(ends: np.ndarray, within: np.ndarray) -> np.ndarray:
+    """Return rows of the ends of steps, with those of the points within each step between them."""
+    steps = len(ends) - 1
+    inner = within.reshape(steps, len(within) // steps, *within.shape[1:])
+    found = np.concatenate([inner, ends[1:, None]], axis=1).reshape(-1, *ends.shape[1:])
+    return np.concatenate([ends[:1], found])
 
 
 def _windows(h: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
@@ -116,56 +110,16 @@ def _windows(h: np.ndarray, points: int) -> tuple[np.ndarray, np.ndarray]:
     return first, uneven
 
 
-def curve_of_bdf(piece: Piece, rates: Rates, steps: np.ndarray) -> Curve:
-    """Return the curve through the neighbouring states of steps, or by their two ends where steps change a lot."""
-    t, h = piece.t, np.diff(piece.t)
+def curve_of_bdf(of: Points) -> Curve:
+    """Return the curve through the neighbouring states of each step, or by its two ends where steps change a lot."""
+    t, sizes, steps = of.t, of.sizes, np.arange(len(of.sizes))
     ends = steps[:, None] + np.arange(2)
-    curve = Curve.of_ends(t[ends], rates.states[ends], rates.exact[ends])
+    curve = Curve.of_ends(t[ends], of.states[ends], of.exact[ends])
     if len(t) < ESTIMATE.points:
         return curve
-    first, uneven = _windows(h, ESTIMATE.points)
-    by_ends = uneven[steps]
-    window = first[steps[~by_ends], None] + np.arange(ESTIMATE.points)
-    even = Curve.through(t[window], rates.states[window], *t[ends[~by_ends]].T)
-    coefficients = np.zeros((len(steps), ESTIMATE.points, rates.states.shape[1]))
-    coefficients[:, :4], coefficients[~by_ends] = curve.coefficients, even.coefficients
+    first, uneven = _windows(sizes, ESTIMATE.points)
+    window = first[~uneven, None] + np.arange(ESTIMATE.points)
+    even = Curve.through(t[window], of.states[window], *t[ends[~uneven]].T)
+    coefficients = np.zeros((len(steps), ESTIMATE.points, of.states.shape[1]))
+    coefficients[:, :4], coefficients[~uneven] = curve.coefficients, even.coefficients
     return replace(curve, coefficients=coefficients)
-
-
-def _of_formula(piece: Piece, states: np.ndarray, n: int) -> np.ndarray:
-    """Return the defect of the formula of a step from its distance to the predictor (Brenan, Campbell, Petzold 1996, ch. 5)."""
-    t, order = piece.t, int(piece.order[n])
-    if n == 1:
-        h = t[1] - t[0]
-        start = np.concatenate([piece.q_rates[0], piece.u_rates[0]])
-        return np.asarray((states[1] - states[0] - h * start) / h)
-    past = np.arange(n - 1, max(n - 2 - order, -1), -1)
-    if len(past) < 2:
-        return np.zeros(states.shape[1])
-    nodes = t[past]
-    apart = nodes[:, None] - nodes + np.eye(len(past))
-    reach = t[n] - nodes + np.zeros((len(past), 1))
-    np.fill_diagonal(reach, 1.0)
-    predicted = (reach / apart).prod(axis=1) @ states[past]
-    cj = (1.0 / np.arange(1, order + 1)).sum() / (t[n] - t[n - 1])
-    return np.asarray((states[n] - predicted) * ((1.0 / (t[n] - nodes)).sum() - cj))
-
-
-def of_radau(piece: Piece, rates: Rates) -> np.ndarray:
-    """Return the defects at the points of the steps of radau, shape (steps, points, full).
-
-    The curve is the polynomial through the states at the start of the step and at its points. At an event the rates may be those
-    after it.
-    """
-    points = piece.points
-    steps = (len(piece.t) - 1) // points
-    rows = np.arange(steps)[:, None] * points + np.arange(points + 1)
-    inner, h = radau(points).nodes, piece.t[rows[:, -1]] - piece.t[rows[:, 0]]
-    nodes = np.broadcast_to(np.append(0.0, inner), (1, points + 1))
-    slopes = np.concatenate([slope_weights(nodes, k) for k in range(1, points + 1)])
-    found = np.einsum("pk,nkj->npj", slopes, rates.states[rows]) / h[:, None, None]
-    of_points = rows[:, 1:].ravel()
-    defects = rates.defects(found.reshape(steps * points, -1), of_points).reshape(steps, points, -1)
-    if piece.fired:
-        defects[-1, -1] = defects[-1, -2]
-    return defects

@@ -22,8 +22,8 @@ from ..solve.trajectory import Trajectory
 from .along_run import StateErrors, state_errors
 from .channels import channel_errors
 from .evaluated import evaluated
-from .linearised import nearly_singular
 from .parameters import ESTIMATE
+from .singular_poses import nearly_singular
 
 LOST = NoteKind(
     "solution-lost",

@@ -30,29 +30,14 @@ class EstimateParameters:
     """Accepted states on the polynomial from which the defect of a step of bdf follows."""
     uneven: float = 10.0
     """Ratio of the steps on that polynomial above which the formula of the step gives its defect."""
-    block: int = 8
-    """Steps of bdf in a block of collocation, at most."""
+    converged: float = 1e-6
+    """Last correction of an iteration for the change of an error over a step, relative to this change."""
     smooth: float = 0.1
     """Error of the quadrature over a step of radau, relative to the largest local error, above which it is adaptive."""
     isolated: float = 0.25
     """Largest part of the steps whose quadrature is adaptive. If more seem to have kinks, these are rounding of stiff forces."""
     intervals: float = 2.0
     """Largest number of intervals that adaptive quadrature halves, in rows of the piece."""
-    spectra: int = 16
-    """States of a piece at which the frequencies of the linearised motion are computed."""
-    resolved: float = 1.0
-    """Largest angle, rad, of a vibration in a step of bdf that resolves it."""
-    turn: float = 1.5
-    """Largest angle, rad, of a vibration in a block that resolves it."""
-    operations: float = 1e10
-    """Largest number of multiplications of a transport step by step."""
-    apart: int = 16
-    """Distance, in nodes, of those at which the equations are linearised first."""
-    interpolated: float = 0.02
-    """Largest relative change of an implicit step by the curvature of the matrices over an interval at which the matrices are
-    interpolated by a parabola."""
-    off_node: float = 0.13
-    """Largest distance of the end of a step from a Radau node, in lengths of the block."""
     lost: float = 0.05
     """Error of a pose, rad or relative to the size of the mechanism, above which the linear estimate is lost."""
     tolerances: float = 100.0

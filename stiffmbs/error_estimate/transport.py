@@ -1,133 +1,128 @@
-"""Transport of the error, e' = J e + d, along the recorded steps, by collocation over blocks of them.
+"""Transport of the error, e' = J e + d, along the recorded steps, by collocation over each of them.
 
-With e = B a in the tangent space of each node, L B a = L (B_0 a_0 + D + sum_j w_j R_j a_j) at the nodes of a block, whose
-first state is the end of the block before it. The nodes are near those of a Radau method, so that stiff parts decay.
+The equations are the variational ones of the run, which hold errors on the constraints, with the defect d as a source. They are
+evaluated on the curve through the recorded states, at the points of a Radau method: the rates of errors turn with the bodies, and
+stiff parts decay.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ..compile.equations import ABSENT
+from ..dynamics.dynamics import Dynamics
+from ..errors import SolverError
+from ..model.settings import RunSettings
+from ..sensitivity_equations.stages import Stages
+from ..solve.ida.choice import natural
 from ..solve.radau.collocation import radau
-from .linearised import Linearised
+from ..sparse.elimination_order import elimination_order
+from .coordinates import as_rows, typical, with_rates
+from .evaluated import Evaluated
 from .parameters import ESTIMATE
 
-RADAU_NODES = radau(3).nodes
+INNER = 3
+"""Points of the collocation over a step of bdf."""
 
 
-@dataclass(frozen=True)
-class Block:
-    """Nodes of one block, as rows of the piece: its start, then the others.
+class Transport:
+    """Variational equations of one mechanism, in rows (dq, du, ds).
 
-    `local` of shape (nodes, full): integrals of the defect from the start to each node but the first. `times` of shape
-    (nodes,): those of these nodes since the start, s.
+    `at`: states of the run.
     """
 
-    nodes: np.ndarray
-    local: np.ndarray
-    times: np.ndarray
+    def __init__(self, dynamics: Dynamics, at: Evaluated) -> None:
+        self._dynamics = dynamics
+        self._equations = natural(dynamics, RunSettings(formulation="SI2_exact"))  # errors on the constraints
+        self._equations.start_from(at.q[0])
+        self._order = elimination_order(self._equations)
+        self._weight = self._unknowns(1.0 / typical(dynamics.system, at.q, at.u)[None])[0]
+        self._stages: dict[int, Stages] = {}
 
+    def along(
+        self, rows: np.ndarray, sizes: np.ndarray, rates: np.ndarray, error: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the errors at the points of steps, from that at their start, and their rates, shape (steps, points, full).
 
-def blocks_of_bdf(t: np.ndarray, defects: np.ndarray) -> list[Block]:
-    """Return the blocks of the steps that end at t[1:], with their mean defects in the rows of `defects`."""
-    found, first = [], 0
-    summed = np.cumsum(np.diff(t, prepend=t[0])[:, None] * defects, axis=0)
-    while first < len(t) - 1:
-        rows = _rows(t, first)
-        found.append(Block(rows, summed[rows[1:]] - summed[rows[0]], t[rows[1:]] - t[rows[0]]))
-        first = int(rows[-1])
-    return found
+        Raise a SolverError if they are not determined.
 
+        Parameters
+        ----------
+        rows : ndarray, shape (steps, points, 2 + 2 unknowns)
+            `rows` of the states at the points.
+        sizes : ndarray, shape (steps,)
+            Lengths, s.
+        rates : ndarray, shape (steps, points, full)
+            Defects.
+        error : ndarray, shape (full,)
+        """
+        stages, s, found, slopes = self._of(rates.shape[1]), self._unknowns(error[None])[0], [], []
+        stages.forget()
+        for some in self._parts(rates):
+            changes, end = stages.advance(rows[some], sizes[some], self._sources(rates[some]), s)
+            self._raise_if_singular(rows[some], len(changes))
+            starts = np.concatenate([s[None], s + np.cumsum(changes[:-1, -1], axis=0)])
+            found.append(starts[:, None] + changes)
+            slopes.append(stages.method.derivative @ changes / sizes[some, None, None])
+            s = end
+        errors, of_errors = (self._errors(np.concatenate(each)).reshape(rates.shape) for each in (found, slopes))
+        return errors, of_errors
 
-def _rows(t: np.ndarray, first: int) -> np.ndarray:
-    """Return the rows of a block: its start, and ends of steps near Radau nodes, or else those of two steps."""
-    left = len(t) - 1 - first
-    for steps in range(min(ESTIMATE.block, left), len(RADAU_NODES) - 1, -1):
-        ends = (t[first + 1 : first + steps + 1] - t[first]) / (t[first + steps] - t[first])
-        chosen = np.abs(ends[:, None] - RADAU_NODES).argmin(axis=0)
-        near = np.abs(ends[chosen] - RADAU_NODES).max() < ESTIMATE.off_node
-        if near and chosen[0] < chosen[1] < chosen[2]:
-            return np.concatenate([[first], first + 1 + chosen])
-    return first + np.arange(min(2, left) + 1)
+    def apart(self, rows: np.ndarray, sizes: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        """Return the errors at the points of steps of which each starts without one; the rest as in `along`."""
+        stages, found = self._of(rates.shape[1]), []
+        stages.forget()
+        for some in self._parts(rates):
+            found.append(stages.apart(rows[some], sizes[some], self._sources(rates[some])))
+            self._raise_if_singular(rows[some], len(found[-1]))
+        return self._errors(np.concatenate(found)).reshape(rates.shape)
 
+    def corrections(self, at: Evaluated, cj: float, residuals: np.ndarray) -> np.ndarray:
+        """Return the errors x of cj x - J x = residuals at some states, shape (n, full)."""
+        return self.apart(self.rows(at)[:, None], np.full(len(at.t), 1.0 / cj), residuals[:, None])[:, 0]
 
-def integrals(nodes: np.ndarray) -> np.ndarray:
-    """Return the integrals from 0 to each node of the Lagrange polynomials through the nodes.
+    def _parts(self, rates: np.ndarray) -> list[slice]:
+        """Return parts of the steps that are in memory at once."""
+        count = max(1, ESTIMATE.numbers_at_once // (rates.shape[1] * 2 * self._equations.n))
+        return [slice(first, first + count) for first in range(0, len(rates), count)]
 
-    `nodes` of shape (..., k). Returns an array of shape (..., k, k).
-    """
-    size = nodes[..., -1:, None]
-    powers = np.arange(nodes.shape[-1])
-    x = nodes[..., None] / size
-    transposed = np.swapaxes(x**powers, -1, -2)
-    integrated = np.swapaxes(x ** (powers + 1) / (powers + 1), -1, -2)
-    return np.asarray(size * np.swapaxes(np.linalg.solve(transposed, integrated), -1, -2))
+    def _sources(self, rates: np.ndarray) -> np.ndarray:
+        """Return changes of the unknowns from rows (dq, du, ds) at the points of steps."""
+        return self._unknowns(rates.reshape(-1, rates.shape[2])).reshape(*rates.shape[:2], -1)
 
+    def _raise_if_singular(self, rows: np.ndarray, done: int) -> None:
+        if done < len(rows):
+            raise SolverError(f"a matrix is singular at t = {rows[done, 0, 0]:.6g} s")
 
-def integrated(sizes: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """Return the integrals of rates at the points of steps of radau from their starts, shape (steps, points, full)."""
-    return np.asarray(sizes[:, None, None] * np.einsum("ij,njf->nif", integrals(radau(rates.shape[1]).nodes), rates))
+    def _of(self, points: int) -> Stages:
+        """Return the solver of a number of points."""
+        if points not in self._stages:
+            self._stages[points] = Stages(
+                self._equations, self._dynamics.state, self._order, radau(points), self._weight, ESTIMATE.converged
+            )
+        return self._stages[points]
 
+    def rows(self, at: Evaluated) -> np.ndarray:
+        """Return rows of time, order, y and y'."""
+        equations, carried = self._equations, self._equations.coordinates
+        y, yp = np.zeros((2, len(at.t), equations.n))
+        solved = equations.at["lam"] != ABSENT
+        y[:, equations.at["lam"][solved]] = at.rows.lam[:, solved]
+        for into, of_q, of_u in ((y, at.q, at.u), (yp, at.q_rates, at.acceleration)):
+            into[:, equations.independent] = np.hstack([of_q[:, carried.independent], of_u[:, carried.independent_u]])
+        return np.column_stack([at.t, np.zeros(len(at.t)), y, yp])
 
-def blocks_of_radau(t: np.ndarray, local: np.ndarray) -> list[Block]:
-    """Return one block for each step of radau from the integrals of defects at its points, shape (steps, points, full)."""
-    steps, points, _ = local.shape
-    rows = np.arange(steps)[:, None] * points + np.arange(points + 1)
-    sizes = t[rows[:, -1]] - t[rows[:, 0]]
-    return [Block(*each) for each in zip(rows, local, sizes[:, None] * radau(points).nodes, strict=True)]
+    def _unknowns(self, rows: np.ndarray) -> np.ndarray:
+        """Return changes of the unknowns, shape (n, unknowns), from rows (dq, du, ds)."""
+        system, carried = self._dynamics.system, self._equations.coordinates
+        of_v = system.n_pose + system.n_u
+        dq, found = np.zeros((len(rows), system.n_q)), np.zeros((len(rows), self._equations.n))
+        dq[:, : system.n_pose], dq[:, with_rates(system)] = rows[:, : system.n_pose], rows[:, of_v:]
+        du = rows[:, system.n_pose : of_v]
+        found[:, self._equations.independent] = np.hstack([dq[:, carried.independent], du[:, carried.independent_u]])
+        return found
 
-
-def transported(blocks: list[Block], space: Linearised, place: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """Return the errors at the nodes of all blocks, one row for each state of `space`.
-
-    `place`: index in `space` of each row of the piece. `start` of shape (full,): the error at the start.
-    """
-    basis, left = space.basis, space.left
-    errors = np.zeros((len(basis), basis.shape[1]))
-    n = space.n
-    if not n:
-        return errors
-    maps, sources = _solved(blocks, space, place)
-    first = place[blocks[0].nodes[0]]
-    a = np.linalg.solve(left[first] @ basis[first], left[first] @ start)
-    errors[first] = basis[first] @ a
-    for block, by_start, source in zip(blocks, maps, sources, strict=True):
-        inner = by_start @ a + source
-        at = place[block.nodes[1:]]
-        errors[at] = np.einsum("kfn,kn->kf", basis[at], inner.reshape(len(at), n))
-        a = inner[-n:]
-    return errors
-
-
-def at_once(size: int) -> int:
-    """Return the number of matrices of a size that are in memory at once."""
-    return max(1, ESTIMATE.numbers_at_once // size**2)
-
-
-def _solved(blocks: list[Block], space: Linearised, place: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Return a at the nodes of each block as a linear function of a at its start: matrix and constant part."""
-    n, maps, sources = space.n, {}, {}
-    counts = np.array([len(block.nodes) - 1 for block in blocks])
-    for k in np.flatnonzero(np.bincount(counts)):
-        chosen = np.flatnonzero(counts == k)
-        count = at_once(int(k) * n)
-        for some in np.split(chosen, np.arange(count, len(chosen), count)):
-            own = [blocks[b] for b in some]
-            first = place[np.array([block.nodes[0] for block in own])]
-            at = place[np.array([block.nodes[1:] for block in own])]
-            weights = integrals(np.array([block.times for block in own]))
-            local = np.array([block.local for block in own])
-            left = space.left[at]  # (blocks, k, n, full)
-            matrix = -weights[:, :, None, :, None] * np.einsum("bknf,bjfm->bknjm", left, space.rates[at], optimize=True)
-            own_part = left @ space.basis[at]
-            for i in range(k):
-                matrix[:, i, :, i] += own_part[:, i]
-            by_start = left @ space.basis[first][:, None]
-            constant = left @ local[..., None]
-            right = np.concatenate([by_start, constant], axis=3).reshape(len(own), k * n, n + 1)
-            found = np.linalg.solve(matrix.reshape(len(own), k * n, k * n), right)
-            for b, each in zip(some.tolist(), found, strict=True):
-                maps[b], sources[b] = each[:, :n], each[:, n]
-    return [maps[b] for b in range(len(blocks))], [sources[b] for b in range(len(blocks))]
+    def _errors(self, unknowns: np.ndarray) -> np.ndarray:
+        """Return rows (dq, du, ds) from changes of the unknowns at points of steps."""
+        flat = unknowns.reshape(-1, unknowns.shape[-1])
+        return as_rows(self._dynamics.system, *self._equations.rates(flat[:, self._equations.independent]))

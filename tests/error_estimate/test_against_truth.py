@@ -9,8 +9,6 @@ from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs.analyses.load_scene import load_scene
-from stiffmbs.error_estimate.linearised import Linearised
-from stiffmbs.error_estimate.transport import Block, transported
 from tests.conftest import EXAMPLES
 from tests.solve.test_stiff_reactions import KINKS
 from tests.solve.test_stiff_reactions import pendulum as pushed
@@ -332,16 +330,6 @@ def test_matrices_may_be_in_memory_one_by_one(solver):
     )
     for name, bar in by_one.errors.items():
         assert np.isclose(bar.over_time, found.errors[name].over_time, rtol=1e-6, atol=1e-12), name
-
-
-def test_a_transport_may_begin_within_a_piece():
-    """The bases of two rows are not the same: coordinates of the start are those of the first row of its first block."""
-    rng = np.random.default_rng(1)
-    basis, rates, left = rng.normal(size=(5, 3, 2)), rng.normal(size=(5, 3, 2)), rng.normal(size=(5, 2, 3))
-    space, place, times = Linearised(basis, rates, left), np.arange(5), np.array([0.1, 0.2])
-    blocks = [Block(first + np.arange(3), rng.normal(size=(2, 3)), times) for first in (0, 2)]
-    whole = transported(blocks, space, place, basis[0] @ np.ones(2))
-    np.testing.assert_allclose(transported(blocks[1:], space, place, whole[2])[3:], whole[3:])
 
 
 @pytest.mark.parametrize("scheme, step", [("euler_cromer", 1e-3), ("rk4", 6e-3)])

@@ -14,6 +14,7 @@ from stiffmbs.compile.machine.native.along import direction_view, evaluate_along
 from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import evaluate, load, share_one
 from stiffmbs.sensitivity_equations.native.layouts import DEPTH, PART, VARIATIONS
+from stiffmbs.sensitivity_equations.native.stages import take_parts
 
 variations_view = view_of("Variations", VARIATIONS)
 part_view = view_of("Part", PART)
@@ -25,13 +26,7 @@ def _take_matrix(v, s, e, t, cj):
     values = evaluate(s, e.matrix_set, t)
     for k in range(v.n_share):
         share_one(s, v.share[k])
-    for k in range(v.n_slots):
-        v.constant[k] = 0.0
-        v.rate[k] = 0.0
-    for k in range(e.n_entries):
-        value = values[e.m_source[k]]
-        v.constant[e.m_slot[k]] += value * e.m_constant[k]
-        v.rate[e.m_slot[k]] += value * e.m_cj[k]
+    take_parts(e, values, v.n_slots, v.constant, v.rate)
     entries = floats(v.entries)
     for k in range(v.n_slots):
         entries[k] = v.constant[k] + cj * v.rate[k]

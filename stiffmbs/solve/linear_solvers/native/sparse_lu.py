@@ -12,7 +12,7 @@ sparse_view = view_of("SparseLU", SPARSE_LU)
 
 
 @compiled
-def _factored(factors, kept):
+def factored(factors, kept):
     """Factor the matrix, which is temporarily scaled, with known pivots if possible; return the outcome."""
     f = factors_view(factors)
     copied(kept, f.a, f.a_start[f.n])
@@ -32,7 +32,7 @@ def _factored(factors, kept):
 def setup(solver, matrix):
     """Set up the linear solver (SUNLinSolSetup)."""
     s = sparse_view(ints(solver[CONTENT]))
-    s.last_flag = _factored(s.factors, s.entries)  # returned by SUNLinSolLastFlag
+    s.last_flag = factored(s.factors, s.entries)  # returned by SUNLinSolLastFlag
     if s.last_flag == DONE:
         return int32(OK)
     return int32(FAILED if s.last_flag == FULL else RECOVERABLE)
