@@ -57,3 +57,8 @@ class CondensedPositions(NamedTuple):
             "n_straight": first, "n_turned": len(self.turned[0]), "n_turns": len(self.turns),
             **{name: np.ascontiguousarray(part, dtype=float if name in floats else np.int32) for name, part in lists.items()},
         }  # fmt: skip
+
+
+_NONE = np.empty(0, dtype=np.int64)
+NOTHING_CONDENSED = CondensedPositions((_NONE,) * 4, (_NONE,) * 3, np.empty((0, 2), dtype=np.int64)).lists(_NONE)
+"""Columns of `EQUATIONS` of a matrix without such entries."""

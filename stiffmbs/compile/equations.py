@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .condensed_positions import CondensedPositions
+from .condensed_positions import NOTHING_CONDENSED, CondensedPositions
 from .coordinates import FIXED, Coordinates, all_independent
 from .formulation import Block, Formulation
 from .machine.layout import held_once, packed
@@ -156,28 +156,30 @@ class Equations:
             parts = (at_row, at_column, source, line.constant * factor, line.cj * factor)
             lines.append(tuple(part[kept] for part in parts))
         row, column, source, constant, cj = (np.concatenate([line[k] for line in lines]) for k in range(5))
-        condensed = self._condensed()
-        by_row, by_velocity = condensed.place
-        place = np.concatenate([column, self.at["u"][by_velocity] if len(by_row) else by_row]) * self.n
-        place += np.concatenate([row, by_row])
+        place = column * self.n + row
+        condensed = self._condensed() if any(map(_is_condensed, self.formulation.matrix)) else None
+        if condensed:
+            by_row, by_velocity = condensed.place
+            place = np.concatenate([place, self.at["u"][by_velocity] * self.n + by_row])
         order = np.argsort(place, kind="stable")
         new = np.diff(place[order], prepend=-1) > 0
         self.pattern = held_once(place[order][new] % self.n), held_once(place[order][new] // self.n)
         slot = np.empty(len(place), dtype=np.int32)
         slot[order] = np.cumsum(new) - 1
-        self._condensed_lists = condensed.lists(slot[len(row) :])
+        self._condensed_lists = condensed.lists(slot[len(row) :]) if condensed else NOTHING_CONDENSED
         self._slot, self._source = held_once(slot[: len(row)]), held_once(source.astype(np.int32))
         self._constant, self._cj = held_once(constant.astype(float)), held_once(cj.astype(float))
 
     def _condensed(self) -> CondensedPositions:
         """Return the condensed entries of all blocks."""
-        lines = [np.empty((4, 0))]
+        lines = []
         for line in filter(_is_condensed, self.formulation.matrix):
             source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
             at = self.at[line.rows][row]
             lines.append(np.stack([at, column, source, np.full(len(at), line.constant)])[:, at != ABSENT])
-        row, column, source, factor = np.concatenate(lines, axis=1)
-        return CondensedPositions.of(self.system, *(part.astype(np.int64) for part in (row, column, source)), factor)
+        *places, factor = np.concatenate(lines, axis=1)
+        row, column, source = (part.astype(np.int64) for part in places)
+        return CondensedPositions.of(self.system, row, column, source, factor)
 
     @property
     def slots_with_rates(self) -> np.ndarray:

@@ -79,7 +79,7 @@ class LinearlyImplicit:
 
 def _cells(memory: Memory) -> dict[str, np.ndarray]:
     """Return the cells of a linear solver by name, as arrays; the pivots of a sparse LU always depend on earlier ones."""
-    words, fields = np.frombuffer(memory.known, dtype=np.int64), memory.known.dtype.fields or {}
+    words, fields = np.frombuffer(memory.known, dtype=np.int64), dict(memory.known.dtype.fields or {})
     depends = np.ones(1, dtype=np.int64)
     return {
         name: words[fields[name][1] // 8 :] if name in fields else depends for name in ("ready", "refused", "refined")

@@ -42,8 +42,8 @@ EQUATIONS = Layout({
 })  # fmt: skip
 """Residual and matrix of one formulation (`stiffmbs.compile.equations`); matrix entries ordered by `entry_lists`.
 
-Condensed entries are those of coordinates whose rate is a velocity, and those of quaternions, collected by row and body
-in `turn_row`, whose products with Z belong to three slots.
+Condensed entries are derivatives by positions of bodies. Those by quaternions are collected in `turn_row`, four for each row
+and body, whose products with Z belong to three slots.
 """
 
 FACTORS = Layout({
