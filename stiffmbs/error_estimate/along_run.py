@@ -197,7 +197,9 @@ def _over_kinks(points: Points, defects: np.ndarray, local_errors: LocalErrors, 
     local = sizes[:, None, None] * (np.linalg.inv(method.derivative) @ defects)
     exact = points.changes(points.exact)[1:].reshape(defects.shape)
     missed, scale = not_smooth(exact, sizes, local)
-    before, found = local_errors(np.arange(len(sizes)), defects), defects.copy()
+    found, before = defects.copy(), np.abs(local[:, -1] / points.typical).max(axis=1)
+    if dominant(before).any():  # with defects of stiff forces, which a step balances
+        before = local_errors(np.arange(len(sizes)), defects)
     steps = np.flatnonzero(missed | dominant(before))
     if len(steps):
         curve = Curve.through(points.t[rows[steps]], points.states[rows[steps]], ends[steps], ends[steps + 1])

@@ -108,7 +108,11 @@ class _Iteration:
             - self._defects[rows]
             + as_rows(self._dynamics.system, there.q_rates - at.q_rates, there.acceleration - at.acceleration)
         )
-        return there, residuals, self._size(residuals)
+        sizes = self._size(residuals)
+        open_ = np.flatnonzero(sizes > self._enough[rows])
+        if len(open_) and self._dynamics.system.n_c:
+            sizes[open_] = self._size(self._transport.tangent(at.at(open_), residuals[open_]))
+        return there, residuals, sizes
 
     def _size(self, rates: np.ndarray) -> np.ndarray:
         """Return the largest part of some rates in those that are large for the motion."""

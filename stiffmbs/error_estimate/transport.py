@@ -23,6 +23,8 @@ from .parameters import ESTIMATE
 
 INNER = 3
 """Points of the collocation over a step of bdf."""
+AT_ONCE = 1e15
+"""Inverse of a step in which only constraints act, 1/s."""
 
 
 class Transport:
@@ -80,6 +82,10 @@ class Transport:
     def corrections(self, at: Evaluated, cj: float, residuals: np.ndarray) -> np.ndarray:
         """Return the errors x of cj x - J x = residuals at some states, shape (n, full)."""
         return self.apart(self.rows(at)[:, None], np.full(len(at.t), 1.0 / cj), residuals[:, None])[:, 0]
+
+    def tangent(self, at: Evaluated, rates: np.ndarray) -> np.ndarray:
+        """Return the part of some rates that is tangent to the constraints at some states, shape (n, full)."""
+        return AT_ONCE * self.corrections(at, AT_ONCE, rates)
 
     def _parts(self, rates: np.ndarray) -> list[slice]:
         """Return parts of the steps that are in memory at once."""
