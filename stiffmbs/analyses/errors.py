@@ -81,7 +81,7 @@ def _work(job: Job, trajectory: Trajectory) -> float:
     system, steps, found = job.dynamics.system, _steps(trajectory), trajectory.statistics
     unknowns = system.n_q + system.n_u + system.n_c
     if traits_of(job.settings).fixed_steps:
-        return 2.0 * float(found["accelerations"]) * unknowns
+        return 2.0 * float(found.get("accelerations") or found["factorizations"]) * unknowns
     if not found.get("jacobians") or "projected" in trajectory.solver:
         return steps * DOP853.stages * unknowns
     return steps * ESTIMATE.row + float(found["residuals"]) * unknowns if system.sampled.any() else np.inf

@@ -6,12 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
+from .condensed_positions import NOTHING_CONDENSED, CondensedPositions
 from .coordinates import FIXED, Coordinates, all_independent
-from .formulation import Formulation
+from .formulation import Block, Formulation
 from .machine.layout import held_once, packed
 from .machine.native.tables import EQUATIONS
 from .system import System, Term
-from .terms import TERM_SETS
+from .terms import TERM_AXES, TERM_SETS
 
 ABSENT = FIXED
 """Position of a coordinate or multiplier that is not among the unknowns."""
@@ -35,6 +36,7 @@ class Equations:
             "q": independent, "u": self.coordinates.independent_u,
             "mu": system.holonomic & solved_for, "lam": solved_for,
             "x": np.isin(np.arange(system.n_q), system.algebraic_coordinates),
+            "s": np.arange(system.n_q) >= system.n_pose,
         }  # fmt: skip
         self.at: dict[str, np.ndarray] = {}
         self.n = 0
@@ -144,7 +146,7 @@ class Equations:
 
     def _compile_matrix(self) -> None:
         lines = []
-        for line in self.formulation.matrix:
+        for line in (each for each in self.formulation.matrix if not _is_condensed(each)):
             source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
             (at_row, of_row), (at_column, of_column) = (
                 self.carried(line.rows, row),
@@ -155,13 +157,29 @@ class Equations:
             lines.append(tuple(part[kept] for part in parts))
         row, column, source, constant, cj = (np.concatenate([line[k] for line in lines]) for k in range(5))
         place = column * self.n + row
+        condensed = self._condensed() if any(map(_is_condensed, self.formulation.matrix)) else None
+        if condensed:
+            by_row, by_velocity = condensed.place
+            place = np.concatenate([place, self.at["u"][by_velocity] * self.n + by_row])
         order = np.argsort(place, kind="stable")
         new = np.diff(place[order], prepend=-1) > 0
         self.pattern = held_once(place[order][new] % self.n), held_once(place[order][new] // self.n)
         slot = np.empty(len(place), dtype=np.int32)
         slot[order] = np.cumsum(new) - 1
-        self._slot, self._source = held_once(slot), held_once(source.astype(np.int32))
+        self._condensed_lists = condensed.lists(slot[len(row) :]) if condensed else NOTHING_CONDENSED
+        self._slot, self._source = held_once(slot[: len(row)]), held_once(source.astype(np.int32))
         self._constant, self._cj = held_once(constant.astype(float)), held_once(cj.astype(float))
+
+    def _condensed(self) -> CondensedPositions:
+        """Return the condensed entries of all blocks."""
+        lines = []
+        for line in filter(_is_condensed, self.formulation.matrix):
+            source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
+            at = self.at[line.rows][row]
+            lines.append(np.stack([at, column, source, np.full(len(at), line.constant)])[:, at != ABSENT])
+        *places, factor = np.concatenate(lines, axis=1)
+        row, column, source = (part.astype(np.int64) for part in places)
+        return CondensedPositions.of(self.system, row, column, source, factor)
 
     @property
     def slots_with_rates(self) -> np.ndarray:
@@ -172,7 +190,8 @@ class Equations:
         """Return the groups whose values are used, for the term sets of the residual and of the matrix."""
         residual_set, matrix_set = self.formulation.residual_set, self.formulation.matrix_set
         groups = {residual_set: self._writing(residual_set, self._r_source)}
-        of_matrix = self._writing(matrix_set, self._source)
+        sources = self._source, *(self._condensed_lists[f"{name}_source"] for name in ("straight", "turned"))
+        of_matrix = self._writing(matrix_set, np.concatenate(sources))
         return groups | {matrix_set: groups.get(matrix_set, False) | of_matrix}
 
     def _writing(self, term_set: str, sources: np.ndarray) -> np.ndarray:
@@ -208,11 +227,17 @@ class Equations:
             "n_plain": self._n_plain, "n_with_y": self._n_with_y, "n_with_yp": self._n_with_yp,
             "r_row": self._r_row, "r_source": self._r_source, "r_operand": self._r_operand, "r_factor": self._r_factor,
             "integrated": self.formulation.integrated, "n_slots": len(self.pattern[0]), "n_entries": len(self._slot), **lists,
+            **self._condensed_lists,
             "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
             "n_moving_q": len(self._index["moving_q"]), "n_moving_u": len(self._index["moving_u"]), "offset": self._offset,
             "q_ratio": self.coordinates.ratio, "u_ratio": self.coordinates.u_ratio, **self._index,
         }  # fmt: skip
         return packed(EQUATIONS, values), [part for part in lists.values() if isinstance(part, np.ndarray)]
+
+
+def _is_condensed(line: Block) -> bool:
+    """Return True for a block of derivatives by q in columns of velocities."""
+    return line.columns == "u" and TERM_AXES.get(line.block, "")[1:] == "q"
 
 
 def entry_lists(

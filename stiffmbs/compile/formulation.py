@@ -13,7 +13,7 @@ from typing import NamedTuple
 class Product(NamedTuple):
     """One line of a residual: in `rows`, factor * block @ operand.
 
-    `rows` and `operand` are names of unknowns (``q u mu lam``, ``x`` for algebraic states). An operand with a prime is
+    `rows` and `operand` are names of unknowns (``q u mu lam``, ``x`` for algebraic states, ``s`` for all coordinates after those of bodies). An operand with a prime is
     a derivative; a vector block (``f``, ``C``, ``V``, ``gamma``) has no operand. ``I`` is the identity, ``E`` the
     identity without the rows of algebraic states; ``Z`` maps u to q', ``Z_q`` is d(Z u)/dq; ``E_mu`` and ``E_lam`` are
     the relaxations of the rows. ``.T`` transposes, ``:rates`` keeps nonholonomic rows, ``:turning`` those of
@@ -27,7 +27,10 @@ class Product(NamedTuple):
 
 
 class Block(NamedTuple):
-    """One line of a matrix: in `rows` and `columns`, (constant + cj * cj-part) * block."""
+    """One line of a matrix: in `rows` and `columns`, (constant + cj * cj-part) * block.
+
+    A block of columns q in the columns u is condensed: positions of bodies change by Z u / cj.
+    """
 
     rows: str
     columns: str
@@ -40,7 +43,7 @@ class Formulation(NamedTuple):
     """Equations of motion in the form that a solver integrates or solves.
 
     - `name`: as in the settings of a run.
-    - `unknowns`: some of ``q u mu lam x``.
+    - `unknowns`: some of ``q u mu lam x s``.
     - `residual_set`, `matrix_set`: term sets of residual and matrix.
     - `tested`: unknowns under error control.
     - `integrated`: true if the unknowns mu and lam are integrals of the multipliers.

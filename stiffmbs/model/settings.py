@@ -71,7 +71,7 @@ class RunSettings(Described):
     )
     solver: SolverName = Field(
         "bdf",
-        description="bdf (SUNDIALS IDA), radau (Radau IIA), projected (explicit, with projection onto the constraints), kinematic (for scenes whose drives fix every coordinate), or auto (projected, and bdf while the scene is stiff)",
+        description="bdf (SUNDIALS IDA), radau (Radau IIA), projected (explicit or linearly implicit, with projection onto the constraints), kinematic (for scenes whose drives fix every coordinate), or auto (projected, and bdf while the scene is stiff)",
     )
     formulation: FormulationName = Field("SI2", description="of the residual of bdf and radau")
     stabilisation: Annotated[float, Measured("angular velocity", at_least=0)] = Field(
@@ -79,7 +79,7 @@ class RunSettings(Described):
     )
     scheme: SchemeName | None = Field(
         None,
-        description="scheme of projected: euler_cromer and rk4 have fixed steps, dopri5 and dop853 adaptive ones; dop853 by default, euler_cromer with a step",
+        description="scheme of projected: euler_cromer, rk4, linearly_implicit_euler and extrapolated_euler (both for stiff scenes) have fixed steps, dopri5 and dop853 adaptive ones; dop853 by default, euler_cromer with a step",
     )
     rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=LARGEST_RTOL)] = Field(
         DEFAULT_RTOL, description="relative error tolerance of bdf, radau and the adaptive schemes"

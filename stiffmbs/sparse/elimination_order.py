@@ -130,7 +130,7 @@ def _owners(equations: Equations) -> tuple[int, np.ndarray]:
     """Return the number of bodies, and the body of each unknown or the number of bodies plus its joint."""
     system = equations.system
     n_bodies = len(system.bodies)
-    width = {"q": system.of_body.n_q, "x": system.of_body.n_q, "u": system.of_body.n_u}
+    width = {"q": system.of_body.n_q, "x": system.of_body.n_q, "s": system.of_body.n_q, "u": system.of_body.n_u}
     owner = np.zeros(equations.n, dtype=np.int64)
     joint = n_bodies + np.repeat(np.arange(len(system.joint_start) - 1), np.diff(system.joint_start))
     for name, at in equations.at.items():

@@ -20,6 +20,7 @@ from ..results.joint_coordinates import JointCoordinates
 from ..solve import SOLVERS
 from ..solve.bdf import bdf_integrator
 from ..solve.engine import Reached
+from ..solve.events.refusals import refuse_beyond_limits
 from ..solve.events.restart import restarted
 from ..solve.explicit.fixed import MANY_IN_LOOP, ONE_IN_LOOP, failed, solve_with_fixed_steps, steps_between
 from ..solve.explicit.integration import Integration
@@ -232,8 +233,7 @@ class ImplicitSteps:
 class FixedSteps:
     """Explicit steps of fixed length, which depend on time, state and inputs alone. `t`: time, s.
 
-    A step of the simulation is one compiled call. It is a short run if an input has a breakpoint in it, or if a force has
-    limits. Event functions are not located, but a start at the zero of one, after a jump, is that of a run.
+    A step of the simulation is one compiled call. It is a short run if an input has a breakpoint in it. Event functions are not located, but a start at the zero of one, after a jump, is that of a run.
     """
 
     def __init__(self, job: Job, start: InitialValues, t: float) -> None:
@@ -251,15 +251,21 @@ class FixedSteps:
 
     def advance(self, t: float) -> None:
         """See `Stepper`."""
-        if self._has_limits or (self._has_inputs and self._breaks(t)):
+        if self._has_inputs and self._breaks(t):
             self._run(t)
             return
-        start = self._t
+        start, kept = self._t, (self.q.copy(), self.u.copy()) if self._has_limits else None
         steps = steps_between(start, t, self._step)
         one = self._one if steps <= self._work.capacity else self._one_long
         status = one(start, t, steps, self._at)
         if status < 0:
             raise failed(start, status)
+        if kept:
+            try:
+                refuse_beyond_limits(self._dynamics, t, self.q, self.u)
+            except SolverError:
+                self.q[:], self.u[:] = kept
+                raise
         self._t = self.time = t
 
     def advance_many(self, t: float, dt: float, values: np.ndarray, held: HeldInputs, joints: JointCoordinates) -> int:

@@ -15,6 +15,7 @@ MOTORS = tuple(f"m{k}_input" for k in range(1, 6))
 STEP = 2.0**-10
 RK4 = {"solver": "projected", "scheme": "rk4", "step": STEP}
 EULER = RK4 | {"scheme": "euler_cromer"}
+IMPLICIT = RK4 | {"scheme": "extrapolated_euler"}
 LOOP = """
 gravity: [0, -9.81]
 bodies:
@@ -41,7 +42,7 @@ def state(sim):
     return np.concatenate([[sim.t], sim.q, sim.u, sim.joint_coordinates])
 
 
-@pytest.mark.parametrize("settings", [RK4, EULER], ids=["rk4", "euler_cromer"])
+@pytest.mark.parametrize("settings", [RK4, EULER, IMPLICIT], ids=["rk4", "euler_cromer", "extrapolated_euler"])
 @pytest.mark.parametrize("name", ["cart_pendulum.yaml", "heavy_top.yaml", "bouncing_ball.yaml"])
 def test_steps_are_those_of_a_run(examples, name, settings):
     expected = stiffmbs.run(examples / name, **settings, duration=64 * STEP, points=33)
@@ -58,7 +59,7 @@ def test_steps_are_those_of_a_run(examples, name, settings):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("settings", [RK4, EULER], ids=["rk4", "euler_cromer"])
+@pytest.mark.parametrize("settings", [RK4, EULER, IMPLICIT], ids=["rk4", "euler_cromer", "extrapolated_euler"])
 def test_steps_in_one_call_or_after_a_reset_or_from_a_file_are_the_same(settings, tmp_path):
     sim, values = arm(settings), torques(40)
     for row in values:
@@ -113,7 +114,7 @@ def test_accelerations_next_to_a_light_body_are_those_of_the_lu():
     np.testing.assert_allclose(lam, dynamics.state.lam, rtol=0, atol=1e-11 * np.abs(lam).max())
 
 
-@pytest.mark.parametrize("settings", [RK4, EULER], ids=["rk4", "euler_cromer"])
+@pytest.mark.parametrize("settings", [RK4, EULER, IMPLICIT], ids=["rk4", "euler_cromer", "extrapolated_euler"])
 def test_a_step_of_an_input_within_a_step_is_not_smeared(settings):
     """A force of 10 N from 1.5 steps on: by rk4, which is exact for constant forces, the sled moves as it should."""
     law = f"10*step(t, {1.5 * STEP!r}, 0, {1.5 * STEP!r}, 1)"
@@ -153,7 +154,7 @@ def test_invalid_inputs_leave_the_simulation_as_it_was(settings):
     np.testing.assert_array_equal(state(sim), before)
 
 
-@pytest.mark.parametrize("settings", [RK4, EULER], ids=["rk4", "euler_cromer"])
+@pytest.mark.parametrize("settings", [RK4, EULER, IMPLICIT], ids=["rk4", "euler_cromer", "extrapolated_euler"])
 def test_a_step_that_fails_keeps_the_state_before_it(settings):
     text = SLED.replace("force: [F, 0]", 'force: ["1e209*F", 0]')
     sim = simulation(stiffmbs.read_scene(text), inputs={"F": 0.0}, **settings)

@@ -1,4 +1,4 @@
-"""Runs by explicit steps of fixed length: semi-implicit Euler (Euler-Cromer) and Runge-Kutta schemes."""
+"""Runs by steps of fixed length: Runge-Kutta schemes, semi-implicit Euler (Euler-Cromer) and linearly implicit Euler."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .integration import REASONS, Integration
 
 @dataclass(frozen=True)
 class FixedStepParameters:
-    """Parameters of explicit steps of fixed length."""
+    """Parameters of steps of fixed length."""
 
     checks: int = 50
     """Checks of a run for chattering forces."""
@@ -92,7 +92,7 @@ def solve_with_fixed_steps(
             watch(t)
             grid.look(rows)
     statistics: dict[str, int | float | str] = {
-        "scheme": work.scheme.name, "steps": steps, "accelerations": work.scheme.stages * steps, "seconds": ending.seconds,
+        "scheme": work.scheme.name, "steps": steps, **work.scheme.work(steps), "seconds": ending.seconds,
     }  # fmt: skip
     narrow = narrower_than_steps(features, settings.step, work.scheme.name)
     note = "; ".join(filter(None, (note, jumps.sentence(), narrow, _cut(longest, settings))))

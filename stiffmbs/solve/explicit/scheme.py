@@ -39,6 +39,7 @@ class Scheme:
     - `exponent`, `memory`: of the step control: the next step is 0.9 h error^(-exponent + 0.75 memory)
       last_error^memory.
     - `semi_implicit`: true if the new velocities move the positions, as in `euler_cromer`, which has one stage.
+    - `columns`: columns of the extrapolation table of linearly implicit Euler steps; 0 for an explicit scheme.
     - `stability`: |h lambda| above which stability, not accuracy, limits the step.
     """
 
@@ -55,6 +56,7 @@ class Scheme:
     memory: float = 0.0
     stability: float = field(default=float("inf"))
     semi_implicit: bool = False
+    columns: int = 0
 
     @property
     def extended(self) -> int:
@@ -71,11 +73,17 @@ class Scheme:
         """True if the error estimate uses the stage at the end of the step."""
         return any(self.stages in row for row in self.errors)
 
+    def work(self, steps: int) -> dict[str, int]:
+        """Return the work of fixed steps, under the name of its counter."""
+        if self.columns:
+            return {"factorizations": self.columns * (self.columns + 1) // 2 * steps}
+        return {"accelerations": self.stages * steps}
+
     @cached_property
     def _arrays(self) -> dict[str, Any]:
         return {
             "order": self.order, "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
-            "n_dense": len(self.dense), "n_free": len(self.free), "error_needs_end": self.error_needs_end, "semi_implicit": self.semi_implicit,
+            "n_dense": len(self.dense), "n_free": len(self.free), "error_needs_end": self.error_needs_end, "by_stages": not (self.semi_implicit or self.columns), "columns": self.columns,
             "c": np.array(self.c, dtype=float), "a": self.matrix(self.a),
             "errors": self.matrix(self.errors), "dense": self.matrix(self.dense),
             "free": self.matrix(self.free), "free_error": self.matrix((self.free_error,)),
@@ -137,9 +145,19 @@ class StepMemory:
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "times": np.empty(0), "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
             "watch": nothing, "step_bound": nothing, "whole_steps": self.whole_steps.table,
+            "linear_step": 0, "linear": nothing, **self._linear_steps(scheme, dynamics),
         }  # fmt: skip
         self.table = packed(EXPLICIT, self._arrays)
         self.cells, self._new = self.table.view(EXPLICIT.cells)[0], self.table.copy()
+
+    def _linear_steps(self, scheme: Scheme, dynamics: Dynamics) -> dict[str, Any]:
+        """Return the entries of linearly implicit steps; none for explicit schemes."""
+        if not scheme.columns:
+            return {}
+        from .linearly_implicit import LINEAR_STEP, LinearlyImplicit
+
+        self._linear = LinearlyImplicit(dynamics, scheme.columns)
+        return {"linear_step": LINEAR_STEP.address, "linear": self._linear.table}
 
     def renew(self, watch: int, step_bound: int) -> None:
         """Reset all cells for a new run, and set the addresses of its tables."""

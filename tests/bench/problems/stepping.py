@@ -1,4 +1,4 @@
-"""The cart-pendulum under a PD controller, 10 000 steps of 1 ms; it, two arms and a half car with new inputs at each step."""
+"""The cart-pendulum under a PD controller, 10 000 steps of 1 ms; it, two arms and a half car with new inputs at each step; the car."""
 
 from __future__ import annotations
 
@@ -59,5 +59,13 @@ BENCHMARKS = (
         steps=1000,
         rounds=3,
         schemes=("bdf", "radau"),
+    ),
+    InTheLoop(
+        "car_in_the_loop",
+        lambda: load_scene(EXAMPLES / "car.yaml", [("choose.manoeuvre", "step_steer")]),
+        (),
+        0.0,
+        steps=200,
+        schemes=("linearly_implicit_euler", "extrapolated_euler", "bdf", "radau"),
     ),
 )

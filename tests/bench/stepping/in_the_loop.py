@@ -23,6 +23,8 @@ from ..benchmark import Row
 SCHEMES: dict[str, dict[str, Any]] = {
     "rk4": {"solver": "projected", "scheme": "rk4"},
     "euler_cromer": {"solver": "projected", "scheme": "euler_cromer"},
+    "linearly_implicit_euler": {"solver": "projected", "scheme": "linearly_implicit_euler"},
+    "extrapolated_euler": {"solver": "projected", "scheme": "extrapolated_euler"},
     "bdf": {"solver": "bdf"},
     "radau": {"solver": "radau"},
 }
@@ -93,7 +95,7 @@ class InTheLoop:
         return self.least + (self.size - self.least) * part
 
     def _simulation(self, model: ModelData | Path, settings: dict[str, Any]) -> Simulation:
-        fixed: dict[str, Any] = {"step": self.step} if settings.get("scheme") in ("rk4", "euler_cromer") else {}
+        fixed: dict[str, Any] = {"step": self.step} if settings.get("scheme", "dop853") != "dop853" else {}
         return stiffmbs.simulation(model, inputs=dict.fromkeys(self.inputs, self.least), **settings, **fixed)
 
     def _after(self, sim: Simulation, values: np.ndarray) -> np.ndarray:

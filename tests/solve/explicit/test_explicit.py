@@ -47,9 +47,10 @@ def test_nodes_are_the_sums_of_their_rows(scheme):
     np.testing.assert_allclose(scheme.matrix(scheme.a).sum(axis=1), scheme.c, atol=2e-15)
 
 
-@pytest.mark.parametrize("scheme", SCHEMES.values(), ids=SCHEMES)
-def test_weights_integrate_powers_up_to_the_order(scheme):
+@pytest.mark.parametrize("name", [name for name, scheme in SCHEMES.items() if not scheme.columns])
+def test_weights_integrate_powers_up_to_the_order(name):
     """sum b_i c_i^(k-1) = 1/k for k up to the order, the conditions of quadrature among those of order."""
+    scheme = SCHEMES[name]
     weights, c = scheme.matrix(scheme.a)[scheme.stages, : scheme.stages], np.array(scheme.c)[: scheme.stages]
     for k in range(1, scheme.order + 1):
         assert weights @ c ** (k - 1) == pytest.approx(1 / k, abs=1e-14)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import cos, pi, sin
 
 from .access import call_kernel, compiled, floats, ints, shifted, state_view
-from .orientation import TURN_STRIDE, share_orientation
+from .orientation import TURN_STRIDE, add_by_rotation, share_orientation
 from .quads import item_of, nearest_whole, plus_product, product_of, quad_of, spread
 from .tables import CALL
 
@@ -139,6 +139,19 @@ def add_entries(e, values, cj, a):
         a[e.m_slot[k]] += values[e.m_source[k]] * e.m_constant[k]
     for k in range(e.n_constant, e.n_entries):
         a[e.m_slot[k]] += values[e.m_source[k]] * (e.m_constant[k] + e.m_cj[k] * cj)
+
+
+@compiled
+def add_condensed(s, e, values, h, a):
+    """Add the condensed entries of the matrix: derivatives by q, times h Z."""
+    for k in range(e.n_straight):
+        a[e.straight_slot[k]] += h * e.straight_factor[k] * values[e.straight_source[k]]
+    for k in range(4 * e.n_turns):
+        e.turn_row[k] = 0.0
+    for k in range(e.n_turned):
+        e.turn_row[e.turned_place[k]] += e.turned_factor[k] * values[e.turned_source[k]]
+    for k in range(e.n_turns):
+        add_by_rotation(s, e.turn_body[k], h, shifted(e.turn_row, 4 * k), shifted(e.turn_slot, 3 * k), a)
 
 
 def terms(t, term_set, state):

@@ -62,6 +62,35 @@ def add_rates(s, u, factor, target):
 
 
 @compiled
+def move(s, u, h):
+    """Move all bodies for a time h at constant velocities u, and normalise the quaternions.
+
+    p + tan(x)/x h p w/2 with x = h |w|/2, normalised, is the rotation by h w; the series of tan(x)/x ends after x^4.
+    """
+    if s.spatial == 0:
+        add_rates(s, u, h, s.q)
+        return
+    for body in range(s.n_u // N_U):
+        q, w, followed = shifted(s.q, N_Q * body), shifted(u, N_U * body + 3), shifted(s.followed, N_U * body + 3)
+        square = 0.0
+        for k in range(3):
+            q[k] += h * u[N_U * body + k]
+            square += (0.5 * h * followed[k] * w[k]) * (0.5 * h * followed[k] * w[k])
+        _turning(shifted(q, 3), w, followed, shifted(q, 3), h * (1.0 + square * (1.0 / 3.0 + square * (2.0 / 15.0))))
+    take_unit_length(s)
+
+
+@compiled
+def add_by_rotation(s, body, factor, row, slot, a):
+    """Add factor * row Z to three slots of a, with four derivatives by a body's quaternion in `row`."""
+    p, followed = shifted(s.q, N_Q * body + 3), shifted(s.followed, N_U * body + 3)
+    half = 0.5 * factor
+    a[slot[0]] += half * followed[0] * (p[0] * row[1] - p[1] * row[0] + p[3] * row[2] - p[2] * row[3])
+    a[slot[1]] += half * followed[1] * (p[0] * row[2] - p[2] * row[0] + p[1] * row[3] - p[3] * row[1])
+    a[slot[2]] += half * followed[2] * (p[0] * row[3] - p[3] * row[0] + p[2] * row[1] - p[1] * row[2])
+
+
+@compiled
 def take_unit_length(s):
     """Normalise the quaternions."""
     if s.spatial:

@@ -33,11 +33,18 @@ EQUATIONS = Layout({
     "r_row": INDICES, "r_source": INDICES, "r_operand": INDICES, "r_factor": FLOATS,
     "n_slots": INT, "n_constant": INT, "n_entries": INT,
     "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
+    "n_straight": INT, "straight_slot": INDICES, "straight_source": INDICES, "straight_factor": FLOATS,
+    "n_turned": INT, "turned_place": INDICES, "turned_source": INDICES, "turned_factor": FLOATS,
+    "n_turns": INT, "turn_body": INDICES, "turn_slot": INDICES, "turn_row": FLOATS,
     "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,
     "at_mu": INTS, "at_lam": INTS, "at_x": INTS, "integrated": INT, "has_mu": INT, "has_lam": INT,
 })  # fmt: skip
-"""Residual and matrix of one formulation (`stiffmbs.compile.equations`); matrix entries ordered by `entry_lists`."""
+"""Residual and matrix of one formulation (`stiffmbs.compile.equations`); matrix entries ordered by `entry_lists`.
+
+Condensed entries are derivatives by positions of bodies. Those by quaternions are collected in `turn_row`, four for each row
+and body, whose products with Z belong to three slots.
+"""
 
 FACTORS = Layout({
     "n": INT, "expected_entries": INT, "capacity": INT_CELL, "ready": INT_CELL, "a_start": INTS, "a_row": INTS, "a": FLOATS, "factored": FLOATS, "scale": FLOATS,

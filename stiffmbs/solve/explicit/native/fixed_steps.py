@@ -1,8 +1,9 @@
-"""Explicit steps of fixed length with projection: Runge-Kutta schemes and semi-implicit Euler."""
+"""Steps of fixed length with projection: Runge-Kutta schemes, semi-implicit Euler and linearly implicit Euler."""
 
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
+from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, POSITION, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
@@ -25,6 +26,7 @@ from stiffmbs.solve.explicit.native.stages import (
     add_trailing_rates,
     explicit_view,
     keep_algebraic,
+    linear_view,
     load_state,
     rates,
     scheme_view,
@@ -37,7 +39,7 @@ def _begin(x, c, s, m):
     """Start from consistent values; event functions that are zero there decide which rates the first step has."""
     x.rates_known = 0
     copied(s.lam, x.lam, s.n_c)
-    if x.n_event_functions > 0 and not c.semi_implicit:
+    if x.n_event_functions > 0 and c.by_stages:
         start_steps(x, c, s, m)
         x.rates_known = 1
     x.started = 1
@@ -72,6 +74,24 @@ def _semi_implicit(x, s, m, h):
     take_unit_length(s)
     _keep(x, s)
     return 0
+
+
+@compiled
+def _linearly_implicit(x, s, h):
+    """Take a linearly implicit step; 0 or a negative status.
+
+    Earlier factors are forgotten at a start, unless the solutions by new ones are the same to the last bit.
+    """
+    load_state(s, x.y)
+    if not x.rates_known:
+        p = linear_view(x.linear)
+        if p.refused[0] != 0 or p.refined[0] != 0:
+            ready = p.ready
+            ready[0] = 0
+    status = call_int(x.linear_step, (x.t_before, h, x.linear))
+    _keep(x, s)
+    x.rates_known = 1
+    return status
 
 
 @compiled
@@ -137,12 +157,14 @@ def _arrive(x, c, s, m, t):
             return NOT_FINITE
     load_state(s, x.y)
     if x.project:
-        status = _newton_projection(x, s, m, t) if c.semi_implicit else back_to_constraints(x, s, m, t)
+        status = back_to_constraints(x, s, m, t) if c.by_stages else _newton_projection(x, s, m, t)
         if status < 0:
             return status
         _keep(x, s)
+    if c.columns > 0:
+        return 0
     x.rates_known = 0
-    if m.n_algebraic > 0 and not c.semi_implicit:
+    if m.n_algebraic > 0 and c.by_stages:
         status = rates(x, s, m, c.stages, t)
         if status < 0:
             return status
@@ -161,7 +183,10 @@ def take_steps(x, c, s, m, start, h, steps):
     for step in range(steps):
         x.t_before = start + step * h
         copied(x.y_before, x.y, x.n)
-        status = _semi_implicit(x, s, m, h) if c.semi_implicit else _runge_kutta(x, c, s, m, h)
+        if c.by_stages:
+            status = _runge_kutta(x, c, s, m, h)
+        else:
+            status = _linearly_implicit(x, s, h) if c.columns > 0 else _semi_implicit(x, s, m, h)
         if status == 0:
             status = _arrive(x, c, s, m, start + (step + 1) * h)
         if status < 0:

@@ -6,11 +6,18 @@ Letters of these tables in native functions: docs/project/notation.md.
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
 SCHEME = Layout({
-    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "n_free": INT, "error_needs_end": INT, "semi_implicit": INT,
+    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "n_free": INT, "error_needs_end": INT, "by_stages": INT, "columns": INT,
     "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS, "free": FLOATS, "free_error": FLOATS,
     "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
 })  # fmt: skip
 """Coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
+
+LINEARLY_IMPLICIT = Layout({
+    "state": INTS, "equations": INTS, "columns": INT, "setup": INT, "solve": INT, "solver": INTS, "entries": FLOATS, "ready": INTS, "refused": INTS, "refined": INTS,
+    "b": FLOATS, "x": FLOATS, "start": FLOATS, "whole": FLOATS,
+})  # fmt: skip
+"""Linearly implicit steps (`stiffmbs.solve.explicit.linearly_implicit`): equations and their linear solver, with its
+cells `ready` (0 if no pivots are known), `refused` and `refined` (not 0 if its solutions depend on earlier factors); state at the start of a step, and after one step without extrapolation."""
 
 EXPLICIT = Layout({
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT_CELL,
@@ -19,7 +26,7 @@ EXPLICIT = Layout({
     "n_event_functions": INT, "end_at_event": INT, "at_event": INT_CELL, "uncertain": INT_CELL, "distance": FLOAT_CELL, "distance_of_end": FLOAT_CELL, "watch": INTS,
     "started": INT_CELL, "rates_known": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_first": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
-    "whole_steps": INTS, "repeats": FLOAT_CELL,
+    "whole_steps": INTS, "repeats": FLOAT_CELL, "linear_step": INT, "linear": INTS,
     "n_times": INT_CELL, "times": FLOATS, "next_time": INT_CELL,
     "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 })  # fmt: skip

@@ -7,10 +7,11 @@ from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.dynamics.elimination.native.eliminated import eliminated_accelerations
 from stiffmbs.dynamics.native.block_systems import to_accelerations
 from stiffmbs.dynamics.native.views import eliminated_view
-from stiffmbs.solve.explicit.native.layouts import EXPLICIT, SCHEME
+from stiffmbs.solve.explicit.native.layouts import EXPLICIT, LINEARLY_IMPLICIT, SCHEME
 
 explicit_view = view_of("Explicit", EXPLICIT)
 scheme_view = view_of("Scheme", SCHEME)
+linear_view = view_of("LinearlyImplicit", LINEARLY_IMPLICIT)
 
 
 @compiled

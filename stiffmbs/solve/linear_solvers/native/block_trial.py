@@ -31,7 +31,7 @@ def _sized(s, f):
     # Errors of a factor show only in a solution of realistic proportions.  Those of a Newton correction are: velocities
     # cj times coordinates, cj being the factor of dF/dy', which is on the diagonal of the coordinates' equations; and
     # multipliers whose largest term in an equation equals the other terms of this equation.
-    rate = 0.0
+    rate = 0.0 if s.n_diagonal > 0 else 1.0
     for k in range(s.n_diagonal):
         rate = max(rate, abs(f.a[s.diagonal[k]]))
     for i in range(f.n):
