@@ -226,7 +226,7 @@ def powers_of_growth(first):
 
 
 def reach(rtol):
-    return watched(rtol=rtol)[1]._reach
+    return watched(rtol=rtol)[1]._reaches[1]
 
 
 def part_after_a_failure():
