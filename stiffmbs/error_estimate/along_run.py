@@ -48,6 +48,7 @@ class StateErrors:
 
 
 LocalErrors = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Sizes of the errors of some steps, by number, with some defects, from their starts."""
 
 
 @dataclass(frozen=True)
@@ -191,7 +192,7 @@ def _with_inner(
 def _over_kinks(points: Points, defects: np.ndarray, local_errors: LocalErrors, at: Motion) -> np.ndarray:
     """Return the defects at the points of steps, those over kinks with the same integrals as the defects of a curve.
 
-    The latter become NaN in `defects`. `local_errors`: sizes of the errors of some steps with some defects, from their starts.
+    The latter become NaN in `defects`.
     """
     method, ends, rows, sizes = radau(points.points), points.ends, points.rows, points.sizes
     local = sizes[:, None, None] * (np.linalg.inv(method.derivative) @ defects)

@@ -1,8 +1,8 @@
-"""Errors that satisfy their equation at each node, not only in blocks of steps and to first order.
+"""Errors that satisfy their equation at each recorded state, not only to first order.
 
-An error e of a pose stretches a stiff spring by e^2 times its curvature: 1e-10 m at 1e-5 rad are 100 N at 1e12 N/m. Matrices by
-differences, and means of defects over steps, do not balance such forces either. Newton's iteration on e' = F(z) - F(z - e) + d,
-with e' of the transport, does so in the directions that are stiff within a step.
+An error e of a pose stretches a stiff spring by e^2 times its curvature: 1e-10 m at 1e-5 rad are 100 N at 1e12 N/m. Linear equations
+do not balance such forces. Newton's iteration on e' = F(z) - F(z - e) + d, with e' of the transport, does so in the directions that
+are stiff within a step.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ def closed(
 ) -> Closed:  # fmt: skip
     """Return q and u of states without their errors (dq, du, ds), closed onto the equations where that is possible, and where not.
 
-    `slopes`, `defects`: e' and d at the states, NaN where they are unknown. `step`: longest step, s; as in a stiff projection, the matrix of a
-    part of it separates the directions that are stiff.
+    `slopes`, `defects`: e' and d at the states, NaN where they are unknown. `step`: longest step, s; as in a stiff projection, the
+    matrix of a part of it separates the directions that are stiff.
     """
     (q, u), open_ = displaced(dynamics.system, at.q, at.u, -errors), np.zeros(len(errors), dtype=bool)
     known = np.flatnonzero(np.isfinite(slopes + defects).all(axis=1))

@@ -1,8 +1,8 @@
 """Integrals of the equations over steps in which their right-hand side is not smooth, as at the knots of a spline.
 
 The nine points of a step of radau integrate a kink with an error of a hundredth of its jump times the square of the step. That is
-often more than the error of the step: the error test sees only the points of the method. The defects at the ends of a step of bdf
-say even less: a polynomial through states on both sides of a kink leaves the constraints.
+often more than the error of the step: the error test sees only the points of the method. The three points of a step of bdf have
+larger errors still: a polynomial through states on both sides of a kink leaves the constraints.
 """
 
 from __future__ import annotations
