@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compile.equations import ABSENT
+from ..compile.equations import ABSENT, Equations
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
-from ..model.settings import RunSettings
 from ..sensitivity_equations.stages import Stages
-from ..solve.ida.choice import natural
+from ..solve.formulations import SI2_EXACT
 from ..solve.radau.collocation import radau
 from ..sparse.elimination_order import elimination_order
 from .coordinates import as_rows, typical, with_rates
@@ -33,7 +32,7 @@ class Transport:
 
     def __init__(self, dynamics: Dynamics, at: Evaluated) -> None:
         self._dynamics = dynamics
-        self._equations = natural(dynamics, RunSettings(formulation="SI2_exact"))  # errors on the constraints
+        self._equations = Equations(SI2_EXACT, dynamics.system, dynamics.coordinates)  # errors on the constraints
         self._equations.start_from(at.q[0])
         self._order = elimination_order(self._equations)
         self._weight = self._unknowns(1.0 / typical(dynamics.system, at.q, at.u)[None])[0]
