@@ -170,7 +170,8 @@ def _with_inner(
     q, u = (np.ascontiguousarray(each) for each in (z[:, : system.n_q], z[:, system.n_q :]))
     before = np.full(len(steps), np.inf)
     while True:
-        within = evaluated(dynamics, t, q, u, (np.full(len(t), recorded.sizes.max()), rtol))
+        balance = None if np.isinf(before).all() else (np.full(len(t), recorded.sizes.max()), rtol)
+        within = evaluated(dynamics, t, q, u, balance)
         exact = np.hstack([within.q_rates, within.acceleration])
         found, unknowns = recorded.with_inner(t, np.hstack([within.q, within.u]), exact), transport.rows(within)
         defects, motions = found.defects(False), found.changes(exact).reshape(len(steps), inner, -1)

@@ -14,8 +14,8 @@ from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from ..sensitivity_equations.stages import Stages
 from ..solve.formulations import SI2_EXACT
+from ..solve.ida.choice import chosen
 from ..solve.radau.collocation import radau
-from ..sparse.elimination_order import elimination_order
 from .coordinates import as_rows, typical, with_rates
 from .evaluated import Evaluated
 from .parameters import ESTIMATE
@@ -34,7 +34,7 @@ class Transport:
         self._dynamics = dynamics
         self._equations = Equations(SI2_EXACT, dynamics.system, dynamics.coordinates)  # errors on the constraints
         self._equations.start_from(at.q[0])
-        self._order = elimination_order(self._equations)
+        self._matrix, _ = chosen(self._equations)
         self._weight = self._unknowns(1.0 / typical(dynamics.system, at.q, at.u)[None])[0]
         self._stages: dict[int, Stages] = {}
 
@@ -102,7 +102,7 @@ class Transport:
         """Return the solver of a number of points."""
         if points not in self._stages:
             self._stages[points] = Stages(
-                self._equations, self._dynamics.state, self._order, radau(points), self._weight, ESTIMATE.converged
+                self._equations, self._dynamics.state, self._matrix, radau(points), self._weight, ESTIMATE.converged
             )
         return self._stages[points]
 

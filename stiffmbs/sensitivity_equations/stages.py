@@ -8,6 +8,8 @@ from ..compile.equations import Equations
 from ..compile.machine.layout import packed
 from ..compile.machine.routines import Routine, together
 from ..compile.state import State
+from ..solve.explicit.linearly_implicit import ARRAY_OF
+from ..solve.linear_solvers.linear_solver import LinearSolver
 from ..solve.linear_solvers.sparse_lu import SparseLU
 from ..solve.radau.collocation import Collocation
 from ..solve.radau.memory import in_pairs
@@ -27,8 +29,8 @@ class Stages:
         Equations r(t, y, y') = 0 of the run.
     state
         State of their system.
-    order
-        Elimination order of their unknowns.
+    matrix
+        Linear solver of matrices with their pattern.
     method
         Radau method of the points.
     weight : ndarray, shape (n,)
@@ -38,7 +40,7 @@ class Stages:
     """
 
     def __init__(
-        self, equations: Equations, state: State, order: EliminationOrder, method: Collocation, weight: np.ndarray,
+        self, equations: Equations, state: State, matrix: LinearSolver, method: Collocation, weight: np.ndarray,
         tolerance: float,
     ) -> None:  # fmt: skip
         self.method, self._tolerance = method, tolerance
@@ -47,12 +49,18 @@ class Stages:
         state.load(equations.formulation.matrix_set)
         row, column = equations.pattern
         own, coupling, rows, columns = _pattern(equations, stages)
+        order = matrix.order
         unknowns = (order.unknowns[:, None] * stages + np.arange(stages)).ravel()  # stages of an unknown are neighbours
         of_stages = EliminationOrder(unknowns, order.fill * stages**2, order.updates * stages**3)
-        real = SparseLU(n, row, column, order)
-        pairs = in_pairs(real, equations.slots_with_rates)
+        pairs = in_pairs(matrix, equations.slots_with_rates)
         whole = SparseLU(n * stages, rows, columns, of_stages).memory(0)
-        apart = [real.memory(0), *(pairs.matrix.memory(0) for _ in method.alpha)]
+        apart = [each.memory(ARRAY_OF.address) for each in (matrix, *[pairs.matrix] * len(method.alpha))]
+        for memory in apart:
+            if memory.needed:
+                memory.known["setup_pivots"], memory.known["solve_pivots"] = (
+                    SparseLU.factor.address,
+                    SparseLU.solve.address,
+                )
         table, slots = equations.table()
         used, calls = state.restricted(equations.used())
         lists = {
@@ -64,12 +72,13 @@ class Stages:
             **{name: np.zeros(stages * len(row)) for name in ("constant", "rate")},
             **{name: np.zeros(len(row)) for name in ("mean_constant", "mean_rate")},
             "n_coupled": len(equations.slots_with_rates), "whole": whole.arrays["factors"], "whole_entries": whole.arrays["entries"],
-            "tables": np.array([each.arrays["factors"].ctypes.data for each in apart]),
-            "entries": np.array([each.arrays["entries"].ctypes.data for each in apart]),
+            "setup": matrix.factor.address, "solve": matrix.solve.address,
+            "solvers": np.array([each.content.ctypes.data for each in apart]),
+            "values": np.array([each.factors["a"].ctypes.data for each in apart]),
             **{name: np.ascontiguousarray(getattr(method, name)) for name in ("derivative", "transform", "inverse")},
             "real": np.append(method.gamma, method.alpha), "imaginary": np.append(0.0, method.beta), "weight": weight,
             **{name: np.zeros(n * stages) for name in ("residual", "apart", "correction")},
-            "pair": np.zeros(2 * n), "slope": np.zeros(n), "sum": np.zeros(n),
+            "pair": np.zeros(2 * n), "solution": np.zeros(2 * n), "slope": np.zeros(n), "sum": np.zeros(n),
             **{name: np.ascontiguousarray(each, dtype=np.int32) for name, each in lists.items()},
         }  # fmt: skip
         self._table = packed(STAGES, values)

@@ -62,7 +62,7 @@ def test_stages_solve_the_equations_of_all_points(name, points, tolerance):
     transport = Transport(dynamics, at)
     equations = transport._equations
     unknowns = transport._unknowns(typical(dynamics.system, at.q, at.u)[None])[0]
-    stages = Stages(equations, dynamics.state, transport._order, radau(points), transport._weight, tolerance)
+    stages = Stages(equations, dynamics.state, transport._matrix, radau(points), transport._weight, tolerance)
     rows = transport.rows(at)[1:].reshape(steps, points, -1)
     s, d = (unknowns * rng.normal(size=(*shape, equations.n)) for shape in ((), (steps, points)))
     found, _ = stages.advance(rows, np.full(steps, h), d, s)

@@ -35,13 +35,13 @@ STAGES = Layout({
     "state": INTS, "equations": INTS, "n": INT, "stages": INT, "n_slots": INT, "row": INDICES, "column": INDICES,
     "constant": FLOATS, "rate": FLOATS, "mean_constant": FLOATS, "mean_rate": FLOATS,
     "own": INDICES, "n_coupled": INT, "coupled": INDICES, "coupling": INDICES, "whole": INTS, "whole_entries": FLOATS,
-    "re_re": INDICES, "im_im": INDICES, "im_re": INDICES, "re_im": INDICES, "tables": INTS, "entries": INTS, "h": FLOAT_CELL,
+    "re_re": INDICES, "im_im": INDICES, "im_re": INDICES, "re_im": INDICES, "setup": INT, "solve": INT, "solvers": INTS, "values": INTS, "h": FLOAT_CELL,
     "derivative": FLOATS, "transform": FLOATS, "inverse": FLOATS, "real": FLOATS, "imaginary": FLOATS, "weight": FLOATS,
-    "residual": FLOATS, "apart": FLOATS, "pair": FLOATS, "correction": FLOATS, "slope": FLOATS, "sum": FLOATS,
+    "residual": FLOATS, "apart": FLOATS, "pair": FLOATS, "solution": FLOATS, "correction": FLOATS, "slope": FLOATS, "sum": FLOATS,
 })  # fmt: skip
 """Stages of variational equations (`stiffmbs.sensitivity_equations.native.stages`): rows and columns of the matrix' slots, their
 parts by y and by y' at each point, and the means of these.
 
 `own`, `coupling`: entries of the matrix of all stages for the slots in the blocks of one stage, and for the `coupled` ones, with y',
-in all blocks; `whole` has its factors. `tables`: addresses of the factors of the real matrix and of the complex ones, as pairs,
-with the step `h`; `real`, `imaginary`: eigenvalues of D. `weight` of the unknowns in the sizes of corrections."""
+in all blocks; `whole` has its factors. `solvers`, `values`: addresses of the linear solvers of the real matrix and of the complex
+ones, as pairs, for the step `h`, and of the values of these matrices; `real`, `imaginary`: eigenvalues of D. `weight` of the unknowns in the sizes of corrections."""

@@ -13,13 +13,15 @@ from stiffmbs.compile.machine.native.access import (
     equations_view,
     factors_view,
     floats,
-    ints,
     shifted,
     state_view,
     view_of,
 )
+from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import evaluate, load
 from stiffmbs.compile.machine.native.factors import DONE, solve
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.sensitivity_equations.native.layouts import STAGES
 from stiffmbs.solve.linear_solvers.native.sparse_lu import factored
 
@@ -28,7 +30,7 @@ stages_view = view_of("Stages", STAGES)
 FAST = 0.4
 """Mean ratio of two successive corrections up to which factors of earlier steps serve: one may move the residual to other
 directions."""
-MOST_CORRECTIONS = 40
+MOST_CORRECTIONS = 80
 """Number of corrections after which the matrix of all stages is factored."""
 
 
@@ -82,13 +84,13 @@ def _factored_apart(c, h):
             c.mean_constant[k] += c.constant[i * c.n_slots + k] / c.stages
             c.mean_rate[k] += c.rate[i * c.n_slots + k] / c.stages
     c.h = 0.0
-    a = factors_view(ints(c.tables[0])).a
+    a = floats(c.values[0])
     for k in range(c.n_slots):
         a[k] = c.mean_constant[k] + c.real[0] / h * c.mean_rate[k]
-    if factored(ints(c.tables[0]), floats(c.entries[0])) != DONE:
+    if call_int(c.setup, (c.solvers, 0)) != OK:
         return False
     for pair in range(1, c.stages // 2 + 1):
-        a = factors_view(ints(c.tables[pair])).a
+        a = floats(c.values[pair])
         for k in range(c.n_slots):
             part = c.mean_constant[k] + c.real[pair] / h * c.mean_rate[k]
             a[c.re_re[k]] = part
@@ -97,7 +99,7 @@ def _factored_apart(c, h):
             part = c.imaginary[pair] / h * c.mean_rate[c.coupled[k]]
             a[c.im_re[k]] = part
             a[c.re_im[k]] = -part
-        if factored(ints(c.tables[pair]), floats(c.entries[pair])) != DONE:
+        if call_int(c.setup, (shifted(c.solvers, pair), 0)) != OK:
             return False
     c.h = h
     return True
@@ -137,17 +139,18 @@ def _corrected_apart(c):
     """Compute the correction of the residual by the mean matrices."""
     n = c.n
     _transformed(c, c.inverse, c.residual, c.apart)
-    solve(factors_view(ints(c.tables[0])), c.apart)
+    copied(c.pair, c.apart, n)
+    call_int(c.solve, (c.solvers, 0, c.apart, c.pair, 0.0))
     for pair in range(1, c.stages // 2 + 1):
         re = shifted(c.apart, (2 * pair - 1) * n)
         im = shifted(c.apart, 2 * pair * n)
         for k in range(n):
             c.pair[2 * k] = re[k]
             c.pair[2 * k + 1] = im[k]
-        solve(factors_view(ints(c.tables[pair])), c.pair)
+        call_int(c.solve, (shifted(c.solvers, pair), 0, c.solution, c.pair, 0.0))
         for k in range(n):
-            re[k] = c.pair[2 * k]
-            im[k] = c.pair[2 * k + 1]
+            re[k] = c.solution[2 * k]
+            im[k] = c.solution[2 * k + 1]
     _transformed(c, c.transform, c.apart, c.correction)
 
 

@@ -230,7 +230,7 @@ DECISIONS = {
     ),
 }
 EXPECTED = {
-    "sensitivity_equations.native.stages:MOST_CORRECTIONS": 40, "sensitivity_equations.native.stages:FAST": 6,
+    "sensitivity_equations.native.stages:MOST_CORRECTIONS": 80, "sensitivity_equations.native.stages:FAST": 6,
     "sensitivities.rounding": 1e-13, "sensitivities.furthest": 94, "sensitivities.short": 14,
     "sensitivities.sudden": 14, "sensitivities.jump": 40, "sensitivities.felt": 40, "sensitivities.halvings": 13,
     "sensitivities.left": 5, "sensitivities.roundings": 40, "sensitivities.most_numbers": 111,
