@@ -20,18 +20,18 @@ STEP = Formulation(
     unknowns=("u", "s", "lam"),
     residual_set="motion",
     matrix_set="tangent",
-    residual=(Product("u", +1, "f"), Product("s", +1, "rate"), Product("lam", -1, "V")),
+    residual=(Product("u", +1, "f"), Product("s", +1, "rate"), Product("s", +1, "Z", "u"), Product("lam", -1, "V")),
     matrix=(
         Block("u", "u", "M", constant=0, cj=1), Block("u", "u", "inertia", constant=0, cj=1), Block("u", "u", "f_u", -1), Block("u", "u", "f_q", -1),
         Block("u", "s", "f_q", -1), Block("u", "lam", "J.T"),
-        Block("s", "s", "E", constant=0, cj=1), Block("s", "s", "rate_q", -1), Block("s", "u", "rate_u", -1), Block("s", "u", "rate_q", -1),
+        Block("s", "s", "E", constant=0, cj=1), Block("s", "s", "rate_q", -1), Block("s", "u", "rate_u", -1), Block("s", "u", "rate_q", -1), Block("s", "u", "Z", -1),
         Block("lam", "u", "J"),
     ),
 )  # fmt: skip
 """[M/h - f_u - h f_q Z, -f_q, J^T; -rate_u - h rate_q Z, E/h - rate_q, 0; J + h V_q Z, V_q, 0] [du; ds; lam] = [f; rate; -V].
 
 It is evaluated at the positions q + h Z u, so that those of bodies change by h Z du and are condensed; s are all other
-coordinates, and cj = 1/h. The constraints of velocities hold after the step, and those of positions up to h^2 |du|.
+coordinates, of which turn counters have the rates Z u, and cj = 1/h. The constraints of velocities hold after the step, and those of positions up to h^2 |du|.
 """
 LINEAR_STEP, ARRAY_OF = together(
     "stiffmbs.solve.explicit.native.linearly_implicit",

@@ -22,6 +22,7 @@ def _euler(p, s, e, t, h):
     outcome = call_int(p.setup, (p.solver, 0))
     if outcome != OK:
         return NO_MEMORY if outcome == FAILED else SINGULAR
+    copied(p.x, s.u, s.n_u)  # the velocities at the start, of which counters have their rates
     add_products(e, evaluate(s, MOTION, end), p.x, p.x, p.b)
     call_int(p.solve, (p.solver, 0, p.x, p.b, 0.0))
     for k in range(e.n):
