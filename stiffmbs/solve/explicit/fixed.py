@@ -95,7 +95,7 @@ def solve_with_fixed_steps(
         "scheme": work.scheme.name, "steps": steps, **work.scheme.work(steps), "seconds": ending.seconds,
     }  # fmt: skip
     narrow = narrower_than_steps(features, settings.step, work.scheme.name)
-    note = "; ".join(filter(None, (note, jumps.sentence(), narrow, _cut(longest, settings))))
+    note = "; ".join(filter(None, (note, jumps.sentence(), narrow, _growth(work), _cut(longest, settings))))
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
 
@@ -108,6 +108,17 @@ def _jumps(dynamics: Dynamics, work: Integration, t: float, step: float) -> str:
     change = 2.0 * step * float(np.max(np.abs(dynamics.accelerate(t)[1]), initial=0.0))
     found = sliding(dynamics, t, q, u, min(max(change, JUMP.larger_move), CHATTERING.stays_within_at_most))
     return f"up to t = {t:.6g} s, {jump_sentence(dynamics, int(found[0]))}" if len(found) else ""
+
+
+def _growth(work: Integration) -> str:
+    """Return a sentence if a linearly implicit step did not resolve a growing motion, else an empty string."""
+    t = work.unresolved
+    if math.isnan(t):
+        return ""
+    return (
+        f"from t = {t:.6g} s on, forces drive a motion that grows faster than a step of {work.scheme.name} resolves, and the result may be "
+        "wrong; use a smaller step"
+    )
 
 
 def _cut(longest: float, settings: RunSettings) -> str:

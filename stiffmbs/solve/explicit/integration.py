@@ -82,6 +82,11 @@ class Integration:
         cells["h"], cells["repeats"] = settings.step, 1.0
         self.begin(start)
 
+    @property
+    def unresolved(self) -> float:
+        """Time of the first linearly implicit step that did not resolve a growth, s; NaN if there is none."""
+        return self._memory.unresolved
+
     def begin(self, start: InitialValues) -> None:
         """Restart from consistent values at the current time."""
         memory, cells = self._memory, self._cells

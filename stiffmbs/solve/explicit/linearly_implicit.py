@@ -75,6 +75,16 @@ class LinearlyImplicit:
             "start": np.zeros(n), "whole": np.zeros(n),
         }  # fmt: skip
         self.table = packed(LINEARLY_IMPLICIT, self._arrays)
+        self.forget()
+
+    def forget(self) -> None:
+        """Forget that earlier steps did not resolve a growth."""
+        self.table.view(LINEARLY_IMPLICIT.cells)[0]["unresolved"] = np.nan
+
+    @property
+    def unresolved(self) -> float:
+        """Time of the first step that did not resolve a growth, s; NaN if there is none."""
+        return float(self.table.view(LINEARLY_IMPLICIT.cells)[0]["unresolved"])
 
 
 def _cells(memory: Memory) -> dict[str, np.ndarray]:

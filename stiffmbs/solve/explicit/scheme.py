@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from ...dynamics.native.parameters import CONSISTENCY
 from ..events.whole_steps import WholeStepLog
 from ..ida.native.parameters import LOOP
 from .native.layouts import EXPLICIT, SCHEME
+
+if TYPE_CHECKING:
+    from .linearly_implicit import LinearlyImplicit
 
 Row = Mapping[int, float]
 """Nonzero coefficients of a sum over stages, by stage."""
@@ -152,6 +156,7 @@ class StepMemory:
 
     def _linear_steps(self, scheme: Scheme, dynamics: Dynamics) -> dict[str, Any]:
         """Return the entries of linearly implicit steps; none for explicit schemes."""
+        self._linear: LinearlyImplicit | None = None
         if not scheme.columns:
             return {}
         from .linearly_implicit import LINEAR_STEP, LinearlyImplicit
@@ -164,6 +169,13 @@ class StepMemory:
         self.table[:] = self._new
         self.table[[WATCH, STEP_BOUND]] = watch, step_bound
         self.whole_steps.forget()
+        if self._linear:
+            self._linear.forget()
+
+    @property
+    def unresolved(self) -> float:
+        """Time of the first linearly implicit step that did not resolve a growth, s; NaN if there is none."""
+        return self._linear.unresolved if self._linear else math.nan
 
     def report_at(self, times: np.ndarray) -> None:
         """Report at these output times, s, from now on."""

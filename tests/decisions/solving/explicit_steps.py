@@ -14,7 +14,14 @@ from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import kinematic
 from stiffmbs.solve.driven_states import IntegratedMotion
 from stiffmbs.solve.explicit import adaptive, fixed, rounding, stable_step
-from stiffmbs.solve.explicit.native import attempt, explicit_events, fastest_rate, interpolant, runge_kutta
+from stiffmbs.solve.explicit.native import (
+    attempt,
+    explicit_events,
+    fastest_rate,
+    interpolant,
+    linearly_implicit,
+    runge_kutta,
+)  # fmt: skip
 from stiffmbs.solve.explicit.native import start as explicit_start
 from stiffmbs.solve.explicit.rk4 import RK4
 from stiffmbs.solve.trajectory import Grid
@@ -333,7 +340,14 @@ def fewest_steps_with_a_bound():
     return count_while(is_left_out, range(1000))
 
 
+def is_unresolved(part):
+    """Return True if a negative work of a part of the sizes in it is that of a growth."""
+    table, state = Record(x=np.array([1.0, 1.0]), b=np.array([1.0, -1.0 - part])), Record(n_q=2, n_pose=2, n_u=2)
+    return linearly_implicit._is_unresolved(table, state, Record(n=2))
+
+
 DECISIONS = {
+    "solve.explicit.native.linearly_implicit:NOISE": lambda: count_while(lambda part: not is_unresolved(1e-9 * part), DOUBLES),
     "explicit_checks.now_and_then": lambda: adaptive.held(800, True),
     "explicit_ends.close": largest_uncertain_pivot,
     "explicit_ends.harmful": largest_harmless_change,
@@ -374,6 +388,7 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
+    "solve.explicit.native.linearly_implicit:NOISE": 44,
     "explicit_checks.now_and_then": 100, "explicit_ends.close": 10, "explicit_ends.harmful": 30, "explicit_ends.shorter": 0.55, "explicit_ends.turning": 27,
     "explicit_events.beyond": 1e-10, "explicit_events.most_retaken": 8, "explicit_first_step.part": 0.01, "explicit_first_step.short": 1e-06,
     "explicit_first_step.small": 67, "explicit_first_step.farthest": 40, "explicit_rounding.few": 4, "explicit_rounding.within": 0.01,

@@ -83,3 +83,37 @@ def test_what_depends_on_reactions_is_refused_by_name(named, section, entry):
     scene = read_scene(WITH_STATES.replace(f"{section}:", f"{section}:\n  {entry}"))
     with pytest.raises(InputError, match=f"on which {named} depend.*use solver bdf or radau"):
         stiffmbs.run(scene, solver="projected", scheme="extrapolated_euler", step=1e-3, duration=0.1)
+
+
+SPINNING = """
+dimensions: 3
+bodies: {a: {mass: 1, inertia: [2e-3, 2e-3, 3e-3], omega: [0, 0, 50]}}
+joints: {r: {type: revolute, i: a, j: ground}}
+forces: {tq: {type: torque, i: a, torque: [0, 0, "-1e-3*r.angle"]}}
+"""
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_angles_in_space_are_counted_beyond_a_turn(scheme):
+    """Turn counters stood still, and a torsional spring over 13 turns pulled towards the nearest one."""
+    t, w = np.linspace(0.0, 0.2, 5), np.sqrt(1e-3 / 3e-3)
+    errors = []
+    for step in (1e-3, 5e-4):
+        found = stiffmbs.run(
+            read_scene(SPINNING), solver="projected", scheme=scheme, step=step, duration=0.2, points=5, errors=False
+        )
+        errors.append(np.abs(found["r.angle"] - 50 / w * np.sin(w * t)).max())
+    assert errors[0] < 0.01 and errors[0] / errors[1] == pytest.approx(2 ** SCHEMES[scheme], rel=0.05)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("step, is_noted", [(1e-2, True), (5e-4, False)])
+def test_a_growth_that_steps_do_not_resolve_is_noted(scheme, step, is_noted):
+    """Where a motion grows faster than 1/h, a step reverses it: the body came to rest on top of a hill, without a word."""
+    scene = read_scene("""
+        bodies: {a: {mass: 1, inertia: 1, position: [1e-6, 0]}}
+        joints: {rail: {type: prismatic, i: a, j: ground}}
+        forces: {hill: {type: force, i: a, force: ["1e6*a.x - 1e7*a.x^3", 0]}}
+    """)
+    found = stiffmbs.run(scene, solver="projected", scheme=scheme, step=step, points=11, errors=False)
+    assert any("grows faster than a step" in note for note in found.notes) == is_noted

@@ -14,10 +14,10 @@ SCHEME = Layout({
 
 LINEARLY_IMPLICIT = Layout({
     "state": INTS, "equations": INTS, "columns": INT, "setup": INT, "solve": INT, "solver": INTS, "entries": FLOATS, "ready": INTS, "refused": INTS, "refined": INTS,
-    "b": FLOATS, "x": FLOATS, "start": FLOATS, "whole": FLOATS,
+    "b": FLOATS, "x": FLOATS, "start": FLOATS, "whole": FLOATS, "unresolved": FLOAT_CELL,
 })  # fmt: skip
 """Linearly implicit steps (`stiffmbs.solve.explicit.linearly_implicit`): equations and their linear solver, with its
-cells `ready` (0 if no pivots are known), `refused` and `refined` (not 0 if its solutions depend on earlier factors); state at the start of a step, and after one step without extrapolation."""
+cells `ready` (0 if no pivots are known), `refused` and `refined` (not 0 if its solutions depend on earlier factors); state at the start of a step, and after one step without extrapolation; time of the first step that does not resolve a growth, NaN if there is none."""
 
 EXPLICIT = Layout({
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT_CELL,

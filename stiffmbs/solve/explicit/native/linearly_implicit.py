@@ -1,6 +1,6 @@
 """Linearly implicit Euler steps, with extrapolation: one evaluation, one factorisation and one solution each."""
 
-from math import isfinite
+from math import fabs, isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
@@ -9,6 +9,26 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import move, take_unit_length
 from stiffmbs.compile.machine.native.statuses import FAILED, NO_MEMORY, NOT_FINITE, OK, SINGULAR
 from stiffmbs.solve.explicit.native.stages import linear_view, load_state
+
+NOISE = 1e-6
+"""Negative work, in the sizes of its parts, that may be rounding."""
+
+
+@compiled
+def _is_unresolved(p, s, e):
+    """Return True if forces drive a motion that grows faster than a step resolves.
+
+    With the matrix A = M/h - f_u - h f_q Z of the velocities, du A du = du f - lam b is then negative. States that forces depend on
+    hide that.
+    """
+    if s.n_q > s.n_pose:
+        return False
+    work, size = 0.0, 0.0
+    for k in range(e.n):
+        part = p.x[k] * p.b[k]
+        work += part if k < s.n_u else -part
+        size += fabs(part)
+    return work < -NOISE * size
 
 
 @compiled
@@ -28,6 +48,8 @@ def _euler(p, s, e, t, h):
     for k in range(e.n):
         if not isfinite(p.x[k]):
             return NOT_FINITE
+    if p.unresolved != p.unresolved and _is_unresolved(p, s, e):  # NaN: no step before
+        p.unresolved = t
     for k in range(s.n_u):
         s.u[k] += p.x[k]
     for k in range(s.n_q - s.n_pose):
