@@ -247,7 +247,7 @@ def smallest_rounding():
 def checks_of_fixed_steps():
     count = []
     dynamics = Record(input_features=lambda *_: NO_FEATURES)
-    work = Record(q=np.zeros(1), u=np.zeros(1), at=0, scheme=RK4)
+    work = Record(q=np.zeros(1), u=np.zeros(1), at=0, scheme=RK4, unresolved=np.nan)
     settings = RunSettings(duration=1.0)
     jumps = Record(sentence=lambda: "")
     with patch.multiple(
