@@ -12,7 +12,7 @@ from ..dynamics.dynamics import Dynamics, OutputRows
 from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
 from .closed import Closed, closed
-from .coordinates import displaced, displacements, width
+from .coordinates import displaced, displacements, width, with_rates
 from .defects import Points, curve_of_bdf, woven
 from .evaluated import Evaluated, evaluated
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
@@ -87,6 +87,15 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     t, q, u = (np.concatenate([getattr(piece, name) for piece in pieces]) for name in ("t", "q", "u"))
     steps = np.concatenate([np.full(len(piece.t), np.diff(piece.t[:: piece.points]).max()) for piece in pieces])
     states = evaluated(dynamics, t, q, u, (steps, rtol))
+    fired = np.array([bool(piece.fired) for piece in pieces])
+    left_out = np.zeros(len(t) + 1, dtype=bool)
+    left_out[starts[1:][fired] - 1] = True
+    left_out[starts[1:]] = True
+    left_out, restarts = left_out[:-1], t[starts[1:-1]]
+    if not _is_free(dynamics.system):
+        nothing = np.zeros((len(t), width(dynamics.system)))
+        never = np.zeros(len(t), dtype=bool)
+        return StateErrors(t, q, u, states.rows, states.q, states.u, nothing, left_out, never, restarts)
     transport = Transport(dynamics, states)
     found: list[_Found] = []
     error, shift = np.zeros(width(dynamics.system)), 0.0
@@ -99,18 +108,19 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         error = errors[-1]
         found.append(_Found(each, errors + shift * motion(dynamics.system, each.states), slopes))
     errors = np.concatenate([each.errors for each in found])
-    fired = np.array([bool(piece.fired) for piece in pieces])
-    left_out = np.zeros(len(t) + 1, dtype=bool)
-    left_out[starts[1:][fired] - 1] = True
-    left_out[starts[1:]] = True
-    lost, restarts = _are_lost(dynamics.system, q, errors), t[starts[1:-1]]
+    lost = _are_lost(dynamics.system, q, errors)
     if lost.any():
-        return StateErrors(t, q, u, states.rows, q, u, errors, left_out[:-1], lost, restarts)
+        return StateErrors(t, q, u, states.rows, q, u, errors, left_out, lost, restarts)
     q_better, u_better, fails = (
         np.concatenate(parts)
         for parts in zip(*(_without_errors(dynamics, transport, each) for each in found), strict=True)
     )
-    return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out[:-1] | fails, lost, restarts)
+    return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out | fails, lost, restarts)
+
+
+def _is_free(system: System) -> bool:
+    """Return True if constraints and drives leave errors a direction."""
+    return int(system.active.sum()) < system.n_u or len(with_rates(system)) > 0
 
 
 def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:

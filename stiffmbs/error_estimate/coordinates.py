@@ -47,22 +47,6 @@ def displaced(system: System, q: np.ndarray, u: np.ndarray, errors: np.ndarray) 
     return q, u + errors[:, n_pose : n_pose + system.n_u]
 
 
-def pose_changes(system: System, q: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Return the changes of poses, shape (n, m, n_pose), by small displacements in the axes of u, shape (n, m, n_u)."""
-    if system.of_body.dimensions == 2:
-        return x
-    p, of_bodies = _quaternions(system, q)[:, None], x.reshape(*x.shape[:2], len(system.bodies), 6)
-    turned = 0.5 * times_vector(p, of_bodies[..., 3:])
-    return np.concatenate([of_bodies[..., :3], turned], axis=-1).reshape(*x.shape[:2], system.n_pose)
-
-
-def functions_of_changes(system: System, q: np.ndarray, of_x: np.ndarray) -> np.ndarray:
-    """Return linear functions of small displacements, shape (n, m, n_u), as those of the changes of poses by these."""
-    if system.of_body.dimensions == 2:
-        return of_x
-    return pose_changes(system, q, of_x * system.per_velocity(1.0, 4.0))  # x = 2 conj(p) dp, and 0.5 p x is orthogonal
-
-
 def displacements(system: System, q: np.ndarray, dq: np.ndarray) -> np.ndarray:
     """Return the displacements in the axes of u, shape (n, n_u), by small changes of poses, shape (n, n_pose)."""
     if system.of_body.dimensions == 2:

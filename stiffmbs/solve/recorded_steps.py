@@ -18,8 +18,6 @@ class Piece:
     """Steps between two starts of the integrator; row 0 is the start, the others are points of the steps in order of time.
 
     - `t` of shape (rows,), `q`, `u` of shapes (rows, n_q), (rows, n_u).
-    - `q_rates`, `u_rates`: y' of the integrator in the same rows.
-    - `order` of shape (rows,): order of the formula.
     - `points`: rows per step; all but the last are within the step.
     - `fired`: event functions that ended the piece; empty at a breakpoint in time, a change of order or the end of the run.
     """
@@ -27,9 +25,6 @@ class Piece:
     t: np.ndarray
     q: np.ndarray
     u: np.ndarray
-    q_rates: np.ndarray
-    u_rates: np.ndarray
-    order: np.ndarray
     points: int
     fired: tuple[int, ...]
 
@@ -94,14 +89,4 @@ class StepRecorder:
             keep[short - k] = False
         rows = rows[keep]
         q, u = equations.states(rows[:, 2 : 2 + n][:, equations.independent])
-        q_rates, u_rates = equations.rates(rows[:, 2 + n :][:, equations.independent])
-        return Piece(
-            rows[:, 0].copy(),
-            q.copy(),
-            u.copy(),
-            q_rates.copy(),
-            u_rates.copy(),
-            rows[:, 1].astype(int),
-            self.points,
-            piece.fired,
-        )
+        return Piece(rows[:, 0].copy(), q.copy(), u.copy(), self.points, piece.fired)

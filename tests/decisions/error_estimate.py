@@ -42,7 +42,7 @@ def piece(h):
     """Return a piece with one coordinate and steps of given lengths, the last of which is judged."""
     t = np.append(0.0, np.cumsum(h))
     zeros = np.zeros((len(t), 1))
-    return Piece(t, zeros, zeros, zeros, zeros, np.ones(len(t), dtype=int), 1, ())
+    return Piece(t, zeros, zeros, 1, ())
 
 
 def points(h):

@@ -29,8 +29,7 @@ SOLVERS: dict[str, dict[str, Any]] = {
     "euler_cromer": {"solver": "projected", "scheme": "euler_cromer", "step": 1e-4},
 }
 GLOBAL = 300.0
-"""Global error, relative to the tolerance and to 1 + the largest value, that steps may add up to; one for each step if these are
-more: errors of an undamped vibration add up."""
+"""Global error, relative to the tolerance and to 1 + the largest value, that steps may add up to."""
 BY_VELOCITIES = 20.0
 """The same of I3, whose error test leaves out velocities, in addition."""
 OF_FORCES = 1e4
@@ -39,8 +38,6 @@ FIXED = {"rk4": 1e-6, "euler_cromer": 2e-3}
 """Error that fixed steps may have."""
 OF_HALF_STEPS = {"rk4": 0.1, "euler_cromer": 0.6}
 """Largest ratio of errors by half the step to these, up to which they are those of the order: 1/16 and 1/2."""
-REAL = 3e-3
-"""Error of velocities, relative to the largest, from which on a doubt about the run is right."""
 TOLD_JUMP = 0.03
 """Velocity jump, relative to the largest velocity there, that a note must report; below a tenth of it there is none."""
 HALF_TURN = 3.0
@@ -336,14 +333,10 @@ class Chain:
             return Verdict(Outcome.WRONG, jump, TOLD_JUMP, f"a velocity jump is not reported: {detail}")
         if reported and jump < 0.1 * TOLD_JUMP:
             return Verdict(Outcome.WRONG, jump, TOLD_JUMP, f"a velocity jump is reported where there is none: {detail}")
-        real = float(np.max(np.abs(v - v_true))) > REAL * float(np.max(np.abs(v_true)))
-        doubts = ("missed", "positions jump") if real else ("missed", "positions jump", "doubt")
-        if false := [note for note in notes if any(words in note for words in doubts)]:
+        if false := [note for note in notes if "missed" in note or "doubt" in note or "positions jump" in note]:
             return Verdict(Outcome.WRONG, error, allowed, f"{false[0]}: {detail}")
         if error > allowed and name in FIXED and self._converges(max(errors), truth, name, how):
             return Verdict(Outcome.RIGHT, error, allowed, f"converges by its order: {detail}")
-        if error > allowed and name not in FIXED:
-            allowed *= max(1.0, self._solution(how).solver["steps"] / GLOBAL)
         return measured(error, allowed, f"{errors} {of_forces:.2g} {detail}")
 
     def _errors(self, found: Sequence[np.ndarray], truth: Sequence[np.ndarray]) -> list[float]:
@@ -357,11 +350,8 @@ class Chain:
         halved = self._run({**how, "step": 0.5 * how["step"]})
         return not isinstance(halved, str) and max(self._errors(halved[:2], truth[:2])) <= OF_HALF_STEPS[name] * error
 
-    def _solution(self, how: dict[str, Any]) -> stiffmbs.Solution:
-        return stiffmbs.run(read_scene(json.dumps(self.scene())), **how)
-
     def _run(self, how: dict[str, Any]) -> Any:
-        solution = self._solution(how)
+        solution = stiffmbs.run(read_scene(json.dumps(self.scene())), **how)
         if solution.outcome is not Ending.DONE:
             return solution.message
         return *self._columns(solution), (solution.message, *solution.notes)
