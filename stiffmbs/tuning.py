@@ -43,6 +43,7 @@ SUBSYSTEMS = {
     "kinematic": "solve.driven_states:KINEMATIC",
     "linear_analysis": "linear_analysis.parameters:LINEAR_ANALYSIS",
     "linear_solver": "solve.linear_solvers.linear_solver:COSTS",
+    "linearly_implicit_steps": "solve.explicit.native.parameters:LINEARLY_IMPLICIT_STEPS",
     "loop": "solve.ida.native.parameters:LOOP",
     "matrices": "sparse.parameters:MATRICES",
     "narrow_inputs": "solve.events.narrow_inputs:NARROW_INPUTS",
@@ -62,6 +63,7 @@ SUBSYSTEMS = {
     "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
     "stepping": "studies.stepping:STEPPING",
     "storage": "dynamics.storage:STORAGE",
+    "variational_stages": "sensitivity_equations.native.parameters:ITERATION",
     "velocity_jumps": "solve.events.discontinuity:VELOCITY_JUMP",
     "verification": "verification.parameters:VERIFICATION",
 }

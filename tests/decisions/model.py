@@ -226,7 +226,7 @@ def smoothest_path():
     def solved(rows, _right, within, least):
         reach(
             (
-                np.max(np.abs(rows)) * lanes.SPACING**3 / 3,
+                np.max(np.abs(rows)) * lanes.CURVES.spacing**3 / 3,
                 np.max(np.abs(rows[-40:])),
                 np.max(np.abs(least)),
                 rows.shape[1],
@@ -304,10 +304,10 @@ DECISIONS = {
     "model.parts.instances:MOST_NESTED": deepest_parts,
     "model.parts.instances:MOST_INSTANCES": most_instances,
     "model.parts.instances:MOST_VALUES": most_values_of_parts,
-    "model.paths.curves:SPACING": lambda: len(curves.circle(100.0, 1000.0, 0.0, 0.0).s),
-    "model.paths.curves:OUTLET": lambda: -curves.straightened(curves.circle(100.0, 1000.0, 0.0, 0.0)).s[0],
-    "model.paths.curves:MOST_STATIONS": lambda: len(curves.circle(100.0, 1e6, 0.0, 0.0).s),
-    "model.paths.curves:SAMPLES": samples_between_stations,
+    "model.paths.curves:Stations.spacing": lambda: len(curves.circle(100.0, 1000.0, 0.0, 0.0).s),
+    "model.paths.curves:Stations.outlet": lambda: -curves.straightened(curves.circle(100.0, 1000.0, 0.0, 0.0)).s[0],
+    "model.paths.curves:Stations.most_stations": lambda: len(curves.circle(100.0, 1e6, 0.0, 0.0).s),
+    "model.paths.curves:Stations.samples": samples_between_stations,
     "model.paths.lanes:ROUGHNESS": lambda: smoothest_path()[0],
     "model.paths.lanes:ANCHOR": lambda: smoothest_path()[1],
     "model.paths.lanes:USED": lambda: smoothest_path()[2],
@@ -334,8 +334,8 @@ EXPECTED = {
     "model.files.scenes_read_before:LARGEST": 10, "model.flexible:SHARE": 0.001, "model.flexible:SMALL": 0.001, "model.flexible:SAME_SHAPES": 1,
     "model.mounted_tyres:ALONG": 14, "model.mounted_tyres:NAMED": 3, "model.parts.frame:STRAIGHT": 27, "model.parts.hard_points:SAME_PLACE": 27,
     "model.parts.hard_points:FARTHEST": 23, "model.parts.instances:MOST_NESTED": 10, "model.parts.instances:MOST_INSTANCES": 27,
-    "model.parts.instances:MOST_VALUES": 27, "model.paths.curves:SPACING": 401, "model.paths.curves:OUTLET": 20.0, "model.paths.curves:MOST_STATIONS": 2001,
-    "model.paths.curves:SAMPLES": 8.0, "model.paths.lanes:ROUGHNESS": 30.0, "model.paths.lanes:ANCHOR": 0.001,
+    "model.parts.instances:MOST_VALUES": 27, "model.paths.curves:Stations.spacing": 401, "model.paths.curves:Stations.outlet": 20.0, "model.paths.curves:Stations.most_stations": 2001,
+    "model.paths.curves:Stations.samples": 8.0, "model.paths.lanes:ROUGHNESS": 30.0, "model.paths.lanes:ANCHOR": 0.001,
     "model.paths.lanes:USED": 0.5, "model.paths.lanes:STRAIGHT": 34, "model.paths.lanes:LENGTH": 156, "model.paths.lanes:MARGIN": 60, "model.settings:DEFAULT_RTOL": 1e-06, "model.settings:DEFAULT_POINTS": 1001,
     "model.settings:FEWEST_APART": 63, "model.settings:ROUNDINGS_APART": 63, "model.tuning:MOST": 27,
 }  # fmt: skip

@@ -35,13 +35,13 @@ def test_errors_in_peaks_that_repeat_do_not_add_up(rtol):
 
 
 def test_steps_resolve_the_zones_of_a_narrow_law():
-    """The part of a zone that a step may pass, halved or doubled, gives 25 % more or 17 % fewer steps."""
+    """The part of a zone that a step may pass, halved or doubled, gives 13 % more or 11 % fewer steps."""
     scene = {
         "gravity": [0, 0], "bodies": {"b": {"mass": 1, "inertia": 1}}, "states": {"p": {"rate": "1", "start": 0.0}},
         "forces": {"f": {"type": "force", "i": "b", "force": [f"8*sin({np.pi * 300}*p)^40", 0]}},
     }  # fmt: skip
-    job = prepare(stiffmbs.read_scene(str(scene)), solver="bdf", duration=1.0, rtol=1e-2, points=2)
-    assert job.integrate().statistics["steps"] == pytest.approx(16100, rel=0.08)
+    job = prepare(stiffmbs.read_scene(str(scene)), solver="bdf", duration=1.0, rtol=1e-3, points=2)
+    assert job.integrate().statistics["steps"] == pytest.approx(20200, rel=0.08)
 
 
 def test_a_law_of_a_state_is_not_lost_at_large_arguments():

@@ -7,14 +7,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SPACING = 2.5
-"""Distance between the stations of a curve, on short ones, and between the points of a path through lanes, m."""
-MOST_STATIONS = 2000
-"""Largest number of stations of a curve."""
-SAMPLES = 8
-"""Points between two stations with which the arc length is measured."""
-OUTLET = 20.0
-"""Length beyond each end of an open curve over which its curvature falls to zero, m."""
+
+@dataclass(frozen=True)
+class Stations:
+    """Stations of curves.
+
+    Source: courses with closed forms (`tests/vehicles`).
+    """
+
+    spacing: float = 2.5
+    """Distance between the stations of a curve, on short ones, and between the points of a path through lanes, m."""
+    most_stations: int = 2000
+    """Largest number of stations of a curve."""
+    samples: int = 8
+    """Points between two stations with which the arc length is measured."""
+    outlet: float = 20.0
+    """Length beyond each end of an open curve over which its curvature falls to zero, m: a second at 20 m/s, as long as a driver
+    looks ahead."""
+
+
+CURVES = Stations()
 
 
 @dataclass(frozen=True)
@@ -36,7 +48,7 @@ class Curve:
         from scipy.interpolate import CubicSpline
         from scipy.spatial import cKDTree
 
-        fine = np.linspace(self.s[0], self.s[-1], SAMPLES * len(self.s))
+        fine = np.linspace(self.s[0], self.s[-1], CURVES.samples * len(self.s))
         curve = CubicSpline(self.s, np.stack([self.x, self.y], axis=1))
         points = np.stack([x, y], axis=1)
         s = fine[cKDTree(curve(fine)).query(points)[1]]
@@ -68,8 +80,8 @@ def curve_through(points: np.ndarray, closed: bool = False) -> Curve:
     parameter = np.concatenate([[0.0], np.cumsum(chords)])
     ends = "periodic" if closed else "natural" if len(points) < 4 else "not-a-knot"
     curve = CubicSpline(parameter, points, bc_type=ends)
-    count = int(np.clip(np.ceil(parameter[-1] / SPACING), 40, MOST_STATIONS))
-    fine = np.linspace(0.0, parameter[-1], SAMPLES * count + 1)
+    count = int(np.clip(np.ceil(parameter[-1] / CURVES.spacing), 40, CURVES.most_stations))
+    fine = np.linspace(0.0, parameter[-1], CURVES.samples * count + 1)
     speed = np.linalg.norm(curve(fine, 1), axis=1)
     middle = np.linalg.norm(curve((fine[1:] + fine[:-1]) / 2, 1), axis=1)
     lengths = (speed[1:] + speed[:-1] + 4 * middle) / 6 * np.diff(fine)  # Simpson's rule
@@ -85,7 +97,7 @@ def curve_through(points: np.ndarray, closed: bool = False) -> Curve:
 
 
 def straightened(curve: Curve) -> Curve:
-    """Return an open curve whose curvature falls linearly to zero beyond both ends, over `OUTLET`.
+    """Return an open curve whose curvature falls linearly to zero beyond both ends, over `CURVES.outlet`.
 
     A spline through its stations continues it by straight lines, along which its directions and curvatures are constant.
     """
@@ -100,14 +112,14 @@ def straightened(curve: Curve) -> Curve:
 
 def _outlet(x: float, y: float, cos: float, sin: float, curvature: float) -> list[np.ndarray]:
     """Return the values of a clothoid from a place to a straight line."""
-    s = np.linspace(0.0, OUTLET, SAMPLES + 1)
+    s = np.linspace(0.0, CURVES.outlet, CURVES.samples + 1)
 
     def heading(at: np.ndarray) -> np.ndarray:
-        turned: np.ndarray = np.arctan2(sin, cos) + curvature * (at - at**2 / (2 * OUTLET))
+        turned: np.ndarray = np.arctan2(sin, cos) + curvature * (at - at**2 / (2 * CURVES.outlet))
         return turned
 
     dx, dy = _places(s, heading)
-    return [s, x + dx, y + dy, np.cos(heading(s)), np.sin(heading(s)), curvature * (1 - s / OUTLET)]
+    return [s, x + dx, y + dy, np.cos(heading(s)), np.sin(heading(s)), curvature * (1 - s / CURVES.outlet)]
 
 
 def _values(curve: Curve) -> tuple[np.ndarray, ...]:
@@ -136,7 +148,7 @@ def circle(radius: float, entry: float, transition: float, turns: float) -> Curv
     transition, m; `turns` counts turns on the circle.
     """
     length = entry + transition + 2 * np.pi * turns * abs(radius)
-    s = np.linspace(0.0, length, int(np.clip(np.ceil(length / SPACING), 40, MOST_STATIONS)) + 1)
+    s = np.linspace(0.0, length, int(np.clip(np.ceil(length / CURVES.spacing), 40, CURVES.most_stations)) + 1)
 
     def heading(at: np.ndarray) -> np.ndarray:
         along = np.clip(at - entry, 0.0, transition)

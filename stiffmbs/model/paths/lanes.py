@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .curves import SPACING
+from .curves import CURVES
 
 ROUGHNESS = 30.0
 """Length below which a change of curvature costs more than curvature itself, m: steering stays below 1 Hz at 30 m/s."""
@@ -85,11 +85,11 @@ def path_through(
     Raises ValueError if there is no such path.
     """
     first, last = lanes[0], lanes[-1]
-    x = np.arange(first.start - before, last.end + after + SPACING / 2, SPACING)
+    x = np.arange(first.start - before, last.end + after + CURVES.spacing / 2, CURVES.spacing)
     corridors = (
         replace(first, start=x[0] - length, end=first.start), *lanes, replace(last, start=last.end, end=x[-1] + length),
     )  # fmt: skip
-    points, slopes = np.eye(len(x)), np.gradient(np.eye(len(x)), SPACING, axis=0)
+    points, slopes = np.eye(len(x)), np.gradient(np.eye(len(x)), CURVES.spacing, axis=0)
     sides, low, high = [], [], []
     for lane in corridors:
         free = USED * max(lane.left - lane.right - width, 0.0) / 2
@@ -103,11 +103,11 @@ def path_through(
                 high.append(lane.centre + free)
     middles, centres = zip(*(((lane.start + lane.end) / 2, lane.centre) for lane in lanes), strict=True)
     centre = np.interp(x, middles, centres)
-    bends = np.diff(points, 2, axis=0) / SPACING**2
-    jerks = ROUGHNESS * np.diff(points, 3, axis=0) / SPACING**3
+    bends = np.diff(points, 2, axis=0) / CURVES.spacing**2
+    jerks = ROUGHNESS * np.diff(points, 3, axis=0) / CURVES.spacing**3
     rows = np.vstack([bends, jerks, ANCHOR * points])
     right = np.concatenate([np.zeros(len(bends) + len(jerks)), ANCHOR * centre])
-    straight = (np.arange(len(x)) < 3) | (x > min(last.end + STRAIGHT, x[-3] - SPACING / 2))
+    straight = (np.arange(len(x)) < 3) | (x > min(last.end + STRAIGHT, x[-3] - CURVES.spacing / 2))
     y = np.where(straight, np.where(x < first.end, first.centre, last.centre), 0.0)
     within = np.vstack([sides, -np.array(sides)])
     limits = np.concatenate([low, -np.array(high)]) - within @ y

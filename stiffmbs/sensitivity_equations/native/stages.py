@@ -23,15 +23,10 @@ from stiffmbs.compile.machine.native.factors import DONE, solve
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.sensitivity_equations.native.layouts import STAGES
+from stiffmbs.sensitivity_equations.native.parameters import ITERATION
 from stiffmbs.solve.linear_solvers.native.sparse_lu import factored
 
 stages_view = view_of("Stages", STAGES)
-
-FAST = 0.4
-"""Mean ratio of two successive corrections up to which factors of earlier steps serve: one may move the residual to other
-directions."""
-MOST_CORRECTIONS = 80
-"""Number of corrections after which the matrix of all stages is factored."""
 
 
 @compiled
@@ -185,7 +180,7 @@ def _iterated(c, h, s, rates, x, tolerance, renewed):
         x[k] = 0.0
     earlier, before = 0.0, 0.0
     last = (c.stages - 1) * n
-    for number in range(MOST_CORRECTIONS):
+    for number in range(ITERATION.most_corrections):
         _take_residual(c, h, s, rates, x)
         _corrected_apart(c)
         for k in range(n * c.stages):
@@ -193,7 +188,7 @@ def _iterated(c, h, s, rates, x, tolerance, renewed):
         size = _largest(c, c.correction, c.stages)
         if size == 0.0 or (number > 0 and size <= tolerance * _largest(c, shifted(x, last), 1)):
             return True
-        if not isfinite(size) or (number > 1 and not renewed and size > FAST * FAST * earlier):
+        if not isfinite(size) or (number > 1 and not renewed and size > ITERATION.fast * ITERATION.fast * earlier):
             return False
         earlier, before = before, size
     return False

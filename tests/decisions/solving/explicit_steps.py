@@ -347,7 +347,7 @@ def is_unresolved(part):
 
 
 DECISIONS = {
-    "solve.explicit.native.linearly_implicit:NOISE": lambda: count_while(lambda part: not is_unresolved(1e-9 * part), DOUBLES),
+    "linearly_implicit_steps.noise": lambda: count_while(lambda part: not is_unresolved(1e-9 * part), DOUBLES),
     "explicit_checks.now_and_then": lambda: adaptive.held(800, True),
     "explicit_ends.close": largest_uncertain_pivot,
     "explicit_ends.harmful": largest_harmless_change,
@@ -388,7 +388,7 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
-    "solve.explicit.native.linearly_implicit:NOISE": 44,
+    "linearly_implicit_steps.noise": 44,
     "explicit_checks.now_and_then": 100, "explicit_ends.close": 10, "explicit_ends.harmful": 30, "explicit_ends.shorter": 0.55, "explicit_ends.turning": 27,
     "explicit_events.beyond": 1e-10, "explicit_events.most_retaken": 8, "explicit_first_step.part": 0.01, "explicit_first_step.short": 1e-06,
     "explicit_first_step.small": 67, "explicit_first_step.farthest": 40, "explicit_rounding.few": 4, "explicit_rounding.within": 0.01,

@@ -193,10 +193,8 @@ def corrections(ratio, renewed):
 
 
 DECISIONS = {
-    "sensitivity_equations.native.stages:MOST_CORRECTIONS": lambda: corrections(0.9, True),
-    "sensitivity_equations.native.stages:FAST": lambda: count_while(
-        lambda ratio: corrections(ratio, False) == 3, HALVES
-    ),
+    "variational_stages.most_corrections": lambda: corrections(0.9, True),
+    "variational_stages.fast": lambda: count_while(lambda ratio: corrections(ratio, False) == 3, HALVES),
     "sensitivities.rounding": lambda: ended()[0],
     "sensitivities.furthest": lambda: count_while(lambda duration: ended(duration, (0,))[1] > 1, HALVES),
     "sensitivities.short": lambda: count_while(lambda short: not suspicious(short=short), HALVES),
@@ -230,7 +228,7 @@ DECISIONS = {
     ),
 }
 EXPECTED = {
-    "sensitivity_equations.native.stages:MOST_CORRECTIONS": 80, "sensitivity_equations.native.stages:FAST": 6,
+    "variational_stages.most_corrections": 80, "variational_stages.fast": 6,
     "sensitivities.rounding": 1e-13, "sensitivities.furthest": 94, "sensitivities.short": 14,
     "sensitivities.sudden": 14, "sensitivities.jump": 40, "sensitivities.felt": 40, "sensitivities.halvings": 13,
     "sensitivities.left": 5, "sensitivities.roundings": 40, "sensitivities.most_numbers": 111,

@@ -8,10 +8,8 @@ from stiffmbs.compile.machine.native.evaluate import MOTION, add_condensed, add_
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import move, take_unit_length
 from stiffmbs.compile.machine.native.statuses import FAILED, NO_MEMORY, NOT_FINITE, OK, SINGULAR
+from stiffmbs.solve.explicit.native.parameters import LINEARLY_IMPLICIT_STEPS
 from stiffmbs.solve.explicit.native.stages import linear_view, load_state
-
-NOISE = 1e-6
-"""Negative work, in the sizes of its parts, that may be rounding."""
 
 
 @compiled
@@ -28,7 +26,7 @@ def _is_unresolved(p, s, e):
         part = p.x[k] * p.b[k]
         work += part if k < s.n_u else -part
         size += fabs(part)
-    return work < -NOISE * size
+    return work < -LINEARLY_IMPLICIT_STEPS.noise * size
 
 
 @compiled

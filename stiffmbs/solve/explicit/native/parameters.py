@@ -112,3 +112,14 @@ class FastestRateParameters:
 
 
 FASTEST_RATE = tuned("fastest_rate", FastestRateParameters())
+
+
+@dataclass(frozen=True)
+class LinearlyImplicitParameters:
+    """Parameters of linearly implicit steps. Source: scenes of `tests/solve/explicit/test_linearly_implicit.py`."""
+
+    noise: float = 1e-6
+    """Negative work of a change of velocities, in the sizes of its parts, that may be rounding."""
+
+
+LINEARLY_IMPLICIT_STEPS = tuned("linearly_implicit_steps", LinearlyImplicitParameters())
