@@ -43,17 +43,8 @@ class Transport:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the errors at the points of steps, from that at their start, and their rates, shape (steps, points, full).
 
-        Raise a SolverError if they are not determined.
-
-        Parameters
-        ----------
-        rows : ndarray, shape (steps, points, 2 + 2 unknowns)
-            `rows` of the states at the points.
-        sizes : ndarray, shape (steps,)
-            Lengths, s.
-        rates : ndarray, shape (steps, points, full)
-            Defects.
-        error : ndarray, shape (full,)
+        `rows`: those of the points, shape (steps, points, 2 + 2 unknowns). `sizes`, `rates`, `error`: lengths of the steps, s, defects
+        at the points and the error at the start, as (dq, du, ds). Raise a SolverError if the errors are not determined.
         """
         stages, s, found, slopes = self._of(rates.shape[1]), self._unknowns(error[None])[0], [], []
         stages.forget()

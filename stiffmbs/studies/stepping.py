@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,7 +23,14 @@ from ..solve.bdf import bdf_integrator
 from ..solve.engine import Reached
 from ..solve.events.refusals import refuse_beyond_limits
 from ..solve.events.restart import restarted
-from ..solve.explicit.fixed import MANY_IN_LOOP, ONE_IN_LOOP, failed, solve_with_fixed_steps, steps_between
+from ..solve.explicit.fixed import (
+    MANY_IN_LOOP,
+    ONE_IN_LOOP,
+    failed,
+    solve_with_fixed_steps,
+    steps_between,
+    unresolved_growth,
+)
 from ..solve.explicit.integration import Integration
 from ..solve.explicit.projected import scheme_of
 from ..solve.ida.native_engine import NativeEngine
@@ -248,6 +256,7 @@ class FixedSteps:
         system = dynamics.system
         self._has_events, self._has_inputs = system.n_event_functions > 0, system.has_inputs
         self._has_limits = system.first_limit < system.n_event_functions
+        self._may_grow = self._work.scheme.columns > 0
 
     def advance(self, t: float) -> None:
         """See `Stepper`."""
@@ -267,6 +276,7 @@ class FixedSteps:
                 self.q[:], self.u[:] = kept
                 raise
         self._t = self.time = t
+        self._warn_of_growth()
 
     def advance_many(self, t: float, dt: float, values: np.ndarray, held: HeldInputs, joints: JointCoordinates) -> int:
         """Advance by as many steps of dt as there are rows of inputs, if none has a breakpoint.
@@ -285,7 +295,14 @@ class FixedSteps:
             self.time = self._t
             if done < len(rows):
                 raise failed(self._t, self._dynamics.status)
+        self._warn_of_growth()
         return len(values)
+
+    def _warn_of_growth(self) -> None:
+        """Warn once if a linearly implicit step has not resolved a growing motion."""
+        if self._may_grow and (sentence := unresolved_growth(self._work)):
+            self._may_grow = False
+            warnings.warn(sentence, RuntimeWarning, stacklevel=4)
 
     def _breaks(self, end: float) -> bool:
         """Return True if an input has a breakpoint up to a time, s; determine the features of inputs if they are not known."""
@@ -315,6 +332,7 @@ class FixedSteps:
             self.q[:], self.u[:] = kept
             raise
         self._t, self.time = dynamics.sides(t)[1], place
+        self._warn_of_growth()
 
     def _begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Start from consistent values near given ones at a time, s."""

@@ -12,7 +12,7 @@ import numpy as np
 class Stations:
     """Stations of curves.
 
-    Source: courses with closed forms (`tests/vehicles`).
+    Source: courses with closed forms (`tests/studies/handling`).
     """
 
     spacing: float = 2.5

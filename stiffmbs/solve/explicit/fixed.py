@@ -95,7 +95,7 @@ def solve_with_fixed_steps(
         "scheme": work.scheme.name, "steps": steps, **work.scheme.work(steps), "seconds": ending.seconds,
     }  # fmt: skip
     narrow = narrower_than_steps(features, settings.step, work.scheme.name)
-    note = "; ".join(filter(None, (note, jumps.sentence(), narrow, _growth(work), _cut(longest, settings))))
+    note = "; ".join(filter(None, (note, jumps.sentence(), narrow, unresolved_growth(work), _cut(longest, settings))))
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
 
 
@@ -110,7 +110,7 @@ def _jumps(dynamics: Dynamics, work: Integration, t: float, step: float) -> str:
     return f"up to t = {t:.6g} s, {jump_sentence(dynamics, int(found[0]))}" if len(found) else ""
 
 
-def _growth(work: Integration) -> str:
+def unresolved_growth(work: Integration) -> str:
     """Return a sentence if a linearly implicit step did not resolve a growing motion, else an empty string."""
     t = work.unresolved
     if math.isnan(t):

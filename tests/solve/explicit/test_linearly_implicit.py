@@ -1,5 +1,6 @@
 """Linearly implicit Euler and its extrapolation: orders, stiff bushings, bounded work, states, and what they refuse."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -115,5 +116,12 @@ def test_a_growth_that_steps_do_not_resolve_is_noted(scheme, step, is_noted):
         joints: {rail: {type: prismatic, i: a, j: ground}}
         forces: {hill: {type: force, i: a, force: ["1e6*a.x - 1e7*a.x^3", 0]}}
     """)
-    found = stiffmbs.run(scene, solver="projected", scheme=scheme, step=step, points=11, errors=False)
+    settings = {"solver": "projected", "scheme": scheme, "step": step}
+    found = stiffmbs.run(scene, **settings, points=11, errors=False)
     assert any("grows faster than a step" in note for note in found.notes) == is_noted
+    sim = stiffmbs.simulation(scene, **settings)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        sim.step(0.1)
+        sim.steps(2, dt=0.1)
+    assert len(told) == is_noted
