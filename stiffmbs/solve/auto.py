@@ -23,7 +23,7 @@ from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..tuning import tuned
-from .cost import COSTS, ImplicitCost, of_explicit_step, of_kernels
+from .cost import COSTS, Counted, ImplicitCost, of_explicit_step, of_kernels
 from .engine import Reached
 from .error_control.tolerances import absolute_tolerances
 from .events.restart import restarted
@@ -122,26 +122,6 @@ def cost_ahead(first: Interval, last: Interval, begin: float, end: float) -> flo
     constant = (last.middle - first.middle) / math.log(first.rate / last.rate)
     at_begin = last.rate * math.exp((last.middle - begin) / constant)
     return -at_begin * constant * math.expm1((begin - end) / constant)
-
-
-class Counted(NamedTuple):
-    """Count of steps, or those since an earlier count.
-
-    `time`: time of the motion, s. `cost`: that of all attempts. Of explicit steps, `accepted` ones, `limited` of which were
-    limited by stability. Of implicit ones, `restarts` at breakpoints and events, and `long` ones: those of `radau`, which
-    steps of DOP853, of similar order, do not exceed in length.
-    """
-
-    time: float
-    cost: float
-    accepted: int = 0
-    limited: int = 0
-    restarts: int = 0
-    long: int = 0
-
-    def since(self, before: Counted) -> Counted:
-        """Return the steps taken after an earlier count."""
-        return Counted._make(now - then for now, then in zip(self, before, strict=True))
 
 
 class Implicit:

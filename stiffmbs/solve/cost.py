@@ -7,6 +7,7 @@ read, so that the choice is reproducible.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from ..dynamics.dynamics import Dynamics
 from ..tuning import tuned
@@ -143,3 +144,23 @@ def unknowns(dynamics: Dynamics) -> int:
         return int(free) + 2 * int(solved_for.sum())
 
     return dynamics.kept("unknowns", None, counted)
+
+
+class Counted(NamedTuple):
+    """Count of steps, or those since an earlier count.
+
+    `time`: time of the motion, s. `cost`: that of all attempts. Of explicit steps, `accepted` ones, `limited` of which were
+    limited by stability. Of implicit ones, `restarts` at breakpoints and events, and `long` ones: those of `radau`, which
+    steps of DOP853, of similar order, do not exceed in length.
+    """
+
+    time: float
+    cost: float
+    accepted: int = 0
+    limited: int = 0
+    restarts: int = 0
+    long: int = 0
+
+    def since(self, before: Counted) -> Counted:
+        """Return the steps taken after an earlier count."""
+        return Counted._make(now - then for now, then in zip(self, before, strict=True))

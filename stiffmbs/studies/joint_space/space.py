@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import numbers
 from collections.abc import Sequence
-from typing import Any, Final, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -28,10 +28,9 @@ from .inverse_kinematics import Reach, Wanted, nearest
 from .linear import LinearInputs, joint_equations, refuse_reactions
 from .loops import Loops, move_tree
 from .markers import MarkerPose, PlacedMarker, placed_marker
+from .mass_matrix import solved
 from .spanning_tree import SpanningTree
 
-NO_MASS: Final = 1e-7
-"""Smallest pivot of the Cholesky factor of a mass matrix scaled to a unit diagonal, below which a motion has no mass: the root of rounding."""
 Array = np.ndarray | Sequence[float]
 
 
@@ -233,7 +232,7 @@ class JointSpace:
         tau = np.zeros(len(self.rates)) if efforts is None else self._array("efforts", efforts, self.rates)
         self._move_to(q)
         M, h, _ = self._dynamics(v)
-        return _solved(M, tau - h, self.rates)
+        return solved(M, tau - h, self.rates)
 
     def pose(self, marker: str | MarkerReference, q: Array) -> MarkerPose:
         """Return position and rotation of a marker (forward kinematics).
@@ -406,7 +405,7 @@ class JointSpace:
             refuse_reactions(
                 outputs, [*self._all.coordinates, *self._all.rates, *of_bodies, *self._job.dynamics.system.states]
             )
-        inverse = _solved(self.mass_matrix(here), np.eye(len(tau)), self.rates)
+        inverse = solved(self.mass_matrix(here), np.eye(len(tau)), self.rates)
         found = joint_equations(
             self._data, self._settings, self.state(here, moving), self.rates, chosen, outputs, inverse
         )
@@ -490,19 +489,3 @@ class JointSpace:
         D = self._loops.map()
         self._tree.v[:] = D @ own
         return D
-
-
-def _solved(M: np.ndarray, right: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
-    """Return M^-1 times a vector or matrix; raise a SolverError if a motion has no mass."""
-    scale = 1.0 / np.sqrt(np.maximum(M.diagonal(), np.finfo(float).tiny))
-    scaled = scale[:, None] * M * scale
-    try:
-        least = np.linalg.cholesky(scaled).diagonal().min(initial=1.0)
-    except np.linalg.LinAlgError:
-        least = 0.0
-    if least <= NO_MASS:
-        k = int(np.argmax(np.abs(np.linalg.eigh(scaled)[1][:, 0])))
-        raise SolverError(f"forward_dynamics: the motion along {names[k]} has no mass, expected mass or inertia in it")
-    across = scale if right.ndim == 1 else scale[:, None]
-    found: np.ndarray = across * np.linalg.solve(scaled, across * right)
-    return found
