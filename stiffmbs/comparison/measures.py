@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..compile.bodies import SPACE
+from ..compile.bodies import QUATERNION
 from ..errors import InputError
 from ..reading.did_you_mean import instead_of
 from ..results.scales import kind_of
@@ -15,7 +15,6 @@ from ..results.solution import Solution
 
 ROTATION = ".rotation"
 """Suffix of the name that replaces the quaternion of a body in space: the angle between two orientations, rad."""
-QUATERNION = SPACE.positions[SPACE.linear :]
 
 
 @dataclass(frozen=True)

@@ -132,4 +132,6 @@ SPACE = BodyKind(
 )
 """Spatial body: x, y, z and a quaternion p; the angular velocity is in principal axes. `turn` holds the rotation matrix
 A by rows, e = 2 p/|p|^2, and n = 2/|p|^2."""
+QUATERNION = SPACE.positions[SPACE.linear :]
+"""Labels of the quaternion of a spatial body."""
 BODY_KINDS = {kind.dimensions: kind for kind in (PLANE, SPACE)}

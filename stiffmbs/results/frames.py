@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.bodies import QUATERNION
 from ..compile.quaternions import CONJUGATE, rotated, times
 from ..compile.system import System
 
@@ -29,6 +30,20 @@ def own_are_principal(system: System) -> bool:
     """Return True in the plane, and if the own axes of all bodies are principal ones."""
     axes = system.principal_axes
     return not axes.size or np.array_equal(axes, np.broadcast_to(OWN_ARE_PRINCIPAL, axes.shape))
+
+
+def places_of_channels(system: System, q: np.ndarray, u: np.ndarray) -> dict[str, tuple[np.ndarray, int]]:
+    """Return the places of channels that are coordinates q or velocities u of bodies: array and index; none in other axes."""
+    if not own_are_principal(system):
+        return {}
+    levels = (q, system.of_body.positions), (u, system.of_body.velocities)
+    return {
+        f"{body}.{label}": (values, len(labels) * k + n)
+        for values, labels in levels
+        for k, body in enumerate(system.bodies)
+        for n, label in enumerate(labels)
+        if label not in QUATERNION
+    }
 
 
 def from_own_axes(system: System, q: np.ndarray) -> np.ndarray:

@@ -21,7 +21,7 @@ from ..errors import AssemblyError, ChannelError, InputError, SolverError, Stiff
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.channels import channels_of, turns_of
 from ..results.files import written_whole
-from ..results.frames import own_are_principal
+from ..results.frames import places_of_channels
 from ..results.instant import Instant
 from ..results.joint_coordinates import JointCoordinates
 from ..results.provenance import PROVENANCE, provenance_of
@@ -39,8 +39,6 @@ from .stepping import FixedSteps, Stepper, stepper_of
 
 OWN_INPUTS = "inputs"
 """Section of a scene with its inputs."""
-QUATERNION = ("q0", "q1", "q2", "q3")
-"""Channels that are normalised, unlike the coordinates of an integrator."""
 INPUT = "simulation/input/"
 """Prefix of the names of inputs in files of saved simulations."""
 EXACT = "simulation/state"
@@ -359,7 +357,7 @@ class Simulation:
 
     def _go_on_with(self, stepper: Stepper, relaxed: bool) -> None:
         self._stepper, self._relaxed = stepper, relaxed
-        self._places = self._places_of_bodies()
+        self._places = places_of_channels(self._job.dynamics.system, stepper.q, stepper.u)
         self._joints.watch(stepper.q, stepper.u)
 
     def set_inputs(self, inputs: Inputs) -> None:
@@ -482,20 +480,6 @@ class Simulation:
         self.t = found.t
         self._follow_from(found.channels)
         self._forget()
-
-    def _places_of_bodies(self) -> dict[str, tuple[np.ndarray, int]]:
-        """Return the places of channels that are coordinates or velocities."""
-        system = self._job.dynamics.system
-        if not own_are_principal(system):
-            return {}
-        levels = ((self._stepper.q, system.of_body.positions), (self._stepper.u, system.of_body.velocities))
-        return {
-            f"{body}.{label}": (values, len(labels) * k + n)
-            for values, labels in levels
-            for k, body in enumerate(system.bodies)
-            for n, label in enumerate(labels)
-            if label not in QUATERNION
-        }
 
 
 def _exactly(q: np.ndarray, u: np.ndarray, exact: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:

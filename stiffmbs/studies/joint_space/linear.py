@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...analyses.linearised.transfer import transfer
+from ...compile.bodies import QUATERNION
 from ...errors import InputError
 from ...linear_analysis.transfer import Transfer
 from ...model.model_data import ModelData
@@ -24,7 +25,6 @@ LABELS = {
     "wx": ("rotation_x", "wdx"), "wy": ("rotation_y", "wdy"), "wz": ("rotation_z", "wdz"),
 }  # fmt: skip
 """Displacement and acceleration of each velocity of a body."""
-QUATERNION = ("q0", "q1", "q2", "q3")
 
 
 @dataclass(frozen=True)
