@@ -125,3 +125,17 @@ def test_a_growth_that_steps_do_not_resolve_is_noted(scheme, step, is_noted):
         sim.step(0.1)
         sim.steps(2, dt=0.1)
     assert len(told) == is_noted
+
+
+def test_an_algebraic_state_without_a_solution_stops_the_run():
+    """The linear equation of a step has one: the state went on at another solution, far away."""
+    scene = read_scene("""
+        bodies: {a: {mass: 1, inertia: 1}}
+        states: {Q: {zero: Q^3 - 0.3*Q - t + 0.5, start: -0.9}}
+        forces: {f: {type: force, i: a, force: [0.1*Q, 0]}}
+    """)
+    found = stiffmbs.run(
+        scene, solver="projected", scheme="extrapolated_euler", step=0.01, duration=1, points=101, errors=False
+    )
+    assert found.t[-1] == pytest.approx(0.56)
+    assert "no solution near their last values" in found.message

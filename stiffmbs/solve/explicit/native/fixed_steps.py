@@ -161,10 +161,8 @@ def _arrive(x, c, s, m, t):
         if status < 0:
             return status
         _keep(x, s)
-    if c.columns > 0:
-        return 0
-    x.rates_known = 0
-    if m.n_algebraic > 0 and c.by_stages:
+    x.rates_known = 1 if c.columns > 0 else 0
+    if m.n_algebraic > 0 and (c.by_stages or c.columns > 0):
         status = rates(x, s, m, c.stages, t)
         if status < 0:
             return status
