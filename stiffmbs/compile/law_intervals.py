@@ -192,3 +192,8 @@ def _described(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: floa
     powers = np.power.outer(place, np.arange(4))
     fitted, *_ = np.linalg.lstsq(powers, y[part], rcond=None)
     return bool(np.abs(powers @ fitted - y[part]).max() <= allowed)
+
+
+def has_kinks(system: System) -> bool:
+    """Return True if forces, states or tables of a system have breakpoints."""
+    return system.n_event_functions > 0 or bool(intervals_of(system).kinks.any())

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..compile.law_intervals import has_kinks
 from ..compile.system import System
 from ..model.settings import DEFAULT_POINTS, RunSettings
 from ..notes import Note, NoteKind, Severity
@@ -82,7 +83,7 @@ def settings_notes(settings: RunSettings, system: System) -> Iterator[Note]:
 
 def misses_breakpoints(settings: RunSettings, system: System) -> bool:
     """Return True if a system has breakpoints of forces which the solver's steps do not locate."""
-    return not traits_of(settings).locates_events and system.n_values("event_function") > 0
+    return not traits_of(settings).locates_events and has_kinks(system)
 
 
 def _ignored(settings: RunSettings, traits: Traits) -> Iterator[Note]:

@@ -144,3 +144,11 @@ def test_a_spring_alone_has_no_events():
     model.add("sled", Body(mass=1, inertia=1, position=(1, 0)))
     model.add("spring", SpringDamper(i="sled", j="ground", stiffness=10, free_length=0.5))
     assert explicit(model, duration=1.0).solver["events"] == 0
+
+
+def test_a_scene_without_breakpoints_has_no_note_on_them(examples):
+    """A rolling disc has sines of angles, whose periods are no breakpoints."""
+    found = stiffmbs.run(
+        examples / "rolling_disc.yaml", solver="projected", scheme="rk4", step=1e-3, duration=0.02, errors=False
+    )
+    assert not any("does not locate" in note for note in found.notes)

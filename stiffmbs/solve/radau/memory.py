@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 import numpy as np
 
 from ...compile.equations import ABSENT, Equations
-from ...compile.law_intervals import intervals_of
+from ...compile.law_intervals import has_kinks
 from ...compile.machine.layout import fill, packed
 from ...compile.state import State
 from ...model.settings import RunSettings
@@ -163,7 +163,7 @@ class Radau:
             "corrections": np.zeros((self._most - 1 + MOST_BETWEEN) * n_all),
             **{name: np.zeros(n_all) for name in ("y", "y_stage", "y_past")},
             **{name: np.zeros(self._most * n_all) for name in ("z", "d", "past")},
-            "has_kinks": int(system.n_event_functions > 0 or intervals_of(system).kinks.any()),
+            "has_kinks": int(has_kinks(system)),
             **asdict(parameters_of(self._parameters)),
         }  # fmt: skip
         fill(self._words, RADAU, values)
