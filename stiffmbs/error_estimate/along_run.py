@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from .coordinates import displaced, displacements, width, with_rates
 from .defects import Points, curve_of_bdf, woven
 from .evaluated import Evaluated, evaluated
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
+from .local_errors import nonlinear_defects
 from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
 from .transport import OF_BDF, Transport
@@ -49,6 +51,10 @@ class StateErrors:
 
 LocalErrors = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Sizes of the errors of some steps, by number, with some defects, from their starts."""
+Nonlinear: TypeAlias = tuple[np.ndarray, np.ndarray]
+"""Defects of some steps, and a mask of those that are known."""
+NonlinearDefects = Callable[[np.ndarray], Nonlinear]
+"""Defects of some steps, by number, whose linear equations give the errors of the nonlinear ones."""
 
 
 @dataclass(frozen=True)
@@ -150,7 +156,10 @@ def _prepared(
         found = transport.apart(of_points[steps], points.sizes[steps], rates)
         return np.asarray(np.abs(found[:, -1] / points.typical).max(axis=1))
 
-    means = _over_kinks(points, defects, local_errors, at)
+    def nonlinear(steps: np.ndarray) -> Nonlinear:
+        return nonlinear_defects(dynamics, transport, points, of_points, defects, steps)
+
+    means = _with_large_errors(points, defects, local_errors, nonlinear, at)
     of_rows = defects if piece.points > 1 else defects[:, -1:]
     at_rows = np.vstack([np.zeros_like(defects[0, :1]), of_rows.reshape(-1, defects.shape[2])])
     return _Prepared(piece, states, of_points, means, at_rows)
@@ -200,10 +209,13 @@ def _with_inner(
         before = off
 
 
-def _over_kinks(points: Points, defects: np.ndarray, local_errors: LocalErrors, at: Motion) -> np.ndarray:
-    """Return the defects at the points of steps, those over kinks with the same integrals as the defects of a curve.
+def _with_large_errors(
+    points: Points, defects: np.ndarray, local_errors: LocalErrors, nonlinear: NonlinearDefects, at: Motion
+) -> np.ndarray:
+    """Return the defects at the points of steps, with those of nonlinear equations where the local errors are large.
 
-    The latter become NaN in `defects`.
+    Where their iteration does not converge, as over kinks, the defects have the same integrals as those of a curve. These become
+    NaN in `defects`.
     """
     method, ends, rows, sizes = radau(points.points), points.ends, points.rows, points.sizes
     local = sizes[:, None, None] * (np.linalg.inv(method.derivative) @ defects)
@@ -213,6 +225,9 @@ def _over_kinks(points: Points, defects: np.ndarray, local_errors: LocalErrors, 
     if dominant(before).any():  # with defects of stiff forces, which a step balances
         before = local_errors(np.arange(len(sizes)), defects)
     steps = np.flatnonzero(missed | dominant(before))
+    if len(steps):
+        rates, converged = nonlinear(steps)
+        found[steps[converged]], steps = rates[converged], steps[~converged | missed[steps]]
     if len(steps):
         curve = Curve.through(points.t[rows[steps]], points.states[rows[steps]], ends[steps], ends[steps + 1])
         places, most = np.append(0.0, method.nodes), ESTIMATE.intervals * len(points.t)

@@ -70,10 +70,13 @@ class Points:
         n_q = self.system.n_q
         return as_rows(self.system, change[:, :n_q], change[:, n_q:])
 
+    def changes_of(self, change: np.ndarray) -> np.ndarray:
+        """Return changes of (q, u) at the points of steps as rows (dq, du, ds), shape (steps, points, full)."""
+        return self.changes(change.reshape(-1, change.shape[2])).reshape(*change.shape[:2], -1)
+
     def changes_in(self, rows: np.ndarray) -> np.ndarray:
         """Return the changes of the states since the first of `rows` of points, shape (steps, points, full)."""
-        change = self.states[rows[:, 1:]] - self.states[rows[:, :1]]
-        return self.changes(change.reshape(-1, change.shape[2])).reshape(*change.shape[:2], -1)
+        return self.changes_of(self.states[rows[:, 1:]] - self.states[rows[:, :1]])
 
     def defects(self, over_event: bool) -> np.ndarray:
         """Return the defects at the points of all steps, shape (steps, points, full).
@@ -81,7 +84,7 @@ class Points:
         `over_event`: True if an event ends the piece, where the rates may be those after it.
         """
         rows, sizes = self.rows, self.sizes[:, None, None]
-        exact = self.changes(self.exact[rows[:, 1:].ravel()]).reshape(len(rows), self.points, -1)
+        exact = self.changes_of(self.exact[rows[:, 1:]])
         found = np.asarray(radau(self.points).derivative @ self.changes_in(rows) / sizes - exact)
         if over_event and self.points > 1:
             found[-1, -1] = found[-1, -2]
