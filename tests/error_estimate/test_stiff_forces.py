@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.analyses.load_scene import load_scene
+from tests.conftest import EXAMPLES
 from tests.error_estimate.test_against_truth import ratio
 from tests.solve.test_stiff_reactions import REACTIONS, four_bar
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
@@ -85,3 +87,12 @@ def test_stiff_directions_that_turn_within_a_step(rtol):
     truth = stiffmbs.run(scene, solver="radau", rtol=1e-10, errors=False)
     for name in ("child.x", "child.y", "plank.angle", "sack.y", "pivot.fy", "strap.fy"):
         assert 0.7 < ratio(found, name, truth[name]) < 1.4, name
+
+
+def test_a_step_with_a_large_error_of_its_own_stretches_no_stiff_spring():
+    """One linear correction of the largest local error left springs of 800 kN/m stretched: their bars were 28 times the errors."""
+    scene = load_scene(EXAMPLES / "governor.yaml")
+    found = stiffmbs.run(scene, solver="bdf", rtol=1e-5, errors=True)
+    truth = stiffmbs.run(scene, solver="radau", rtol=1e-9, errors=False)
+    for name in ("right_spring.fx", "left_spring.fz", "right_hinge.fy", "slider.az", "right.wdy"):
+        assert 0.5 < ratio(found, name, truth[name]) < 2.0, name
