@@ -92,6 +92,8 @@ from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity
 from .studies.sensitivities.sensitivities import sensitivities as sensitivities
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
+from .studies.simulations import Simulations as Simulations
+from .studies.simulations import simulations as simulations
 from .studies.suspension.kinematics_and_compliance import KinematicsAndCompliance as KinematicsAndCompliance
 from .studies.suspension.kinematics_and_compliance import kinematics_and_compliance as kinematics_and_compliance
 from .studies.suspension.road_loads import RoadLoads as RoadLoads

@@ -78,6 +78,11 @@ class JointCoordinates:
         self._cells["t"] = t
         self.follow(t)
 
+    def continue_from(self, t: float, coordinates: np.ndarray, rates: np.ndarray) -> None:
+        """Take all values at a time, s, as they are."""
+        self.coordinates[:], self.rates[:] = coordinates, rates
+        self._cells["t"] = t
+
     def follow(self, t: float) -> None:
         """Compute all values at the watched state and a later time, s."""
         self._follow(t, *self._memory, self._at)

@@ -7,7 +7,7 @@ import numbers
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 
@@ -20,12 +20,11 @@ from ..elements.turns import TURN
 from ..errors import AssemblyError, ChannelError, InputError, SolverError, StiffmbsError, prefixed
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.channels import channels_of, turns_of
-from ..results.files import written_whole
 from ..results.frames import places_of_channels
 from ..results.instant import Instant
 from ..results.joint_coordinates import JointCoordinates
-from ..results.provenance import PROVENANCE, provenance_of
-from ..results.saved_state import TURNS, SavedState
+from ..results.provenance import provenance_of
+from ..results.saved_state import SavedState
 from ..run_checks.tables import may_refuse, refuse_departure
 from ..solve.error_control.relaxation import drift_at
 from ..solve.events.restart import restarted
@@ -35,14 +34,11 @@ from ..tuning import in_use
 from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import InputNumbers, Inputs
 from .joint_pose import JointPose, named_coordinates
-from .stepping import FixedSteps, Stepper, stepper_of
+from .saved_simulation import exactly_saved, inputs_and_state, write_simulation
+from .stepping import FixedSteps, Moment, Stepper, stepper_of
 
 OWN_INPUTS = "inputs"
 """Section of a scene with its inputs."""
-INPUT = "simulation/input/"
-"""Prefix of the names of inputs in files of saved simulations."""
-EXACT = "simulation/state"
-"""Name of the coordinates and velocities in such files."""
 DRIFT_CHECK_INTERVAL = 64
 """Number of steps between checks for drift of relaxed constraints, in addition to those at steps 1, 2, 4, 8, ..."""
 
@@ -214,6 +210,22 @@ class Simulation:
         return self._joints
 
     @property
+    def moment(self) -> Moment:
+        """Return all that the next steps depend on, but for the history of `bdf` and `radau`."""
+        joints = self._current_joints()
+        state, inputs = np.concatenate([self.q, self.u]), self._inputs.held.values.copy()
+        return Moment(np.array(self.t), state, inputs, joints.coordinates.copy(), joints.rates.copy())
+
+    @moment.setter
+    def moment(self, at: Moment) -> None:
+        n_q, self.t = len(self._stepper.q), float(at.t)
+        self._inputs.set(at.inputs)
+        self._stepper.restart(self.t, at.state[:n_q], at.state[n_q:])
+        self._joints.continue_from(self.t, at.coordinates, at.rates)
+        self._followed = True
+        self._forget()
+
+    @property
     def inputs(self) -> dict[str, float]:
         """Return the current values of the inputs."""
         return dict(self._inputs.values)
@@ -360,6 +372,31 @@ class Simulation:
         self._places = places_of_channels(self._job.dynamics.system, stepper.q, stepper.u)
         self._joints.watch(stepper.q, stepper.u)
 
+    def may_take_each(self, dt: float, of: Moment) -> bool:
+        """Return True if `take_each` can take a step of dt from each of many moments; raise an InputError if an input is refused."""
+        inputs, stepper = self._inputs, self._stepper
+        if not (isinstance(stepper, FixedSteps) and inputs.affine) or inputs.of_time or self._bounded or self._relaxed:
+            return False
+        valid = inputs.valid_rows(of.inputs)
+        if valid < len(of.inputs):
+            with prefixed(f"simulation {valid}: "):
+                self.set_inputs(of.inputs[valid])
+        return stepper.may_take_each(float(of.t.min()), float(of.t.max()) + dt)
+
+    def take_each(self, dt: float, of: Moment, statuses: np.ndarray) -> str:
+        """Take one step of dt from each of many moments, as `FixedSteps.take_each`."""
+        assert isinstance(self._stepper, FixedSteps)
+        return self._stepper.take_each(dt, of, statuses, self._inputs.held, self._joints)
+
+    def column_of(self, channel: str) -> int | None:
+        """Return the place of a channel in (q, u), or None if it is none of these."""
+        values, number = self._places.get(channel, (None, 0))
+        return None if values is None else number + (len(self._stepper.q) if values is self._stepper.u else 0)
+
+    def checked_inputs(self, values: Inputs, n: int) -> np.ndarray:
+        """Return the inputs of n simulations, one row for each; raise an InputError if there is no such input or a value is invalid."""
+        return self._inputs.rows(values, n)
+
     def set_inputs(self, inputs: Inputs) -> None:
         """Set inputs from now on, by name, where others keep their values, or all in the order of `inputs`.
 
@@ -443,18 +480,13 @@ class Simulation:
         InputError
             If the file has another suffix.
         """
-        file = Path(path)
-        if file.suffix != ".npz":
-            raise InputError(f"save {file}: found the ending '{file.suffix}', expected .npz")
-        state = self.state
-        content: dict[str, Any] = {name: np.array([value]) for name, value in state.channels.items()}
-        content |= {TURNS + name: np.array([value]) for name, value in state.turns.items()}
-        content |= {INPUT + name: np.array(value) for name, value in self._inputs.values.items()}
-        content[EXACT] = state.exact
-        content[PROVENANCE] = np.array(
-            provenance_of(self._job.data, self._job.settings, state=self._job.start_from).as_json()
+        write_simulation(
+            path,
+            self.t,
+            self.state,
+            self._inputs.values,
+            provenance_of(self._job.data, self._job.settings, state=self._job.start_from),
         )
-        written_whole(file, lambda part: np.savez(part, time=np.array([self.t]), **content))
 
     def load(self, path: StartFrom) -> None:
         """Continue from a saved state: a file that `save` or ``stiffmbs run -o`` wrote, a `SavedState` or a `Solution`.
@@ -469,22 +501,9 @@ class Simulation:
             raise InputError("load: found None, expected a file of results, a Solution, or a state of one")
         job = self._job
         placed = started_from(job.dynamics.system, in_pose_of(found, job.data), found)
-        exact = found.exact
-        if isinstance(path, str | Path) and Path(path).suffix == ".npz":
-            with np.load(path) as archive:
-                self._inputs.set(
-                    {k.removeprefix(INPUT): float(archive[k]) for k in archive.files if k.startswith(INPUT)}
-                )
-                exact = archive.get(EXACT)
-        self._stepper.restart(found.t, *_exactly(placed.q, placed.u, exact))
+        inputs, exact = inputs_and_state(path, found.exact)
+        self._inputs.set(inputs)
+        self._stepper.restart(found.t, *exactly_saved(placed.q, placed.u, exact))
         self.t = found.t
         self._follow_from(found.channels)
         self._forget()
-
-
-def _exactly(q: np.ndarray, u: np.ndarray, exact: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-    """Return saved coordinates and velocities if they are those of the channels, which rounding has changed, else these."""
-    by_channels = np.concatenate([q, u])
-    if exact is None or exact.shape != by_channels.shape or not np.allclose(exact, by_channels, rtol=1e-9, atol=1e-9):
-        return q, u
-    return exact[: len(q)], exact[len(q) :]

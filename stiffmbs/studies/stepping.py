@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from ..solve.engine import Reached
 from ..solve.events.refusals import refuse_beyond_limits
 from ..solve.events.restart import restarted
 from ..solve.explicit.fixed import (
+    EACH_IN_LOOP,
     MANY_IN_LOOP,
     ONE_IN_LOOP,
     failed,
@@ -132,6 +133,20 @@ class Stepper(Protocol):
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Continue from another state."""
+
+
+class Moment(NamedTuple):
+    """All that the next step of a simulation depends on, but for the history of `bdf` and `radau`; or one row for each of many.
+
+    - `t`: time, s. `state` of shape (n_q + n_u,): (q, u). `inputs` of shape (inputs,).
+    - `coordinates`, `rates` of shape (joints,): those of joints.
+    """
+
+    t: np.ndarray
+    state: np.ndarray
+    inputs: np.ndarray
+    coordinates: np.ndarray
+    rates: np.ndarray
 
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
@@ -253,6 +268,7 @@ class FixedSteps:
         self.q, self.u, self.time, self.length = self._work.q, self._work.u, t, 0.0
         self._t, self._at = t, self._work.at
         self._one, self._one_long, self._many = ONE_IN_LOOP.short_call, ONE_IN_LOOP.call, MANY_IN_LOOP.call
+        self._each = EACH_IN_LOOP.call
         system = dynamics.system
         self._has_events, self._has_inputs = system.n_event_functions > 0, system.has_inputs
         self._has_limits = system.first_limit < system.n_event_functions
@@ -298,6 +314,19 @@ class FixedSteps:
         self._warn_of_growth()
         return len(values)
 
+    def may_take_each(self, t: float, end: float) -> bool:
+        """Return True if steps between two times, s, may be taken by `take_each`."""
+        return not (self._has_limits or (self._has_inputs and self._meets(t, end)))
+
+    def take_each(self, dt: float, of: Moment, statuses: np.ndarray, held: HeldInputs, joints: JointCoordinates) -> str:
+        """Take one step of dt from each of many moments, which are overwritten if their statuses are not negative.
+
+        Return a sentence if a linearly implicit step has not resolved a growing motion, else an empty string.
+        """
+        count = steps_between(0.0, dt, self._step)
+        self._each(dt, count, len(of.t), *addresses(*of, statuses, held.table, joints.table), self._at)
+        return unresolved_growth(self._work) if self._may_grow else ""
+
     def _warn_of_growth(self) -> None:
         """Warn once if a linearly implicit step has not resolved a growing motion."""
         if self._may_grow and (sentence := unresolved_growth(self._work)):
@@ -305,14 +334,18 @@ class FixedSteps:
             warnings.warn(sentence, RuntimeWarning, stacklevel=4)
 
     def _breaks(self, end: float) -> bool:
-        """Return True if an input has a breakpoint up to a time, s; determine the features of inputs if they are not known."""
-        if self._dynamics.meets_no_feature(self._t, end):
-            return self._t != self.time
-        if not self._first <= self._t < end <= self._end or self._changes != self._dynamics.input_changes:
-            self._first, self._end = self._t, end + self._settings.duration
+        """Return True if an input has a breakpoint between the current state and a time, s."""
+        return self._t != self.time or self._meets(self._t, end)
+
+    def _meets(self, t: float, end: float) -> bool:
+        """Return True if an input has a breakpoint between two times, s."""
+        if self._dynamics.meets_no_feature(t, end):
+            return False
+        if not self._first <= t < end <= self._end or self._changes != self._dynamics.input_changes:
+            self._first, self._end = t, end + self._settings.duration
             self._features = self._dynamics.input_features(self._first, self._end)
             self._changes = self._dynamics.input_changes
-        return self._t != self.time or _breaks(self._features, self._t, end)
+        return _breaks(self._features, t, end)
 
     def _run(self, t: float) -> None:
         """Advance by a short run, which restarts at breakpoints of inputs; the state is kept if it fails."""

@@ -35,10 +35,11 @@ FIXED_STEP = tuned("fixed_steps", FixedStepParameters())
 FIXED_STEPS = Routine(
     "stiffmbs.solve.explicit.native.fixed_steps", "fixed_steps", "int64(float64, float64, int64, int64*)"
 )
-ONE_IN_LOOP, MANY_IN_LOOP = together(
+ONE_IN_LOOP, MANY_IN_LOOP, EACH_IN_LOOP = together(
     "stiffmbs.solve.explicit.native.in_loop",
     one_in_loop="int64(float64, float64, int64, int64*)",
     many_in_loop="int64(float64, float64, int64, int64, float64*, int64*, int64*, int64*)",
+    each_in_loop="void(float64, int64, int64, float64*, float64*, float64*, float64*, float64*, int64*, int64*, int64*, int64*)",
 )
 
 

@@ -1,4 +1,4 @@
-"""The cart-pendulum under a PD controller, 10 000 steps of 1 ms; it, two arms and a half car with new inputs at each step; the car."""
+"""The cart-pendulum under a PD controller, 10 000 steps of 1 ms; it, two arms and a half car with new inputs at each step; the car; a thousand arms."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from stiffmbs.model.read_scene import read_scene
 
 from ..by_hand import cart_pendulum as hand
 from ..stepping.controlled import Stepping
+from ..stepping.in_a_batch import InABatch
 from ..stepping.in_the_loop import InTheLoop
 from .cart_pendulum import SCENE as FREE
 
@@ -68,4 +69,6 @@ BENCHMARKS = (
         steps=200,
         schemes=("linearly_implicit_euler", "extrapolated_euler", "bdf", "radau"),
     ),
+    InABatch("arms_in_a_batch", SCENES / "arm.xml", tuple(f"m{k}_input" for k in range(1, 6)), 0.1),
+    InABatch("seven_joints_in_a_batch", SCENES / "seven_joints.xml", tuple(f"m{k}_input" for k in range(1, 8)), 0.1),
 )

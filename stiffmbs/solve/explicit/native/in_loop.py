@@ -1,11 +1,12 @@
-"""Steps of a simulation by fixed steps, each with its own inputs, in one call."""
+"""Steps of simulations by fixed steps, each with its own inputs, in one call."""
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, shifted, state_view
+from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.dynamics.native.held_inputs import take_inputs
 from stiffmbs.dynamics.native.joint_coordinates import follow_joints
 from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view, held_inputs_view, joint_coordinates_view
 from stiffmbs.solve.explicit.native.fixed_steps import take_steps
-from stiffmbs.solve.explicit.native.stages import explicit_view, scheme_view
+from stiffmbs.solve.explicit.native.stages import explicit_view, load_state, rates, scheme_view
 
 
 @compiled
@@ -51,3 +52,40 @@ def many_in_loop(start, dt, count, n, values, held, joints, explicit):
         t += dt
         follow_joints(j, t, x.y, shifted(x.y, x.n_q))
     return n
+
+
+@compiled
+def _begin_at_zeros(x, t):
+    """Compute the rates of a state, for a first step that begins where event functions may be zero."""
+    c, m = scheme_view(x.scheme), dynamics_view(x.dynamics)
+    s = state_view(m.state)
+    if x.n_event_functions > 0 and c.by_stages:
+        _forget(x, m)
+        load_state(s, x.y)
+        x.t = t
+        if rates(x, s, m, c.stages, t) == 0:
+            copied(x.lam, s.lam, s.n_c)
+            x.started = 0
+
+
+def each_in_loop(dt, count, n, times, states, values, coordinates, rates, statuses, held, joints, explicit):
+    """Take one step of dt from each of n states (q, u), with times, rows of inputs and coordinates of joints of their own.
+
+    A state without a step, whose status is negative, is not changed.
+    """
+    x, i, j = explicit_view(explicit), held_inputs_view(held), joint_coordinates_view(joints)
+    for k in range(n):
+        state, coordinate, rate = shifted(states, k * x.n), shifted(coordinates, k * j.n), shifted(rates, k * j.n)
+        copied(x.y, state, x.n)
+        take_inputs(i, shifted(values, k * i.n))
+        _begin_at_zeros(x, times[k])
+        statuses[k] = _one(x, times[k], times[k] + dt, count)
+        if statuses[k] == 0:
+            j.t = times[k]
+            copied(j.coordinate, coordinate, j.n)
+            copied(j.rate, rate, j.n)
+            times[k] += dt
+            copied(state, x.y, x.n)
+            follow_joints(j, times[k], x.y, shifted(x.y, x.n_q))
+            copied(coordinate, j.coordinate, j.n)
+            copied(rate, j.rate, j.n)
