@@ -39,7 +39,7 @@ READ_BY_RICH = "COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "J
 @click.command(short_help="Solve a scene.")
 @click.argument("scene")
 @output_option(
-    "Write every channel: .csv, .npz, .nc, .tab or .res; by default SCENE.results.npz, or no file with --json."
+    "Write every channel: .csv, .npz, .nc, .mat, .xlsx, .parquet, .tab or .res; by default SCENE.results.npz, or no file with --json."
 )
 @option("--figure PATH", "Draw the scene's figure: .png, .svg or .pdf.")
 @option("--json", "Print one JSON object on one line instead of the summary.", "as_json")

@@ -1,4 +1,4 @@
-"""Writing of every channel over time to a file: .csv, .npz, .nc, .tab, .res."""
+"""Writing of every channel over time to a file: .csv, .npz, .nc, .mat, .xlsx, .parquet, .tab, .res."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from ..dynamics.storage import blocks, release
 from ..errors import InputError, refuse_missing
 from ..reading.ascii import in_ascii
 from ..reading.files.quoted import quoted
+from .other_programs import write_excel, write_matlab, write_parquet
 from .provenance import Provenance, metadata_file
 from .saved import record
 from .solution import Solution
@@ -111,16 +112,30 @@ WRITERS: dict[str, Callable[[Path, Solution], None]] = {
     ".csv": _write_csv,
     ".npz": _write_npz,
     ".nc": _write_netcdf,
+    ".mat": write_matlab,
+    ".xlsx": write_excel,
+    ".parquet": write_parquet,
     ".tab": _write_table,
     ".res": _write_adams,
 }
 
 
+WITH_ORIGIN = ".npz", ".nc", ".mat", ".xlsx", ".parquet"
+"""Endings of files that hold the origin of the results themselves."""
 JINJA, MATPLOTLIB, MESHIO, XARRAY = (
     {"jinja2": "report"}, {"matplotlib": "plot"}, {"meshio": "flexible"}, {"xarray": "netcdf"},
 )  # fmt: skip
 KINDS: dict[str, dict[str, dict[str, str]]] = {
-    "results": {".csv": {}, ".npz": {}, ".nc": XARRAY, ".tab": {}, ".res": {}},
+    "results": {
+        ".csv": {},
+        ".npz": {},
+        ".nc": XARRAY,
+        ".mat": {},
+        ".xlsx": {"openpyxl": "tables"},
+        ".parquet": {"pyarrow": "tables"},
+        ".tab": {},
+        ".res": {},
+    },
     "cases": {".nc": XARRAY, ".csv": XARRAY, ".html": {**XARRAY, **JINJA}},
     "curves": {".csv": {}},
     "curves of an axle": {".csv": {}, ".html": JINJA},
@@ -164,14 +179,14 @@ def refuse_path(option: str, path: Path, kind: str) -> None:
 def write(path: Path, solution: Solution) -> None:
     """Write all channels to a file, completely or not at all.
 
-    The suffix selects the format: .csv (a header line of names and units, time first), .npz, .nc, .tab (tab-separated
-    columns), or .res (Adams' XML).  A file .npz has arrays by channel name, ``time``, and further data for
+    The suffix selects the format: .csv (a header line of names and units, time first), .npz, .nc, .mat, .xlsx, .parquet, .tab
+    (tab-separated columns), or .res (Adams' XML).  A file .npz has arrays by channel name, ``time``, and further data for
     `Solution.load` under names with a slash.  Channels without a unique value are marked: by a column ``rail.fy.not_unique`` of ones, an array
     ``not_unique`` of names, or the attribute ``unique`` of each variable.  The origin of the results is in the file, or next
     to a table in ``NAME.csv-metadata.json``.
     """
     written_whole(path, lambda part: WRITERS[path.suffix](part, solution))
-    if path.suffix not in (".npz", ".nc"):
+    if path.suffix not in WITH_ORIGIN:
         write_metadata(path, solution.provenance)
 
 

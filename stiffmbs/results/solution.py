@@ -173,15 +173,15 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         refuse_missing("xarray", "'stiffmbs[netcdf]'")
         import xarray
 
+        from .other_programs import about
+
         variables = {}
         for name, values in self.channels.items():
             unit = self.unit(name)
             known = {"channel": name, "unique": int(name not in self.not_unique), **({"units": unit} if unit else {})}
             variables[name] = ("time", values, known)
-        about = {"title": self.name, "outcome": self.outcome.name, "message": self.message}
-        about |= self.provenance.as_texts() if self.provenance else {}
         time = xarray.Variable("time", self.time, {"units": "s"})
-        return xarray.Dataset(variables, coords={"time": time}, attrs=about)
+        return xarray.Dataset(variables, coords={"time": time}, attrs=about(self))
 
     def save(self, path: str | Path) -> None:
         """Write every channel to a file, completely or not at all, as ``stiffmbs run -o`` does.
@@ -189,7 +189,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         Parameters
         ----------
         path : str or Path
-            Name in .npz (which `load` reads), .csv, .nc, .tab or .res.
+            Name in .npz (which `load` reads), .csv, .nc, .mat, .xlsx, .parquet, .tab or .res.
 
         Raises
         ------

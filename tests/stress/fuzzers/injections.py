@@ -25,6 +25,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+from scipy.io import loadmat
 
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
 
@@ -366,7 +367,7 @@ def _table(path: Path, content: bytes) -> None:
 
 
 READERS: dict[str, Callable[[Path, bytes], Any]] = {
-    ".npz": lambda path, content: dict(np.load(path)), ".csv": _table, ".nc": _netcdf, ".fmu": _archive,
+    ".npz": lambda path, content: dict(np.load(path)), ".mat": lambda path, content: loadmat(path), ".xlsx": _archive, ".parquet": _ends(b"PAR1"), ".csv": _table, ".nc": _netcdf, ".fmu": _archive,
     ".res": lambda path, content: ElementTree.fromstring(content), ".svg": lambda path, content: ElementTree.fromstring(content),
     ".html": _ends(b"</html>"), ".adm": _ends(b"END"), ".tab": _ends(b""), ".png": _ends(b"IEND\xaeB`\x82"),
 }  # fmt: skip
