@@ -47,7 +47,7 @@ _LATER = {
 }  # fmt: skip
 """Module of each name that is loaded on first use; a different name in that module follows a colon."""
 
-_MODULES = {"fields": ".fields", "si": ".reading.units.si", "spatial": ".spatial"}
+_MODULES = {"fields": ".fields", "gym": ".gym", "si": ".reading.units.si", "spatial": ".spatial"}
 
 _OFFERED = "AssemblyError", "InputError", "SolverError", "StiffmbsError", "si", *_LATER
 

@@ -20,6 +20,7 @@ from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
 from .local_errors import nonlinear_defects
 from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
+from .singular_poses import refuse_singular
 from .transport import OF_BDF, Transport
 
 
@@ -125,8 +126,8 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
 
 
 def _is_free(system: System) -> bool:
-    """Return True if constraints and drives leave errors a direction."""
-    return int(system.active.sum()) < system.n_u or len(with_rates(system)) > 0
+    """Return True if the equations of positions leave errors a direction, or a state has a rate."""
+    return int((system.active & system.holonomic).sum()) < system.n_u or len(with_rates(system)) > 0
 
 
 def _are_lost(system: System, q: np.ndarray, errors: np.ndarray) -> np.ndarray:
@@ -157,7 +158,13 @@ def _prepared(
         return np.asarray(np.abs(found[:, -1] / points.typical).max(axis=1))
 
     def nonlinear(steps: np.ndarray) -> Nonlinear:
-        return nonlinear_defects(dynamics, transport, points, of_points, defects, steps)
+        rows = np.append(len(points.t) * np.arange(3) // 3, points.rows[steps].ravel())  # others show usual poses
+        q, u = np.hsplit(points.states[rows], [dynamics.system.n_q])
+        refuse_singular(dynamics, points.t[rows], q, u)  # rates are those of rounding there
+        found, known = nonlinear_defects(dynamics, transport, points, of_points, defects, steps)
+        return found, known & ~(
+            bool(piece.fired) & (steps == len(defects) - 1)
+        )  # the last rates may be those after an event
 
     means = _with_large_errors(points, defects, local_errors, nonlinear, at)
     of_rows = defects if piece.points > 1 else defects[:, -1:]

@@ -23,7 +23,7 @@ from .along_run import StateErrors, state_errors
 from .channels import channel_errors
 from .evaluated import evaluated
 from .parameters import ESTIMATE
-from .singular_poses import nearly_singular
+from .singular_poses import refuse_singular
 
 LOST = NoteKind(
     "solution-lost",
@@ -111,10 +111,7 @@ def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:
         return None
     before = slice(0, int(np.argmax(found.lost)) + 1)
     at = evaluated(dynamics, found.t[before], found.recorded_q[before], found.recorded_u[before])
-    singular = nearly_singular(dynamics, at)
-    if singular.any():
-        t = at.t[np.argmax(singular)]
-        raise SolverError(f"no linear equations transport errors through the nearly singular pose at t = {t:.4g} s")
+    refuse_singular(dynamics, at.t, at.q, at.u)
     return float(found.t[before.stop - 1])
 
 

@@ -5,36 +5,45 @@ from __future__ import annotations
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics
-from .evaluated import Evaluated
+from ..errors import SolverError
 from .parameters import ESTIMATE
 
 
-def nearly_singular(dynamics: Dynamics, at: Evaluated) -> np.ndarray:
+def refuse_singular(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> None:
+    """Raise a SolverError if some of the states are so near to a singular pose that errors are not transported through it."""
+    found = nearly_singular(dynamics, t, q, u)
+    if found.any():
+        raise SolverError(
+            f"no linear equations transport errors through the nearly singular pose at t = {t[np.argmax(found)]:.4g} s"
+        )
+
+
+def nearly_singular(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return a mask of the states so near to a singular pose that displacements on the constraints are not linear there.
 
     At a distance d, as a part of the usual one, their nonlinearity is `ESTIMATE.difference` / d^2.
     """
     system = dynamics.system
     scale = system.per_velocity(system.size, 1.0)
-    matrices = (_velocity_constraints(dynamics, at) * scale)[:, system.active]
+    matrices = (_velocity_constraints(dynamics, t, q, u) * scale)[:, system.active]
     if not 0 < matrices.shape[1] < matrices.shape[2]:
-        return np.zeros(len(at.t), dtype=bool)
-    sizes = np.linalg.norm(matrices, axis=2, keepdims=True)
+        return np.zeros(len(t), dtype=bool)
+    sizes = np.linalg.norm(matrices, axis=2, keepdims=True).max(axis=0)  # a row may vanish in the pose itself
     r = np.linalg.qr((matrices / np.where(sizes > 0, sizes, 1.0)).transpose(0, 2, 1), mode="r")
     least = np.abs(np.diagonal(r, axis1=1, axis2=2)).min(axis=1)
     return np.asarray(ESTIMATE.difference > ESTIMATE.large * (least / least.max()) ** 2)
 
 
-def _velocity_constraints(dynamics: Dynamics, at: Evaluated) -> np.ndarray:
+def _velocity_constraints(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return J of many states, shape (count, n_c, n_u)."""
     system, state = dynamics.system, dynamics.state
     term = system.term("motion", "J")
-    values = np.empty((len(at.t), len(term.source)))
-    for k in range(len(at.t) if len(term.source) else 0):
-        state.q[:], state.u[:] = at.q[k], at.u[k]
-        state.evaluate("motion", float(at.t[k]))
+    values = np.empty((len(t), len(term.source)))
+    for k in range(len(t) if len(term.source) else 0):
+        state.q[:], state.u[:] = q[k], u[k]
+        state.evaluate("motion", float(t[k]))
         values[k] = state.values["motion"][term.source]
-    found = np.zeros((len(at.t), system.n_c, system.n_u))
+    found = np.zeros((len(t), system.n_c, system.n_u))
     for entry, (row, column) in enumerate(zip(term.row.tolist(), term.column.tolist(), strict=True)):
         found[:, row, column] += values[:, entry]
     return found
