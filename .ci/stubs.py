@@ -39,6 +39,7 @@ PLANE = """
 from collections.abc import Mapping, Sequence
 from typing import Literal
 
+from . import gym as gym
 from . import spatial as spatial
 from .adams.listing import listed_statements as listed_statements
 from .comparison.compare import compare as compare
@@ -93,6 +94,8 @@ from .studies.fmu.build import build_fmu as build_fmu
 from .studies.follow import follow as follow
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
+from .studies.simulations import Simulations as Simulations
+from .studies.simulations import simulations as simulations
 from .studies.suspension.kinematics_and_compliance import KinematicsAndCompliance as KinematicsAndCompliance
 from .studies.suspension.kinematics_and_compliance import kinematics_and_compliance as kinematics_and_compliance
 from .studies.suspension.road_loads import RoadLoads as RoadLoads

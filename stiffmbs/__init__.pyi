@@ -37,6 +37,7 @@ from stiffmbs.model.beams.planar import BeamBody as _BeamBody
 from stiffmbs.reading.marker import Marker as _Marker
 from stiffmbs.reading.table import Table as _Table
 
+from . import gym as gym
 from . import spatial as spatial
 from .adams.listing import listed_statements as listed_statements
 from .analyses.check import Report as Report

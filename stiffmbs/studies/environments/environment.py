@@ -88,7 +88,7 @@ class Environment(gymnasium.Env[np.ndarray, np.ndarray]):
         if self._taken < 0:
             raise InputError("step: found no episode, expected a call of reset before")
         task, sims = self._task, self._sims
-        failure = task.step(sims, np.reshape(np.asarray(action, dtype=float), (1, -1)))
+        failure = task.step(sims, action, (len(task.actions),))
         self._taken += 1
         found = task.observed(sims)[0], float(task.rewards(sims)[0]), bool(task.terminated(sims)[0])
         return *found, self._taken >= task.steps, {"failure": failure} if failure else {}

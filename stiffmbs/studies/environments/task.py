@@ -1,4 +1,4 @@
-"""What is to be learnt on a scene: its inputs, what is observed, rewards, limits and random starts."""
+"""Tasks on a scene: inputs, observations, rewards, limits and random starts."""
 
 from __future__ import annotations
 
@@ -41,6 +41,8 @@ class Learnt:
             raise InputError(f"dt: found {dt!r}, expected a time greater than 0 s")
         if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or steps < 1:
             raise InputError(f"steps: found {steps!r}, expected a whole number, 1 or more")
+        if isinstance(actions, Mapping) and not actions:
+            raise InputError("actions: found no ranges, expected one of an input at least")
         if isinstance(observations, str) or not observations:
             raise InputError(f"observations: found {written(observations)}, expected a list of channels or formulas")
         return cls(
@@ -59,6 +61,7 @@ class Learnt:
             raise InputError(
                 f"actions: found no range of input '{others[0]}', expected one of each input of the scene: {', '.join(sims.inputs)}"
             )
+        self.begin(sims, np.ones(n, dtype=bool), np.random.default_rng(0))
         for formula in (*self.observations, self.reward, *(formula for formula, _ in self.limits)):
             with prefixed(f"'{formula.text}': "):
                 self._values(sims, formula)
@@ -73,8 +76,15 @@ class Learnt:
         )
         sims.reset(which, joints=joints, rates=rates)
 
-    def step(self, sims: Simulations, actions: np.ndarray) -> str:
-        """Take a step with an action for each simulation; return a sentence on failures, or an empty string."""
+    def step(self, sims: Simulations, actions: np.ndarray, shape: tuple[int, ...]) -> str:
+        """Take a step with an action for each simulation; return a sentence on failures, or an empty string.
+
+        Raise an InputError if the array of actions has not this shape.
+        """
+        actions = np.asarray(actions, dtype=float)
+        if actions.shape != shape:
+            raise InputError(f"actions: found an array of shape {actions.shape}, expected {shape}")
+        actions = actions.reshape(len(sims), len(self.actions))
         try:
             sims.step(self.dt, dict(zip(self.actions, actions.T, strict=True)))
         except SolverError as error:

@@ -80,7 +80,7 @@ class VectorEnvironment(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     def step(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Take a step of each environment; return observations, rewards, terminations, truncations and information."""
         task, sims, begun = self._task, self._sims, self._ended.copy()
-        failure = task.step(sims, np.asarray(actions, dtype=float).reshape(self.num_envs, -1))
+        failure = task.step(sims, actions, (self.num_envs, len(task.actions)))
         self._taken += 1
         if begun.any():
             self._begin()
