@@ -10,6 +10,7 @@ import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
+from ..dynamics.native.parameters import CONSISTENCY
 from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
 from .closed import Closed, closed
@@ -51,7 +52,7 @@ class StateErrors:
 
 
 LocalErrors = Callable[[np.ndarray, np.ndarray], np.ndarray]
-"""Sizes of the errors of some steps, by number, with some defects, from their starts."""
+"""Errors at the points of some steps, by number, with some defects, from their starts."""
 Nonlinear: TypeAlias = tuple[np.ndarray, np.ndarray]
 """Defects of some steps, and a mask of those that are known."""
 NonlinearDefects = Callable[[np.ndarray], Nonlinear]
@@ -154,8 +155,7 @@ def _prepared(
     of_points = unknowns[1:].reshape(*defects.shape[:2], -1)
 
     def local_errors(steps: np.ndarray, rates: np.ndarray) -> np.ndarray:
-        found = transport.apart(of_points[steps], points.sizes[steps], rates)
-        return np.asarray(np.abs(found[:, -1] / points.typical).max(axis=1))
+        return transport.apart(of_points[steps], points.sizes[steps], rates)
 
     def nonlinear(steps: np.ndarray) -> Nonlinear:
         rows = np.append(len(points.t) * np.arange(3) // 3, points.rows[steps].ravel())  # others show usual poses
@@ -225,23 +225,39 @@ def _with_large_errors(
     NaN in `defects`.
     """
     method, ends, rows, sizes = radau(points.points), points.ends, points.rows, points.sizes
+
+    def of_steps(errors: np.ndarray) -> np.ndarray:
+        return np.asarray(np.abs(errors[:, -1] / points.typical).max(axis=1))
+
+    def without(steps: np.ndarray, errors: np.ndarray) -> np.ndarray:
+        """Return the mean rates to the points of some steps without some errors there."""
+        return np.asarray(method.derivative @ (points.changes_in(rows[steps]) - errors) / sizes[steps, None, None])
+
     local = sizes[:, None, None] * (np.linalg.inv(method.derivative) @ defects)
-    exact = points.changes(points.exact)[1:].reshape(defects.shape)
-    missed, scale = not_smooth(exact, sizes, local)
-    found, before = defects.copy(), np.abs(local[:, -1] / points.typical).max(axis=1)
+    rates = points.changes(points.exact)[1:].reshape(defects.shape)
+    missed, scale = not_smooth(rates, sizes, local)
+    steps = np.flatnonzero(missed)
+    if len(steps):  # stiff forces that are out of balance are not smooth, but those of the solution are
+        rates[steps] = without(steps, local_errors(steps, defects[steps]))
+        missed &= not_smooth(rates, sizes, local)[0]
+    found, before = defects.copy(), of_steps(local)
     if dominant(before).any():  # with defects of stiff forces, which a step balances
-        before = local_errors(np.arange(len(sizes)), defects)
+        before = of_steps(local_errors(np.arange(len(sizes)), defects))
     steps = np.flatnonzero(missed | dominant(before))
     if len(steps):
-        rates, converged = nonlinear(steps)
-        found[steps[converged]], steps = rates[converged], steps[~converged | missed[steps]]
+        exact, converged = nonlinear(steps)
+        found[steps[converged]] = exact[converged]
+        open_ = ~converged | missed[steps]
+        steps, converged = steps[open_], converged[open_]
     if len(steps):
         curve = Curve.through(points.t[rows[steps]], points.states[rows[steps]], ends[steps], ends[steps + 1])
         places, most = np.append(0.0, method.nodes), ESTIMATE.intervals * len(points.t)
-        exact, _ = integrals_of_motion(curve, places, points.system.n_q, at, scale, most)
-        rates = method.derivative @ (points.changes_in(rows[steps]) - exact) / sizes[steps, None, None]
-        kept = missed[steps] | (local_errors(steps, rates) < before[steps])
-        found[steps[kept]], defects[steps[kept]] = rates[kept], np.nan
+        integrals, _ = integrals_of_motion(curve, places, points.system.n_q, at, scale, most)
+        exact = without(steps, integrals)
+        errors, plain = of_steps(local_errors(steps, exact)), of_steps(points.changes_in(rows[steps]) - integrals)
+        is_stiff = (errors < CONSISTENCY.restored * plain) | (plain < CONSISTENCY.restored * errors)
+        kept = np.where(converged, missed[steps] & ~is_stiff, missed[steps] | (errors < before[steps]))
+        found[steps[kept]], defects[steps[kept]] = exact[kept], np.nan
     return found
 
 

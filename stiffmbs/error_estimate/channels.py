@@ -65,7 +65,7 @@ class _Nodes:
 
     def line(self, t: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         """Return the errors of states at some times, each on the straight line through those at two nodes."""
-        part = ((t - self.t[first]) / (self.t[last] - self.t[first]))[:, None]
+        part = np.minimum((t - self.t[first]) / (self.t[last] - self.t[first]), 1.0)[:, None]
         return self.of_states[first] + part * (self.of_states[last] - self.of_states[first])
 
 
@@ -87,7 +87,7 @@ def channel_errors(
             q, u = whole
         rows.append(reports.rows(found.t, q, u, projected))
     kept = ~found.left_out
-    kept[[0, -1]] = True
+    kept[0] = True
     values, better = ({name: each[kept] for name, each in reports.channels(of, count).items()} for of in rows)
     errors = {name: difference(name, values[name], better[name]) for name in values}
     at, without = (of.at(kept) for of in rows)

@@ -88,11 +88,7 @@ def intervals():
     rates, of = np.zeros((16, 3, 6)), replace(points(np.ones(48)), points=3)
     rates[10] = 1.0
     along_run._with_large_errors(
-        of,
-        rates,
-        lambda _, rates: np.abs(rates).max(axis=(1, 2)),
-        lambda steps: (rates[steps], np.zeros(len(steps), dtype=bool)),
-        noise,
+        of, rates, lambda _, rates: rates, lambda steps: (rates[steps], np.zeros(len(steps), dtype=bool)), noise
     )
     return calls[-1] // len(kinks.GAUSS_NODES)
 
