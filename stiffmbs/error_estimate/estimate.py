@@ -73,25 +73,24 @@ def with_bars(solution: Solution, settings: RunSettings, dynamics: Dynamics, tra
     """Return a solution with error bars, with the sentence on its errors and a note if they are large."""
     size = dynamics.system.size
     absolute = settings.atol or settings.rtol * min(1.0, size)  # an error of it is not large, as where nothing moves
-    solution = replace(solution, estimate=ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large))
-    known = KnownErrors(solution)
+    estimate = ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large)
+    known = KnownErrors(replace(solution, estimate=estimate))
     if any(error > ESTIMATE.large for error in known.relative(largest_bar, "forces").values()):
-        solution = _without_rounding(solution, dynamics, trajectory)
-        known = KnownErrors(solution)
+        estimate = _without_rounding(estimate, dynamics, trajectory, float(solution.time[-1]))
+        known = KnownErrors(replace(solution, estimate=estimate))
     notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings, size))
     return replace(solution, estimate=known.estimate(), notes=(*solution.notes, *notes))
 
 
-def _without_rounding(solution: Solution, dynamics: Dynamics, trajectory: Trajectory) -> Solution:
-    """Return a solution that distinguishes forces from rounding; the state is changed.
+def _without_rounding(estimate: ErrorEstimate, dynamics: Dynamics, trajectory: Trajectory, t: float) -> ErrorEstimate:
+    """Return an estimate that distinguishes forces from rounding, of which they have at most the part of a note.
 
-    Rounding of coordinates at the end of the run is less than the note's part of a force that is distinguished.
+    `t`: last time of the results, s, at which the rounding of coordinates is taken; the state is changed.
     """
-    state, last = dynamics.state, len(solution.time) - 1
+    state, last = dynamics.state, int(np.searchsorted(trajectory.t, t))
     state.q[:], state.u[:] = trajectory.q[last], trajectory.u[last]
-    (_, force), (_, torque) = rounded_forces(state, float(solution.time[last]))
-    rounding = {"resolved_force": force / ESTIMATE.large, "resolved_torque": torque / ESTIMATE.large}
-    return replace(solution, estimate=replace(solution.estimate, **rounding))
+    (_, force), (_, torque) = rounded_forces(state, t)
+    return replace(estimate, resolved_force=force / ESTIMATE.large, resolved_torque=torque / ESTIMATE.large)
 
 
 def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings, size: float) -> Iterator[Note]:
