@@ -89,7 +89,7 @@ def _without_rounding(estimate: ErrorEstimate, dynamics: Dynamics, trajectory: T
     """
     state, last = dynamics.state, int(np.searchsorted(trajectory.t, t))
     state.q[:], state.u[:] = trajectory.q[last], trajectory.u[last]
-    (_, force), (_, torque) = rounded_forces(state, t)
+    (force, _), (torque, _) = map(max, rounded_forces(state, t))
     return replace(estimate, resolved_force=force / ESTIMATE.large, resolved_torque=torque / ESTIMATE.large)
 
 
