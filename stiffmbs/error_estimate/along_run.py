@@ -15,12 +15,11 @@ from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
 from .closed import Closed, closed
 from .coordinates import displaced, displacements, width, with_rates
-from .defects import Points, curve_of_bdf, woven
-from .evaluated import Evaluated, evaluated
+from .defects import Points, curve_of_bdf, nonlinear_defects, woven
+from .evaluated import Evaluated, evaluated, motion
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
-from .local_errors import nonlinear_defects
 from .parameters import ESTIMATE
-from .restarts import after_restart, is_autonomous, just_before, motion
+from .restarts import after_restart, is_autonomous, just_before
 from .singular_poses import refuse_singular
 from .transport import OF_BDF, Transport
 from .vibrations import FastMotions, excited_at_start

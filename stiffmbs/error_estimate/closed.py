@@ -14,9 +14,8 @@ import numpy as np
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.native.parameters import CONSISTENCY
 from .coordinates import as_rows, displaced, typical
-from .evaluated import Evaluated, evaluated
+from .evaluated import Evaluated, evaluated, motion
 from .parameters import ESTIMATE
-from .restarts import motion
 from .transport import Transport
 
 Closed: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]

@@ -1,7 +1,9 @@
 """Defects of the recorded states: their errors as those of the collocation equations over each step.
 
 At the points z_i of a step of length h, from z_0, these are d_i = sum_j D_ij (z_j - z_0) / h - F(z_i), the residual of a Radau method.
-As in Newton's iteration, the error does not depend on the points within a step to first order.
+As in Newton's iteration, the error does not depend on the points within a step to first order. Of the second order is a remainder that
+stretches stiff springs. Where errors x of steps are large, they are solutions of the nonlinear equations
+d_i = sum_j D_ij x_j / h - (F(z_i) - F(z_i - x_i)).
 """
 
 from __future__ import annotations
@@ -11,11 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..compile.system import System
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.native.parameters import CONSISTENCY
 from ..solve.radau.collocation import radau
-from .coordinates import as_rows, typical
-from .evaluated import Evaluated
+from .coordinates import as_rows, displaced, typical
+from .evaluated import Evaluated, evaluated, motion
 from .kinks import Curve
 from .parameters import ESTIMATE
+from .transport import Transport
 
 
 @dataclass(frozen=True)
@@ -130,3 +135,32 @@ def curve_of_bdf(of: Points) -> Curve:
     coefficients = np.zeros((len(steps), max(ours, theirs), of.states.shape[1]))
     coefficients[uneven, :ours], coefficients[~uneven, :theirs] = curve.coefficients[uneven], even.coefficients
     return replace(curve, coefficients=coefficients)
+
+
+def nonlinear_defects(
+    dynamics: Dynamics, transport: Transport, points: Points, unknowns: np.ndarray, defects: np.ndarray, steps: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """Return defects by which linear equations give the errors of some steps from their starts, and a mask of those that converge.
+
+    `unknowns`: `Transport.rows` at the points of all steps. `defects`: defects there, shape (steps, points, full).
+    """
+    rows, sizes, n_q = points.rows[steps, 1:], points.sizes[steps], points.system.n_q
+    exact, derivative = points.changes_of(points.exact[rows]), radau(points.points).derivative
+    errors, total = np.zeros_like(exact), np.zeros_like(exact)
+    last, converged, going = np.full(len(steps), np.inf), np.zeros(len(steps), dtype=bool), np.arange(len(steps))
+    while len(going):
+        states = points.states[rows[going]].reshape(-1, points.states.shape[1])
+        q, u = displaced(points.system, states[:, :n_q], states[:, n_q:], -errors[going].reshape(len(states), -1))
+        at = evaluated(dynamics, points.t[rows[going]].ravel(), np.ascontiguousarray(q), np.ascontiguousarray(u))
+        there = motion(points.system, at).reshape(exact[going].shape)
+        slopes = derivative @ errors[going] / sizes[going, None, None]
+        residuals = defects[steps[going]] + exact[going] - there - slopes
+        change = transport.apart(unknowns[steps[going]], sizes[going], residuals)
+        errors[going] += change
+        total[going] += residuals
+        size, whole = (np.abs(each / points.typical).max(axis=(1, 2)) for each in (change, errors[going]))
+        converged[going] = size <= ESTIMATE.large * whole
+        nearer = size <= CONSISTENCY.restored * last[going]
+        last[going] = size
+        going = going[nearer & ~converged[going]]
+    return total, converged

@@ -9,7 +9,7 @@ import numpy as np
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..errors import SolverError
 from ..solve.stiff_rows import with_stiff_forces
-from .coordinates import pose_rates, with_rates
+from .coordinates import as_rows, pose_rates, with_rates
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,11 @@ def evaluated(
     q, u, acceleration = (np.ascontiguousarray(each) for each in (rows.q, rows.u, rows.acceleration))
     q_rates = np.hstack([pose_rates(system, q, u), _trailing_rates(dynamics, t, q, u)])
     return Evaluated(t, q, u, acceleration, q_rates, rows)
+
+
+def motion(system: System, at: Evaluated) -> np.ndarray:
+    """Return the rates of states as rows (dq, du, ds): the change by a unit of time."""
+    return as_rows(system, at.q_rates, at.acceleration)
 
 
 def _trailing_rates(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:

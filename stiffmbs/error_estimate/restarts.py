@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from ..solve.events.restart import restarted
 from .coordinates import as_rows, displaced
-from .evaluated import Evaluated, evaluated
+from .evaluated import Evaluated, evaluated, motion
 from .parameters import ESTIMATE
 
 
@@ -37,11 +36,6 @@ def after_restart(
     if jumped:
         moved = _jumped(dynamics, before, float(after.t[0]), moved)
     return moved, late
-
-
-def motion(system: System, at: Evaluated) -> np.ndarray:
-    """Return the rates of states as rows (dq, du, ds): the change by a unit of time."""
-    return as_rows(system, at.q_rates, at.acceleration)
 
 
 def is_autonomous(dynamics: Dynamics, at: Evaluated) -> bool:

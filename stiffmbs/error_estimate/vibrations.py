@@ -15,8 +15,6 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
-from ..linear_analysis.state_space import state_matrix
-from ..linear_analysis.tangent_space import linearised
 from ..solve.error_control.newton import stiffness_at
 from .coordinates import pose_rates, with_rates
 from .evaluated import Evaluated
@@ -57,6 +55,9 @@ def excited_at_start(dynamics: Dynamics, states: Evaluated, points: int) -> Fast
     stiffness = stiffness_at(dynamics, float(t[0]))
     if max(np.sqrt(stiffness.of_positions), stiffness.of_velocities) * steps.max() < followed:
         return None
+    from ..linear_analysis.state_space import state_matrix
+    from ..linear_analysis.tangent_space import linearised
+
     scale = system.per_velocity(system.size, 1.0)
     try:
         _, acceleration = dynamics.accelerate(float(t[0]))

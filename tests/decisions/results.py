@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
@@ -16,6 +18,7 @@ from stiffmbs.results import (
     flexible_motion,
     joined,
     marker_motion,
+    other_programs,
     saved_state,
     scales,
 )
@@ -54,6 +57,16 @@ def largest_energy_without_a_check():
 def accepted(rtol):
     """Return the part of the exchanged energy that may be missing."""
     return energy_balance_notes._accepted(RunSettings(solver="bdf", rtol=rtol))
+
+
+def largest_sheet(axis):
+    """Return the rows or columns of a sheet that are expected at most."""
+    too_large = Record(time=np.broadcast_to(0.0, 10**7), channels={})
+    try:
+        other_programs.write_excel(Path("a.xlsx"), too_large)
+    except InputError as error:
+        return int(re.findall(r"\d+", str(error).partition("expected at most")[2])[axis])
+    return 0
 
 
 def ignored_energy(reaction, potential):
@@ -145,6 +158,9 @@ DECISIONS = {
     "results.joined:SAME_VALUE": largest_step_between_joined_runs,
     "results.joint_angles:UNCERTAIN_TURN": largest_difference_of_turns,
     "results.marker_motion:ALIGNED": smallest_angle_of_axes,
+    "results.other_programs:LONGEST_NAME": lambda: len(other_programs.variable_names(["a" * 1000])[0]),
+    "results.other_programs:MOST_ROWS": lambda: largest_sheet(0),
+    "results.other_programs:MOST_COLUMNS": lambda: largest_sheet(1),
     "results.scales:LITTLE": lambda: scale_of("a.x", a_x=0.0, b_x=1.0),
     "results.scales:LITTLE_FORCE": lambda: scale_of("j.fx", j_fx=0.0, k_fx=1.0),
     "results.scales:ROUNDING": farthest_saved_row,
@@ -161,6 +177,7 @@ EXPECTED = {
     "results.energy_balance_notes:OF_TOLERANCE": 1e-5,
     "results.energy_balance_notes:OF_POTENTIAL": 1e-10, "results.error_bars:SAFETY": 2.0, "results.error_bars:FINER": 1.1,
     "results.flexible_motion:AT_ONCE": 8, "results.joined:SAME_VALUE": 40, "results.joint_angles:UNCERTAIN_TURN": 14,
-    "results.marker_motion:ALIGNED": 160, "results.scales:LITTLE": 0.1, "results.scales:LITTLE_FORCE": 0.01, "results.scales:ROUNDING": 40,
+    "results.marker_motion:ALIGNED": 160, "results.other_programs:LONGEST_NAME": 63, "results.other_programs:MOST_ROWS": 1_048_576,
+    "results.other_programs:MOST_COLUMNS": 16_384, "results.scales:LITTLE": 0.1, "results.scales:LITTLE_FORCE": 0.01, "results.scales:ROUNDING": 40,
     "results.scales:FIXED": 1e-9, "results.scales:CROSSED": 1e-5, "results.scales:OF_GRAVITY": 4.905e-3, "results.scales:REQUEST_ROUNDING": 187,
 }  # fmt: skip
