@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..errors import SolverError
 from ..solve.stiff_rows import with_stiff_forces
