@@ -96,7 +96,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     from ..results.error_bars import bars_by_difference
     from .run import finished
 
-    steps, system, grid = _steps(trajectory), job.dynamics.system, job.grid
+    steps, grid = _steps(trajectory), job.grid
     breakpoints = restarts(job.dynamics, grid)
     times, at = _with_steps(solution, trajectory, breakpoints)
     for settings, part, how in _of_second_runs(job.settings, trajectory):
@@ -111,7 +111,7 @@ def _by_second_run(job: Job, trajectory: Trajectory, solution: Solution) -> Solu
     found = bars_by_difference(
         times, at, solution.channels, other.channels, part, breakpoints + grid.aside, ESTIMATE.numbers_at_once
     )
-    return with_bars(replace(solution, errors=found), job.settings, system.size)
+    return with_bars(replace(solution, errors=found), job.settings, job.dynamics, trajectory)
 
 
 def _of_second_runs(settings: RunSettings, trajectory: Trajectory) -> Iterator[tuple[RunSettings, float, str]]:

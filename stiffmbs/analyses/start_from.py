@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias, TypeVar
@@ -17,7 +17,6 @@ from ..errors import InputError
 from ..model.current_pose import CurrentPose, in_current_pose
 from ..model.model_data import ModelData
 from ..model.settings import RunSettings
-from ..presolve.subsystems import counters_of
 from ..reading.files.quoted import listed
 from ..reading.joint_name import FREE_COORDINATES
 from ..reading.names import owner_of
@@ -58,7 +57,7 @@ def in_pose_of(state: SavedState | None, model: Data) -> Data:
     if state is None:
         return model
     _refuse_others(model, state)
-    acted = state.elements if state.elements is not None else {owner_of(name) for name in state.channels}
+    acted = _acted(state)
     own = {name: angle for name in model.joints if np.isfinite(angle := state.turns.get(f"{name}/0", np.nan))}
     pose = CurrentPose(model, acted, {**_angles(state), **own}, _turns_set_up(state))
     places = _motion(model, state)[0].reshape(len(model.bodies), -1).tolist()
@@ -132,22 +131,26 @@ def started_from(system: System, model: ModelData, state: SavedState | None) -> 
 def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
     """Return the revolution counters.
 
-    Those of requests that the state does not have start at zero. Angles of joints that the state has are set later.
+    An angle between markers that the state has counted keeps its turns in each formula. Other angles that it has not
+    counted start at zero. Angles of joints that the state has are set later. Raise an InputError if it holds no counters.
     """
-    of_joint = {angle.place: angle.channel for angle in counted_angles(system)}
     of_requests = {name for name, _ in model.angle_counters()}
-    first = system.n_pose
-    turns = np.zeros(system.n_counters)
-    for (name, k), place in counters_of(system).items():
-        known = state.turn(name, k)
-        is_new = state.elements is not None and name not in state.elements
-        is_known = name in of_requests or of_joint[place] in state.channels or is_new
-        if known is None and not is_known:
+    turns, acted = np.zeros(system.n_counters), _acted(state)
+    has_all = state.elements is not None or bool(state.turns)
+    for angle in counted_angles(system):
+        known = state.turn(angle.element, angle.number, angle.measure)
+        is_new = has_all or angle.element in of_requests or angle.element not in acted
+        if known is None and not is_new and angle.channel not in state.channels:
             raise InputError(
-                f"{state.source}: found no count of the turns of '{name}', expected a file .npz of the same mechanism"
+                f"{state.source}: found no count of the turns of '{angle.element}', expected a file .npz of the same mechanism"
             )
-        turns[place - first] = known or 0.0
+        turns[angle.place - system.n_pose] = known or 0.0
     return turns
+
+
+def _acted(state: SavedState) -> Container[str]:
+    """Return the elements that acted before a state; those with a channel if it does not tell."""
+    return state.elements if state.elements is not None else {owner_of(name) for name in state.channels}
 
 
 def _states(system: System, state: SavedState) -> np.ndarray:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..compile.formula_shape import Shape
 from ..compile.group import Group
 from ..compile.system import System
-from ..elements.element import Joint
+from ..elements.element import Element, Joint
 from ..elements.joints.drive import Drive
+from ..elements.requests.output import CONTINUOUS_ANGLES
 from ..elements.turns import INITIAL_COUNT, TURN
+from ..reading.formula.formula import Formula
 from .dynamics import Dynamics
 
 
@@ -20,14 +23,17 @@ from .dynamics import Dynamics
 class CountedAngle:
     """Angle whose turns an element counts.
 
-    `place`: index of its counter in q. `element`: name of the element. `channel`: the coordinate of a joint, such as
-    ``hinge.angle``; None for other angles. `constrained`: true if the element's position equations contain the angle.
-    `driven`: true if the element is a drive.
+    `place`: index of its counter in q. `element`: name of the element. `number`: of the counter within the element.
+    `channel`: the coordinate of a joint, such as ``hinge.angle``; None for other angles. `measure`: the angle between
+    markers that a formula reads, ``az(bar.end, ground)``; empty for other angles. `constrained`: true if the element's
+    position equations contain the angle. `driven`: true if the element is a drive.
     """
 
     place: int
     element: str
+    number: int
     channel: str | None
+    measure: str
     constrained: bool
     driven: bool
 
@@ -42,11 +48,42 @@ def counted_angles(system: System) -> Iterator[CountedAngle]:
     }
     for group in system.groups:
         first = 2 * group.kind.n_bodies + 1
-        for name, index, places in zip(group.names, group.index, group.counters, strict=True):
-            for of, place in zip(group.record.counted, places, strict=True):
+        if not group.record.n_counters:
+            continue
+        for name, element, index, places in zip(group.names, group.elements, group.index, group.counters, strict=True):
+            measures = _measures(group, element)
+            for k, (of, place) in enumerate(zip(group.record.counted, places, strict=True)):
+                measure = "" if of else next(measures, "")
                 channel = f"{joint_at[index[first + of[0]]]}.{of[1]}" if of else _own_angle(group, name)
                 constrained, driven = group.record.n_holonomic > 0, issubclass(group.kind.element, Drive)
-                yield CountedAngle(int(place), name, channel, constrained, driven)
+                yield CountedAngle(int(place), name, k, channel, measure, constrained, driven)
+
+
+def _measures(group: Group, element: Element) -> Iterator[str]:
+    """Yield the angles between markers in the formulas of an element, in the order of the counters of no joint.
+
+    They come before the angles of the element's own equations, but after those of joints that it refers to. Yield none if the
+    formulas are not those of the kind alone, as they contain outputs of states.
+    """
+    of_formulas = [
+        dict.fromkeys((name, markers) for name, markers in formula.measures() if name in CONTINUOUS_ANGLES)
+        for _, formula in element.parts(Formula)
+    ]
+    found = [measure for measures in of_formulas for measure in measures]
+    of_kind = [name for name in _measured(group.kind.fields) if name in CONTINUOUS_ANGLES]
+    others = group.record.counted.count(None) - len(found)
+    if [name for name, _ in found] == of_kind and not (group.kind.n_joints and others):
+        yield from (f"{name}({', '.join(marker.label for marker in markers)})" for name, markers in found)
+
+
+def _measured(fields: Iterable[tuple[str, Shape]]) -> Iterator[str]:
+    """Yield the measures in formulas of a kind."""
+    for _, shape in fields:
+        match shape:
+            case ("formula", _, _, measures, *_):
+                yield from (name for name, _ in measures)
+            case ("several", parts):
+                yield from _measured(("", part) for part in parts)
 
 
 def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], bool] = lambda name: True) -> None:

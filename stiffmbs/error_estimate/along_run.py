@@ -23,6 +23,7 @@ from .parameters import ESTIMATE
 from .restarts import after_restart, is_autonomous, just_before, motion
 from .singular_poses import refuse_singular
 from .transport import OF_BDF, Transport
+from .vibrations import FastMotions, excited_at_start
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class StateErrors:
       large as jumps; at restarts, where stiff forces are not in balance; and where they could not be balanced.
     - `lost`: mask of nodes with errors too large for linear equations; if there is one, `q` and `u` are those of the integrator.
     - `restarts`: times at which the integrator started again, s.
+    - `fast`: motions that the start excites and the steps do not follow.
     """
 
     t: np.ndarray
@@ -49,6 +51,7 @@ class StateErrors:
     left_out: np.ndarray
     lost: np.ndarray
     restarts: np.ndarray
+    fast: FastMotions | None = None
 
 
 LocalErrors = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -123,7 +126,8 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         np.concatenate(parts)
         for parts in zip(*(_without_errors(dynamics, transport, each) for each in found), strict=True)
     )
-    return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out | fails, lost, restarts)
+    fast = excited_at_start(dynamics, states.at(slice(len(pieces[0].t))), pieces[0].points)
+    return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out | fails, lost, restarts, fast)
 
 
 def _is_free(system: System) -> bool:

@@ -17,6 +17,7 @@ from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
 from .along_run import StateErrors
 from .coordinates import as_rows, displaced
+from .vibrations import FastMotions
 
 Channels = dict[str, np.ndarray]
 """Values of all channels by name."""
@@ -78,14 +79,18 @@ def channel_errors(
     `channels`: those of the run. `project`: True if the output rows of the run are projected onto the constraints.
     """
     reports, count = _Reports(model, dynamics, trajectory, project, rtol), len(found.t)
+
+    def whole(q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return states of the model from those of the mechanism."""
+        if subsystem is None:
+            return q, u
+        states = np.tile(start.q, (len(q), 1)), np.tile(start.u, (len(q), 1))
+        subsystem.part.put(q, u, *states)
+        return states
+
     rows = [found.rows] if project and subsystem is None else []
     states = [(found.recorded_q, found.recorded_u, project), (found.q, found.u, True)]
-    for q, u, projected in states[len(rows) :]:
-        if subsystem is not None:
-            whole = np.tile(start.q, (count, 1)), np.tile(start.u, (count, 1))
-            subsystem.part.put(q, u, *whole)
-            q, u = whole
-        rows.append(reports.rows(found.t, q, u, projected))
+    rows += [reports.rows(found.t, *whole(q, u), projected) for q, u, projected in states[len(rows) :]]
     kept = ~found.left_out
     kept[0] = True
     values, better = ({name: each[kept] for name, each in reports.channels(of, count).items()} for of in rows)
@@ -93,7 +98,38 @@ def channel_errors(
     at, without = (of.at(kept) for of in rows)
     of_states = as_rows(dynamics.system, at.q - without.q, at.u - without.u)
     nodes = _Nodes(at.t, at.q, at.u, of_states, values, errors)
-    return ChannelErrors(at.t, values, _at_outputs(reports, nodes, channels), found.restarts)
+    of_outputs = _at_outputs(reports, nodes, channels)
+    if found.fast:
+        system = subsystem.dynamics.system if subsystem else dynamics.system
+        at_start = found.q[:1], found.u[:1]
+        count = len(found.fast.decays)
+        q, u = (np.repeat(each, count, axis=0) for each in at_start)
+        moved = [whole(*displaced(system, q, u, -each)) for each in found.fast.phases]
+        of_outputs = _with_fast_motions(reports, found.fast, whole(*at_start), moved, of_outputs)
+    return ChannelErrors(at.t, values, of_outputs, found.restarts)
+
+
+def _with_fast_motions(
+    reports: _Reports, fast: FastMotions, start: tuple[np.ndarray, np.ndarray],
+    moved: list[tuple[np.ndarray, np.ndarray]], errors: Channels,
+) -> Channels:  # fmt: skip
+    """Return errors at output times that are not smaller than those by fast motions that are not in the results.
+
+    `start`: state at the start. `moved`: states without the displacements of each of the phases.
+    """
+    t = np.full(1 + len(fast.decays), fast.t)
+    squares = {name: np.zeros(len(fast.decays)) for name in errors}
+    try:
+        for each in moved:
+            q, u = (np.vstack(pair) for pair in zip(start, each, strict=True))
+            rows = reports.dynamics.report(t, q, u, True)
+            for name, values in reports.channels(rows, len(t)).items():
+                squares[name] += difference(name, np.repeat(values[:1], len(fast.decays)), values[1:]) ** 2
+    except SolverError:
+        return errors
+    left = fast.sizes(reports.run.t[: len(next(iter(errors.values())))])
+    sizes = {name: np.sqrt(squares[name]) @ left for name in errors}
+    return {name: np.where(np.abs(error) < sizes[name], sizes[name], error) for name, error in errors.items()}
 
 
 def _at_outputs(reports: _Reports, nodes: _Nodes, channels: Channels) -> Channels:

@@ -2,7 +2,7 @@
 
 An error e of a pose stretches a stiff spring by e^2 times its curvature: 1e-10 m at 1e-5 rad are 100 N at 1e12 N/m. Linear equations
 do not balance such forces. Newton's iteration on e' = F(z) - F(z - e) + d, with e' of the transport, does so in the directions that
-are stiff within a step.
+are stiff within a step. Its moves are of the second order in e: larger ones, as by friction that changes its sign, are not taken.
 """
 
 from __future__ import annotations
@@ -58,6 +58,7 @@ class _Iteration:
         self._dynamics, self._transport, self._at, self._cj = dynamics, transport, at, cj
         self._typical = typical(dynamics.system, at.q, at.u)
         self._errors, self._slopes, self._defects = errors, slopes, defects
+        self._linear, self._most = errors.copy(), ESTIMATE.smooth * self._size(errors)
         of_errors, of_motion = (self._size(each) for each in (slopes, motion(dynamics.system, at)))
         self._much = np.maximum(of_errors, ESTIMATE.large * of_motion)
         self._enough = np.maximum(ESTIMATE.large * of_errors, ESTIMATE.difference * of_motion)
@@ -87,7 +88,8 @@ class _Iteration:
             errors[going] += change
             slopes[going] += self._cj * change
             there, residuals[going], sizes = self._looked_at(rows[going], errors[going], slopes[going])
-            nearer = sizes < self.sizes[rows[going]]
+            moved = self._size(errors[going] - self._linear[rows[going]])
+            nearer = (sizes < self.sizes[rows[going]]) & (moved <= self._most[rows[going]])
             kept, best = going[nearer], rows[going[nearer]]
             self.q[best], self.u[best], self.sizes[best] = there.q[nearer], there.u[nearer], sizes[nearer]
             self._errors[best], self._slopes[best] = errors[kept], slopes[kept]

@@ -13,9 +13,10 @@ from ..errors import SolverError
 from ..model.model_data import ModelData
 from ..model.settings import DEFAULT_RTOL, RunSettings
 from ..notes import Note, NoteKind
-from ..results.digits import KnownErrors, over_time
+from ..results.digits import KnownErrors, largest_bar, over_time
 from ..results.error_bars import UNKNOWN, ErrorEstimate, bars
 from ..results.solution import Solution
+from ..run_checks.uncertain_forces import rounded_forces
 from ..solve.settings import near_constraints, traits_of
 from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
@@ -64,23 +65,32 @@ def estimated(
     except (SolverError, np.linalg.LinAlgError) as error:
         sentence = f"not estimated: {error}; --verify compares with other runs"
         return replace(solution, estimate=ErrorEstimate("none", sentence))
-    return with_bars(
-        replace(solution, errors=bars(solution.time, solution.channels, of_channels, ESTIMATE.numbers_at_once)),
-        settings,
-        dynamics.system.size,
-    )
+    found_bars = bars(solution.time, solution.channels, of_channels, ESTIMATE.numbers_at_once)
+    return with_bars(replace(solution, errors=found_bars), settings, dynamics, trajectory)
 
 
-def with_bars(solution: Solution, settings: RunSettings, size: float) -> Solution:
-    """Return a solution with error bars, with the sentence on its errors and a note if they are large.
-
-    `size`: size of the mechanism, m.
-    """
+def with_bars(solution: Solution, settings: RunSettings, dynamics: Dynamics, trajectory: Trajectory) -> Solution:
+    """Return a solution with error bars, with the sentence on its errors and a note if they are large."""
+    size = dynamics.system.size
     absolute = settings.atol or settings.rtol * min(1.0, size)  # an error of it is not large, as where nothing moves
-    solution = replace(solution, estimate=ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large))
-    known = KnownErrors(solution)
+    estimate = ErrorEstimate("estimated", "", resolved=absolute / ESTIMATE.large)
+    known = KnownErrors(replace(solution, estimate=estimate))
+    if any(error > ESTIMATE.large for error in known.relative(largest_bar, "forces").values()):
+        estimate = _without_rounding(estimate, dynamics, trajectory, float(solution.time[-1]))
+        known = KnownErrors(replace(solution, estimate=estimate))
     notes = () if settings.accuracy else tuple(_large_errors(solution, known, settings, size))
     return replace(solution, estimate=known.estimate(), notes=(*solution.notes, *notes))
+
+
+def _without_rounding(estimate: ErrorEstimate, dynamics: Dynamics, trajectory: Trajectory, t: float) -> ErrorEstimate:
+    """Return an estimate that distinguishes forces from rounding, of which they have at most the part of a note.
+
+    `t`: last time of the results, s, at which the rounding of coordinates is taken; the state is changed.
+    """
+    state, last = dynamics.state, int(np.searchsorted(trajectory.t, t))
+    state.q[:], state.u[:] = trajectory.q[last], trajectory.u[last]
+    (force, _), (torque, _) = map(max, rounded_forces(state, t))
+    return replace(estimate, resolved_force=force / ESTIMATE.large, resolved_torque=torque / ESTIMATE.large)
 
 
 def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings, size: float) -> Iterator[Note]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 from typing import Any, ClassVar
 
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
@@ -139,6 +139,10 @@ class ModelData(NotebookMethods, Described):
     def outputs(self) -> dict[str, Output]:
         """Return the requests by channel: a name, or ``name.component``."""
         return dict(by_channel(self.requests)) if self.requests else {}
+
+    def continued_tables(self) -> Collection[str]:
+        """Return the names of tables that are meant to go on with the slopes of their ends, such as those of a path."""
+        return ()
 
     def angle_counters(self) -> Iterator[tuple[str, AngleCounter]]:
         """Yield counters of full turns of angles in requests, by the angles' text, if positions do not define them."""

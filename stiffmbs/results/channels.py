@@ -9,9 +9,9 @@ import numpy as np
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
+from ..dynamics.turns import counted_angles
 from ..errors import ChannelError
 from ..model.model_data import ModelData
-from ..presolve.subsystems import counters_of
 from ..reading.did_you_mean import did_you_mean
 from ..reading.joint_name import FREE_COORDINATES
 from ..reading.names import owner_of
@@ -98,11 +98,13 @@ def series_of(model: ModelData, system: System, rows: OutputRows, name: str) -> 
 def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
     """Return the revolution counters of angles, rad, by element and number: ``spring/0``. `q` of shape (n, n_q).
 
-    Also the full turns by which elements were reduced when they were set up in a restart: ``bushing/set_up0``.
+    Those of angles between markers also by their text: ``motor/az(bar, ground)``. Also the full turns by which elements
+    were reduced when they were set up in a restart: ``bushing/set_up0``.
     """
-    counted = (
-        {f"{name}/{k}": q[:, place] for (name, k), place in counters_of(system).items()} if system.n_counters else {}
-    )
+    angles = list(counted_angles(system)) if system.n_counters else []
+    counted = {f"{angle.element}/{angle.number}": q[:, angle.place] for angle in angles}
+    in_formulas = (angle for angle in angles if angle.measure not in ("", angle.element))
+    counted |= {f"{angle.element}/{angle.measure}": q[:, angle.place] for angle in in_formulas}
     of_elements = ((name, k, n) for name, turns in system.turns_set_up.items() for k, n in enumerate(turns))
     return counted | {f"{name}/{SET_UP}{k}": np.full(len(q), float(n)) for name, k, n in of_elements}
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -36,7 +37,7 @@ class KnownErrors:
     """Errors of the channels of a run relative to their sizes: the largest value of each body or element.
 
     `group`: group of each channel; empty for requests and channels of no group. `sizes`: in the units of the channels; of
-    motions at least what the absolute tolerance resolves.
+    motions at least what the absolute tolerance resolves; zero of forces that may be rounding of coordinates.
     """
 
     def __init__(self, solution: Solution) -> None:
@@ -46,6 +47,14 @@ class KnownErrors:
         if solution.estimate:
             resolved = {name: solution.estimate.resolved for name, own in self.group.items() if own in MOTIONS}
             self.sizes |= {name: max(self.sizes[name], least) for name, least in resolved.items()}
+            self.sizes |= dict.fromkeys(self._by_rounding(solution.estimate), 0.0)
+
+    def _by_rounding(self, estimate: ErrorEstimate) -> Iterator[str]:
+        """Yield the channels of forces and torques that may be rounding of coordinates."""
+        resolved = {"force": estimate.resolved_force, "torque": estimate.resolved_torque}
+        for name, own in self.group.items():
+            if own == "forces" and self.sizes[name] <= resolved[kind_of(name)]:
+                yield name
 
     def relative(self, error_of: Callable[[ErrorBar], float], group: str = "") -> dict[str, float]:
         """Return known errors by channel, of one group or of all groups."""
@@ -84,8 +93,8 @@ class KnownErrors:
             sentence += f"; largest error: {largest} {100 * relative:.2g} %"
         if of_peak - relative > relative:
             sentence += f"; peaks between output times: up to {100 * of_peak:.2g} % ({peak})"
-        resolved = self._solution.estimate.resolved if self._solution.estimate else 0.0
-        return ErrorEstimate("estimated", sentence, largest, relative, resolved)
+        before = self._solution.estimate or ErrorEstimate("estimated", "")
+        return replace(before, sentence=sentence, largest=largest, relative=relative)
 
 
 def _group(kind: str) -> str:

@@ -63,6 +63,8 @@ class ErrorEstimate:
     - `largest`: channel with the largest error relative to its size, and `relative`: that error; empty and nan if unknown.
     - `resolved`: least size of motions and velocities to which their errors are relative, m, rad, m/s, rad/s; smaller ones
       are not distinguished from rest.
+    - `resolved_force`, `resolved_torque`: forces and torques below them, N, N m, may be rounding of coordinates and have no
+      digits; zero if all have.
     - `reached`: the accuracy that was asked for and reached, in words; part of the sentence, too.
     """
 
@@ -72,10 +74,16 @@ class ErrorEstimate:
     relative: float = float("nan")
     resolved: float = 0.0
     reached: str = ""
+    resolved_force: float = 0.0
+    resolved_torque: float = 0.0
 
     def with_accuracy(self, reached: str) -> ErrorEstimate:
         """Return the estimate with what was reached of the accuracy asked for, in words."""
         return replace(self, sentence=f"{self.sentence}; {reached}", reached=reached) if reached else self
+
+
+RESOLVED = ("resolved", "resolved_force", "resolved_torque")
+"""Fields of an estimate below which values are not distinguished from zero."""
 
 
 def error_bar(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine | None, rounding: float) -> ErrorBar:

@@ -12,7 +12,7 @@ from ..notes import Note
 from ..solve.trajectory import IN_DOUBT, History
 from .digits import KnownErrors
 from .energy_balance import Balance
-from .error_bars import ErrorBar, ErrorEstimate
+from .error_bars import RESOLVED, ErrorBar, ErrorEstimate
 from .scales import MECHANICAL, ROUNDING, kind_of
 from .solution import Solution
 
@@ -130,7 +130,8 @@ def _estimate(joined: Solution, of_runs: Sequence[ErrorEstimate | None]) -> Erro
     if others:
         status = next((each.status for each in others if each.status == "lost"), others[0].status)
         return ErrorEstimate(status, "; ".join(_notes([[each.sentence] if each else [] for each in of_runs])))
-    resolved = ErrorEstimate("estimated", "", resolved=max(each.resolved for each in estimates))
+    largest = (max(getattr(each, name) for each in estimates) for name in RESOLVED)
+    resolved = ErrorEstimate("estimated", "", **dict(zip(RESOLVED, largest, strict=True)))
     found = KnownErrors(replace(joined, estimate=resolved)).estimate()
     found = replace(found, sentence=f"{found.sentence}; of each run alone, without the errors of those before it")
     reached = _notes([[each.reached] if each and each.reached else [] for each in of_runs])

@@ -19,6 +19,7 @@ import numpy as np
 from ..errors import InputError
 from ..reading.files.files_read import check_regular, content_of
 from ..reading.files.quoted import quoted
+from ..reading.joint_name import FREE_COORDINATES
 from .scales import ROUNDING
 
 if TYPE_CHECKING:
@@ -93,9 +94,22 @@ class SavedState:
     elements: frozenset[str] | None = None
     exact: np.ndarray | None = field(default=None, compare=False)
 
-    def turn(self, element: str, k: int = 0) -> float | None:
-        """Return the angle at an element's counter of revolutions, or that of a request, rad; None if not known."""
-        return self.turns.get(f"{element}/{k}", self.channels.get(element))
+    def turn(self, element: str, k: int = 0, measure: str = "") -> float | None:
+        """Return the angle at an element's counter of revolutions, or that of a request, rad; None if not known.
+
+        `measure`: angle between markers that it counts, which is that of another element if this one has not counted it.
+        """
+        if measure:
+            others = (name for name in self.turns if name.endswith(f"/{measure}"))
+            names = (f"{element}/{measure}", f"{measure}/0", *others)  # its own, that of a request, any
+            found = (self.turns[name] for name in names if name in self.turns)
+            if (angle := next((angle for angle in found if np.isfinite(angle)), None)) is not None:
+                return angle
+            if any(name.startswith(f"{element}/") and name.endswith(")") for name in self.turns):
+                return None  # its formula had other angles
+        is_joint_angle = element.rpartition(".")[2] in FREE_COORDINATES
+        known = self.turns.get(f"{element}/{k}", self.channels.get(element) if is_joint_angle else None)
+        return None if known is None or np.isnan(known) else known
 
 
 def read_state(path: str | Path, at: float | None = None) -> SavedState:

@@ -97,9 +97,10 @@ def stopped_at(first: Departure, trajectory: Trajectory) -> Trajectory:
     return trajectory.stopped_after(int(np.searchsorted(trajectory.t, first.first, side="right")), first.refusal())
 
 
-def departure_notes(found: list[Departure]) -> Iterator[Note]:
-    """Yield a note for each table that was extrapolated."""
-    return of_users((departure.element, note) for departure in found for note in _notes(departure))
+def departure_notes(found: list[Departure], model: ModelData) -> Iterator[Note]:
+    """Yield a note for each table that was extrapolated, unless the model continues it as intended."""
+    unintended = [departure for departure in found if departure.label not in model.continued_tables()]
+    return of_users((departure.element, note) for departure in unintended for note in _notes(departure))
 
 
 def _notes(left: Departure) -> Iterator[Note]:

@@ -141,18 +141,31 @@ def _inertia_by_rounding(state: State, t: float) -> float:
     return float(np.sqrt(np.sum(forces**2 / mass)))
 
 
+def rounded_forces(state: State, t: float) -> tuple[list[tuple[float, str]], list[tuple[float, str]]]:
+    """Return the changes of forces, N, and those of torques, N m, by the rounding of coordinates, with their elements.
+
+    Torques are those about the centres of mass of bodies; a torque about the origin of the ground has any lever.
+    """
+    of_body = state.system.of_body
+    forces, torques = [(0.0, "")], [(0.0, "")]
+    for group, changes, row, rows in _changes(state, t):
+        own = np.arange(of_body.n_u * group.kind.n_bodies)
+        straight = own % of_body.n_u < of_body.linear
+        of_bodies = np.where(rows.reshape(changes.shape) < state.system.n_u, changes, 0.0)
+        for found, of_entries, which in ((forces, changes, straight), (torques, of_bodies, ~straight)):
+            of_rows = of_entries @ (row[:, None] == own[which])
+            found += zip(of_rows.max(axis=1, initial=0.0).tolist(), group.names, strict=True)
+    return forces, torques
+
+
 def lost_digits(state: State, t: float) -> LostDigits:
     """Return the largest change of a force by the rounding of coordinates at a state."""
-    system, found = state.system, [("", 0.0)]
-    width = system.of_body.n_u
-    for group, changes, row, _ in _changes(state, t):
-        straight = (row % width < system.of_body.linear)[:, None]
-        of_rows = changes @ (straight & (row[:, None] == np.arange(width * group.kind.n_bodies)))
-        found += zip(group.names, of_rows.max(axis=1).tolist(), strict=True)
+    system, (changes, _) = state.system, rounded_forces(state, t)
     state.evaluate("motion", t)
     term, linear = system.term("motion", "f"), system.per_velocity(1.0, 0.0) == 1.0
     forces = state.values["motion"][term.source][linear[term.row]]  # of each element: their sums vanish in equilibrium
-    return LostDigits(*max(found, key=lambda each: each[1]), float(np.abs(forces).max(initial=0.0)))
+    lost, element = max(changes)
+    return LostDigits(element, lost, float(np.abs(forces).max(initial=0.0)))
 
 
 def lost_digits_notes(dynamics: Dynamics, rows: OutputRows) -> Iterator[Note]:

@@ -240,6 +240,56 @@ def test_a_restart_from_a_file_keeps_the_turns_of_what_a_stage_has_added(kind, t
             np.testing.assert_allclose(found[channel], wanted[channel][-6:], atol=1e-5)
 
 
+SPINNING = """
+dimensions: 3
+bodies:
+  a: {mass: 1, inertia: [0.1, 0.1, 0.1], omega: [0, 0, 20]}
+  b: {mass: 1, inertia: [0.1, 0.1, 0.1], position: [1, 0, 0], omega: [0, 0, -9]}
+joints: {p: {type: revolute, i: a, j: ground}, q: {type: revolute, i: b, j: {body: ground, point: [1, 0, 0]}}}
+REST
+"""
+WEAK = 'y: {type: torque, i: b, torque: [0, 0, "-1e-9*az(a) + 1e-6*az(b)"]}'
+
+
+@pytest.mark.parametrize(
+    "before",
+    ["requests: {w: az(a), v: az(b)}", "forces: {z: {type: torque, i: a, torque: [0, 0, '1e-9*az(a)*az(b)']}}"],
+)
+@pytest.mark.parametrize(
+    "old", ["", "y: {type: torque, i: b, torque: [0, 0, 0]}", "y: {type: torque, i: b, torque: [0, 0, 1e-9*az(b)]}"]
+)
+def test_a_new_formula_in_space_keeps_the_turns_that_are_counted(before, old, tmp_path):
+    """A request read 20 rad, and a force that a stage added, with the same text, 1.15 rad."""
+    if old and before.startswith("forces"):
+        before = before.replace("forces: {", f"forces: {{{old}, ")
+    elif old:
+        before += f"\nforces: {{{old}}}"
+    rest = f"run: {{duration: 1, points: 3, rtol: 1e-9}}\nstages: [{{}}, {{change: {{forces: {{{WEAK}}}}}}}]"
+    scene = read(SPINNING, rest=f"{before}\n{rest}")
+    found = stiffmbs.run(scene)
+    found.save(tmp_path / "all.npz")
+    state = stiffmbs.read_state(tmp_path / "all.npz", at=1.5)
+    again = stiffmbs.run(scene.stage_scenes[1], start_from=state)
+    for each, t in ((found["y.tz"][-3:], found.time[-3:]), (again["y.tz"], again.time)):
+        np.testing.assert_allclose(each, -1e-9 * 20 * t - 1e-6 * 9 * t, rtol=1e-4)
+
+
+@pytest.mark.parametrize(("force", "torque"), [
+    ("{type: torsion_spring, i: a, j: ground, stiffness: 10}", -10 * BEYOND),
+    ('{type: torque, i: a, torque: [0, 0, "-3*az(a)"]}', -3 * BEYOND),
+])  # fmt: skip
+def test_a_restart_from_a_file_accepts_what_is_new_in_space(force, torque, tmp_path):
+    """It was refused as another mechanism; files without turns of what acted before are still refused."""
+    run = "run: {duration: 1, points: 3, rtol: 1e-9}"
+    stiffmbs.run(read(SPINNING, rest=run)).save(tmp_path / "before.npz")
+    scene = read(SPINNING, rest=f"forces: {{y: {force}}}\n{run}")
+    found = stiffmbs.run(scene, start_from=tmp_path / "before.npz")
+    assert found["y.tz"][0] == pytest.approx(torque, abs=1e-5)
+    found.save(tmp_path / "after.csv")
+    with pytest.raises(stiffmbs.InputError, match="found no count of the turns of 'y'"):
+        stiffmbs.run(scene, start_from=tmp_path / "after.csv")
+
+
 @pytest.mark.long
 def test_a_joint_that_a_stage_adds_is_checked_where_it_closes():
     text = """

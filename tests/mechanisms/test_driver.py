@@ -89,6 +89,21 @@ def test_the_driver_goes_straight_on_from_the_end_of_a_circle():
     assert run["driver.speed"][-1] == pytest.approx(15, abs=0.1)
 
 
+def test_a_body_beyond_the_end_of_a_path_has_no_note_on_tables():
+    """Users did not write these tables, and going on straight is intended; tables of their own keep their notes."""
+    scene = """
+dimensions: 3
+path: {points: [[0, 0], [10, 0], [20, 2], [30, 3]], speed: [[0, 1], [20, 2]]}
+tables: {push: {table: [[0, 0], [1, 1], [2, 4]]}}
+bodies: {b: {mass: 1, inertia: [1, 1, 1], velocity: [50, 0, 0]}}
+forces: {f: {type: force, i: b, force: ["path_curvature(b.x)", "path_sin(b.x)", "path_speed(b.x) + push(b.x)"]}}
+requests: {aside: dy(b) - path_y(dx(b))}
+run: {duration: 2, points: 11}
+"""
+    notes = [note for note in stiffmbs.run(stiffmbs.read_scene(scene)).notes if "was left for" in note]
+    assert [note[: note.index(" was")] for note in notes] == ["f: the table 'push'"]
+
+
 @pytest.mark.long
 def test_a_speed_profile_along_points_with_the_pedal_at_the_end():
     points = "[[0, 0], [10, 0], [20, 0], [30, 0], [40, 0], [80, 4], [120, 4], [200, 0], [300, 0]]"

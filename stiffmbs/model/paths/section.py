@@ -16,6 +16,8 @@ from .curves import Curve, circle, curve_through, straightened
 from .lanes import LENGTH, STANDARDS, path_through
 
 PATH = "path"
+OF_COURSE = tuple(f"{PATH}_{name}" for name in ("x", "y", "cos", "sin", "curvature"))
+"""Names of the tables of a course."""
 COURSES = ("points", "circle", "lanes")
 Station = tuple[si.Length, si.Velocity]
 
@@ -91,11 +93,11 @@ def with_path(raw: dict[str, object], parameters: Mapping[str, object]) -> dict[
 def tables_of(curve: Curve) -> Content:
     """Return position, direction and curvature over the arc length, by the names of their tables."""
     curve = curve if curve.closed else straightened(curve)
-    ends = {"x": "not-a-knot", "y": "not-a-knot"}
+    places = OF_COURSE[:2]
     return {
-        f"{PATH}_{name}": {
-            "table": np.stack([curve.s, getattr(curve, name)], axis=1).tolist(),
-            "ends": "periodic" if curve.closed else ends.get(name, "clamped"),
+        name: {
+            "table": np.stack([curve.s, getattr(curve, name.removeprefix(f"{PATH}_"))], axis=1).tolist(),
+            "ends": "periodic" if curve.closed else "not-a-knot" if name in places else "clamped",
         }
-        for name in ("x", "y", "cos", "sin", "curvature")
+        for name in OF_COURSE
     }
