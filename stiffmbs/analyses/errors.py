@@ -48,7 +48,7 @@ def recording(job: Job) -> Job:
     asked = True if job.settings.accuracy else job.settings.errors
     with in_use(job.settings.tuning):
         most = {True: np.inf, None: ESTIMATE.work, False: 0.0}[asked]
-        recorded = Recording(most, ESTIMATE.row, ESTIMATE.solution, ESTIMATE.restart)
+        recorded = Recording(most, ESTIMATE.row, ESTIMATE.solution, ESTIMATE.restart, ESTIMATE.events)
     return replace(job, grid=replace(job.grid, recorded=recorded))
 
 

@@ -11,6 +11,7 @@ the masses, lam is not of usual size: velocities drift, and energy is lost.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -19,7 +20,7 @@ import numpy as np
 
 from ..dynamics.dynamics import OutputRows
 from ..notes import Note, NoteKind, Severity
-from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_in_whole_steps, together
+from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_in_whole_steps, together, unchecked_from
 from ..solve.error_control.relaxation import DRIFT, Drift, drift_of, drifts
 from ..solve.settings import traits_of
 from ..solve.trajectory import Outcome, Trajectory
@@ -55,6 +56,11 @@ LEFT = NoteKind(
     "missed-event", MISSED + "; the results may be wrong from there on", "set max_step to a much smaller value",
     Severity.DOUBT,
 )  # fmt: skip
+UNCHECKED = NoteKind(
+    "missed-event-unchecked",
+    "Python functions: {count} steps were checked for features that they missed; those after t = {t:.6g} s were not",
+    "set max_step to the duration of the shortest feature, or compare with a run of smaller steps", Severity.REMARK,
+)  # fmt: skip
 REPEATED = NoteKind(
     "constraint-drift-removed", f"{DRIFT}; the run was repeated with formulation {EXACT}", severity=Severity.REMARK
 )
@@ -75,13 +81,13 @@ class Computed:
 
 def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> Computed:
     """Compute a job until no checked instant contradicts its steps; return it with a note on missed events."""
-    found, missed = compute(job), list[Overlooked]()
+    found, missed = _checked(job, compute(job)), list[Overlooked]()
     left = _overlooked(job, found)
     shortens = job.dynamics.system.has_functions and "max_step" in traits_of(job.settings).reads
     while left is not None and len(missed) < ROUNDS and found.trajectory.outcome is not Outcome.INTERRUPTED:
         missed.append(left)
         other = _shortened(job, missed) if shortens else _restarted(job, missed)
-        if other is None or (again := compute(other)).trajectory.outcome is Outcome.INTERRUPTED:
+        if other is None or (again := _checked(job, compute(other))).trajectory.outcome is Outcome.INTERRUPTED:
             break
         found, left = again, _overlooked(job, again)
     if left is not None:
@@ -89,6 +95,15 @@ def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> C
     if not missed:
         return found
     return _noted(found, missed[0].note(SHORTENED if shortens else RESTARTED, _longest_step(missed)))
+
+
+def _checked(job: Job, computed: Computed) -> Computed:
+    """Return what was computed with a note on steps with Python functions that are not checked."""
+    for steps in computed.trajectory.whole_steps:
+        t = unchecked_from(steps, computed.trajectory, job.settings)
+        if t < math.inf:
+            return _noted(computed, UNCHECKED("", count=len(steps.begin), t=t))
+    return computed
 
 
 def _restarted(job: Job, missed: Sequence[Overlooked]) -> Job | None:

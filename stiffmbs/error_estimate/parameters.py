@@ -22,6 +22,8 @@ class EstimateParameters:
     """Further work there for n unknowns, in n^1.5: the growth of factors with little fill-in."""
     restart: float = 2.5e4
     """Work at a restart, in the same unit; about 5 ms."""
+    events: int = 100
+    """Number of restarts after events that every run estimates beyond this work, in about 0.5 s: their errors add up."""
     difference: float = 1e-7
     """Displacements by which the equations are linearised, relative to the size of the mechanism."""
     beside: float = 1e-3

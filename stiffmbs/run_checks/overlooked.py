@@ -96,8 +96,9 @@ def overlooked(
     _, first = np.unique(number[found], return_index=True)
     first_size, second_size = (rows.acceleration[k] ** 2 @ system.mass for k in (pairs, pairs + 1))
     at, k = (pairs + (second_size > first_size))[found], found[0]
-    velocity = system.name_of(int(np.nanargmax(over_step[k])), system.of_body.velocities)
-    return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, int(at[0])))
+    velocity, peak = system.name_of(int(np.nanargmax(over_step[k])), system.of_body.velocities), int(at[0])
+    around = max(peak - 1, 0), min(peak + 1, len(rows.t) - 1)
+    return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, peak, around))
 
 
 def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray, least: np.ndarray) -> np.ndarray:
@@ -146,12 +147,16 @@ def _free_part(dynamics: Dynamics, rows: OutputRows, numbers: np.ndarray, off: n
     return free
 
 
-def acting(system: System, rows: OutputRows, k: int) -> str:
-    """Return the force law with the largest force or torque at a row."""
+def acting(system: System, rows: OutputRows, k: int, around: tuple[int, int]) -> str:
+    """Return the force law whose force or torque at a row differs most from its mean at two rows around it."""
     laws = {name for group in system.groups if group.has_law for name in group.names}
-    found = reactions(system, rows.values[k : k + 1])
-    of_laws = {name: abs(float(value[0])) for name, value in found.items() if name.rpartition(".")[0] in laws}
-    return max(of_laws, key=lambda name: of_laws[name], default="").rpartition(".")[0]
+    found = reactions(system, rows.values[[k, *around]])
+    changes = {
+        name: abs(float(value[0] - 0.5 * (value[1] + value[2])))
+        for name, value in found.items()
+        if name.rpartition(".")[0] in laws
+    }
+    return max(changes, key=lambda name: changes[name], default="").rpartition(".")[0]
 
 
 def overlooked_in_whole_steps(found: WholeSteps, settings: RunSettings, end: float) -> Overlooked | None:
@@ -162,6 +167,14 @@ def overlooked_in_whole_steps(found: WholeSteps, settings: RunSettings, end: flo
     motion = found.at(steps, parts)
     rows = found.dynamics.report(motion.t, motion.q, motion.u, near_constraints(settings))
     return _judged(found, steps, motion, rows, settings)
+
+
+def unchecked_from(found: WholeSteps, trajectory: Trajectory, settings: RunSettings) -> float:
+    """Return the time from which on steps longer than the spacing of samples were not stored, s; infinite if none."""
+    if not found.full:
+        return math.inf
+    later = trajectory.step_times[trajectory.step_times >= found.end[-1]]
+    return float(found.end[-1]) if np.diff(later).max(initial=0.0) > _spacing(settings) else math.inf
 
 
 def _all_along(found: WholeSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
@@ -177,55 +190,65 @@ def _judged(
     system, done = found.dynamics.system, len(rows.t)
     steps, rate = steps[:done], motion.rate[:done]
     off = rows.acceleration - rate
-    size = np.fmax(rows.acceleration**2 @ system.mass, rate**2 @ system.mass)
-    places = np.flatnonzero(off**2 @ system.mass > RUN_CHECKS.overlooked_part**2 * size)
-    off[places] = _free_part(found.dynamics, rows, places, off[places])
-    places = places[off[places] ** 2 @ system.mass > RUN_CHECKS.overlooked_part**2 * size[places]]
-    if not len(places):
-        return None
+    # each velocity by itself: a large acceleration of another body does not hide it
+    least = RUN_CHECKS.overlooked_part * np.fmax(np.abs(rows.acceleration), np.abs(rate))
     length = (found.end - found.begin)[steps]
-    tolerance = absolute_tolerances(system, settings)
-    of_velocities = tolerance[system.n_q :] + settings.rtol * np.abs(rows.u[places])
-    over_step = np.abs(off[places]) * length[places, None] / (RUN_CHECKS.contradicted_tolerances * of_velocities)
-    peaks = _peaks(places[(over_step > 1.0).any(axis=1)], steps, size)
-    peaks = [k for k in peaks if off[k] ** 2 @ system.mass > _of_errors(found, rows, k, settings) ** 2 @ system.mass]
-    if not peaks:
+    tolerance = absolute_tolerances(system, settings)[system.n_q :] + settings.rtol * np.abs(rows.u)
+    least = np.fmax(least, RUN_CHECKS.contradicted_tolerances * tolerance / length[:, None])
+    places = np.flatnonzero((np.abs(off) > least).any(axis=1))
+    off[places] = _free_part(found.dynamics, rows, places, off[places])
+    places = places[(np.abs(off[places]) > least[places]).any(axis=1)]
+    groups = [(group, group[np.argmax(off[group] ** 2 @ system.mass)]) for group in _neighbours(places, steps)]
+    groups = [
+        (group, k)
+        for group, k in groups
+        if (np.abs(off[k]) > np.fmax(least[k], _of_errors(found, rows, k, settings))).any()
+    ]
+    if not groups:
         return None
-    first = peaks[0]
-    of_first = np.abs(off[first]) / (tolerance[system.n_q :] + settings.rtol * np.abs(rows.u[first]))
-    velocity = system.name_of(int(np.nanargmax(of_first)), system.of_body.velocities)
-    shortest = _shortest(found, steps[peaks], rows.t[peaks], settings)
-    return Overlooked(rows.t[peaks], float(length[first]), velocity, acting(system, rows, first), shortest)
+    (group, first), peaks = groups[0], [k for _, k in groups]
+    of_first = np.where(np.abs(off[first]) > least[first], np.abs(off[first]) / tolerance[first], 0.0)
+    velocity = system.name_of(int(np.argmax(of_first)), system.of_body.velocities)
+    around = max(group[0] - 1, 0), min(group[-1] + 1, done - 1)
+    reach = np.array([max(k - group[0], group[-1] - k) + 1 for group, k in groups]) * _spacing(settings)
+    shortest = _shortest(found, steps[peaks], rows.t[peaks], reach, settings)
+    return Overlooked(rows.t[peaks], float(length[first]), velocity, acting(system, rows, first, around), shortest)
 
 
 def _spacing(settings: RunSettings) -> float:
     return settings.duration / RUN_CHECKS.parts_of_a_run
 
 
-def _shortest(found: WholeSteps, steps: np.ndarray, times: np.ndarray, settings: RunSettings) -> float:
-    """Return the duration of the shortest of the contradictions around some times, s, at half of their height."""
+def _shortest(
+    found: WholeSteps, steps: np.ndarray, times: np.ndarray, reach: np.ndarray, settings: RunSettings
+) -> float:
+    """Return the duration of the shortest of the contradictions around some times, s, at half of their height.
+
+    `reach`: time before and after each within which it is sampled, s.
+    """
     parts = np.linspace(-1.0, 1.0, RUN_CHECKS.parts_of_a_peak)
     length = (found.end - found.begin)[steps]
     middle = (times - found.begin[steps]) / length
-    places = np.clip(middle[:, None] + _spacing(settings) / length[:, None] * parts, 0.0, 1.0)
+    places = np.clip(middle[:, None] + (reach / length)[:, None] * parts, 0.0, 1.0)
     motion = found.at(np.repeat(steps, len(parts)), places.ravel())
     rows = found.dynamics.report(motion.t, motion.q, motion.u, near_constraints(settings))
     off = (rows.acceleration - motion.rate[: len(rows.t)]) ** 2 @ found.dynamics.system.mass
     off = np.resize(off, places.shape)
     high = (off >= 0.25 * off.max(axis=1, keepdims=True)).sum(axis=1)
-    return float(high.min() * 2.0 * _spacing(settings) / len(parts))
+    return float((high * reach).min() * 2.0 / len(parts))
 
 
-def _peaks(places: np.ndarray, steps: np.ndarray, size: np.ndarray) -> list[int]:
-    """Return the place with the largest acceleration of each group of neighbours within one step."""
+def _neighbours(places: np.ndarray, steps: np.ndarray) -> list[np.ndarray]:
+    """Return the groups of successive places within one step."""
     ends = np.flatnonzero((np.diff(places) > 1) | (np.diff(steps[places]) > 0)) + 1
-    return [int(part[np.argmax(size[part])]) for part in np.split(places, ends) if len(part)]
+    return np.split(places, ends) if len(places) else []
 
 
 def _of_errors(found: WholeSteps, rows: OutputRows, k: int, settings: RunSettings) -> np.ndarray:
-    """Return the change of accelerations at a row by errors far below the tolerance; stiff forces make it large."""
+    """Return the change of accelerations at a row by errors that a step may have; stiff forces make it large."""
     dynamics, state = found.dynamics, np.concatenate([rows.q[k], rows.u[k]])
-    errors = RUN_CHECKS.slight * (absolute_tolerances(dynamics.system, settings) + settings.rtol * np.abs(state))
+    slight = np.repeat([RUN_CHECKS.slight, RUN_CHECKS.slight_velocity], [rows.q.shape[1], rows.u.shape[1]])
+    errors = slight * (absolute_tolerances(dynamics.system, settings) + settings.rtol * np.abs(state))
     states = np.vstack([state, state + np.diag(errors)])
     q, u = np.split(states, [dynamics.system.n_q], axis=1)
     accelerations = dynamics.report(np.full(len(states), rows.t[k]), q, u, False).acceleration

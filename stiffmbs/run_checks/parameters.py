@@ -80,14 +80,17 @@ class RunCheckParameters:
     """Number in the whole motion."""
     effort: float = 5e8
     """Largest number of operations."""
-    contradicted_tolerances: float = 1e4
+    contradicted_tolerances: float = 1e3
     """Velocity contradiction over a step, in tolerances, from which on an event counts as missed."""
     parts_of_a_run: int = 20_000
     """Number of samples over a run with Python functions, whose features are unknown."""
     parts_of_a_peak: int = 129
     """Samples around a contradiction, from which its duration follows."""
     slight: float = 0.01
-    """Error of positions and velocities within a step, in tolerances, whose effect on stiff forces is tolerated."""
+    """Error of positions within a step, in tolerances, whose effect on stiff forces is tolerated."""
+    slight_velocity: float = 10.0
+    """The same for velocities: those in strong damping have errors of several tolerances within a step, and hardly any
+    force has a narrow feature in velocities."""
 
 
 RUN_CHECKS = tuned("run_checks", RunCheckParameters())

@@ -53,12 +53,15 @@ class StepRecorder:
     full: bool = False
     _pieces: list[_Open] = field(default_factory=list)
     _work: float = 0.0
+    _events: int = 0
 
     def begin(self, row: np.ndarray) -> None:
         """Start a piece with the row of a start."""
         if not self.full:
+            after_event = bool(self._pieces and self._pieces[-1].fired)
+            self._events += after_event
             self._pieces.append(_Open([row[None]]))
-            self._count(self.bounds.restart)
+            self._count(0.0 if after_event and self._events <= self.bounds.events else self.bounds.restart)
 
     def extend(self, rows: np.ndarray, fired: tuple[int, ...]) -> None:
         """Append the rows of steps, after which event functions fired."""

@@ -90,13 +90,14 @@ Look = Callable[[np.ndarray, np.ndarray, np.ndarray], None]
 class Recording(NamedTuple):
     """Bounds of the recorded steps: the largest work of the estimate of errors, and the work of a restart and of a row.
 
-    The work of a row for n unknowns is `row` + `solution` n^1.5.
+    The work of a row for n unknowns is `row` + `solution` n^1.5. `events`: number of restarts after events that do not count.
     """
 
     most: float = 0.0
     row: float = 0.0
     solution: float = 0.0
     restart: float = 0.0
+    events: int = 0
 
 
 @dataclass(frozen=True)

@@ -116,7 +116,7 @@ def runs_of(missed, found_again, has_functions):
 
     def compute(_):
         computed.append(len(computed))
-        return Record(trajectory=Record(outcome=None))
+        return Record(trajectory=Record(outcome=None, whole_steps=()))
 
     dynamics = Record(system=Record(has_functions=has_functions))
     job = Record(grid=Record(start=0.0, end=1.0), settings=None, dynamics=dynamics, varied=varied)

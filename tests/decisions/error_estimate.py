@@ -141,7 +141,20 @@ def restarts_that_are_kept():
     return restarts
 
 
+def events_that_are_free():
+    """Return the number of restarts after events that add no work."""
+    recorder = StepRecorder(of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded)
+    recorder.begin(np.zeros(4))
+    work, restarts = recorder._work, 0
+    while recorder._work == work:
+        recorder.extend(np.empty((0, 4)), (0,))
+        recorder.begin(np.zeros(4))
+        restarts += 1
+    return restarts
+
+
 DECISIONS = {
+    "error_estimate.events": events_that_are_free,
     "error_estimate.work": lambda: of_runs.recording(prepare(read_scene(SCENE), tuning=changed_values())).grid.recorded.most,
     "error_estimate.difference": shift_of_time,
     "error_estimate.beside": lambda: along_run._away_from_events(piece(np.ones(10_000)), True)[0],
@@ -166,7 +179,7 @@ DECISIONS = {
     "analyses.errors:MOST_REPEATS": runs_for_an_accuracy,
 }  # fmt: skip
 EXPECTED = {
-    "error_estimate.work": 1e6,
+    "error_estimate.events": 101, "error_estimate.work": 1e6,
     "error_estimate.difference": 1e-07,
     "error_estimate.beside": 10, "error_estimate.points": 6,
     "error_estimate.uneven": 14,

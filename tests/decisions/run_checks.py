@@ -234,7 +234,7 @@ def duration_of_a_peak():
     dynamics = Record(report=report, system=Record(mass=np.ones(1)))
     found = Record(begin=np.zeros(1), end=np.ones(1), at=at, dynamics=dynamics)
     with patch.multiple(overlooked, near_constraints=lambda _: True, _spacing=lambda _: 1.0):
-        return overlooked._shortest(found, np.array([0]), np.array([0.5]), SETTINGS)
+        return overlooked._shortest(found, np.array([0]), np.array([0.5]), np.ones(1), SETTINGS)
 
 
 def parts_of_a_whole_run():
@@ -242,10 +242,10 @@ def parts_of_a_whole_run():
     return len(overlooked._all_along(found, np.array([0]), SETTINGS)[1])
 
 
-def change_by_errors():
-    """Return the change of an acceleration of 1 by each tolerance of a position."""
+def change_by_errors(of):
+    """Return the change of an acceleration of 1 by each tolerance of a position or a velocity."""
     dynamics = Record(
-        system=Record(n_q=1), report=lambda t, q, u, project: Record(acceleration=q.copy())
+        system=Record(n_q=1), report=lambda t, q, u, project: Record(acceleration={"q": q, "u": u}[of].copy())
     )  # fmt: skip
     rows = Record(q=np.zeros((1, 1)), u=np.zeros((1, 1)), t=np.zeros(1))
     with patch.object(overlooked, "absolute_tolerances", lambda *_: np.ones(2)):
@@ -346,7 +346,8 @@ DECISIONS = {
     "run_checks.contradicted_tolerances": lambda: count_while(lambda off: not judged(off, 0.0), DOUBLES),
     "run_checks.parts_of_a_run": parts_of_a_whole_run,
     "run_checks.parts_of_a_peak": duration_of_a_peak,
-    "run_checks.slight": change_by_errors,
+    "run_checks.slight": lambda: change_by_errors("q"),
+    "run_checks.slight_velocity": lambda: change_by_errors("u"),
     "run_checks.tables:SAMPLES": lambda: len(tables._samples(0.0, 1.0)),
 }
 EXPECTED = {
@@ -360,6 +361,6 @@ EXPECTED = {
     "run_checks.worth_telling": 27, "run_checks.last_digits": 54, "run_checks.nearly_singular": 21,
     "run_checks.takes_part": 7, "run_checks.floor": 1e-07, "run_checks.iterations": 1.525878906e-05,
     "run_checks.few_rows": 3, "run_checks.usual_poses": 20, "run_checks.effort": 100,
-    "run_checks.contradicted_tolerances": 54, "run_checks.parts_of_a_run": 20001, "run_checks.parts_of_a_peak": 0.015503875968992248,
-    "run_checks.slight": 0.01, "run_checks.tables:SAMPLES": 2001,
+    "run_checks.contradicted_tolerances": 40, "run_checks.parts_of_a_run": 20001, "run_checks.parts_of_a_peak": 0.015503875968992248,
+    "run_checks.slight": 0.01, "run_checks.slight_velocity": 10.0, "run_checks.tables:SAMPLES": 2001,
 }  # fmt: skip

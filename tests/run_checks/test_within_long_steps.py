@@ -7,6 +7,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.run_checks import overlooked as within_long_steps
+from stiffmbs.solve.events import whole_steps
 from stiffmbs.solve.events.whole_steps import WHOLE, WholeSteps
 from stiffmbs.tuning import parameters_of
 
@@ -77,3 +78,29 @@ def test_motion_within_steps_is_that_of_their_polynomial():
     assert motion.t == pytest.approx(2.0 + 0.5 * part)
     assert motion.u[:, 0] == pytest.approx(motion.t**5)
     assert motion.rate == pytest.approx(np.stack([5 * motion.t**4, np.full(3, 3.0)], axis=1))
+
+
+@pytest.mark.parametrize(("width", "place"), [(0.02, -0.77), (0.01, 0.31)])
+def test_a_passage_beside_a_body_with_larger_accelerations(width, place):
+    """The other body's accelerations, up to 77 m/s^2, hid a passage of 5 m/s^2; a spring was blamed for others."""
+
+    def push(x):
+        return 0.1 / width * np.exp(-(((x[0] - place) / width) ** 2) / 2), 0, 0
+
+    model = stiffmbs.Model(gravity=(0, 0))
+    model.add("q", stiffmbs.Body(mass=1, inertia=1, velocity=(10, 0)))
+    model.add("b", stiffmbs.Body(mass=1, inertia=1, position=(0, 1)))
+    model.add("spring", stiffmbs.AppliedForce(i="q", force=("-100*q.x", 0)))
+    model.add("push", stiffmbs.PythonForce(i="b", of=("q.x",), function=push))
+    found = stiffmbs.run(model, duration=2, solver="radau", rtol=1e-6, errors=False)
+    t = np.linspace(0, 2, 200_001)
+    assert found["b.vx"][-1] == pytest.approx(np.trapezoid(push([np.sin(10 * t)])[0], t), rel=1e-3)
+    (note,) = told(found)
+    assert "missed 'push'" in note
+
+
+def test_steps_beyond_those_that_are_stored_are_told(monkeypatch):
+    monkeypatch.setattr(whole_steps, "LOOP", replace(parameters_of(whole_steps.LOOP), most_items=1000))
+    found = stiffmbs.run(ball(1.0), duration=1.0, points=2)
+    (note,) = [note for note in found.notes if "were checked for features" in note]
+    assert "those after t = " in note

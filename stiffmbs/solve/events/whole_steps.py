@@ -38,6 +38,7 @@ class WholeSteps(NamedTuple):
     """Steps of one run.
 
     `dynamics`: dynamics of the integrated system. `begin`, `end` of shape (n,): s. `q`, `u`: states at `WHOLE`.
+    `full`: True if later steps were not stored.
     """
 
     dynamics: Dynamics
@@ -45,6 +46,7 @@ class WholeSteps(NamedTuple):
     end: np.ndarray
     q: np.ndarray
     u: np.ndarray
+    full: bool = False
 
     @classmethod
     def of(
@@ -53,7 +55,8 @@ class WholeSteps(NamedTuple):
         """Create the steps from the reported unknowns at the stored places, shape (n, places, n_reported)."""
         q, u = equations.states(rows.reshape(-1, rows.shape[-1]))
         shape = rows.shape[:2]
-        return cls(dynamics, begin, end, q.reshape(*shape, -1), u.reshape(*shape, -1))
+        full = len(begin) >= _room(rows.shape[-1])
+        return cls(dynamics, begin, end, q.reshape(*shape, -1), u.reshape(*shape, -1), full)
 
     def at(self, step: np.ndarray, part: np.ndarray) -> Motion:
         """Return the states at parts (0 to 1) of steps, both of shape (m,)."""
@@ -67,6 +70,11 @@ class WholeSteps(NamedTuple):
         return Motion(self.begin[step] + part * length, *found)
 
 
+def _room(width: int) -> int:
+    """Return the number of stored steps with this number of values of a state."""
+    return LOOP.most_items // (2 + len(WHOLE) * width)
+
+
 class WholeStepLog:
     """Memory for the steps of one integration, filled by compiled code; for none without Python functions.
 
@@ -75,9 +83,8 @@ class WholeStepLog:
     """
 
     def __init__(self, system: System, width: int) -> None:
-        row = 2 + len(WHOLE) * width
-        room = LOOP.most_items // row if system.has_functions else 0
-        self._rows, self._shape = np.empty((room, row)), (len(WHOLE), width)
+        room = _room(width) if system.has_functions else 0
+        self._rows, self._shape = np.empty((room, 2 + len(WHOLE) * width)), (len(WHOLE), width)
         self.table = np.zeros(len(WHOLE_STEPS), dtype=np.int64)
         if room:
             arrays = {"n_nodes": len(WHOLE), "node": WHOLE, "width": width, "row": self._rows, "room": room}
