@@ -87,7 +87,7 @@ def _without_rounding(estimate: ErrorEstimate, dynamics: Dynamics, trajectory: T
 
     `t`: last time of the results, s, at which the rounding of coordinates is taken; the state is changed.
     """
-    state, last = dynamics.state, int(np.searchsorted(trajectory.t, t))
+    state, last = dynamics.state, min(int(np.searchsorted(trajectory.t, t)), len(trajectory.t) - 1)
     state.q[:], state.u[:] = trajectory.q[last], trajectory.u[last]
     (force, _), (torque, _) = map(max, rounded_forces(state, t))
     return replace(estimate, resolved_force=force / ESTIMATE.large, resolved_torque=torque / ESTIMATE.large)
