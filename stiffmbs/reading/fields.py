@@ -120,6 +120,8 @@ class Described(_Base):
 
     former_names: ClassVar[Mapping[str, str]] = {}
     """New names of renamed fields by their old names, for messages."""
+    written_as: ClassVar[Mapping[str, str]] = {}
+    """What is written in place of keys that other programs have, by these keys, for messages."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
 
@@ -140,6 +142,8 @@ class Described(_Base):
         for key in found:
             if key in cls.former_names:
                 raise ValueError(f"found '{key}', expected its new name '{cls.former_names[key]}'")
+            if key in cls.written_as:
+                raise ValueError(f"found the unknown key '{key}', expected {cls.written_as[key]}")
             if key not in known:
                 raise ValueError(f"found the unknown key '{quoted(key)}'{instead_of(key, known)}{quotes_hint(key)}")
         return {key: value.tolist() if hasattr(value, "tolist") else value for key, value in found.items()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import ClassVar, Final, Literal
 
 from pydantic import Field
@@ -34,6 +35,9 @@ class Marker(MarkerReference):
     """
 
     dimensions: ClassVar[Literal[3]] = 3
+    written_as: ClassVar[Mapping[str, str]] = {
+        key: f"orientation: {{{key[0]}: [0, 1, 0]}} or another direction" for key in ("x_axis", "z", "z_axis")
+    } | {"axis": "orientation: {z: [0, 1, 0]} or another direction; a joint's axis is z"}
 
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
     orientation: Orientation = Field(

@@ -6,7 +6,7 @@ Dynamics of Mechanical Systems (1989), section 9.4; Nikravesh (1988), section 7.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
@@ -73,6 +73,9 @@ class SpatialJoint(Pair[Marker]):
     """
 
     conditions: ClassVar[tuple[Condition, ...]] = ()
+    written_as: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("axis", "direction"), "the axis as z of the markers, such as j: {body: ground, orientation: {z: [0, 1, 0]}}"
+    )
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: object) -> None:
