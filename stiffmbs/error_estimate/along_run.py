@@ -165,9 +165,8 @@ def _prepared(
         q, u = np.hsplit(points.states[rows], [dynamics.system.n_q])
         refuse_singular(dynamics, points.t[rows], q, u)  # rates are those of rounding there
         found, known = nonlinear_defects(dynamics, transport, points, of_points, defects, steps)
-        return found, known & ~(
-            bool(piece.fired) & (steps == len(defects) - 1)
-        )  # the last rates may be those after an event
+        at_event = bool(piece.fired) & (steps == len(defects) - 1)  # the last rates may be those after it
+        return found, known & ~at_event
 
     means = _with_large_errors(points, defects, local_errors, nonlinear, at)
     of_rows = defects if piece.points > 1 else defects[:, -1:]
