@@ -59,7 +59,6 @@ SUBSYSTEMS = {
     "restarts": "solve.events.restart:RESTARTS",
     "run_checks": "run_checks.parameters:RUN_CHECKS",
     "sensitivities": "sensitivity_equations.recorded:SENSITIVITIES",
-    "sharing": "solve.error_control.native.parameters:SHARING",
     "stability_bound": "solve.explicit.stable_step:STABILITY_BOUND",
     "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
     "stepping": "studies.stepping:STEPPING",

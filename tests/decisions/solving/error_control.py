@@ -148,20 +148,12 @@ def largest_filtered_norm():
             return size if vector == "filtered" else 0.0
 
         c = Record(
-            iteration=Record(cj=1.0), looked=1.0, equal_until=0, always=1, steps=0, until=0, repeats=1.0, shared=1.0, part_before_event=0, norm=norm, at_filtered="filtered",
+            iteration=Record(cj=1.0), looked=1.0, equal_until=0, always=1, steps=0, until=0, repeats=1.0, part_before_event=0, norm=norm, at_filtered="filtered",
         )  # fmt: skip
         return error_norm.error_norm({OPERATIONS: {NORM_TABLE: c}}, None) > 0.0
 
     with interpreted(error_norm, _filtered=always):
         return count_while(is_estimate, 1e9 * DOUBLES[:100])
-
-
-def share_after(events, rtol):
-    """Return the factor of error estimates after some events."""
-    c = Record(events=events - 1, shared=1.0)
-    with interpreted(error_norm):
-        error_norm.share_between_events(c, rtol)
-    return c.shared
 
 
 def first_check(module, name, check, counts):
@@ -222,8 +214,6 @@ def tolerance_of_a_counter():
 
 
 DECISIONS = {
-    "sharing.few": lambda: count_while(lambda events: share_after(events, 1e-3) == 1.0, range(1, 1000)),
-    "sharing.finest": lambda: share_after(10**9, 1e-6),
     "newton.loosest": lambda: tolerance(0.0),
     "newton.soft": lambda: tolerance(1.5e7),
     "newton.negligible": lambda: tolerance(1e20, 1e-2),
@@ -258,7 +248,6 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
-    "sharing.few": 21, "sharing.finest": 1e4,
     "newton.loosest": 0.03, "newton.soft": 0.001, "newton.negligible": 1e-06, "newton.precision": 0.001, "newton.unknown": 20,
     "newton.diverging": 900, "newton.slowest": 100, "newton.trusted": 20, "newton.least": 0.05, "newton.last": 32, "newton.long_steps": 50,
     "newton.many_failures": 201, "newton.eased": 0.0001, "newton.easiest": 0.33, "polishing.amplified": 0.5477225575051661, "polishing.unbalanced": 3e-07,

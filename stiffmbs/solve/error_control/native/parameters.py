@@ -103,19 +103,3 @@ class ErrorFilterParameters:
 
 
 FILTER = tuned("error_filter", ErrorFilterParameters())
-
-
-@dataclass(frozen=True)
-class SharingParameters:
-    """Parameters of the tolerance that events of a run share.
-
-    Source: a sliding joint whose load vanishes 64 and 640 times, and the examples with events.
-    """
-
-    few: int = 20
-    """Number of events whose errors may each be as large as the tolerance allows."""
-    finest: float = 1e-10
-    """Smallest relative tolerance that follows, above the rounding of accelerations."""
-
-
-SHARING = tuned("sharing", SharingParameters())

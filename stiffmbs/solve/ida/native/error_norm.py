@@ -1,4 +1,4 @@
-"""Norm of IDA's error test: filtered for strong damping, shared among periods of a law and among events, failing for steps over an event.
+"""Norm of IDA's error test: filtered for strong damping, shared among periods of a law, failing for steps over an event.
 
 A light body in a strong damper follows M u' = f(q) - c u, so u = f(q) / c after a time M / c.  Differences of u, which
 estimate the error, then do not represent the error in u, which follows that in q.  After a change of step or order, u
@@ -7,9 +7,6 @@ a step of implicit Euler filters the estimate d,
     (dF/dy + cj dF/dy') e = cj dF/dy' d,
 with the current iteration matrix and its factors.  For y' = f this is (I - f_y / cj)^-1 d: it damps errors in
 directions with fast decay, except for their effect on other unknowns, and leaves those in slow directions.
-
-Restarts after events keep BDF at low orders.  Where events recur, their steps have errors of about the tolerance and of
-one sign, which add up.  After k events, errors are smaller by this factor, so that the sum is in proportion to log k.
 
 After a failure, such a run may pass the next step so easily that IDA doubles the step and fails again.  IDA raises
 the order only after equal steps, so the order would stay at 1.  Therefore steps may not grow before these equal steps.
@@ -33,7 +30,7 @@ from stiffmbs.compile.machine.native.access import (
 )
 from stiffmbs.compile.machine.native.calls import call_address, call_float, call_int
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OK, OPERATIONS
-from stiffmbs.solve.error_control.native.parameters import A_STABLE_ORDER, EQUAL_STEPS, FILTER, SHARING
+from stiffmbs.solve.error_control.native.parameters import A_STABLE_ORDER, EQUAL_STEPS, FILTER
 from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import ERROR_NORM
 
@@ -136,18 +133,10 @@ def _norm(c, estimate, weights):
     return call_float(c.norm, (estimate, weights))
 
 
-@compiled
-def share_between_events(c, rtol):
-    """Count a restart after an event; make later errors smaller by the number of events if these are many."""
-    c.events += 1
-    c.shared = max(1.0, min(float(c.events - SHARING.few), rtol / SHARING.finest))
-
-
 def error_norm(estimate, weights):
     """Return the norm of an estimate for IDA's error test and its choice of order and step."""
     c = error_norm_view(ints(ints(estimate[OPERATIONS])[NORM_TABLE]))
-    factor = max(c.repeats, c.shared)
     if not c.part_before_event:
-        return factor * _norm(c, estimate, weights)
+        return c.repeats * _norm(c, estimate, weights)
     _see_event(c, estimate, weights)
-    return factor * c.enlarged * _norm(c, estimate, weights)
+    return c.repeats * c.enlarged * _norm(c, estimate, weights)

@@ -97,7 +97,7 @@ matrix, 1 after a failed iteration."""
 ERROR_NORM = Layout({
     "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
     "trouble": FLOAT_CELL, "always": INT_CELL, "looked": FLOAT_CELL, "steps": INT_CELL, "failures": INT_CELL,
-    "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL, "repeats": FLOAT_CELL, "events": INT_CELL, "shared": FLOAT_CELL,
+    "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL, "repeats": FLOAT_CELL,
     "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
     "ida": INT, "part_before_event": INT, "time_of": INT, "set_largest_part": INT, "set_least_part": INT, "t": FLOAT_CELL, "attempted": FLOAT_CELL, "enlarged": FLOAT_CELL, "repeated": INT_CELL,
@@ -106,7 +106,6 @@ ERROR_NORM = Layout({
 
 Cells: failures of the error test with a weight that decreases with each step; 1 to filter all estimates; cj at the last
 check of failures; steps and failures of the error test, and the same at the last check; step up to which estimates are
-filtered; order of the last step; number of periods of a law whose features are resolved, else 1; number of
-events of the run, and factor of the norms because of them; step up to which steps
+filtered; order of the last step; number of periods of a law whose features are resolved, else 1; step up to which steps
 may not grow (0 for none), and least growth factor afterwards; current time, time at the end of the last attempted step,
 factor of the norms of that step, number of its repetitions."""

@@ -18,7 +18,6 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.events.native.bounds import breakpoint_of, departed, event_search_view, interval, left_out
 from stiffmbs.solve.events.native.parameters import SEARCH
-from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 
 
@@ -81,7 +80,6 @@ def part_before_event(estimate, weights, ida):
     largest = 0.0
     for k in range(equations_view(c.equations).n):
         largest = max(largest, abs(d[k]) * weight[k])
-    largest *= error_norm_view(c.error_norm).shared
     if not place * largest > 1.0:
         return 1.0
     return (1.0 - max(0.5 / largest, SEARCH.finest)) * place  # a step over the rest is within half the tolerance

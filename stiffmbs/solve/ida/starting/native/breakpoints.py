@@ -11,7 +11,6 @@ from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past
-from stiffmbs.solve.ida.native.error_norm import error_norm_view, share_between_events
 from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call, stepped
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
@@ -202,8 +201,6 @@ def restarted_at_event(t, ahead, counted, highest_order, table):
     restart_counters(w, s, after)
     if _started(w, c, s, m, after, counted, highest_order) < 0:
         return int32(UNFINISHED)
-    if ahead > 0.0 and not c.repeat:
-        share_between_events(error_norm_view(c.error_norm), c.rtol)
     w.t = after
     w.meets = _meets(w, s, m, after) if w.n_event_functions > 0 else 0
     return int32(OK)
