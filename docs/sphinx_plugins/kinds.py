@@ -119,7 +119,11 @@ def documented(module: str, name: str) -> Iterator[str]:
         if module != "stiffmbs" and getattr(stiffmbs, name, None) is thing:
             yield "   :no-index:"
         if not issubclass(thing, Described | Exception):
-            yield from ("   :members:", "   :inherited-members: Mapping, Env, VectorEnv", f"   :exclude-members: {INNER}")
+            yield from (
+                "   :members:",
+                "   :inherited-members: Mapping, Env, VectorEnv",
+                f"   :exclude-members: {INNER}",
+            )
         yield ""
         if issubclass(thing, Described) and thing.model_fields.keys() - {"type"}:
             yield from field_table(thing)
