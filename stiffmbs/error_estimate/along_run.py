@@ -161,6 +161,7 @@ def _prepared(
         return transport.apart(of_points[steps], points.sizes[steps], rates)
 
     def nonlinear(steps: np.ndarray) -> Nonlinear:
+        """Return the defects of some steps by nonlinear equations; refuse singular poses."""
         rows = np.append(len(points.t) * np.arange(3) // 3, points.rows[steps].ravel())  # others show usual poses
         q, u = np.hsplit(points.states[rows], [dynamics.system.n_q])
         refuse_singular(dynamics, points.t[rows], q, u)  # rates are those of rounding there

@@ -118,10 +118,8 @@ class Described(_Base):
         If a field is missing, unknown, of the wrong type or out of its bounds.
     """
 
-    former_names: ClassVar[Mapping[str, str]] = {}
-    """New names of renamed fields by their old names, for messages."""
     written_as: ClassVar[Mapping[str, str]] = {}
-    """What is written in place of keys that other programs have, by these keys, for messages."""
+    """Texts of messages on what to write in place of keys that were renamed, or that other programs have."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
 
@@ -140,10 +138,8 @@ class Described(_Base):
             return found
         known = _keys(cls)
         for key in found:
-            if key in cls.former_names:
-                raise ValueError(f"found '{key}', expected its new name '{cls.former_names[key]}'")
-            if key in cls.written_as:
-                raise ValueError(f"found the unknown key '{key}', expected {cls.written_as[key]}")
+            if key in cls.written_as and key not in known:
+                raise ValueError(f"found '{key}', expected {cls.written_as[key]}")
             if key not in known:
                 raise ValueError(f"found the unknown key '{quoted(key)}'{instead_of(key, known)}{quotes_hint(key)}")
         return {key: value.tolist() if hasattr(value, "tolist") else value for key, value in found.items()}

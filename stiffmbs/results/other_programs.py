@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,10 +15,25 @@ from ..reading.files.quoted import quoted
 if TYPE_CHECKING:
     from .solution import Solution
 
-LONGEST_NAME = 63
-"""Characters of a variable of MATLAB at most (`namelengthmax`)."""
-MOST_ROWS, MOST_COLUMNS = 1_048_576, 16_384
-"""Rows and columns of a sheet of Excel at most."""
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of formats.
+
+    Source: MATLAB's `namelengthmax`; Microsoft, Excel specifications and limits.
+    """
+
+    name: int = 63
+    """Characters of a variable of MATLAB."""
+    rows: int = 1_048_576
+    """Rows of a sheet of Excel."""
+    columns: int = 16_384
+    """Columns of a sheet of Excel."""
+    cell: int = 32_767
+    """Characters of a cell of Excel."""
+
+
+LIMITS = Limits()
 
 
 def about(solution: Solution) -> dict[str, str]:
@@ -32,10 +48,10 @@ def variable_names(channels: list[str]) -> list[str]:
     for channel in channels:
         letters = "".join(letter if letter.isalnum() else "_" for letter in in_ascii(channel))
         whole = letters if letters[:1].isalpha() else f"x{letters}"
-        name, number = whole[:LONGEST_NAME], 1
+        name, number = whole[: LIMITS.name], 1
         while name in found:
             number += 1
-            name = f"{whole[: LONGEST_NAME - 1 - len(str(number))]}_{number}"
+            name = f"{whole[: LIMITS.name - 1 - len(str(number))]}_{number}"
         found[name] = None
     return list(found)[3:]
 
@@ -67,9 +83,9 @@ def write_excel(path: Path, solution: Solution) -> None:
     """
     columns = (solution.time, *solution.channels.values())
     rows = len(solution.time) + 2
-    if rows > MOST_ROWS or len(columns) > MOST_COLUMNS:
+    if rows > LIMITS.rows or len(columns) > LIMITS.columns:
         raise InputError(
-            f"{quoted(path.suffix)}: found {rows} rows and {len(columns)} columns, expected at most {MOST_ROWS} and {MOST_COLUMNS}; "
+            f"{quoted(path.suffix)}: found {rows} rows and {len(columns)} columns, expected at most {LIMITS.rows} and {LIMITS.columns}; "
             "use .parquet or .csv"
         )
     from openpyxl import Workbook
@@ -89,8 +105,7 @@ def write_excel(path: Path, solution: Solution) -> None:
 
 def _cells(text: str) -> list[str]:
     """Return a text in parts that fit into cells."""
-    longest = 32_767  # characters of a cell of Excel
-    return [text[first : first + longest] for first in range(0, len(text), longest)]
+    return [text[first : first + LIMITS.cell] for first in range(0, len(text), LIMITS.cell)]
 
 
 def write_parquet(path: Path, solution: Solution) -> None:

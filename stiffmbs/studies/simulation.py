@@ -7,7 +7,7 @@ import numbers
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Unpack
+from typing import TypeVar, Unpack
 
 import numpy as np
 
@@ -35,8 +35,9 @@ from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import InputNumbers, Inputs
 from .joint_pose import JointPose, named_coordinates
 from .saved_simulation import exactly_saved, inputs_and_state, write_simulation
-from .stepping import FixedSteps, Moment, Stepper, stepper_of
+from .stepping import FixedSteps, Stepper, stepper_of
 
+S = TypeVar("S", bound="Simulation")
 OWN_INPUTS = "inputs"
 """Section of a scene with its inputs."""
 DRIFT_CHECK_INTERVAL = 64
@@ -77,6 +78,13 @@ def simulation(
     >>> while sim.t < 1.0:
     ...     sim.step(0.01, inputs={"forces.spring.stiffness": 270.0 if sim["cart.vx"] > 0 else 300.0})
     """
+    return simulation_of(Simulation, model, inputs, settings, changes)
+
+
+def simulation_of(
+    kind: type[S], model: Runnable, inputs: Mapping[str, float] | None, settings: RunSettings | None, changes: Settings
+) -> S:
+    """Return a simulation of a kind; see `simulation`."""
     data = data_of(model)
     own = {name: float(value) for name, value in data.inputs.items() if isinstance(value, float)}
     given = dict(inputs or {})
@@ -84,7 +92,7 @@ def simulation(
     paths = (f"{OWN_INPUTS}.{name}" if name in own else name for name in given)
     solver = CaseSolver(Task(written_scene(data), tuple(paths), {}, ()))
     scene = solver.scene([float(value) for value in given.values()])
-    return Simulation(solver, given, changed(settings or scene.run, dict(changes)))
+    return kind(solver, given, changed(settings or scene.run, dict(changes)))
 
 
 class Simulation:
@@ -208,22 +216,6 @@ class Simulation:
             self._joints.follow(self._stepper.time)
             self._followed = True
         return self._joints
-
-    @property
-    def moment(self) -> Moment:
-        """Return all that the next steps depend on, but for the history of `bdf` and `radau`."""
-        joints = self._current_joints()
-        state, inputs = np.concatenate([self.q, self.u]), self._inputs.held.values.copy()
-        return Moment(np.array(self.t), state, inputs, joints.coordinates.copy(), joints.rates.copy())
-
-    @moment.setter
-    def moment(self, at: Moment) -> None:
-        n_q, self.t = len(self._stepper.q), float(at.t)
-        self._inputs.set(at.inputs)
-        self._stepper.restart(self.t, at.state[:n_q], at.state[n_q:])
-        self._joints.continue_from(self.t, at.coordinates, at.rates)
-        self._followed = True
-        self._forget()
 
     @property
     def inputs(self) -> dict[str, float]:
@@ -371,31 +363,6 @@ class Simulation:
         self._stepper, self._relaxed = stepper, relaxed
         self._places = places_of_channels(self._job.dynamics.system, stepper.q, stepper.u)
         self._joints.watch(stepper.q, stepper.u)
-
-    def may_take_each(self, dt: float, of: Moment) -> bool:
-        """Return True if `take_each` can take a step of dt from each of many moments; raise an InputError if an input is refused."""
-        inputs, stepper = self._inputs, self._stepper
-        if not (isinstance(stepper, FixedSteps) and inputs.affine) or inputs.of_time or self._bounded or self._relaxed:
-            return False
-        valid = inputs.valid_rows(of.inputs)
-        if valid < len(of.inputs):
-            with prefixed(f"simulation {valid}: "):
-                self.set_inputs(of.inputs[valid])
-        return stepper.may_take_each(float(of.t.min()), float(of.t.max()) + dt)
-
-    def take_each(self, dt: float, of: Moment, statuses: np.ndarray) -> str:
-        """Take one step of dt from each of many moments, as `FixedSteps.take_each`."""
-        assert isinstance(self._stepper, FixedSteps)
-        return self._stepper.take_each(dt, of, statuses, self._inputs.held, self._joints)
-
-    def column_of(self, channel: str) -> int | None:
-        """Return the place of a channel in (q, u), or None if it is none of these."""
-        values, number = self._places.get(channel, (None, 0))
-        return None if values is None else number + (len(self._stepper.q) if values is self._stepper.u else 0)
-
-    def checked_inputs(self, values: Inputs, n: int) -> np.ndarray:
-        """Return the inputs of n simulations, one row for each; raise an InputError if there is no such input or a value is invalid."""
-        return self._inputs.rows(values, n)
 
     def set_inputs(self, inputs: Inputs) -> None:
         """Set inputs from now on, by name, where others keep their values, or all in the order of `inputs`.

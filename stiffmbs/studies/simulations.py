@@ -18,8 +18,9 @@ from ..reading.did_you_mean import instead_of
 from ..reading.files.quoted import written
 from ..solve.explicit.fixed import failed
 from .executors import refuse_workers
-from .simulation import Simulation, simulation
+from .simulation import simulation_of
 from .stepping import Moment
+from .worker import Worker
 
 EachInputs: TypeAlias = Mapping[str, float | np.ndarray] | np.ndarray | Sequence[float]
 """Inputs by name, each a number or one number for each simulation; or an array of shape (inputs,) or (n, inputs)."""
@@ -71,7 +72,9 @@ def simulations(
     if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
         raise InputError(f"simulations: found n = {n!r}, expected a whole number, 1 or more")
     refuse_workers(workers)
-    return Simulations([simulation(model, inputs, settings, **changes) for _ in range(min(workers, n))], int(n))
+    return Simulations(
+        [simulation_of(Worker, model, inputs, settings, changes) for _ in range(min(workers, n))], int(n)
+    )
 
 
 class Simulations:
@@ -80,9 +83,9 @@ class Simulations:
     All arrays have one row for each simulation.
     """
 
-    def __init__(self, workers: Sequence[Simulation], n: int) -> None:
+    def __init__(self, workers: Sequence[Worker], n: int) -> None:
         self._workers, self._first = workers, workers[0]
-        self._start = workers[0].moment
+        self._start = workers[0].moment()
         self._names = tuple(workers[0].inputs)
         self._now = Moment(*(np.repeat(each[None], n, axis=0) for each in self._start))
         self._reasons: dict[int, str] = {}
@@ -184,7 +187,7 @@ class Simulations:
         """Take a step of all simulations, in one compiled call for each worker."""
         statuses = np.zeros(len(self), dtype=np.int64)
 
-        def take(worker: Simulation, part: slice) -> str:
+        def take(worker: Worker, part: slice) -> str:
             return worker.take_each(dt, Moment(*(each[part] for each in of)), statuses[part])
 
         sentence = "; ".join(filter(None, self._map(take, self._workers, self._parts)))
@@ -198,13 +201,13 @@ class Simulations:
         """Return the moments a step later, where steps do not fail."""
         found = Moment(*(each.copy() for each in of))
         for k in range(len(self)):
-            self._first.moment = Moment(*(each[k] for each in of))
+            self._first.continue_from(Moment(*(each[k] for each in of)))
             try:
                 self._first.step(dt)
             except SolverError as error:
                 self._reasons[k] = str(error)
             else:
-                self._put(found, k, self._first.moment)
+                self._put(found, k, self._first.moment())
         return found
 
     @staticmethod
@@ -238,12 +241,15 @@ class Simulations:
         """
         rows = self._numbers(which)
         found = [self._start] * len(rows)
-        if state is not None or joints is not None or rates is not None:
+        if state is not None and joints is None and rates is None:
+            self._first.reset(state)
+            found = [self._first.moment()] * len(rows)
+        elif joints is not None or rates is not None:
             of_joints, of_rates = (_in_rows(values, len(rows)) for values in (joints, rates))
             for k, number in enumerate(rows.tolist()):
                 with prefixed(f"simulation {number}: "):
                     self._first.reset(state, of_joints[k], of_rates[k])
-                found[k] = self._first.moment
+                found[k] = self._first.moment()
         for number, moment in zip(rows.tolist(), found, strict=True):
             self._put(self._now, number, moment)
             self._reasons.pop(number, None)
@@ -274,7 +280,7 @@ class Simulations:
     def _read(self, channel: str) -> np.ndarray:
         found = np.empty(len(self))
         for k in range(len(self)):
-            self._first.moment = Moment(*(each[k] for each in self._now))
+            self._first.continue_from(Moment(*(each[k] for each in self._now)))
             found[k] = self._first[channel]
         return found
 

@@ -83,7 +83,7 @@ def test_numbers_that_are_not_finite_are_empty_cells_and_long_texts_take_several
 
 
 def test_a_sheet_that_is_too_large_is_refused_and_nothing_is_written(solution, tmp_path, monkeypatch):
-    monkeypatch.setattr(other_programs, "MOST_ROWS", 5)
+    monkeypatch.setattr(other_programs, "LIMITS", other_programs.Limits(rows=5))
     with pytest.raises(InputError, match=r"found 6 rows and \d+ columns, expected at most 5 and 16384; use .parquet"):
         solution.save(tmp_path / "a.xlsx")
     assert not list(tmp_path.iterdir())

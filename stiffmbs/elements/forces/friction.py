@@ -44,9 +44,9 @@ class Friction(Force):
     International 40 (2007) 580-587.
     """
 
-    former_names: ClassVar[Mapping[str, str]] = {
-        "smooth_velocity": "stiction_velocity",
-        "stribeck_velocity": "friction_velocity",
+    written_as: ClassVar[Mapping[str, str]] = {
+        "smooth_velocity": "its new name 'stiction_velocity'",
+        "stribeck_velocity": "its new name 'friction_velocity'",
     }
 
     friction: si.NumberOrZero | None = Field(None, description="mu_d, dynamic coefficient of friction")

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, Unpack
 
 import gymnasium
 import numpy as np
@@ -11,7 +11,7 @@ from gymnasium.spaces import Box
 
 from ...analyses.job import Runnable
 from ...errors import InputError
-from .task import Learnt, Range
+from .task import Learnt, TaskOptions
 
 
 class Environment(gymnasium.Env[np.ndarray, np.ndarray]):
@@ -54,21 +54,8 @@ class Environment(gymnasium.Env[np.ndarray, np.ndarray]):
 
     metadata: dict[str, Any] = {"render_modes": []}  # as Gymnasium declares it
 
-    def __init__(
-        self,
-        model: Runnable,
-        *,
-        actions: Mapping[str, Range],
-        observations: Sequence[str],
-        reward: str,
-        limits: Mapping[str, Range] | None = None,
-        joints: Mapping[str, Range] | None = None,
-        rates: Mapping[str, Range] | None = None,
-        dt: float = 0.02,
-        steps: int = 500,
-        **settings: Any,
-    ) -> None:
-        self._task = Learnt.of(actions, observations, reward, limits or {}, joints or {}, rates or {}, dt, steps)
+    def __init__(self, model: Runnable, **task: Unpack[TaskOptions]) -> None:
+        self._task, settings = Learnt.of(**task)
         self._sims = self._task.simulations(model, 1, 1, settings)
         self.action_space, self.observation_space = spaces_of(self._task)
         self._taken = -1

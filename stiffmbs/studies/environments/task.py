@@ -10,12 +10,26 @@ import numpy as np
 
 from ...analyses.job import Runnable
 from ...errors import InputError, SolverError, prefixed
+from ...model.settings import Settings
 from ...reading.files.quoted import written
 from ..outputs import REDUCTIONS, Output, channel_of, outputs_of, parsed
 from ..simulations import Simulations, simulations
 
 Range = tuple[float, float]
 """Least and largest value."""
+
+
+class TaskOptions(Settings, total=False):
+    """Fields of a task and settings of its runs; see `stiffmbs.gym.Environment`."""
+
+    actions: Mapping[str, Range]
+    observations: Sequence[str]
+    reward: str
+    limits: Mapping[str, Range]
+    joints: Mapping[str, Range]
+    rates: Mapping[str, Range]
+    dt: float
+    steps: int
 
 
 @dataclass(frozen=True)
@@ -33,24 +47,25 @@ class Learnt:
 
     @classmethod
     def of(
-        cls, actions: Mapping[str, Any], observations: Sequence[str], reward: str, limits: Mapping[str, Any],
-        joints: Mapping[str, Any], rates: Mapping[str, Any], dt: float, steps: int,
-    ) -> Learnt:  # fmt: skip
-        """Return a task; raise an InputError if a part of it is invalid."""
+        cls, *, actions: Any = (), observations: Any = (), reward: Any = None, limits: Any = None, joints: Any = None,
+        rates: Any = None, dt: Any = 0.02, steps: Any = 500, **settings: Any,
+    ) -> tuple[Learnt, dict[str, Any]]:  # fmt: skip
+        """Return a task, and the settings of its runs; raise an InputError if a part of it is invalid."""
         if not isinstance(dt, int | float) or not 0.0 < dt < np.inf:
             raise InputError(f"dt: found {dt!r}, expected a time greater than 0 s")
         if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or steps < 1:
             raise InputError(f"steps: found {steps!r}, expected a whole number, 1 or more")
-        if isinstance(actions, Mapping) and not actions:
+        if not actions:
             raise InputError("actions: found no ranges, expected one of an input at least")
         if isinstance(observations, str) or not observations:
             raise InputError(f"observations: found {written(observations)}, expected a list of channels or formulas")
-        return cls(
+        task = cls(
             _ranges("actions", actions), tuple(_formula("observations", text) for text in observations),
             _formula("reward", reward),
-            tuple((_formula("limits", text), each) for text, each in _ranges("limits", limits).items()),
-            _ranges("joints", joints), _ranges("rates", rates), float(dt), int(steps),
+            tuple((_formula("limits", text), each) for text, each in _ranges("limits", limits or {}).items()),
+            _ranges("joints", joints or {}), _ranges("rates", rates or {}), float(dt), int(steps),
         )  # fmt: skip
+        return task, settings
 
     def simulations(self, model: Runnable, n: int, workers: int, settings: Mapping[str, Any]) -> Simulations:
         """Return simulations of a scene at their starts; raise an InputError if the task does not fit the scene."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -11,7 +10,7 @@ from gymnasium.vector.utils import batch_space
 
 from ...analyses.job import Runnable
 from .environment import refuse_options, spaces_of
-from .task import Learnt, Range
+from .task import Learnt, TaskOptions
 
 
 class VectorEnvironment(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
@@ -37,23 +36,8 @@ class VectorEnvironment(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
 
-    def __init__(
-        self,
-        model: Runnable,
-        num_envs: int,
-        *,
-        actions: Mapping[str, Range],
-        observations: Sequence[str],
-        reward: str,
-        limits: Mapping[str, Range] | None = None,
-        joints: Mapping[str, Range] | None = None,
-        rates: Mapping[str, Range] | None = None,
-        dt: float = 0.02,
-        steps: int = 500,
-        workers: int = 1,
-        **settings: Any,
-    ) -> None:
-        self._task = Learnt.of(actions, observations, reward, limits or {}, joints or {}, rates or {}, dt, steps)
+    def __init__(self, model: Runnable, num_envs: int, *, workers: int = 1, **task: Unpack[TaskOptions]) -> None:
+        self._task, settings = Learnt.of(**task)
         self._sims = self._task.simulations(model, num_envs, workers, settings)
         self.num_envs = num_envs
         self.single_action_space, self.single_observation_space = spaces_of(self._task)
@@ -88,5 +72,5 @@ class VectorEnvironment(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         truncated = ~begun & (self._taken >= task.steps)
         self._ended = terminated | truncated
         failed = sims.failed
-        told = {"failure": np.where(failed, failure, ""), "_failure": failed} if failed.any() else {}
-        return task.observed(sims), rewards, terminated, truncated, told
+        information = {"failure": np.where(failed, failure, ""), "_failure": failed} if failed.any() else {}
+        return task.observed(sims), rewards, terminated, truncated, information

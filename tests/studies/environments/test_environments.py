@@ -196,6 +196,21 @@ def test_wrong_tasks_are_refused(change, message):
         environment(**change)
 
 
+def test_a_task_has_actions_observations_and_a_reward():
+    for missing, message in (
+        ("actions", "actions: found no ranges"),
+        ("observations", r"observations: found \(\)"),
+        ("reward", "reward: found None"),
+    ):
+        task = {name: value for name, value in TASK.items() if name != missing}
+        for made in (
+            lambda task=task: stiffmbs.gym.Environment(scene(), **task),
+            lambda task=task: stiffmbs.gym.VectorEnvironment(scene(), 2, **task),
+        ):
+            with pytest.raises(InputError, match=message):
+                made()
+
+
 def test_wrong_calls_are_refused():
     env = environment()
     with pytest.raises(InputError, match="step: found no episode, expected a call of reset before"):
