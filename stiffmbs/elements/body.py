@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import chain
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
@@ -97,6 +97,11 @@ class BodyHandle(Handle):
     mass, inertia and other fields of the body
         Values in the model; assignment changes the model.
     """
+
+    written_as: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("center_of_mass", "centre_of_mass"),
+        "points of joints and forces relative to the centre of mass, which is the origin of a planar body",
+    )
 
     names = PLANE
     fields = Body.model_fields

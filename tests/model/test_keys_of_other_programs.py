@@ -1,4 +1,4 @@
-"""Keys for axes that other programs have: the message says where the axis is written here."""
+"""Keys that other programs have, for axes and centres of mass: the message says what is written here."""
 
 import pytest
 
@@ -25,3 +25,11 @@ def test_an_axis_of_a_marker(key):
     message = rf"joints.pin.j: found '{key}', expected orientation: {{[xz]: \[0, 1, 0\]}} or another direction"
     with pytest.raises(stiffmbs.InputError, match=message):
         stiffmbs.read_scene(SCENE.format(kind="revolute", marker=f", {key}: [0, 0, 1]", joint=""))
+
+
+@pytest.mark.parametrize("key", ["center_of_mass", "centre_of_mass"])
+def test_the_centre_of_mass_of_a_planar_body(key):
+    with pytest.raises(
+        stiffmbs.InputError, match=f"bodies.b: found '{key}', expected points of joints and forces relative"
+    ):
+        stiffmbs.read_scene(f"bodies: {{b: {{mass: 1, inertia: 1, {key}: [0.1, 0]}}}}")
