@@ -32,6 +32,11 @@ FLEXIBLE = "flexible"
 class Body(Described):
     """Planar rigid body with the coordinates x, y of its centre of mass and its angle phi."""
 
+    written_as: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("center_of_mass", "centre_of_mass"),
+        "points of joints and forces relative to the centre of mass, which is the origin of a planar body",
+    )
+
     rigid: ClassVar[bool] = True
     """True for all planar bodies: fixed joints may merge them."""
 
@@ -97,11 +102,6 @@ class BodyHandle(Handle):
     mass, inertia and other fields of the body
         Values in the model; assignment changes the model.
     """
-
-    written_as: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("center_of_mass", "centre_of_mass"),
-        "points of joints and forces relative to the centre of mass, which is the origin of a planar body",
-    )
 
     names = PLANE
     fields = Body.model_fields
