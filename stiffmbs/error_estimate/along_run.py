@@ -19,7 +19,7 @@ from .defects import Points, curve_of_bdf, nonlinear_defects, woven
 from .evaluated import Evaluated, evaluated, motion
 from .kinks import Curve, Motion, dominant, integrals_of_motion, not_smooth
 from .parameters import ESTIMATE
-from .restarts import after_restart, is_autonomous, just_before
+from .restarts import after_restart, beyond_event, is_autonomous, just_before
 from .singular_poses import refuse_singular
 from .transport import OF_BDF, Transport
 from .vibrations import FastMotions, excited_at_start
@@ -33,10 +33,11 @@ class StateErrors:
       of these after projection onto the constraints.
     - `q`, `u`: better states, without the estimated errors.
     - `errors` of shape (n, full): the errors (dq, du, ds) of the states after projection onto the constraints.
-    - `left_out`: mask of nodes with other errors of forces than those nearby: at events, where errors of time are errors as
-      large as jumps; at restarts, where stiff forces are not in balance; and where they could not be balanced.
+    - `left_out`: mask of nodes with other errors of forces than those nearby: at events, and near them within the error of
+      their time, where errors are as large as jumps; at restarts, where stiff forces are not in balance; and where
+      they could not be balanced.
     - `lost`: mask of nodes with errors too large for linear equations; if there is one, `q` and `u` are those of the integrator.
-    - `restarts`: times at which the integrator started again, s.
+    - `restarts`: times at which the integrator started again, and of the events before, where the state is on either side, s.
     - `fast`: motions that the start excites and the steps do not follow.
     """
 
@@ -101,7 +102,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
     left_out = np.zeros(len(t) + 1, dtype=bool)
     left_out[starts[1:][fired] - 1] = True
     left_out[starts[1:]] = True
-    left_out, restarts = left_out[:-1], t[starts[1:-1]]
+    left_out, restarts = left_out[:-1], np.sort(t[np.append(starts[1:-1], starts[1:][fired] - 1)])
     if not _is_free(dynamics.system):
         nothing = np.zeros((len(t), width(dynamics.system)))
         never = np.zeros(len(t), dtype=bool)
@@ -125,8 +126,14 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         np.concatenate(parts)
         for parts in zip(*(_without_errors(dynamics, transport, each) for each in found), strict=True)
     )
+    left_out |= fails
+    for k in np.flatnonzero(fired):
+        before = np.arange(starts[k], starts[k + 1] - 1)
+        after = np.arange(starts[k + 1] + 1, starts[min(k + 2, len(pieces))])
+        for rows in (before[::-1], after):
+            left_out[beyond_event(dynamics, pieces[k].fired, rows, t, (q, u), (q_better, u_better))] = True
     fast = excited_at_start(dynamics, states.at(slice(len(pieces[0].t))), pieces[0].points)
-    return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out | fails, lost, restarts, fast)
+    return StateErrors(t, q, u, states.rows, q_better, u_better, errors, left_out, lost, restarts, fast)
 
 
 def _is_free(system: System) -> bool:

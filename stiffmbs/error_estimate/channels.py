@@ -55,7 +55,10 @@ class _Reports:
 
 @dataclass(frozen=True)
 class _Nodes:
-    """States of a run at the nodes of its estimate, their errors (dq, du, ds), and the values and errors of the channels."""
+    """States of a run at the nodes of its estimate, their errors (dq, du, ds), and the values and errors of the channels.
+
+    `neighbours`: mask of the intervals between nodes in which none was left out.
+    """
 
     t: np.ndarray
     q: np.ndarray
@@ -63,6 +66,7 @@ class _Nodes:
     of_states: np.ndarray
     values: Channels
     errors: Channels
+    neighbours: np.ndarray
 
     def line(self, t: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         """Return the errors of states at some times, each on the straight line through those at two nodes."""
@@ -97,7 +101,7 @@ def channel_errors(
     errors = {name: difference(name, values[name], better[name]) for name in values}
     at, without = (of.at(kept) for of in rows)
     of_states = as_rows(dynamics.system, at.q - without.q, at.u - without.u)
-    nodes = _Nodes(at.t, at.q, at.u, of_states, values, errors)
+    nodes = _Nodes(at.t, at.q, at.u, of_states, values, errors, np.diff(np.flatnonzero(kept)) == 1)
     of_outputs = _at_outputs(reports, nodes, channels)
     if found.fast:
         system = subsystem.dynamics.system if subsystem else dynamics.system
@@ -138,7 +142,7 @@ def _at_outputs(reports: _Reports, nodes: _Nodes, channels: Channels) -> Channel
     Errors of states between two nodes are interpolated: those of channels are not linear where a force changes with a small
     velocity, as friction does. Stiff forces need errors of states that are in balance, which interpolated ones are not: then those
     of the channels are interpolated. This is so where the errors of a node's neighbours give its channel an error that is wrong by
-    its size.
+    its size. Beside an event, states without their errors lie on its other side: the smaller of both errors is not the jump there.
     """
     run, count = reports.run, len(next(iter(channels.values())))
     t, q, u = run.t[:count], run.q[:count], run.u[:count]
@@ -159,7 +163,7 @@ def _at_outputs(reports: _Reports, nodes: _Nodes, channels: Channels) -> Channel
     for name, errors in nodes.errors.items():
         off = np.pad(np.abs(alone[name] - errors[inner]), 1, mode="reflect")  # an end has no neighbours
         sizes = np.abs(errors)
-        holds = np.maximum(off[:-1], off[1:]) <= np.maximum(sizes[:-1], sizes[1:])
+        holds = nodes.neighbours & (np.maximum(off[:-1], off[1:]) <= np.maximum(sizes[:-1], sizes[1:]))
         direct, line = of_outputs[name], interpolated[name]
         found[name] = np.where(holds[first] | (np.abs(direct) < np.abs(line)), direct, line)
     return found

@@ -62,6 +62,20 @@ def just_before(dynamics: Dynamics, piece: Evaluated, fired: tuple[int, ...]) ->
     return piece.at(slice(previous, end))
 
 
+def beyond_event(
+    dynamics: Dynamics, fired: tuple[int, ...], rows: np.ndarray, t: np.ndarray, *states: tuple[np.ndarray, np.ndarray]
+) -> np.ndarray:
+    """Return those of some rows next to an event whose states without their errors lie on its other side.
+
+    `rows`: in the order of their distance from the event. `states`: q and u of the run, and those without errors.
+    """
+    for k, row in enumerate(rows):
+        recorded, better = (_event_values(dynamics, fired, float(t[row]), q[row], u[row]) > 0.0 for q, u in states)
+        if np.array_equal(recorded, better):
+            return rows[:k]
+    return rows
+
+
 def _event_values(dynamics: Dynamics, fired: tuple[int, ...], t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return the values of some event functions at a state."""
     state = dynamics.state

@@ -137,7 +137,7 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray, restarts: np.
     slope = fall - bend * before
     last = np.flatnonzero(np.diff(piece))
     sides = [(last, -1, restarts[piece[last]]), (last + 1, 1, restarts[piece[last + 1] - 1])]
-    tops = [slope**2 / (-4 * bend), *(_continued(times, values, *side).ravel() for side in sides)]
+    tops = [slope**2 / (-4 * bend), *(_continued(times, values, piece, *side).ravel() for side in sides)]
     row = np.concatenate([row, *2 * [np.repeat(np.arange(count), len(last))]])
     k, top = np.concatenate([k, np.tile(last, count), np.tile(last + 1, count)]), np.concatenate(tops)
     here = values[row, k]
@@ -150,10 +150,13 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray, restarts: np.
     return found
 
 
-def _continued(times: np.ndarray, values: np.ndarray, k: np.ndarray, inner: int, end: np.ndarray) -> np.ndarray:
+def _continued(
+    times: np.ndarray, values: np.ndarray, piece: np.ndarray, k: np.ndarray, inner: int, end: np.ndarray
+) -> np.ndarray:
     """Return the excess over the values at k of their continuation to an end, by the slope from their inner neighbours."""
     n = np.clip(k + inner, 0, len(times) - 1)
-    slope = np.where(n == k, 0.0, (values[:, k] - values[:, n]) / np.where(n == k, 1.0, times[k] - times[n]))
+    alone = (n == k) | (piece[n] != piece[k])
+    slope = np.where(alone, 0.0, (values[:, k] - values[:, n]) / np.where(alone, 1.0, times[k] - times[n]))
     return np.maximum(slope * (end - times[k]), 0.0)
 
 

@@ -42,3 +42,24 @@ def test_edges_of_a_road(truth, solver, rtol):
         assert 0.3 < ratio(found, channel, truth[channel]) < 3.0 or found.errors[channel].over_time < 1e-9 * np.ptp(
             truth[channel]
         )
+
+
+LANDING = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies: {ball: {mass: 1, inertia: [1, 1, 1], position: [0, 0, 0.5], velocity: [0.3, 0, 0]}}
+joints: {level: {type: orientation, i: ball, j: ground}}
+forces:
+  touch: {type: force, i: ball, j: ground, force: [0, 0, "branch(ball.z, -1e4*ball.z - 60*ball.vz, 0, 0)"]}
+run: {duration: 1, points: steps, rtol: 1e-6}
+"""
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_row_at_the_jump_of_a_force(solver):
+    """The row at an event had the jump of a force as its error, and as a peak between output times."""
+    found = stiffmbs.run(stiffmbs.read_scene(LANDING), solver=solver, errors=True)
+    assert "estimated error" not in " ".join(found.notes)
+    bar, size = found.errors["touch.fz"], np.abs(found["touch.fz"]).max()
+    assert bar.over_time < 1e-3 * size
+    assert max(bar.sampled_least, bar.sampled_greatest) < 0.05 * size
