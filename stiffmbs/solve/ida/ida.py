@@ -17,6 +17,7 @@ from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 from ..error_control.error_test import ErrorControl
+from ..error_control.newton import row_sums_of
 from ..events.event_functions import EventSearch, StepBound
 from ..events.whole_steps import WholeStepLog
 from ..linear_solvers.linear_solver import LinearSolver
@@ -319,7 +320,8 @@ class NativeIda:
 
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
         """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""
-        needed = long_step < np.inf or self._has_kinks
+        may_stiffen = any(len(sums.row) for sums in row_sums_of(dynamics))
+        needed = may_stiffen or self._has_kinks
         if needed and not (self._formula.repeat or self.output_correction.ready):
             self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
         self.output_correction.limit(long_step, part, balanced)

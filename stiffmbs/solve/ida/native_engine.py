@@ -326,7 +326,7 @@ class NativeEngine(Engine):
 
     @property
     def long_step(self) -> float:
-        return self._stiffness.long_step
+        return self._starts.found()[0].long_step
 
     def last_step(self) -> tuple[float, int] | None:
         """Return the size, s, and order of the last step, if known."""

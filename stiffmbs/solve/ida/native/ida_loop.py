@@ -21,6 +21,7 @@ from stiffmbs.solve.ida.native.output_correction import (
     output_correction_view,
 )
 from stiffmbs.solve.ida.native.parameters import LOOP
+from stiffmbs.solve.ida.starting.native.start import follow_stiffness
 
 STALLED: Final = -101
 """Flag for steps that have shrunk to the rounding of the time; none of ida.h."""
@@ -63,6 +64,7 @@ def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
     load(s, e, array_of(c, yy), array_of(c, yp))
     a = floats(c.matrix)
     output_correction_view(c.output_correction).current = cj
+    output_correction_view(c.output_correction).renewed = 1
     iteration_view(c.iteration).age = MADE
     add_entries(e, evaluate(s, e.matrix_set, t), cj, a)
     return int32(OK if _finite(a, e.n_slots) else RECOVERABLE)
@@ -306,6 +308,8 @@ def _report_at(c, t, row):
 def _served(c, times, count, y_out):
     """Report at the output times up to the returned time."""
     flag = int32(OK)
+    if c.served < count and times[c.served] <= c.returned:
+        follow_stiffness(c)
     while c.served < count and times[c.served] <= c.returned:
         k = c.served
         flag = _report_at(c, times[k], shifted(y_out, k * c.n_reported))

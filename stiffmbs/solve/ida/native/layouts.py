@@ -17,7 +17,7 @@ NATIVE_IDA = Layout({
     "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "atol": FLOATS, "rtol": FLOAT_CELL,
-    "whole_steps": INTS, "error_norm": INTS,
+    "whole_steps": INTS, "error_norm": INTS, "starts": INT_CELL,
     "attempted": FLOAT_CELL, "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL,
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
@@ -26,7 +26,7 @@ repeats its last step with another length, 0 for a multistep method; function th
 step holds over jumps; absolute and relative tolerances.
 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
-size of the next attempt; last stop time; time at the end of the attempted step; output times served, tiny steps in succession; steps in the history,
+size of the next attempt; address of the data of starts, 0 for none; last stop time; time at the end of the attempted step; output times served, tiny steps in succession; steps in the history,
 steps since the last sample, position of the next one.  Address of rows for time, order, y and y' of each step (0 for none), and rows written in
 this call.  Places within a step that have a row too."""
 
@@ -66,7 +66,7 @@ restart after it; number of breakpoints passed, and steps before the last."""
 
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL, "failed": INT_CELL, "first_failed": FLOAT_CELL,
-    "balanced": FLOAT_CELL, "force_end": INTS, "force_row": INTS,
+    "balanced": FLOAT_CELL, "renewed": INT_CELL, "force_end": INTS, "force_row": INTS,
     "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
     "predicts": INT_CELL, "predict": INT, "predict_rate": INT, "at_zero": INT,
     "memory": INT, "interpolate": INT, "weights": INT, "setup": INT, "solve": INT,
@@ -77,7 +77,8 @@ OUTPUT_CORRECTION = Layout({
 """Newton's iteration on interpolated states (`stiffmbs.solve.ida.native.output_correction`).
 
 Cells: cj of the factors (0 for none), cj of IDA, part of the tolerance that may remain, step, s, above which states
-within it are corrected; number of states that could not be corrected, time of the first, s; allowed imbalance relative to the largest force.  Then rows of the equations of motion, forces
+within it are corrected; number of states that could not be corrected, time of the first, s; allowed imbalance relative to the largest force; 1 if the matrix
+of the iteration is newer than the stiffness.  Then rows of the equations of motion, forces
 before moments, and their ends; rows of position constraints; system that closes joints; memory for a pose; 1 to correct
 the prediction of the current step; zeros."""
 

@@ -65,10 +65,12 @@ class Starts:
             "rate": np.zeros(system.n_q), "kept": np.zeros(system.n_q + system.n_u + system.n_c), "sums": np.zeros(system.n_u),
             **_places(equations), **_relaxing(dynamics, settings, control.relaxation), **_stiff(dynamics), **statistics.arrays,
             **newton_bounds(settings.rtol, control.newton), "growth": control.growth,
+            "amplified": POLISHING.amplified, "least": NEWTON.precision / settings.rtol,
             **{name: ida.address(function) for name, function in FUNCTIONS.items()},
         }  # fmt: skip
         self._values, self._ida, self._table = values, ida, packed(START, {**UNUSED, **values})
         self._cells, self._at = self._table.view(START.cells)[0], self._table.ctypes.data
+        ida.cells["starts"] = self._at
         self._has_events = system.n_event_functions > 0
         self.may_pass = not self._has_events and not len(system.term("acceleration", "f_lam").row)
 
@@ -135,7 +137,7 @@ class Starts:
         return int(self._cells["passed"]), int(self._cells["steps_before"])
 
     def found(self) -> tuple[Stiffness, float]:
-        """Return the stiffness at the last start, and the part of the tolerance that Newton's iteration may leave."""
+        """Return the stiffness, and the part of the tolerance that Newton's iteration may leave."""
         cells = self._cells
         return Stiffness(*(float(cells[name]) for name in OF_STIFFNESS)), float(cells["newton"])
 
@@ -185,7 +187,6 @@ def _restarting(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
         "n_event_functions": n, "first_limit": system.first_limit,
         "n_counters_of_angles": len(counted.row), "angle_source": integers(counted.source), "angle_row": integers(counted.row),
         "reach": JUMP.larger_move, "along_q": along_q, "along_u": along_u,
-        "amplified": POLISHING.amplified, "least": NEWTON.precision / settings.rtol,
         "largest_jump": VELOCITY_JUMP.least, "least_jump": jumps.least, "speed": jumps.scale,
         "q": np.empty(system.n_q), "u": np.empty(system.n_u), "values": np.empty(n), "found": np.empty(n, dtype=np.int64),
     }  # fmt: skip

@@ -1,6 +1,5 @@
 """Integration over breakpoints in one call: IDA restarts at each that requires only consistent values."""
 
-from math import sqrt
 from typing import Final
 
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, ints, state_view
@@ -20,32 +19,13 @@ from stiffmbs.solve.ida.starting.native.start import (
     begun,
     brought_back,
     keep_counters,
+    limit,
     prepare,
     start_view,
 )
 
 UNFINISHED: Final = -1
 """Result of a restart that has no consistent values, or that is left to Python."""
-
-
-@compiled
-def _long_step(w):
-    """Return `stiffmbs.solve.error_control.newton.Stiffness.long_step` at the last start."""
-    longest = float("inf")
-    if w.of_positions > 0.0:
-        longest = sqrt(w.amplified / w.of_positions)
-    if w.of_velocities > 0.0:
-        longest = min(longest, w.amplified / w.of_velocities)
-    return longest
-
-
-@compiled
-def _limit(w, c):
-    """Set the step above which states within it are corrected, and the residual allowed after the correction."""
-    correction = output_correction_view(c.output_correction)
-    fastest = max(w.of_positions, w.of_velocities * w.of_velocities)
-    correction.long = _long_step(w)
-    correction.enough = max(w.soft / fastest if fastest > 0.0 else float("inf"), w.least)
 
 
 @compiled
@@ -105,7 +85,7 @@ def _restarted_at_breakpoint(w, c, t, highest_order):
     restart_counters(w, s, t)
     if not _same_offsets(s, w, e) or _started(w, c, s, m, t, 1, highest_order) < 0:
         return UNFINISHED
-    _limit(w, c)
+    limit(w, c)
     w.t = t
     return OK
 

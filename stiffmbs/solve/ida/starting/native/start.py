@@ -1,6 +1,6 @@
 """Start of IDA from consistent values in one call: unknowns, relaxations, Newton tolerance and IDA itself."""
 
-from math import isfinite
+from math import isfinite, sqrt
 
 from stiffmbs.compile.machine.native.access import (
     compiled,
@@ -13,7 +13,7 @@ from stiffmbs.compile.machine.native.access import (
     view_of,
 )
 from stiffmbs.compile.machine.native.calls import call_int, int32
-from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, TANGENT, evaluate
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, TANGENT, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.dynamics.native.consistent import consistent_accelerations, to_constraints
@@ -25,6 +25,7 @@ from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import START
+from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
 
 NAN = float("nan")
@@ -110,6 +111,40 @@ def allow_remainder(w):
     fastest = max(w.of_positions, w.of_velocities * w.of_velocities)
     allowed = w.soft / fastest if fastest > 0.0 else w.loosest
     w.newton = max(min(w.loosest, allowed), w.tightest)
+
+
+@compiled
+def _long_step(w):
+    """Return `stiffmbs.solve.error_control.newton.Stiffness.long_step` for the stiffness."""
+    longest = float("inf")
+    if w.of_positions > 0.0:
+        longest = sqrt(w.amplified / w.of_positions)
+    if w.of_velocities > 0.0:
+        longest = min(longest, w.amplified / w.of_velocities)
+    return longest
+
+
+@compiled
+def limit(w, c):
+    """Set the step above which states within it are corrected, and the residual allowed after the correction."""
+    correction = output_correction_view(c.output_correction)
+    fastest = max(w.of_positions, w.of_velocities * w.of_velocities)
+    correction.long = _long_step(w)
+    correction.enough = max(w.soft / fastest if fastest > 0.0 else float("inf"), w.least)
+
+
+@compiled
+def follow_stiffness(c):
+    """Look at the stiffness again if the iteration has a new matrix: forces may have become stiff since the start."""
+    correction = output_correction_view(c.output_correction)
+    if correction.renewed == 0 or correction.interpolate == 0 or c.starts == 0:
+        return
+    correction.renewed = 0
+    w = start_view(ints(c.starts))
+    s = state_view(dynamics_view(w.dynamics).state)
+    load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
+    _look_at_stiffness(w, s, c.returned)
+    limit(w, c)
 
 
 @compiled
