@@ -32,7 +32,9 @@ def closed(
     matrix of a part of it separates the directions that are stiff.
     """
     (q, u), open_ = displaced(dynamics.system, at.q, at.u, -errors), np.zeros(len(errors), dtype=bool)
-    known = np.flatnonzero(np.isfinite(slopes + defects).all(axis=1))
+    is_known = np.isfinite(slopes + defects).all(axis=1)
+    open_[~is_known] = _out_of_balance(dynamics, at.at(~is_known), q[~is_known], u[~is_known])
+    known = np.flatnonzero(is_known)
     if not len(known):
         return q, u, open_
     rows, cj = np.arange(len(known)), CONSISTENCY.step_parts / step
@@ -45,6 +47,13 @@ def closed(
         rows = iteration.open(rows[iteration.sizes[rows] < CONSISTENCY.restored * sizes])
     q[known], u[known], open_[known] = iteration.q, iteration.u, iteration.fails
     return q, u, open_
+
+
+def _out_of_balance(dynamics: Dynamics, at: Evaluated, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return a mask of states, by q and u without their errors, whose rates differ by more than those of the motion."""
+    here, there = (motion(dynamics.system, each) for each in (at, evaluated(dynamics, at.t, q, u)))
+    large = typical(dynamics.system, at.q, at.u)
+    return np.asarray(np.abs((there - here) / large).max(axis=1) > np.abs(here / large).max(axis=1))
 
 
 class _Iteration:

@@ -10,6 +10,7 @@ from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.solve.error_control import newton
 from stiffmbs.solve.ida.output_correction import OutputCorrection
+from stiffmbs.solve.ida.starting import starts
 from stiffmbs.tuning import parameters_of
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
 from tests.stress.mechanisms.pendulum import bar_rate, swing
@@ -32,7 +33,11 @@ def force_error(solution):
 
 @pytest.fixture
 def as_interpolated(monkeypatch):
-    return lambda: monkeypatch.setattr(newton, "POLISHING", replace(parameters_of(newton.POLISHING), amplified=np.inf))
+    def switch_off():
+        for module in (newton, starts):
+            monkeypatch.setattr(module, "POLISHING", replace(parameters_of(module.POLISHING), amplified=np.inf))
+
+    return switch_off
 
 
 @pytest.mark.parametrize("stiffness", [1e10, 1e12, 1e13])
@@ -127,3 +132,41 @@ def test_every_matrix_serves(kind):
     matrix = KINDS[kind](chain.equations)
     np.testing.assert_allclose(rows(matrix, 0.0), expected, atol=1e-6)
     assert np.max(np.abs(rows(matrix, np.inf) - expected)) > 1e-4
+
+
+STICKS = """
+bodies: {a: {mass: 2, inertia: 0.1, position: [0, 0], velocity: [0.5, 0]}}
+joints: {rail: {type: prismatic, i: a, j: ground}}
+forces:
+  f: {type: force, i: a, j: ground, force: ["-8*tanh(a.vx/0.001)", 0]}
+  s: {type: force, i: a, j: ground, force: ["-50*a.x + 3*sin(20*t)", 0]}
+run: {duration: 1 s, points: 201, solver: bdf}
+"""
+
+
+def test_friction_that_becomes_stiff_after_the_start():
+    """Outputs within long steps were interpolated, as nothing is stiff at the start: 6 % of the force, without a note."""
+    expected, seen = (stiffmbs.run(read_scene(STICKS), rtol=rtol)["f.fx"] for rtol in (1e-9, 1e-4))
+    assert np.max(np.abs(seen - expected)) < 0.005 * np.max(np.abs(expected))
+
+
+def test_forces_at_the_ends_of_steps():
+    """Newton's remainder at the end of a step was a force in stiff bushings; outputs within it were in balance."""
+    chain = read_scene(BRACED)
+    expected = stiffmbs.run(chain, solver="radau", rtol=1e-9, points="steps")
+    seen = stiffmbs.run(chain, rtol=1e-3, points="steps")
+    first = seen.t < 1e-3
+    off = seen["pin2.fx"] - np.interp(seen.t, expected.t, expected["pin2.fx"])
+    assert np.max(np.abs(off[first])) < 0.1
+
+
+BRACED = """
+gravity: [0, -9.81]
+parameters: {k: 1e12, c: 0.5*2*sqrt(k*0.5)}
+bodies:
+  link{n}: {for: n in 1..4, mass: 0.5, inertia: 0.5*0.09/12, position: [(n - 0.5)*0.3, 0], markers: {left: {point: [-0.15, 0]}, right: {point: [0.15, 0]}}}
+forces:
+  pin1: {type: bushing, i: link1.left, j: ground, stiffness: [k, k, 0], damping: [c, c, 0]}
+  pin{n}: {for: n in 2..4, type: bushing, i: "link{n}.left", j: "link{n-1}.right", stiffness: [k, k, 0], damping: [c, c, 0]}
+run: {duration: 0.5 s, solver: bdf}
+"""

@@ -98,7 +98,8 @@ class NativeIda:
         self.history, self.whole_steps = StepLog(), WholeStepLog(equations.system, len(self.reported))
         self._samples = np.full((LOOP.samples, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
-        self.output_correction, self.step_bound = OutputCorrection(equations), StepBound(bool(formula.repeat))
+        self.output_correction, self._closing = OutputCorrection(equations), OutputCorrection(equations)
+        self.step_bound = StepBound(bool(formula.repeat))
         self.watch = EventSearch(state)
         self._has_kinks = bool(equations.system.forces_by_reactions) or self.watch.n_event_functions > 0
         self.iteration, self.error_norm = Iteration(n, self._has_kinks), ErrorNorm(n)
@@ -138,7 +139,7 @@ class NativeIda:
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
                 "probe": self._probe, "residual": self._residual, "atol": self._atol, "whole_steps": self.whole_steps.table,
-                "error_norm": self.error_norm.table,
+                "error_norm": self.error_norm.table, "closing": self._closing.table,
             },
         )  # fmt: skip
 
@@ -197,7 +198,14 @@ class NativeIda:
         self.begun, self._look, self.cells["next_size"] = False, self._usual_batch, 0.0
         self.ask("IDAReInit", 0.0, self.y_vector, self.yp_vector)  # resets IDA's counters
         self._statistics.forget()
-        for each in (self.history, self.whole_steps, self.output_correction, self.error_norm, self._formula):
+        for each in (
+            self.history,
+            self.whole_steps,
+            self.output_correction,
+            self._closing,
+            self.error_norm,
+            self._formula,
+        ):
             each.forget()
         self._assembled.forget()
 
@@ -321,9 +329,10 @@ class NativeIda:
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
         """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""
         may_stiffen = any(len(sums.row) for sums in row_sums_of(dynamics))
-        needed = may_stiffen or self._has_kinks
-        if needed and not (self._formula.repeat or self.output_correction.ready):
-            self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
+        needed = may_stiffen or long_step < np.inf or self._has_kinks
+        for each in (self.output_correction, self._closing)[: 1 + bool(len(self._trace))]:
+            if needed and not (self._formula.repeat or each.ready):
+                each.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
         self.output_correction.limit(long_step, part, balanced)
 
     def run(self, loop: Routine, *arguments: Any) -> int:

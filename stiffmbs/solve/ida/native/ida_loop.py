@@ -221,8 +221,20 @@ def _before_event(c, begun):
 @compiled
 def _interpolates_stiffly(c):
     """Return True if interpolation in the last step does not keep the balance of stiff forces."""
+    follow_stiffness(c)
     b = output_correction_view(c.output_correction)
     return b.interpolate != 0 and c.size > b.long
+
+
+@compiled
+def _corrected_at(c, t):
+    """Correct the state at a time of the last step in the memory of the correction; return False if it is to stay.
+
+    At the end of a step, Newton's remainder is a force in stiff elements. That at an event has been corrected already.
+    """
+    if (t == c.returned and t != c.internal) or not _interpolates_stiffly(c):
+        return False
+    return corrected(c.output_correction, c.state, c.equations, t)
 
 
 @compiled
@@ -238,6 +250,19 @@ def _keep_row(c, t, y, yp):
 
 
 @compiled
+def _closed_at_end(c):
+    """Correct the state at the end of the step in the memory for stored steps; return False if it is to stay."""
+    b = output_correction_view(c.output_correction)
+    own = output_correction_view(c.closing)
+    if own.interpolate == 0:
+        return False
+    own.current = b.current
+    own.enough = b.enough
+    own.balanced = b.balanced
+    return corrected(c.closing, c.state, c.equations, c.returned)
+
+
+@compiled
 def _keep_step(c, begun):
     """Store the result of a step, and states within it, for the integration of variational equations."""
     places = floats(c.places)
@@ -245,7 +270,11 @@ def _keep_step(c, begun):
         t = begun + places[k] * (c.returned - begun)
         call_int(c.interpolate, (c.memory, t, int32(0), c.at_output))
         _keep_row(c, t, c.output, c.output)
-    _keep_row(c, c.returned, array_of(c, c.y), array_of(c, c.yp))
+    if c.returned == c.internal and _interpolates_stiffly(c) and _closed_at_end(c):
+        b = output_correction_view(c.closing)
+        _keep_row(c, c.returned, b.y, b.yp)
+    else:
+        _keep_row(c, c.returned, array_of(c, c.y), array_of(c, c.yp))
 
 
 @compiled
@@ -290,11 +319,11 @@ def _stalled(c):
 @compiled
 def _report_at(c, t, row):
     """Report the solution at a time within the last step."""
+    if _corrected_at(c, t):
+        _report(c, output_correction_view(c.output_correction).y, row)
+        return int32(OK)
     if t == c.returned:
         _report(c, array_of(c, c.y), row)
-        return int32(OK)
-    if _interpolates_stiffly(c) and corrected(c.output_correction, c.state, c.equations, t):
-        _report(c, output_correction_view(c.output_correction).y, row)
         return int32(OK)
     flag = call_int(c.interpolate, (c.memory, t, int32(0), c.at_output))
     _report(c, c.output, row)
@@ -308,8 +337,6 @@ def _report_at(c, t, row):
 def _served(c, times, count, y_out):
     """Report at the output times up to the returned time."""
     flag = int32(OK)
-    if c.served < count and times[c.served] <= c.returned:
-        follow_stiffness(c)
     while c.served < count and times[c.served] <= c.returned:
         k = c.served
         flag = _report_at(c, times[k], shifted(y_out, k * c.n_reported))
@@ -360,6 +387,6 @@ def steps(most, stop, t_out, y_out, ida):
         if flag >= 0:
             k = c.served
             t_out[k] = c.returned
-            _report(c, array_of(c, c.y), shifted(y_out, k * c.n_reported))
+            _report_at(c, c.returned, shifted(y_out, k * c.n_reported))
             c.served = k + 1
     return int32(flag)

@@ -17,13 +17,14 @@ NATIVE_IDA = Layout({
     "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "atol": FLOATS, "rtol": FLOAT_CELL,
-    "whole_steps": INTS, "error_norm": INTS, "starts": INT_CELL,
+    "whole_steps": INTS, "error_norm": INTS, "closing": INTS, "starts": INT_CELL,
     "attempted": FLOAT_CELL, "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL,
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
 functions and objects, values of the matrix, and reported unknowns; function by which a one-step method
 repeats its last step with another length, 0 for a multistep method; function that tells whether the error estimate of the
-step holds over jumps; absolute and relative tolerances.
+step holds over jumps; absolute and relative tolerances; correction of the states that are stored after steps, apart from that of
+outputs, whose factors it would change.
 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
 size of the next attempt; address of the data of starts, 0 for none; last stop time; time at the end of the attempted step; output times served, tiny steps in succession; steps in the history,
