@@ -127,7 +127,7 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         for parts in zip(*(_without_errors(dynamics, transport, each) for each in found), strict=True)
     )
     left_out |= fails
-    for k in np.flatnonzero(fired):
+    for k in np.flatnonzero(fired).tolist():
         before = np.arange(starts[k], starts[k + 1] - 1)
         after = np.arange(starts[k + 1] + 1, starts[min(k + 2, len(pieces))])
         for rows in (before[::-1], after):

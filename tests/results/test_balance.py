@@ -125,7 +125,7 @@ def test_every_matrix_serves(kind):
     def rows(matrix, long_step):
         dynamics = Dynamics(chain.system)
         ida = chain.native(matrix=matrix, state=dynamics.state)
-        ida.correct_outputs(dynamics, long_step, 1e-6, 0.0)
+        ida.correct_outputs(dynamics, True, long_step, 1e-6, 0.0)
         return chain.through(ida, times)[0]
 
     expected = rows(None, 0.0)

@@ -95,8 +95,7 @@ def test_a_passage_beside_a_body_with_larger_accelerations(width, place):
     found = stiffmbs.run(model, duration=2, solver="radau", rtol=1e-6, errors=False)
     t = np.linspace(0, 2, 200_001)
     assert found["b.vx"][-1] == pytest.approx(np.trapezoid(push([np.sin(10 * t)])[0], t), rel=1e-3)
-    (note,) = told(found)
-    assert "missed 'push'" in note
+    assert all("missed 'push'" in note for note in told(found))  # none where a step has met it
 
 
 def test_steps_beyond_those_that_are_stored_are_told(monkeypatch):

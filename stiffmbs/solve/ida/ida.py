@@ -17,7 +17,6 @@ from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 from ..error_control.error_test import ErrorControl
-from ..error_control.newton import row_sums_of
 from ..events.event_functions import EventSearch, StepBound
 from ..events.whole_steps import WholeStepLog
 from ..linear_solvers.linear_solver import LinearSolver
@@ -326,10 +325,14 @@ class NativeIda:
         self.ask(function, *arguments, self.output_vector)
         return self.output.copy()
 
-    def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
-        """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""
-        may_stiffen = any(len(sums.row) for sums in row_sums_of(dynamics))
-        needed = may_stiffen or long_step < np.inf or self._has_kinks
+    def correct_outputs(
+        self, dynamics: Dynamics, may_stiffen: bool, long_step: float, part: float, balanced: float
+    ) -> None:
+        """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`).
+
+        `may_stiffen`: true if that may become finite or smaller before the next start.
+        """
+        needed = may_stiffen or self._has_kinks
         for each in (self.output_correction, self._closing)[: 1 + bool(len(self._trace))]:
             if needed and not (self._formula.repeat or each.ready):
                 each.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)

@@ -161,6 +161,7 @@ class NativeEngine(Engine):
         stiffness = self._stiffness
         self.ida.correct_outputs(
             self._dynamics,
+            self._starts.may_stiffen,
             stiffness.long_step,
             max(stiffness.allowed_residual, NEWTON.precision / self._rtol),
             POLISHING.unbalanced * self._rtol,

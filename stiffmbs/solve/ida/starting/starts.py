@@ -49,7 +49,7 @@ class Starts:
     """Compiled starts of one integrator.
 
     `ida`: driver of IDA. `statistics`: counters of IDA. `may_pass`: true if one call may pass several breakpoints: no event
-    functions, and no forces that depend on multipliers.
+    functions, and no forces that depend on multipliers. `may_stiffen`: true if forces depend on positions or velocities.
     """
 
     def __init__(
@@ -71,6 +71,7 @@ class Starts:
         self._values, self._ida, self._table = values, ida, packed(START, {**UNUSED, **values})
         self._cells, self._at = self._table.view(START.cells)[0], self._table.ctypes.data
         ida.cells["starts"] = self._at
+        self.may_stiffen = values["n_f_q"] + values["n_f_u"] > 0
         self._has_events = system.n_event_functions > 0
         self.may_pass = not self._has_events and not len(system.term("acceleration", "f_lam").row)
 
