@@ -88,7 +88,14 @@ def tolerance(of_positions, rtol=1e-6):
 def balance_between_steps():
     found = []
     ida = Record(correct_outputs=lambda *given: found.append(given[-1]), history=Record(count=0))
-    engine = Record(_stiffness=Stiffness(1.0, 1.0), ida=ida, _dynamics=None, _rtol=1e-6, _order=Record(begin=nothing))
+    engine = Record(
+        _stiffness=Stiffness(1.0, 1.0),
+        ida=ida,
+        _dynamics=None,
+        _rtol=1e-6,
+        _order=Record(begin=nothing),
+        _starts=Record(may_stiffen=True),
+    )
     native_engine.NativeEngine._follow_stiffness(engine, 0.0)
     return found[0]
 
