@@ -142,7 +142,7 @@ def _at_outputs(reports: _Reports, nodes: _Nodes, channels: Channels) -> Channel
     Errors of states between two nodes are interpolated: those of channels are not linear where a force changes with a small
     velocity, as friction does. Stiff forces need errors of states that are in balance, which interpolated ones are not: then those
     of the channels are interpolated. This is so where the errors of a node's neighbours give its channel an error that is wrong by
-    its size. Beside an event, states without their errors lie on its other side: the smaller of both errors is not the jump there.
+    its size. Next to an event, states without their errors lie on its other side: the smaller of both errors is not the jump there.
     """
     run, count = reports.run, len(next(iter(channels.values())))
     t, q, u = run.t[:count], run.q[:count], run.u[:count]
