@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -26,10 +27,12 @@ DATASET, ASSEMBLY, AT = ".adm", ".asmt", "--at JOINT=VALUE with a number"
     "Initial position of a hinge or slide of a robot, rad or m; by default as drawn",
     "coordinates",
 )
+@option("--limits", "Hold the joints of a robot within their limits by stops.")
 @CHANGES
 def convert(
-    scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
-) -> None:
+    scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], limits: bool,
+    changes: list[tuple[str, str]],
+) -> None:  # fmt: skip
     """Convert an Adams/Solver dataset (.adm), a robot (URDF, MJCF) or an assembly (Simscape Multibody XML, .asmt) to a scene,
     or a planar scene to space.
 
@@ -43,12 +46,14 @@ def convert(
 
     with refusing(scene):
         refuse_own_input("-o", scene, output)
-        if coordinates and (in_space or not _is_robot(scene)):
-            raise InputError(f"{scene}: found --at, expected it with a robot alone")
+        of_robot: dict[str, Any] = {"coordinates": assigned(AT, coordinates, float)} if coordinates else {}
+        of_robot |= {"limits": True} if limits else {}
+        if of_robot and (in_space or not _is_robot(scene)):
+            raise InputError(f"{scene}: found {'--at' if coordinates else '--limits'}, expected it with a robot alone")
         if output is not None and output.suffix.lower() in (DATASET, ASSEMBLY):
-            texts = _exported(scene, output, coordinates, changes)
+            texts = _exported(scene, output, of_robot, changes)
         else:
-            text = text_in_space(scene, changes) if in_space else _of_other(scene, coordinates, changes)
+            text = text_in_space(scene, changes) if in_space else _of_other(scene, of_robot, changes)
             texts = {output: text}
     for path, text in texts.items():
         if path is None:
@@ -65,9 +70,9 @@ def _is_robot(path: str) -> bool:
 
 
 def _exported(
-    path: str, output: Path, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
+    path: str, output: Path, of_robot: dict[str, Any], changes: list[tuple[str, str]]
 ) -> dict[Path | None, str]:
-    """Return a dataset and its command file, or an assembly, by their paths."""
+    """Return a dataset and its command file, or an assembly, by their paths; `of_robot`: arguments of `load_robot`."""
     from ..adams.export.dataset_text import written_dataset
     from ..adams.load import COMMANDS
     from ..analyses.in_space import in_space
@@ -78,10 +83,7 @@ def _exported(
 
     commands = output.with_suffix(COMMANDS) if output.suffix.lower() == DATASET else None
     refuse_own_input("-o", path, commands)
-    if coordinates:
-        scene = load_robot(path, changes, coordinates=assigned(AT, coordinates, float))
-    else:
-        scene = load_scene(path, changes)
+    scene = load_robot(path, changes, **of_robot) if of_robot else load_scene(path, changes)
     spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
     texts: dict[Path | None, str]
     if commands is None:
@@ -95,8 +97,8 @@ def _exported(
     return texts
 
 
-def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
-    """Return the text of a scene from a file of another program."""
+def _of_other(path: str, of_robot: dict[str, Any], changes: list[tuple[str, str]]) -> str:
+    """Return the text of a scene from a file of another program; `of_robot`: arguments of `convert_robot`."""
     from ..adams.load import convert_file
     from ..analyses.load_scene import CAD, ROBOTS, refuse_others
     from ..cad.load import convert_cad, is_cad
@@ -109,7 +111,7 @@ def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, 
     if suffix in CAD and is_cad(path):
         found = convert_cad
     elif suffix in ROBOTS:
-        return convert_robot(path, coordinates=assigned(AT, coordinates, float))
+        return convert_robot(path, **of_robot)
     if suffix in (".yaml", ".yml"):
         raise InputError(
             f"{path}: found a scene, expected an Adams/Solver dataset (.adm), a robot ({', '.join(ROBOTS)}), or --in-space"

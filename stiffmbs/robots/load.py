@@ -29,6 +29,7 @@ def load_robot(
     *,
     coordinates: Mapping[str, float] = AS_DRAWN,
     rates: Mapping[str, float] = AS_DRAWN,
+    limits: bool = False,
 ) -> Scene:
     """Read a scene from a robot file.
 
@@ -40,26 +41,34 @@ def load_robot(
         Values that replace those of the file, such as ``("bodies.hand.mass", "2 kg")``.
     coordinates, rates : mappings of str to float
         Initial coordinates of hinges and slides, rad or m, and their rates, by joint; others are as drawn, and at rest.
+    limits : bool, optional
+        True to hold joints within their limits by stops (`stiffmbs.robots.scene.limits`). By default a note lists the limits.
 
     Raises
     ------
     InputError
         If the file cannot be read, or its robot is not a valid scene.
     """
-    return made_scene(_found(path, coordinates, rates), changes, source_name(path), lambda _: None)
+    return made_scene(_found(path, coordinates, rates, limits), changes, source_name(path), lambda _: None)
 
 
 def convert_robot(
-    path: str | Path, *, coordinates: Mapping[str, float] = AS_DRAWN, rates: Mapping[str, float] = AS_DRAWN
+    path: str | Path,
+    *,
+    coordinates: Mapping[str, float] = AS_DRAWN,
+    rates: Mapping[str, float] = AS_DRAWN,
+    limits: bool = False,
 ) -> str:
     """Return the scene of a robot file as the text of a scene file; parameters and errors as `load_robot`."""
-    load_robot(path, coordinates=coordinates, rates=rates)  # raises errors of the scene
-    return scene_text(_found(path, coordinates, rates))
+    load_robot(path, coordinates=coordinates, rates=rates, limits=limits)  # raises errors of the scene
+    return scene_text(_found(path, coordinates, rates, limits))
 
 
-def _found(path: str | Path, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, object]:
+def _found(
+    path: str | Path, coordinates: Mapping[str, float], rates: Mapping[str, float], limits: bool
+) -> dict[str, object]:
     try:
-        return scene(_read(path), coordinates, rates)
+        return scene(_read(path), coordinates, rates, limits)
     except FileFault as fault:
         raise InputError(f"{source_name(path)}: {fault}") from None
     except np.linalg.LinAlgError:

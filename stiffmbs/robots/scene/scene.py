@@ -14,40 +14,48 @@ from ..robot import LinkJoint, Robot, RobotFault
 from .actuators import actuators
 from .joints import Masses, bodies, joints, passive
 from .joints import notes as body_notes
+from .limits import stops
 from .mechanism import Mechanism, along_z
 
 RUN = {"duration": 1, "output": 0.01}
 """Default run settings, which robot files lack."""
 
 
-def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> Content:
+def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float], limits: bool) -> Content:
     """Return the scene of a robot for `stiffmbs.model.read_scene.read_scene`.
 
     `coordinates`, `rates`: initial coordinates of hinges and slides, rad or m, and their rates; others follow these, or
-    are as drawn, and at rest. Raises RobotFault if the robot has features without an equivalent in a scene.
+    are as drawn, and at rest. `limits`: True if stops hold joints within their limits. Raises RobotFault if the robot has features without an equivalent in a scene.
     """
     _check_joints(robot, {**coordinates, **rates})
     coordinates, rates = with_followers(robot, coordinates, rates)
     mechanism = Mechanism(robot, coordinates, rates)
     masses = Masses(robot.links, [frame for _, frame in mechanism.bodies.values()])
     acting = actuators(robot, mechanism)
+    of_stops, stopping = stops(robot, mechanism, coordinates) if limits else ({}, {})
     found: Content = {
         "name": robot.name,
         "dimensions": 3,
         "gravity": vector(robot.gravity),
+        "parameters": of_stops,
         "markers": mechanism.markers.get(GROUND, {}),
         "bodies": {},
         "joints": joints(robot, mechanism),
         "inputs": acting.inputs,
         "states": acting.states,
         "variables": acting.variables,
-        "forces": passive(robot, mechanism) | acting.forces | _lifted(robot, mechanism),
+        "forces": passive(robot, mechanism) | acting.forces | stopping | _lifted(robot, mechanism),
         "run": dict(RUN),
     }
     found["bodies"] = bodies(mechanism, masses)  # includes markers added by the other sections
     found["markers"] = mechanism.markers.get(GROUND, {})
     add_rotors(found, robot, mechanism, masses, rates)
-    found["notes"] = [*robot.notes, *body_notes(mechanism), *_notes(mechanism)]
+    found["notes"] = [
+        *robot.notes,
+        *body_notes(mechanism),
+        *_limits(mechanism, coordinates, limits),
+        *_notes(mechanism),
+    ]
     return {key: value for key, value in found.items() if value or key == "bodies"}
 
 
@@ -72,14 +80,26 @@ def _lifted(robot: Robot, mechanism: Mechanism) -> Content:
     return found
 
 
+def _limits(mechanism: Mechanism, coordinates: Mapping[str, float], held: bool) -> Iterator[str]:
+    """Yield notes on the limits of joints: whether a run holds them, and joints that start beyond theirs."""
+    words, beyond = [], []
+    for hold in mechanism.holds.values():
+        if (limits := hold.joint.limits) is None:
+            continue
+        unit = "rad" if hold.joint.kind == "hinge" else "m"
+        words.append(f"{hold.name} {plain(limits[0]):g} .. {plain(limits[1]):g} {unit}")
+        start = coordinates.get(hold.joint.name, hold.joint.zero)
+        if not limits[0] <= start <= limits[1]:
+            beyond.append(f"{hold.name} at {plain(start):g} {unit}")
+    if words and held:
+        yield f"stops hold joints within their limits: {', '.join(words)}"
+    elif words:
+        yield f"joints have limits that a run does not hold (convert --limits adds stops): {', '.join(words)}"
+    if beyond:
+        yield f"joints start beyond their limits: {', '.join(beyond)}"
+
+
 def _notes(mechanism: Mechanism) -> Iterator[str]:
-    limits = [
-        f"{hold.name} {plain(joint.limits[0]):g} .. {plain(joint.limits[1]):g} {'rad' if joint.kind == 'hinge' else 'm'}"
-        for hold in mechanism.holds.values()
-        if (joint := hold.joint).limits is not None
-    ]
-    if limits:
-        yield f"joints have limits that a run does not hold: {', '.join(limits)}"
     if mechanism.unmoved:
         yield f"joints that move no mass stay where they are: {', '.join(mechanism.unmoved)}"
     slight = [name for name, (link, _) in mechanism.bodies.items() if name in mechanism.between or link.mass == 0]

@@ -1,0 +1,80 @@
+"""Stops that hold joints within their limits: one-sided springs and dampers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from ...elements.spatial.number_format import plain
+from ...elements.spatial.orientation import matrix, rotated
+from ...reading.files.yaml_text import Content
+from ..pose import Placed, frames
+from ..robot import Link, LinkJoint, Robot
+from .joints import along_axis
+from .mechanism import Hold, Mechanism
+
+TIME, DAMPING = "stop_time", "stop_damping"
+STOPS: Mapping[str, float] = {TIME: 0.02, DAMPING: 1.0}
+"""Parameters of a scene with stops: the time constant T, s, and the damping ratio, as by default in MuJoCo."""
+
+
+def stops(robot: Robot, mechanism: Mechanism, coordinates: Mapping[str, float]) -> tuple[Content, Content]:
+    """Return the parameters and the forces of the stops of all joints with limits.
+
+    A stop at a distance x beyond a limit acts with max(0, k x + c x'), k = I/T^2 and c = 2 zeta I/T, for the inertia I of the links
+    that the joint carries, about its axis at the start. Alone, with zeta = 1, it turns a speed v round within 2 T, at a distance of at
+    most v T/e, to v/e^2.
+    """
+    placed = frames(robot, coordinates, {})
+    held = {hold.joint.name: hold for hold in mechanism.holds.values() if hold.joint.limits is not None}
+    if not held:
+        return {}, {}
+    names = {name: mechanism.names.take(name) for name in STOPS}
+    forces: Content = {}
+    for joint, inertia in _inertias(robot, placed):
+        if joint.name in held and inertia > 0.0:
+            hold = held[joint.name]
+            forces[mechanism.names.take(f"{hold.name}_stop")] = along_axis(hold, _law(hold, inertia, names))
+    return {names[name]: value for name, value in STOPS.items()}, forces
+
+
+def _law(hold: Hold, inertia: float, names: Mapping[str, str]) -> str:
+    """Return the formula of the torque or force of both stops of a joint."""
+    assert hold.joint.limits is not None
+    lower, upper = (repr(plain(limit)) for limit in hold.joint.limits)
+    k = f"{inertia!r}/{names[TIME]}^2"
+    c = f"{2.0 * inertia!r}*{names[DAMPING]}/{names[TIME]}"
+    below = f"max(0, {k}*({lower} - {hold.coordinate}) - {c}*{hold.rate})"
+    above = f"-max(0, {k}*({hold.coordinate} - {upper}) + {c}*{hold.rate})"
+    return f"branch({hold.coordinate} - {lower}, {below}, 0, 0) + branch({hold.coordinate} - {upper}, 0, 0, {above})"
+
+
+def _inertias(robot: Robot, placed: Mapping[str, tuple[Placed, ...]]) -> Iterator[tuple[LinkJoint, float]]:
+    """Yield the hinges and slides with the inertia that each carries about or along its axis, kg m^2 or kg."""
+    carried = _carried(robot)
+    for link in robot.links:
+        for joint, frame in zip(link.joints, placed[link.name], strict=False):
+            axis, point = np.array(rotated(frame.orientation, joint.axis)), frame.point(joint.point)
+            if joint.kind == "slide":
+                yield joint, joint.armature + sum(each.mass for each in carried[link.name])
+            elif joint.kind == "hinge":
+                about = (_about(each, placed[each.name][-1], point, axis) for each in carried[link.name])
+                yield joint, joint.armature + sum(about)
+
+
+def _about(link: Link, frame: Placed, point: np.ndarray, axis: np.ndarray) -> float:
+    """Return the moment of inertia of a link about an axis through a point, kg m^2."""
+    arm = np.cross(axis, frame.point(link.center_of_mass) - point)
+    own = np.array(matrix(frame.orientation)).T @ axis
+    return float(own @ link.inertia @ own + link.mass * (arm @ arm))
+
+
+def _carried(robot: Robot) -> dict[str, list[Link]]:
+    """Return each link with all links that it carries, by name."""
+    found: dict[str, list[Link]] = {}
+    for link in reversed(robot.links):
+        found.setdefault(link.name, []).append(link)
+        if link.parent is not None:
+            found.setdefault(link.parent, []).extend(found[link.name])
+    return found

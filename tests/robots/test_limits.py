@@ -1,0 +1,74 @@
+"""Stops that hold the joints of robots within their limits."""
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy.spatial.transform import Rotation
+
+import stiffmbs
+from stiffmbs.commands.main import main
+from stiffmbs.robots.load import load_robot
+
+T = 0.02
+ARM = """<robot name="arm">
+  <link name="base"/>
+  <link name="upper"><inertial><origin xyz="0.2 0 0.05" rpy="0.3 0 0.5"/><mass value="2"/>
+    <inertia ixx="0.01" iyy="0.02" izz="0.03" ixy="0.001" ixz="0" iyz="0"/></inertial></link>
+  <link name="fore"><inertial><origin xyz="0.1 0 0"/><mass value="1"/>
+    <inertia ixx="0.001" iyy="0.002" izz="0.003" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+    <limit lower="-0.5" upper="{upper}" effort="0" velocity="0"/></joint>
+  <joint name="elbow" type="{elbow}"><origin xyz="0.4 0 0"/><parent link="upper"/><child link="fore"/><axis xyz="1 0 0"/>
+    <limit lower="-0.05" upper="0.3" effort="0" velocity="0"/></joint>
+</robot>"""
+
+
+def robot(tmp_path, upper=0.1, elbow="fixed"):
+    path = tmp_path / "arm.urdf"
+    path.write_text(ARM.format(upper=upper, elbow=elbow))
+    return path
+
+
+@pytest.mark.parametrize(("sign", "distance"), [(1.0, 0.1), (-1.0, 0.5)])
+def test_a_stop_turns_a_joint_round_as_a_critically_damped_spring(tmp_path, sign, distance):
+    """Beyond a limit, x = v t exp(-t/T); the stop lets go at 2 T, where x' = -v/e^2."""
+    speed = 3.0
+    scene = load_robot(robot(tmp_path), [("gravity", "[0, 0, 0]")], rates={"shoulder": sign * speed}, limits=True)
+    found = stiffmbs.run(scene, duration=distance / speed + 3 * T, points=2001, solver="radau", rtol=1e-9)
+    past = sign * found["shoulder.angle"] - distance
+    assert past.max() == pytest.approx(speed * T / np.e, rel=1e-4)
+    assert sign * found["shoulder.angle_rate"][-1] == pytest.approx(-speed / np.e**2, rel=1e-4)
+
+
+def test_a_slide_is_held_with_the_mass_that_it_carries(tmp_path):
+    scene = load_robot(
+        robot(tmp_path, elbow="prismatic"), [("gravity", "[0, 0, 0]")], rates={"elbow": -0.5}, limits=True
+    )
+    found = stiffmbs.run(scene, duration=0.05 / 0.5 + 3 * T, points=2001, solver="radau", rtol=1e-9)
+    assert found["elbow.displacement"].min() == pytest.approx(-0.05 - 0.5 * T / np.e, rel=1e-4)
+
+
+def test_stops_rest_on_their_joint_under_gravity(tmp_path):
+    """Gravity along -y turns the arm to its lower limit; at rest the stop carries its weight."""
+    scene = load_robot(robot(tmp_path), [("gravity", "[0, -9.81, 0]")], limits=True)
+    found = stiffmbs.run(scene, duration=3.0, rtol=1e-8)
+    angle = found["shoulder.angle"][-1]
+    turned = Rotation.from_euler("xyz", [0.3, 0, 0.5]).as_matrix()
+    own = turned @ [[0.01, 0.001, 0], [0.001, 0.02, 0], [0, 0, 0.03]] @ turned.T
+    inertia = own[2, 2] + 2 * 0.2**2 + 0.003 + 1 * 0.5**2
+    weight = 9.81 * (2 * 0.2 + 1 * 0.5) * np.cos(angle)
+    assert angle == pytest.approx(-0.5 - weight * T**2 / inertia, rel=1e-5)
+
+
+def test_limits_are_listed_held_or_not(tmp_path):
+    path = robot(tmp_path, upper=-0.1)
+    held, free = (
+        CliRunner().invoke(main, ["convert", str(path), "--limits"]),
+        CliRunner().invoke(main, ["convert", str(path)]),
+    )
+    said = " ".join(held.output.split())
+    assert "shoulder_stop" in held.output and "stops hold joints within their limits: shoulder" in said
+    assert "joints start beyond their limits: shoulder at 0 rad" in said
+    assert "shoulder_stop" not in free.output and "convert --limits adds stops" in " ".join(free.output.split())
+    other = CliRunner().invoke(main, ["convert", "scene.yaml", "--limits"])
+    assert other.exit_code == 2 and "found --limits, expected it with a robot alone" in other.output
