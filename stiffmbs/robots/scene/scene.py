@@ -52,7 +52,7 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
 
 
 def _check_joints(robot: Robot, given: Mapping[str, float]) -> None:
-    known = {name for name, joint in robot.joints().items() if joint.kind in ("hinge", "slide")}
+    known = {name for name, joint in robot.joints().items() if joint.is_single}
     for name in given:
         if name not in known:
             raise RobotFault(
@@ -74,7 +74,7 @@ def _lifted(robot: Robot, mechanism: Mechanism) -> Content:
 
 def _notes(mechanism: Mechanism) -> Iterator[str]:
     limits = [
-        f"{hold.name} {plain(joint.limits[0]):g} .. {plain(joint.limits[1]):g} {'rad' if joint.kind == 'hinge' else 'm'}"
+        f"{hold.name} {plain(joint.limits[0]):g} .. {plain(joint.limits[1]):g} {'rad' if joint.is_rotary else 'm'}"
         for hold in mechanism.holds.values()
         if (joint := hold.joint).limits is not None
     ]

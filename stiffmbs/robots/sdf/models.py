@@ -1,0 +1,107 @@
+"""Worlds and models of SDFormat files as scopes of frames, with their included models."""
+
+from __future__ import annotations
+
+from ...reading.files.quoted import quoted
+from ...reading.files.xml_nodes import Node
+from ..robot import RobotFault
+from .files import Files, Source, named, uri_of
+from .poses import flag, text_of
+from .scopes import BETWEEN, Scope, framed
+
+SCENERY = ("sun", "ground_plane")
+"""Models of Gazebo that have nothing that moves; worlds without them are the same."""
+MERGE = "merge"
+
+
+class Models:
+    """Reader of the models of a file. `omitted`: uris of scenery that is left out."""
+
+    def __init__(self, files: Files) -> None:
+        self._files = files
+        self.omitted: list[str] = []
+
+    def fill(self, scope: Scope, source: Source) -> None:
+        """Add the links, joints, frames and models of an element to its scope."""
+        for node in scope.node.among("link", "joint", "frame", "model", "include"):
+            if node.tag in ("link", "joint", "frame"):
+                self._add(scope, node)
+            elif node.tag == "model":
+                self._nest(scope, node, source, node)
+            elif node.tag == "include":
+                self._include(scope, node, source)
+
+    def _add(self, scope: Scope, node: Node) -> None:
+        name = named(f"{scope.where}: ", node)
+        where, version = f"{node.tag} {scope.prefix}{name}", scope.version
+        kind = {"link": scope.links, "joint": scope.joints}.get(node.tag)
+        if kind is not None:
+            if name in kind:
+                raise RobotFault(f"{scope.where}: found two {node.tag}s {name}, expected one of each name")
+            kind[name] = node
+        if node.tag == "link":
+            scope.frames[name] = framed(where, node, version)  # names of links come first
+        elif node.tag == "joint":
+            child = text_of(node.find("child"))
+            frame = scope.joint_frames[name] = framed(where, node, version, attached=child, base=child)
+            scope.frames.setdefault(name, frame)
+        else:
+            attached = node.get("attached_to") or None
+            scope.frames.setdefault(name, framed(where, node, version, attached=attached, base=attached))
+
+    def _include(self, scope: Scope, include: Node, source: Source) -> None:
+        uri = uri_of(scope.where, include)
+        where = f"{scope.where}: the include {quoted(uri)}"
+        found = self._files.included(where, uri, source)
+        if found is None:
+            if uri.rpartition("/")[2] in SCENERY:
+                self.omitted.append(uri)
+                include.without_effect("pose", "name", "static")
+                return
+            raise RobotFault(
+                f"{where}: found no such file, expected it beside the file: copy the model's folder there"
+            )
+        inner = found.root.find("model")
+        if inner is None:
+            raise RobotFault(f"{where}: found no <model> in {quoted(str(found.path))}, expected one")
+        self._nest(scope, inner, found, include)
+
+    def _nest(self, scope: Scope, node: Node, source: Source, outer: Node) -> None:
+        """Add a model; `outer`: the element that places it, itself or its ``<include>``."""
+        included = outer is not node
+        name = (text_of(outer.find("name")) if included else "") or named(f"{scope.where}: ", node)
+        where = f"model {scope.prefix}{name}"
+        placed = outer if included and outer.find("pose") is not None else node
+        frame = framed(where, placed, scope.version if placed is outer else source.version)
+        if included:
+            node.find("pose")
+        merged = included and (outer.get(MERGE) or "").lower() in ("1", "true")
+        static = flag(where, node, "static")
+        inner = Scope(
+            where,
+            name,
+            scope.prefix if merged else f"{scope.prefix}{name}{BETWEEN}",
+            source.version,
+            node,
+            frame,
+            scope,
+            placement=(text_of(outer.find("placement_frame")) if included else "") or node.get("placement_frame") or None,
+            canonical=node.get("canonical_link") or None,
+            static=scope.static or (flag(where, outer, "static", static) if included else static),
+        )
+        if merged:
+            scope.merged.append(inner)
+        elif name in scope.models:
+            raise RobotFault(f"{scope.where}: found two models {name}, expected one of each name")
+        else:
+            scope.models[name] = inner
+        self.fill(inner, source)
+
+
+def without_common_prefix(root: Scope) -> None:
+    """Name the links and joints of a file with one model without the name of that model."""
+    if len(root.models) == 1 and not root.merged and not root.joints:
+        (only,) = root.models.values()
+        common = only.prefix
+        for scope in only.scopes():
+            scope.prefix = scope.prefix.removeprefix(common)
