@@ -7,6 +7,7 @@ from typing import Any
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers.expat import ExpatError, ParserCreate
 
+from .quoted import quoted
 from .requested import Fields
 
 
@@ -53,6 +54,10 @@ class Node:
         found = [child for child in self._children if child.tag == tag]
         return [below for child in found for below in child.findall(rest)] if rest else found
 
+    def unrecorded(self, tag: str) -> str | None:
+        """Return the text of the first child of a tag, without requesting it; None if it is missing."""
+        return next((child.text for child in self._children if child.tag == tag), None)
+
     def among(self, *tags: str) -> list[Node]:
         """Return the children with one of several tags."""
         self._fields.request(*map(_child, tags))
@@ -87,6 +92,10 @@ def _child(tag: str) -> str:
     return f"<{tag}>"
 
 
+def _refuse(entity: str) -> None:
+    raise FileFault(f"found the entity &{quoted(entity)}; without a value in the file")
+
+
 def parsed(
     text: str, expected: str, defaults: Mapping[str, Mapping[str, Any]], outer: Sequence[str] = ()
 ) -> Node:
@@ -97,8 +106,12 @@ def parsed(
     builder, parser = TreeBuilder(), ParserCreate()
     parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
     parser.CharacterDataHandler = builder.data
+    parser.ExternalEntityRefHandler = lambda *_: 0  # an error; without it, the text would be empty
+    parser.SkippedEntityHandler = lambda name, _: _refuse(name)
     try:
         parser.Parse(text, True)
     except ExpatError as error:
         raise FileFault(f"found no well-formed XML ({error}), expected {expected}") from None
+    except FileFault as fault:
+        raise FileFault(f"{fault}, expected {expected}") from None
     return Node(builder.close(), defaults=defaults, outer=outer)

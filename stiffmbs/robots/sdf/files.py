@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from os.path import isdir, isfile
 from pathlib import Path
+from typing import Final
 
 from ...reading.files.quoted import quoted
 from ...reading.files.text_file import file_text
@@ -15,8 +16,8 @@ from ..robot import RobotFault
 from .poses import text_of
 
 Version = tuple[int, ...]
-OLDEST: Version = (1, 3)
-NEWEST: Version = (1, 12)
+OLDEST: Final[Version] = (1, 3)
+NEWEST: Final[Version] = (1, 12)
 MOST_FILES = 1000
 """Largest number of files that a file includes, repeated ones and those of included files counted."""
 OUTER = ("world", "model")

@@ -11,7 +11,7 @@ from ..robot import Relation, RobotFault
 from .joints import AXES, BALL, GEARBOX, KINDS, Arc, limits
 from .poses import number, text_of
 
-PARALLEL = 1e-6
+PARALLEL = 1e-3
 """Largest sine of the angle between the axes of a gearbox and of the hinge that it turns."""
 
 

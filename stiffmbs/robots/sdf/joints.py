@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -23,11 +24,11 @@ KINDS: dict[str, tuple[JointKind, ...]] = {
 """Joints of one link after the other, by the type of the file; a gearbox has just their axes."""
 GEARBOX, SCREW, BALL = "gearbox", "screw", "ball"
 AXES = ("axis", "axis2")
-IN_JOINT: Version = (1, 5)
+IN_JOINT: Final[Version] = (1, 5)
 """First version whose axes are given in the frame of the joint by default; before, in the frame of the model."""
-BY_NAME: Version = (1, 7)
+BY_NAME: Final[Version] = (1, 7)
 """First version whose axes name their frame; before, the frame of the model by ``use_parent_model_frame``."""
-UNBOUNDED = 1e16
+UNBOUNDED: Final = 1e16
 """Magnitude from which on a limit is none, as in the files of older versions."""
 
 
@@ -61,7 +62,7 @@ class Arc:
 def arcs(scope: Scope) -> Iterator[Arc]:
     """Yield the joints of a world or model, without those of the models in it."""
     for name, node in scope.joints.items():
-        where, kind = f"joint {scope.prefix}{name}", node.get("type") or ""
+        where, kind = f"joint {quoted(scope.prefix + name)}", node.get("type") or ""
         if kind not in KINDS:
             raise RobotFault(f"{where}: found the type {quoted(kind)}, expected one of {', '.join(KINDS)}")
         ends = {role: _end(where, node, role) for role in ("parent", "child")}

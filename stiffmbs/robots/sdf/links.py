@@ -33,7 +33,7 @@ class Body:
 
 def body_of(where: str, link: Node) -> Body:
     """Return the mass and inertia of a ``<link>``; 1 kg and 1 kg m^2 are the format's defaults."""
-    link.without_effect(*(tag for tag in OFF if not flag(where, link, tag)))
+    link.without_effect(*(tag for tag in OFF if link.unrecorded(tag) in ("0", "false")))
     lifted = 0.0 if flag(where, link, "gravity", True) else 1.0
     inertial = link.find("inertial")
     if inertial is None:

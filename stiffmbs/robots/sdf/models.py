@@ -33,7 +33,7 @@ class Models:
 
     def _add(self, scope: Scope, node: Node) -> None:
         name = named(f"{scope.where}: ", node)
-        where, version = f"{node.tag} {scope.prefix}{name}", scope.version
+        where, version = f"{node.tag} {quoted(scope.prefix + name)}", scope.version
         kind = {"link": scope.links, "joint": scope.joints}.get(node.tag)
         if kind is not None:
             if name in kind:
@@ -69,8 +69,9 @@ class Models:
     def _nest(self, scope: Scope, node: Node, source: Source, outer: Node) -> None:
         """Add a model; `outer`: the element that places it, itself or its ``<include>``."""
         included = outer is not node
-        name = (text_of(outer.find("name")) if included else "") or named(f"{scope.where}: ", node)
-        where = f"model {scope.prefix}{name}"
+        own = node.get("name")
+        name = (text_of(outer.find("name")) if included else "") or own or named(f"{scope.where}: ", node)
+        where = f"model {quoted(scope.prefix + name)}"
         placed = outer if included and outer.find("pose") is not None else node
         frame = framed(where, placed, scope.version if placed is outer else source.version)
         if included:
@@ -80,7 +81,7 @@ class Models:
         inner = Scope(
             where,
             name,
-            scope.prefix if merged else f"{scope.prefix}{name}{BETWEEN}",
+            scope.prefix if merged or scope.alone else f"{scope.prefix}{name}{BETWEEN}",
             source.version,
             node,
             frame,
@@ -96,12 +97,3 @@ class Models:
         else:
             scope.models[name] = inner
         self.fill(inner, source)
-
-
-def without_common_prefix(root: Scope) -> None:
-    """Name the links and joints of a file with one model without the name of that model."""
-    if len(root.models) == 1 and not root.merged and not root.joints:
-        (only,) = root.models.values()
-        common = only.prefix
-        for scope in only.scopes():
-            scope.prefix = scope.prefix.removeprefix(common)

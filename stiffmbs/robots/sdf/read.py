@@ -5,28 +5,28 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from ...elements.spatial.marker import ORIGIN
-from ...reading.files.quoted import listed
+from ...reading.files.quoted import listed, quoted
 from ...reading.files.requested import unused_notes
 from ...reading.files.xml_nodes import Node
 from ..robot import Closure, Connection, Link, LinkJoint, Robot, RobotFault, Transmission
 from .fields import REASONS
-from .files import Files, Source, Version, named
+from .files import Files, Source, Version
 from .gears import relations
 from .joints import GEARBOX, KINDS, Arc, arcs, effort, link_joints
 from .links import Body, body_of
-from .models import Models, without_common_prefix
+from .models import Models
 from .poses import HERE, Pose, numbers, text_of
 from .scopes import Frame, Scope
 from .tree import Branch, spanning_tree
 
-GRAVITY = (0.0, 0.0, -9.8)
+GRAVITY: Final = (0.0, 0.0, -9.8)
 """Gravity of a world that states none, m/s^2; the format's default."""
-IN_WORLD: Version = (1, 6)
+IN_WORLD: Final[Version] = (1, 6)
 """First version with the gravity in ``<world>``; before, in ``<physics>``."""
 
 
@@ -51,7 +51,6 @@ def read_sdf(path: Path) -> Robot:
     source = files.source(path)
     root, models = _root(source), Models(files)
     models.fill(root, source)
-    without_common_prefix(root)
     links = {link.name: link for link in _links(root)}
     if not links:
         raise RobotFault("found no link, expected <link name=...> in a <model>")
@@ -82,10 +81,11 @@ def _root(source: Source) -> Scope:
     if len(worlds) > 1:
         raise RobotFault(f"found {len(worlds)} worlds, expected one")
     node = worlds[0] if worlds else source.root
-    if not worlds and (model := source.root.find("model")) is not None:
-        return Scope("the file", named("", model), "", source.version, node, Frame("the file", HERE))
-    name = (node.get("name") if worlds else "") or "world"
-    return Scope(f"world {name}" if worlds else "the file", name, "", source.version, node, Frame("world", HERE))
+    named_by = node if worlds else node.find("model")
+    name = (None if named_by is None else named_by.get("name")) or "robot"
+    where = f"world {quoted(name)}" if worlds else "the file"
+    alone = len(node.among("model", "include")) == 1 and not node.among("joint")
+    return Scope(where, name, "", source.version, node, Frame(where, HERE), alone=alone)
 
 
 def _gravity(root: Scope) -> tuple[float, ...]:
@@ -97,7 +97,7 @@ def _gravity(root: Scope) -> tuple[float, ...]:
 def _links(root: Scope) -> Iterator[Placed]:
     for scope in root.scopes():
         for name, node in scope.links.items():
-            where = f"link {scope.prefix}{name}"
+            where = f"link {quoted(scope.prefix + name)}"
             pose = scope.in_root(scope.pose(name, where))
             yield Placed(f"{scope.prefix}{name}", pose, body_of(where, node), scope.static)
 

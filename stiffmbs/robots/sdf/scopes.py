@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Final
 
-from ...reading.files.quoted import quoted
+from ...reading.files.quoted import listed, quoted
 from ...reading.files.xml_nodes import Node
 from ..robot import RobotFault
 from .files import Version
 from .poses import HERE, Pose, pose_of
 
 MODEL, WORLD, BETWEEN = "__model__", "world", "::"
-RELATIVE_TO_NAMED: Version = (1, 7)
+RELATIVE_TO_NAMED: Final[Version] = (1, 7)
 """First version whose poses name their frame by ``relative_to``; before, ``frame``."""
 
 
@@ -31,7 +32,8 @@ class Scope:
     """World or model with its named frames and nested models.
 
     `name`: names from the outermost model. `prefix`: names of links and joints of the robot begin with it. `frame`: the
-    scope's frame in its parent, or that of `placement` if it is given. `links`, `joints`: elements by name.
+    scope's frame in its parent, or that of `placement` if it is given. `alone`: the names of links and joints in its only
+    model do not begin with the name of that model. `links`, `joints`: elements by name.
     """
 
     where: str
@@ -44,6 +46,7 @@ class Scope:
     placement: str | None = None
     canonical: str | None = None
     static: bool = False
+    alone: bool = False
     links: dict[str, Node] = field(default_factory=dict)
     joints: dict[str, Node] = field(default_factory=dict)
     joint_frames: dict[str, Frame] = field(default_factory=dict)
@@ -128,7 +131,7 @@ class Scope:
         first, _, rest = name.partition(BETWEEN)
         if rest and first in self.models:
             return self.models[first], rest
-        known = ", ".join([*self.frames, *self.models][:5]) or "none"
+        known = quoted(listed([*self.frames, *self.models])) or "none"
         raise RobotFault(
             f"{where}: found the frame {quoted(name)}, expected a link, joint, frame or model of {self.where}: {known}"
         )
