@@ -34,8 +34,8 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     ----------
     path : str or Path
         A YAML file, or ``-`` for standard input; a dataset if its name ends in ``.adm``, a robot in URDF if it ends in
-        ``.urdf``, in SDF if it ends in ``.sdf`` or ``.world``, in MJCF (needs the extra ``robots``) if it ends in ``.xml`` or ``.mjcf``; an assembly if it ends in
-        ``.asmt`` (FreeCAD), or is Simscape Multibody XML.
+        ``.urdf``, in SDF if it ends in ``.sdf`` or ``.world``, in MJCF (needs the extra ``robots``) if it ends in
+        ``.xml`` or ``.mjcf``; an assembly if it ends in ``.asmt`` (FreeCAD), or is Simscape Multibody XML.
     changes : sequence of (path, text)
         Values that replace those of the file, such as ``("bodies.cart.mass", "12 kg")``.
 

@@ -122,9 +122,13 @@ def axes_of_a_gearbox():
     """Return the angle between the axes of a gearbox and of its hinge, in quarter octaves below 0.9, where they are parallel."""
 
     def accepts(angle):
-        hinge = Record(parent=None, child="wheel", kind="revolute", name="h", axes=[Record(direction=np.array([0, 0, 1.0]))])
+        hinge = Record(
+            parent=None, child="wheel", kind="revolute", name="h", axes=[Record(direction=np.array([0, 0, 1.0]))]
+        )
         try:
-            return bool(gears._hinge(Record(where="g"), [hinge], None, "wheel", np.array([np.sin(angle), 0, np.cos(angle)])))
+            return bool(
+                gears._hinge(Record(where="g"), [hinge], None, "wheel", np.array([np.sin(angle), 0, np.cos(angle)]))
+            )
         except RobotFault:
             return False
 

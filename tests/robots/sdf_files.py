@@ -3,7 +3,7 @@
 import numpy as np
 
 INERTIAL = (
-    '<inertial><pose>{centre} {turn}</pose><mass>{mass!r}</mass><inertia><ixx>{ixx!r}</ixx><ixy>0.001</ixy><ixz>0</ixz>'
+    "<inertial><pose>{centre} {turn}</pose><mass>{mass!r}</mass><inertia><ixx>{ixx!r}</ixx><ixy>0.001</ixy><ixz>0</ixz>"
     "<iyy>{iyy!r}</iyy><iyz>-0.002</iyz><izz>{izz!r}</izz></inertia></inertial>"
 )
 
@@ -45,7 +45,7 @@ def pose_text(rng, xyz, rpy, relative_to=None, version=(1, 12)):
     if form == 1:
         return f'<pose{base} degrees="true">{joined(xyz)} {joined(np.degrees(rpy))}</pose>'
     if form == 2:
-        return f'<pose{base} rotation_format="quat_xyzw">{joined(xyz)}\n {joined(3.0 * np.array(quaternion(rpy)))}</pose>'
+        return f'<pose{base} rotation_format="quat_xyzw">{joined(xyz)}\n {joined(quaternion(rpy))}</pose>'
     return f"<pose{base}> {joined(xyz)}  {joined(rpy)} </pose>"
 
 
@@ -65,7 +65,7 @@ class FrameGraph:
     def __init__(self, rng, depth=1):
         self.links, self.axes = {}, {}
         placed = random_pose(rng)
-        text, frames = self._model(rng, depth, "", "whole", *placed, None)
+        text, _ = self._model(rng, depth, "", "whole", *placed, None)
         self.text = f'<sdf version="1.12"><world name="w">{text}</world></sdf>'
         shift = matrix(*placed)
         self.links = {name: shift @ M for name, M in self.links.items()}
@@ -115,11 +115,16 @@ class FrameGraph:
                 inner.links, inner.axes = {}, {}
                 text, below = inner._model(rng, depth - 1, f"{prefix}{new}::", new, *pose, relative)
                 placement = inner.placement
-                frames[new] = base_matrix @ matrix(*pose) @ (np.linalg.inv(below[placement]) if placement else np.eye(4))
+                frames[new] = (
+                    base_matrix @ matrix(*pose) @ (np.linalg.inv(below[placement]) if placement else np.eye(4))
+                )
                 frames |= {f"{new}::{one}": frames[new] @ M for one, M in below.items() if one != "__model__"}
                 own_links |= {f"{new}::{one}": frames[new] @ M for one, M in inner.links.items()}
                 shift = frames[new]
-                own_axes |= {f"{new}::{one}": (shift[:3, :3] @ p + shift[:3, 3], shift[:3, :3] @ a) for one, (p, a) in inner.axes.items()}
+                own_axes |= {
+                    f"{new}::{one}": (shift[:3, :3] @ p + shift[:3, 3], shift[:3, :3] @ a)
+                    for one, (p, a) in inner.axes.items()
+                }
                 parts.append(text)
         self.links, self.axes = own_links, own_axes
         self.placement = str(rng.choice(list(frames))) if prefix and rng.random() < 0.5 else None
@@ -131,7 +136,7 @@ class FrameGraph:
 
 def of_urdf(root, rng, version=(1, 12)):
     """The tree of a URDF file as SDFormat; its poses are given in the model's or in other frames at random."""
-    from_links, poses = {}, {"world": np.eye(4)}
+    poses = {"world": np.eye(4)}
     links = {link.get("name"): link for link in root.findall("link")}
     parts = []
     for joint in root.findall("joint"):
@@ -155,7 +160,6 @@ def of_urdf(root, rng, version=(1, 12)):
             f'<joint name="{name}" type="{joint.get("type")}"><parent>{parent}</parent><child>{child}</child>'
             f"<axis><xyz>{joined(axis)}</xyz>{old}<limit><lower>-9</lower><upper>9</upper><effort>1e6</effort></limit></axis></joint>"
         )
-    from_links.clear()
     body = "".join(parts[k] for k in rng.permutation(len(parts)))
     number = ".".join(map(str, version))
     gravity = "<gravity>0 0 -9.81</gravity>" if version >= (1, 6) else "<physics><gravity>0 0 -9.81</gravity></physics>"

@@ -10,7 +10,7 @@ import stiffmbs
 from stiffmbs.robots.load import convert_robot, load_robot
 from tests.random_trees import tree_in_urdf
 
-from .sdf_files import FrameGraph, of_urdf, rotation
+from .sdf_files import FrameGraph, of_urdf
 
 
 def written(tmp_path, text, name="robot.sdf"):

@@ -25,7 +25,9 @@ def link(name, pose="0 0 0 0 0 0", mass=M, moments=(I, I, I), centre="0 0 0", mo
 
 def joint(name, kind, parent, child, axis="", axis2="", more="", pose=""):
     axes = "".join(f"<{tag}>{given}</{tag}>" for tag, given in (("axis", axis), ("axis2", axis2)) if given)
-    return f'<joint name="{name}" type="{kind}">{pose}<parent>{parent}</parent><child>{child}</child>{axes}{more}</joint>'
+    return (
+        f'<joint name="{name}" type="{kind}">{pose}<parent>{parent}</parent><child>{child}</child>{axes}{more}</joint>'
+    )
 
 
 def started(tmp_path, body, gravity="0 0 0", changes=(), **state):
@@ -36,7 +38,9 @@ def started(tmp_path, body, gravity="0 0 0", changes=(), **state):
 DYNAMICS = "<dynamics><damping>0.7</damping><friction>0.2</friction><spring_stiffness>5</spring_stiffness><spring_reference>0.4</spring_reference></dynamics>"
 
 
-@pytest.mark.parametrize(("kind", "inertia", "channel"), [("revolute", I, "wdz"), ("continuous", I, "wdz"), ("prismatic", M, "az")])
+@pytest.mark.parametrize(
+    ("kind", "inertia", "channel"), [("revolute", I, "wdz"), ("continuous", I, "wdz"), ("prismatic", M, "az")]
+)
 def test_springs_dampers_and_friction(tmp_path, kind, inertia, channel):
     body = link("b") + joint("j", kind, "world", "b", f"<xyz>0 0 1</xyz>{DYNAMICS}")
     run = started(tmp_path, body, coordinates={"j": 0.1}, rates={"j": 1.5})
@@ -46,7 +50,9 @@ def test_springs_dampers_and_friction(tmp_path, kind, inertia, channel):
 @pytest.mark.parametrize("turn", ["0 0 0", "0.3 0.4 -0.5"])
 def test_a_ball_joint_has_no_torque(tmp_path, turn):
     """At rest, the moment of momentum about the joint changes by the moment of the weight: (I + m c c) a = c x m g."""
-    body = link("b", f"0 0 0 {turn}", centre="0.2 0.1 -0.05", moments=(0.1, 0.2, 0.25)) + joint("j", "ball", "world", "b")
+    body = link("b", f"0 0 0 {turn}", centre="0.2 0.1 -0.05", moments=(0.1, 0.2, 0.25)) + joint(
+        "j", "ball", "world", "b"
+    )
     run = started(tmp_path, body, "1 2 -9")
     scene = load_robot(tmp_path / "robot.sdf")
     A = np.array(stiffmbs_matrix(scene.bodies["b"]))
@@ -101,7 +107,9 @@ def test_a_gearbox_couples_hinges_on_its_reference_body(tmp_path, flipped, rever
 
 def test_mimicking_axes(tmp_path):
     """follower = multiplier (leader - reference) + offset, of the second axis of a universal joint too."""
-    mimic = '<mimic joint="{}" axis="{}"><multiplier>2</multiplier><offset>0.1</offset><reference>0.3</reference></mimic>'
+    mimic = (
+        '<mimic joint="{}" axis="{}"><multiplier>2</multiplier><offset>0.1</offset><reference>0.3</reference></mimic>'
+    )
     body = (
         link("a") + link("b", "0 1 0 0 0 0") + link("c", "0 2 0 0 0 0") + joint("u", "universal", "world", "a", "<xyz>1 0 0</xyz>", "<xyz>0 1 0</xyz>")
         + joint("arm", "revolute", "world", "b", "<xyz>0 0 1</xyz>" + mimic.format("u", "axis2"))
@@ -116,7 +124,9 @@ def test_mimicking_axes(tmp_path):
 def test_a_joint_between_equal_limits_is_held(tmp_path):
     limit = "<limit><lower>{0}</lower><upper>{0}</upper></limit>"
     body = link("a") + joint("j", "revolute", "world", "a", "<xyz>1 0 0</xyz>" + limit.format(0.2))
-    run = started(tmp_path, body + link("b") + joint("k", "continuous", "world", "b", "<xyz>1 0 0</xyz>" + limit.format(0)))
+    run = started(
+        tmp_path, body + link("b") + joint("k", "continuous", "world", "b", "<xyz>1 0 0</xyz>" + limit.format(0))
+    )
     assert run["j.angle"][0] == pytest.approx(0.2, abs=1e-9)
     assert "k_held" not in load_robot(tmp_path / "robot.sdf").joints
 
@@ -146,7 +156,9 @@ def test_two_axes_are_those_of_two_hinges_of_mujoco(tmp_path, kind, seed):
     run = started(tmp_path, body, "0 0 -9", coordinates=values[0], rates=values[1])
     position, acceleration = by_mujoco(m, *values, [])["b"]
     assert [run[f"b.{axis}"][0] for axis in "xyz"] == pytest.approx(position, abs=1e-9)
-    assert [run[f"b.a{axis}"][0] for axis in "xyz"] == pytest.approx(acceleration, abs=1e-6 * np.abs(acceleration).max())
+    assert [run[f"b.a{axis}"][0] for axis in "xyz"] == pytest.approx(
+        acceleration, abs=1e-6 * np.abs(acceleration).max()
+    )
 
 
 AXIS, AXIS2 = np.array([0.6, 0, 0.8]), np.array([0.0, 1.0, 0.0])
@@ -171,7 +183,10 @@ def test_parent_and_child_can_be_exchanged(tmp_path, kind):
     names = ["j", "j_axis2"][:count]
     found = []
     for given, order in ((there, names), (back, names[::-1])):
-        state = {"coordinates": dict(zip(order, (0.4, -0.2), strict=False)), "rates": dict(zip(order, (0.9, 1.3), strict=False))}
+        state = {
+            "coordinates": dict(zip(order, (0.4, -0.2), strict=False)),
+            "rates": dict(zip(order, (0.9, 1.3), strict=False)),
+        }
         run = started(tmp_path, bodies + given, "0 0 -9", **state)
         found.append([run[f"{name}.{a}{axis}"][0] for name in "ab" for a in ("", "a") for axis in "xyz"])
     np.testing.assert_allclose(found[1], found[0], atol=1e-6 if count == 2 else 1e-9)

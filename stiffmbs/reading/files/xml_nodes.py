@@ -96,9 +96,7 @@ def _refuse(entity: str) -> None:
     raise FileFault(f"found the entity &{quoted(entity)}; without a value in the file")
 
 
-def parsed(
-    text: str, expected: str, defaults: Mapping[str, Mapping[str, Any]], outer: Sequence[str] = ()
-) -> Node:
+def parsed(text: str, expected: str, defaults: Mapping[str, Mapping[str, Any]], outer: Sequence[str] = ()) -> Node:
     """Read an XML file; namespace prefixes need not be declared. Raises FileFault for text that is not well-formed.
 
     `defaults`, `outer`: as for `Node`.

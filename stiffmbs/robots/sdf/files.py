@@ -68,7 +68,9 @@ class Files:
             return None
         chain = (*by.chain, by.path.resolve())
         if path.resolve() in chain:
-            raise RobotFault(f"{where}: found the file {quoted(str(path))}, which includes itself, expected another one")
+            raise RobotFault(
+                f"{where}: found the file {quoted(str(path))}, which includes itself, expected another one"
+            )
         if len(self.read) > MOST_FILES:
             raise RobotFault(f"{where}: found more than {MOST_FILES} included files, expected fewer")
         return self.source(path, chain)

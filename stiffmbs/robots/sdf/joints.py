@@ -70,9 +70,7 @@ def arcs(scope: Scope) -> Iterator[Arc]:
             raise RobotFault(f"{where}: found the child world, expected a link: exchange parent and child")
         parent, child = (scope.link(end, where) for end in ends.values())
         if parent == child:
-            raise RobotFault(
-                f"{where}: found that it connects {parent or 'the world'} with itself, expected two links"
-            )
+            raise RobotFault(f"{where}: found that it connects {parent or 'the world'} with itself, expected two links")
         frame = scope.joint_frames[name]
         placed = scope.pose(frame.base or MODEL, where).on(frame.pose)
         axes = tuple(_axis(where, scope, placed, node, tag) for tag, _ in zip(AXES, _with_axes(kind), strict=False))
@@ -102,7 +100,7 @@ def _axis(where: str, scope: Scope, placed: Pose, joint: Node, tag: str) -> Axis
     if length == 0 or not math.isfinite(length):
         raise RobotFault(f"{where}: found an axis of length {length:g}, expected a direction")
     frame = _axis_frame(where, scope, placed, node, xyz)
-    return Axis(rotated(scope.in_root(frame).orientation, axis / length), node)
+    return Axis(rotated(scope.in_root(frame).orientation, tuple(axis / length)), node)
 
 
 def _axis_frame(where: str, scope: Scope, placed: Pose, axis: Node, xyz: Node | None) -> Pose:
@@ -119,11 +117,11 @@ def _axis_frame(where: str, scope: Scope, placed: Pose, axis: Node, xyz: Node | 
 def link_joints(arc: Arc, frame: Pose, reverse: bool) -> tuple[LinkJoint, ...]:
     """Return the joints of a link with the pose `frame` in the world; `reverse`: the link is the arc's parent."""
     sign, back = -1.0 if reverse else 1.0, conjugate(frame.orientation)
-    point = tuple(map(float, rotated(back, arc.point - np.array(frame.position))))
+    point = tuple(map(float, rotated(back, tuple(arc.point - np.array(frame.position)))))
     if arc.kind == BALL:
         return (LinkJoint(arc.name, "ball", point),)
     found = tuple(
-        _joint(arc, name, kind, axis, point, tuple(map(float, rotated(back, sign * axis.direction))))
+        _joint(arc, name, kind, axis, point, tuple(map(float, rotated(back, tuple(sign * axis.direction)))))
         for name, kind, axis in zip(arc.names(), KINDS[arc.kind], arc.axes, strict=True)
     )
     return found[::-1] if reverse else found

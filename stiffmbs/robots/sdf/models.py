@@ -58,9 +58,7 @@ class Models:
                 self.omitted.append(uri)
                 include.without_effect("pose", "name", "static")
                 return
-            raise RobotFault(
-                f"{where}: found no such file, expected it beside the file: copy the model's folder there"
-            )
+            raise RobotFault(f"{where}: found no such file, expected it beside the file: copy the model's folder there")
         inner = found.root.find("model")
         if inner is None:
             raise RobotFault(f"{where}: found no <model> in {quoted(str(found.path))}, expected one")
@@ -86,7 +84,9 @@ class Models:
             node,
             frame,
             scope,
-            placement=(text_of(outer.find("placement_frame")) if included else "") or node.get("placement_frame") or None,
+            placement=(text_of(outer.find("placement_frame")) if included else "")
+            or node.get("placement_frame")
+            or None,
             canonical=node.get("canonical_link") or None,
             static=scope.static or (flag(where, outer, "static", static) if included else static),
         )

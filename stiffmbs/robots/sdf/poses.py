@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...elements.spatial.marker import ORIGIN
-from ...elements.spatial.orientation import IDENTITY, Quaternion, about, conjugate, product, rotated
+from ...elements.spatial.orientation import IDENTITY, ROUGH, Quaternion, about, conjugate, product, rotated
 from ...reading.files.quoted import quoted
 from ...reading.files.xml_nodes import Node
 from ..robot import RobotFault
@@ -77,9 +77,7 @@ def pose_of(where: str, pose: Node | None) -> Pose:
         return HERE
     form, degrees = pose.get("rotation_format") or EULER, pose.get("degrees") or "false"
     if form not in (EULER, QUATERNION):
-        raise RobotFault(
-            f"{where}: found rotation_format='{quoted(form)}' of <pose>, expected {EULER} or {QUATERNION}"
-        )
+        raise RobotFault(f"{where}: found rotation_format='{quoted(form)}' of <pose>, expected {EULER} or {QUATERNION}")
     if not pose.text:
         return HERE
     found = numbers(where, "pose", pose.text, (6,) if form == EULER else (7,))
@@ -91,7 +89,7 @@ def _turned(where: str, form: str, found: list[float], degrees: bool) -> Quatern
         roll, pitch, yaw = (math.radians(angle) if degrees else angle for angle in found)
         return product(product(about(2, yaw), about(1, pitch)), about(0, roll))
     length = math.hypot(*found)
-    if length == 0:
-        raise RobotFault(f"{where}: found a quaternion of zeros in <pose>, expected one of length 1")
+    if abs(length - 1) > ROUGH:
+        raise RobotFault(f"{where}: found a quaternion of length {length:g} in <pose>, expected one of length 1")
     x, y, z, w = (part / length for part in found)
     return w, x, y, z

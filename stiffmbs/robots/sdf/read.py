@@ -12,7 +12,6 @@ import numpy as np
 from ...elements.spatial.marker import ORIGIN
 from ...reading.files.quoted import listed, quoted
 from ...reading.files.requested import unused_notes
-from ...reading.files.xml_nodes import Node
 from ..robot import Closure, Connection, Link, LinkJoint, Robot, RobotFault, Transmission
 from .fields import REASONS
 from .files import Files, Source, Version
@@ -54,6 +53,8 @@ def read_sdf(path: Path) -> Robot:
     links = {link.name: link for link in _links(root)}
     if not links:
         raise RobotFault("found no link, expected <link name=...> in a <model>")
+    if all(link.static for link in links.values()):
+        raise RobotFault("found static models alone, expected a link that moves")
     joints = [arc for scope in root.scopes() for arc in arcs(scope)]
     _check_names(joints)
     kinematic = [arc for arc in joints if arc.kind != GEARBOX]
@@ -187,5 +188,3 @@ def _notes(
         yield f"links without mass or inertia have the defaults of SDF, 1 kg and 1 kg m^2: {listed(assumed)}"
     if models.omitted:
         yield f"included scenery that is not beside the file is left out: {listed(models.omitted)}"
-
-
