@@ -65,6 +65,8 @@ def arcs(scope: Scope) -> Iterator[Arc]:
         where, kind = f"joint {quoted(scope.prefix + name)}", node.get("type") or ""
         if kind not in KINDS:
             raise RobotFault(f"{where}: found the type {quoted(kind)}, expected one of {', '.join(KINDS)}")
+        if not KINDS[kind]:
+            node.without_effect(*AXES)
         ends = {role: _end(where, node, role) for role in ("parent", "child")}
         if ends["child"] == WORLD:
             raise RobotFault(f"{where}: found the child world, expected a link: exchange parent and child")

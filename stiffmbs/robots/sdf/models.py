@@ -59,10 +59,10 @@ class Models:
                 include.without_effect("pose", "name", "static")
                 return
             raise RobotFault(f"{where}: found no such file, expected it beside the file: copy the model's folder there")
-        inner = found.root.find("model")
-        if inner is None:
-            raise RobotFault(f"{where}: found no <model> in {quoted(str(found.path))}, expected one")
-        self._nest(scope, inner, found, include)
+        models = found.root.findall("model")
+        if len(models) != 1:
+            raise RobotFault(f"{where}: found {len(models) or 'no'} models in {quoted(str(found.path))}, expected one")
+        self._nest(scope, models[0], found, include)
 
     def _nest(self, scope: Scope, node: Node, source: Source, outer: Node) -> None:
         """Add a model; `outer`: the element that places it, itself or its ``<include>``."""

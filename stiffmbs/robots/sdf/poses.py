@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,23 +43,22 @@ def text_of(node: Node | None) -> str:
     return "" if node is None else node.text
 
 
-def numbers(where: str, what: str, text: str, counts: Sequence[int] = (3,)) -> list[float]:
-    """Return finite numbers of a text; raises RobotFault if their count is not one of `counts`."""
+def numbers(where: str, what: str, text: str, count: int = 3) -> list[float]:
+    """Return the finite numbers of a text; raises RobotFault if their count is another one."""
     try:
         found = [float(word) for word in text.split()]
     except ValueError:
         found = []
-    if len(found) not in counts or not np.all(np.isfinite(found)):
-        raise RobotFault(
-            f"{where}: found '{quoted(text)}' in <{what}>, expected {' or '.join(map(str, counts))} finite numbers"
-        )
+    if len(found) != count or not np.all(np.isfinite(found)):
+        expected = "a finite number" if count == 1 else f"{count} finite numbers"
+        raise RobotFault(f"{where}: found '{quoted(text)}' in <{what}>, expected {expected}")
     return found
 
 
 def number(where: str, node: Node | None, tag: str, default: float) -> float:
     """Return the finite number in a child element, or the default if there is none."""
     text = text_of(None if node is None else node.find(tag))
-    return numbers(where, tag, text, (1,))[0] if text else default
+    return numbers(where, tag, text, 1)[0] if text else default
 
 
 def flag(where: str, node: Node, tag: str, default: bool = False) -> bool:
@@ -80,7 +78,7 @@ def pose_of(where: str, pose: Node | None) -> Pose:
         raise RobotFault(f"{where}: found rotation_format='{quoted(form)}' of <pose>, expected {EULER} or {QUATERNION}")
     if not pose.text:
         return HERE
-    found = numbers(where, "pose", pose.text, (6,) if form == EULER else (7,))
+    found = numbers(where, "pose", pose.text, 6 if form == EULER else 7)
     return Pose(tuple(found[:3]), _turned(where, form, found[3:], degrees.lower() in ("1", "true")))
 
 

@@ -131,6 +131,8 @@ class Scope:
         first, _, rest = name.partition(BETWEEN)
         if rest and first in self.models:
             return self.models[first], rest
+        if rest and first == self.name and self.version < RELATIVE_TO_NAMED:
+            return self, rest
         known = quoted(listed([*self.frames, *self.models])) or "none"
         raise RobotFault(
             f"{where}: found the frame {quoted(name)}, expected a link, joint, frame or model of {self.where}: {known}"

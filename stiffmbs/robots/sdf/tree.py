@@ -33,7 +33,7 @@ def spanning_tree(links: Sequence[str], fixed: Iterable[str], arcs: Sequence[Arc
     reached: dict[str | None, None] = dict.fromkeys([None, *fixed])
     outwards, backwards = list(reached), list(reached)
     children = {arc.child for arc in arcs}
-    left = [*(link for link in links if link not in children), *links]
+    left = iter([*(link for link in links if link not in children), *links])
     while True:
         found = _next(outwards, from_parent, reached, False) or _next(backwards, from_child, reached, True)
         if found is None:
