@@ -7,12 +7,14 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import yaml
+from click.testing import CliRunner
 
 import stiffmbs
+from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError
 from stiffmbs.robots.load import convert_robot, load_robot
 
-from .sdf_files import FrameGraph
+from .sdf_files import FrameGraph, rotation
 from .test_sdf import placed, written
 from .test_sdf_joints import joint, link
 
@@ -259,7 +261,7 @@ REFUSED = {
     "a mass below zero": ("1.9", link("l", mass=-1), "link l: found a mass of -1"),
     "no number": ("1.9", link("l", mass="heavy"), "link l: found 'heavy' in <mass>, expected a finite number"),
     "an inertia below zero": ("1.9", link("l", moments=(-1, 1, 1)), "link l: found the principal moments of inertia -1"),
-    "an inertia of shapes": ("1.9", "<link name='l'><inertial auto='true'/></link>", "link l: found auto='true' of <inertial>, expected its mass"),
+    "an inertia of shapes": ("1.9", "<link name='l'><inertial auto='true'/></link>", "link l: found shapes with a mass of 0 kg, expected a positive one of <collision>"),
     "a macro": ("1.9", link("l", mass="${m}"), "run xacro"),
     "no truth value": ("1.9", "<static>perhaps</static>" + link("l"), "model m: found 'perhaps' in <static>, expected true or false"),
     "a frame of a model without links": ("1.9", link("l") + "<model name='x'/>" + joint("j", "fixed", "l", "x"), "joint j: found model x without a link"),
@@ -312,12 +314,33 @@ def test_entities_are_not_expanded_without_bound(tmp_path):
         load_robot(written(tmp_path, bomb))
 
 
-def test_a_file_of_an_entity_is_not_read(tmp_path):
+@pytest.mark.parametrize("declared", ['[<!ENTITY x SYSTEM "file://SECRET">]', 'SYSTEM "SECRET"'])
+@pytest.mark.parametrize("suffix", ["sdf", "urdf"])
+def test_entities_of_other_files_are_refused(tmp_path, declared, suffix):
+    """Their text is neither read nor taken as empty, which stands for the default."""
     secret = written(tmp_path, "7", "secret.txt")
-    text = f'<!DOCTYPE sdf [<!ENTITY x SYSTEM "file://{secret}">]>' + model(link("l", mass="&x;"))
-    with pytest.raises(InputError) as error:
-        load_robot(written(tmp_path, text))
-    assert "7" not in str(error.value).rpartition(":")[2]
+    text = f"<!DOCTYPE sdf {declared.replace('SECRET', str(secret))}>" + model(link("l", mass="&x;"))
+    with pytest.raises(
+        InputError, match=r"no well-formed XML|found the entity &x; without a value in the file, expected a"
+    ):
+        load_robot(written(tmp_path, text, f"robot.{suffix}"))
+
+
+def test_commands_take_files_of_both_names(tmp_path):
+    """`convert` writes a scene; `check` and `run` read the file itself."""
+    text = model(link("l", centre="0.1 0 0") + joint("j", "revolute", "world", "l", "<xyz>0 1 0</xyz>"))
+    for name in ("robot.sdf", "ROBOT.WORLD"):
+        path = written(tmp_path, text, name)
+        scene = tmp_path / f"{name}.yaml"
+        for arguments in (
+            ["convert", path, "-o", scene, "--at", "j=0.5"],
+            ["check", path],
+            ["run", path],
+            ["run", scene],
+        ):
+            result = CliRunner().invoke(main, [str(one) for one in arguments])
+            assert result.exit_code == 0, result.output
+        assert "j: {type: revolute" in scene.read_text()
 
 
 WORDS = [
@@ -415,3 +438,45 @@ def mutated(text, rng):
         case 2:
             return text.replace(rng.choice(words), rng.choice(words), 1)
     return text.replace(rng.choice(words), "", rng.choice((1, 100)))
+
+
+SHAPES = {
+    "<box><size>0.2 0.3 0.4</size></box>": lambda x, y, z: (abs(x) < 0.1) & (abs(y) < 0.15) & (abs(z) < 0.2),
+    "<sphere><radius>0.3</radius></sphere>": lambda x, y, z: x**2 + y**2 + z**2 < 0.09,
+    "<cylinder><radius>0.2</radius><length>0.5</length></cylinder>": lambda x, y, z: (x**2 + y**2 < 0.04) & (abs(z) < 0.25),
+    "<capsule><radius>0.2</radius><length>0.3</length></capsule>": lambda x, y, z: x**2 + y**2 + np.maximum(abs(z) - 0.15, 0) ** 2 < 0.04,
+    "<ellipsoid><radii>0.1 0.2 0.3</radii></ellipsoid>": lambda x, y, z: (x / 0.1) ** 2 + (y / 0.2) ** 2 + (z / 0.3) ** 2 < 1,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_inertia_of_shapes(tmp_path, shape):
+    """Against sums over the points of a grid; a second, small shape has another density."""
+    side = np.linspace(-0.4, 0.4, 161)[:-1] + 0.0025
+    x, y, z = np.meshgrid(side, side, side, indexing="ij")
+    points = np.array([axis[SHAPES[shape](x, y, z)] for axis in (x, y, z)]).T
+    turn = rotation(0.3, 0.2, 0.5)
+    points = points @ turn.T + [1, 0, 2]
+    masses = np.full(len(points), 700 * 0.005**3)
+    points, masses = np.vstack([points, [0, 0, 1]]), np.append(masses, 20.0)
+    centre = masses @ points / masses.sum()
+    r = points - centre
+    inertia = np.einsum(
+        "k,kij->ij", masses, np.einsum("ki,ki,ab->kab", r, r, np.eye(3)) - np.einsum("ka,kb->kab", r, r)
+    )
+    small = f"<sphere><radius>{(20 / (2e6 * 4 / 3 * np.pi)) ** (1 / 3)}</radius></sphere>"
+    body = (
+        f'<link name="l"><inertial auto="true"><density>700</density></inertial><collision name="c"><pose relative_to="f">0 0 2 0.3 0.2 0.5</pose>'
+        f'<geometry>{shape}</geometry></collision><collision name="s"><density>2e6</density><pose relative_to="f">-1 0 1 0 0 0</pose><geometry>{small}</geometry></collision></link>'
+        '<frame name="f"><pose>1 0 0 0 0 0</pose></frame>'
+    )
+    found = read(tmp_path, model(body, version="1.11"))["bodies"]["l"]
+    assert found["mass"] == pytest.approx(masses.sum(), rel=0.01)
+    assert found["center_of_mass"] == pytest.approx(centre, abs=0.01)
+    np.testing.assert_allclose(found["inertia"], inertia, rtol=0.02, atol=0.02 * np.abs(inertia).max())
+    scaled = model(body.replace("<density>700", "<mass>5</mass><density>700", 1), version="1.11")
+    half = read(tmp_path, scaled)["bodies"]["l"]
+    assert half["mass"] == pytest.approx(5)
+    np.testing.assert_allclose(
+        np.array(half["inertia"]) / 5, np.array(found["inertia"]) / found["mass"], rtol=1e-9, atol=1e-12
+    )

@@ -17,7 +17,7 @@ REASONS: Mapping[str, Mapping[str, str]] = {
         "<projector>": DRAWING, "<particle_emitter>": DRAWING, "<collision>": SHAPES, "<gripper>": SHAPES,
         "<self_collide>": SHAPES, "<allow_auto_disable>": SOLVER,
     },
-    "joint": {"<physics>": SOLVER},
+    "joint": {"<physics>": SOLVER}, "link/collision": {"*": SHAPES},
     "joint/axis/limit": {"*": LIMITS}, "joint/axis2/limit": {"*": LIMITS},
     "link": {"<kinematic>": "all links follow the forces", "<must_be_base_link>": SOLVER, "<audio_source>": SENSORS, "<audio_sink>": SENSORS},
     "world": {

@@ -11,6 +11,8 @@ from ...elements.spatial.orientation import matrix
 from ...reading.files.xml_nodes import Node
 from ..robot import RobotFault
 from .poses import flag, number, pose_of
+from .scopes import Scope
+from .solids import of_shapes
 
 PRODUCTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 OFF = ("self_collide", "enable_wind", "kinematic", "must_be_base_link")
@@ -31,7 +33,7 @@ class Body:
     assumed: bool = False
 
 
-def body_of(where: str, link: Node) -> Body:
+def body_of(where: str, name: str, link: Node, scope: Scope) -> Body:
     """Return the mass and inertia of a ``<link>``; 1 kg and 1 kg m^2 are the format's defaults."""
     link.without_effect(*(tag for tag in OFF if link.unrecorded(tag) in ("0", "false")))
     lifted = 0.0 if flag(where, link, "gravity", True) else 1.0
@@ -39,7 +41,8 @@ def body_of(where: str, link: Node) -> Body:
     if inertial is None:
         return Body(inertia=np.eye(3), lifted=lifted, assumed=True)
     if (inertial.get("auto") or "").lower() in ("1", "true"):
-        raise RobotFault(f"{where}: found auto='true' of <inertial>, expected its mass and <inertia> in the file")
+        mass, centre, tensor = of_shapes(where, name, link, inertial, scope)
+        return Body(mass, tuple(map(float, centre)), tensor, lifted)
     pose = pose_of(where, inertial.find("pose"))
     mass = number(where, inertial, "mass", 1.0)
     if mass < 0:

@@ -100,7 +100,7 @@ def _links(root: Scope) -> Iterator[Placed]:
         for name, node in scope.links.items():
             where = f"link {quoted(scope.prefix + name)}"
             pose = scope.in_root(scope.pose(name, where))
-            yield Placed(f"{scope.prefix}{name}", pose, body_of(where, node), scope.static)
+            yield Placed(f"{scope.prefix}{name}", pose, body_of(where, name, node, scope), scope.static)
 
 
 def _check_names(joints: Sequence[Arc]) -> None:
