@@ -98,6 +98,16 @@ def test_names_in_older_files_may_begin_with_the_model(tmp_path):
         load_robot(written(tmp_path, model(body, version="1.8")))
 
 
+def test_included_lights_and_actors_are_noted(tmp_path):
+    for name in ("light", "actor"):
+        written(tmp_path, SDF.format("1.6", f"<{name} name='x'/>"), f"{name}/model.sdf")
+    include = "<include><uri>model://light</uri></include><include><uri>model://actor</uri></include>"
+    found = notes_of(
+        tmp_path, SDF.format("1.6", f"<world name='w'>{include}<model name='m'>{link('l')}</model></world>")
+    )
+    assert "(graphics): sdf <light>, sdf <actor>" in found
+
+
 def test_several_models_of_a_world(tmp_path):
     """Links and joints have the names of their models; static ones are fixed to ground."""
     pendulum = link("l", centre="0.1 0 0") + joint("j", "revolute", "world", "l", "<xyz>0 1 0</xyz>")

@@ -12,6 +12,8 @@ from .scopes import BETWEEN, Scope, framed
 SCENERY = ("sun", "ground_plane")
 """Models of Gazebo that have nothing that moves; worlds without them are the same."""
 MERGE = "merge"
+WITHOUT_LINKS = ("light", "actor")
+"""What files may include instead of a model."""
 
 
 class Models:
@@ -59,6 +61,8 @@ class Models:
                 include.without_effect("pose", "name", "static")
                 return
             raise RobotFault(f"{where}: found no such file, expected it beside the file: copy the model's folder there")
+        if any(found.root.unrecorded(tag) is not None for tag in WITHOUT_LINKS):
+            return  # the notes name it
         models = found.root.findall("model")
         if len(models) != 1:
             raise RobotFault(f"{where}: found {len(models) or 'no'} models in {quoted(str(found.path))}, expected one")

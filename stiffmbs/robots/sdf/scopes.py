@@ -31,9 +31,10 @@ class Frame:
 class Scope:
     """World or model with its named frames and nested models.
 
-    `name`: names from the outermost model. `prefix`: names of links and joints of the robot begin with it. `frame`: the
-    scope's frame in its parent, or that of `placement` if it is given. `alone`: the names of links and joints in its only
-    model do not begin with the name of that model. `links`, `joints`: elements by name.
+    `prefix`: names of its links and joints in the robot begin with it. `frame`: the scope's frame in its parent, or that of
+    `placement` if it is given. `canonical`: name of the link that the scope's frame moves with; by default the first one.
+    `alone`: names of links and joints in its only model do not begin with the name of that model. `links`, `joints`:
+    elements by name.
     """
 
     where: str
