@@ -1,4 +1,4 @@
-"""Loading of scenes: YAML files, Adams/Solver datasets, robots in URDF or MJCF, and assemblies of CAD programs."""
+"""Loading of scenes: YAML files, Adams/Solver datasets, robots in URDF, SDF or MJCF, and assemblies of CAD programs."""
 
 from __future__ import annotations
 
@@ -17,12 +17,11 @@ DATASET, COMMANDS = ".adm", ".acf"
 OTHERS = {
     ".cmd": "commands of Adams/View: export the model there by File > Export > Adams/Solver dataset, and read the .adm",
     ".bin": "a database of Adams/View: export the model there by File > Export > Adams/Solver dataset, and read the .adm",
-    ".sdf": "SDFormat, which is not read: convert it to MJCF, for example by sdformat_mjcf's sdformat2mjcf, or to URDF",
     ".osim": "a model of OpenSim, which is not read: convert it to MJCF, for example by MyoConverter",
     ".mbd": "an input file of MBDyn, which is not read: write its nodes, joints and forces as a scene",
 }
 """Files of other programs that are recognised by their suffix, and what to do with them."""
-ROBOTS = (".urdf", ".xml", ".mjcf")
+ROBOTS = (".urdf", ".sdf", ".world", ".xml", ".mjcf")
 """File suffixes of robots."""
 CAD = (".asmt", ".xml")
 """File suffixes of assemblies; the root element tells an XML file from MJCF."""
@@ -35,8 +34,8 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     ----------
     path : str or Path
         A YAML file, or ``-`` for standard input; a dataset if its name ends in ``.adm``, a robot in URDF if it ends in
-        ``.urdf``, in MJCF (needs the extra ``robots``) if it ends in ``.xml`` or ``.mjcf``; an assembly if it ends in
-        ``.asmt`` (FreeCAD), or is Simscape Multibody XML.
+        ``.urdf``, in SDF if it ends in ``.sdf`` or ``.world``, in MJCF (needs the extra ``robots``) if it ends in
+        ``.xml`` or ``.mjcf``; an assembly if it ends in ``.asmt`` (FreeCAD), or is Simscape Multibody XML.
     changes : sequence of (path, text)
         Values that replace those of the file, such as ``("bodies.cart.mass", "12 kg")``.
 

@@ -33,7 +33,7 @@ def convert(
     scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], limits: bool,
     changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
-    """Convert an Adams/Solver dataset (.adm), a robot (URDF, MJCF) or an assembly (Simscape Multibody XML, .asmt) to a scene,
+    """Convert an Adams/Solver dataset (.adm), a robot (URDF, SDF, MJCF) or an assembly (Simscape Multibody XML, .asmt) to a scene,
     or a planar scene to space.
 
     If OUTPUT ends in .adm, the scene is written as a dataset, with a command file (.acf) for its run next to it; if it ends in

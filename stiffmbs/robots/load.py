@@ -18,8 +18,8 @@ from ..reading.files.yaml_text import scene_text
 from .robot import Robot
 from .scene.scene import scene
 
-URDF = ".urdf"
-"""Extension of URDF files; others are MJCF."""
+URDF, SDF = ".urdf", (".sdf", ".world")
+"""Extensions of URDF and SDF files; others are MJCF."""
 AS_DRAWN: Mapping[str, float] = MappingProxyType({})
 
 
@@ -36,7 +36,7 @@ def load_robot(
     Parameters
     ----------
     path : str or Path
-        URDF if its name ends in ``.urdf``; otherwise MJCF (``.xml``, ``.mjcf``), which needs the package mujoco.
+        URDF if its name ends in ``.urdf``, SDF if it ends in ``.sdf`` or ``.world``; otherwise MJCF (``.xml``, ``.mjcf``), which needs the package mujoco.
     changes : sequence of (path, text)
         Values that replace those of the file, such as ``("bodies.hand.mass", "2 kg")``.
     coordinates, rates : mappings of str to float
@@ -71,6 +71,8 @@ def _found(
         return scene(_read(path), coordinates, rates, limits)
     except FileFault as fault:
         raise InputError(f"{source_name(path)}: {fault}") from None
+    except RecursionError:
+        raise InputError(f"{source_name(path)}: the file cannot be read (its elements are nested too deeply)") from None
     except np.linalg.LinAlgError:
         raise InputError(f"{source_name(path)}: {BEYOND}") from None
 
@@ -80,6 +82,10 @@ def _read(path: str | Path) -> Robot:
         from .urdf import read_urdf
 
         return read_urdf(file_text(path))
+    if Path(path).suffix.lower() in SDF:
+        from .sdf.read import read_sdf
+
+        return read_sdf(Path(path))
     from .mjcf.model import read_mjcf
 
     return read_mjcf(path)

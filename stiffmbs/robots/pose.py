@@ -70,10 +70,13 @@ def _moved(frame: Placed, joint: LinkJoint, s: float, rate: float) -> Placed:
     if joint.kind == "slide":
         position = frame.position + s * axis
         return Placed(position, frame.orientation, frame.velocity_at(position) + rate * axis, frame.omega)
-    if joint.kind != "hinge":
+    if not joint.is_rotary:
         return frame
     turn = (np.cos(s / 2), *(np.sin(s / 2) * np.array(joint.axis)))
     orientation, anchor = product(frame.orientation, turn), frame.point(joint.point)
-    position = anchor - rotated(orientation, joint.point)
+    lead = joint.pitch / (2 * np.pi)
+    arm = -rotated(orientation, joint.point)
     omega = frame.omega + rate * axis
-    return Placed(position, orientation, frame.velocity_at(anchor) + np.cross(omega, position - anchor), omega)
+    advance = lead * s * axis
+    velocity = frame.velocity_at(anchor + advance) + lead * rate * axis + np.cross(omega, arm)
+    return Placed(anchor + advance + arm, orientation, velocity, omega)

@@ -1,4 +1,4 @@
-"""Robot as a tree of links: the common content of URDF and MJCF files."""
+"""Robot as a tree of links: the common content of URDF, SDF and MJCF files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..elements.spatial.marker import ORIGIN
 from ..elements.spatial.orientation import IDENTITY
 from ..reading.files.xml_nodes import FileFault
 
-JointKind = Literal["hinge", "slide", "ball", "free"]
+JointKind = Literal["hinge", "slide", "screw", "ball", "free"]
 
 
 class RobotFault(FileFault):
@@ -28,11 +28,11 @@ class LinkJoint:
     """Joint between a link and its parent."""
 
     name: str
-    kind: JointKind  # ``hinge``, ``slide``, ``ball`` or ``free``
+    kind: JointKind
     # point, axis: in the link's frame, m; the axis has length 1
     point: tuple[float, ...] = ORIGIN
     axis: tuple[float, ...] = (0.0, 0.0, 1.0)
-    # stiffness, damping: N m/rad and N m s/rad of a hinge or ball, N/m and N s/m of a slide
+    # stiffness, damping: N m/rad and N m s/rad of a hinge, screw or ball, N/m and N s/m of a slide
     stiffness: float = 0.0
     damping: float = 0.0
     rest: float = 0.0  # coordinate at which its spring is relaxed, rad or m
@@ -41,6 +41,17 @@ class LinkJoint:
     limits: tuple[float, float] | None = None  # limits of the coordinate, rad or m
     effort: tuple[float, float] | None = None  # bounds of the force of all actuators on the coordinate, N m or N
     zero: float = 0.0  # coordinate at the pose given by its `Link`, rad or m
+    pitch: float = 0.0  # advance of a screw along its axis in one revolution, m; its coordinate is the angle
+
+    @property
+    def is_single(self) -> bool:
+        """True for a joint with one coordinate."""
+        return self.kind in ("hinge", "slide", "screw")
+
+    @property
+    def is_rotary(self) -> bool:
+        """True for a joint whose coordinate is an angle."""
+        return self.kind in ("hinge", "screw")
 
 
 @dataclass(frozen=True)
@@ -130,6 +141,18 @@ class Connection:
 
 
 @dataclass(frozen=True)
+class Closure:
+    """Joints between a link of the tree and another one, or the world, which close a loop; as those of a `Link`."""
+
+    link: str
+    parent: str | None  # None for the world
+    # position, orientation: frame of the link in the parent's with all joints at their zero: m, quaternion
+    position: tuple[float, ...]
+    orientation: tuple[float, ...]
+    joints: tuple[LinkJoint, ...]  # in order from the parent; at least one
+
+
+@dataclass(frozen=True)
 class Robot:
     """Links, each after its parent, with actuators and constraints. `gravity`: m/s^2. `notes`: omitted content."""
 
@@ -139,8 +162,9 @@ class Robot:
     transmissions: tuple[Transmission, ...] = ()
     relations: tuple[Relation, ...] = ()
     connections: tuple[Connection, ...] = ()
+    closures: tuple[Closure, ...] = ()
     notes: tuple[str, ...] = ()
 
     def joints(self) -> dict[str, LinkJoint]:
-        """Return all joints by name."""
+        """Return the joints of the tree by name."""
         return {joint.name: joint for link in self.links for joint in link.joints}

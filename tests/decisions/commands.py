@@ -15,6 +15,7 @@ from stiffmbs.reading.units.display import SI_UNITS
 from stiffmbs.robots.mjcf import model as mjcf
 from stiffmbs.robots.robot import RobotFault
 from stiffmbs.robots.scene import mechanism
+from stiffmbs.robots.sdf import files, gears
 from stiffmbs.solve.trajectory import Outcome
 from tests.decisions.common import BELOW, Reached, Record, nothing, reach, reached
 from tests.solve.test_parameter_thresholds import DOUBLES, count_while
@@ -102,7 +103,41 @@ def most_copies():
     return count_while(lambda count: accepts(round(100 * count)), DOUBLES)
 
 
+def most_included_files():
+    """Return the number of files, in quarter octaves of 10, after which no further one is included."""
+
+    def accepts(count):
+        reader = files.Files(Path(), [None] * round(10 * count))
+        by = Record(path=Path("a.sdf"), chain=())
+        try:
+            with patch.object(files, "isfile", lambda _: True), patch.object(files.Files, "source", lambda *_: None):
+                return reader.included("a", "b.sdf", by) is None
+        except RobotFault:
+            return False
+
+    return count_while(accepts, DOUBLES)
+
+
+def axes_of_a_gearbox():
+    """Return the angle between the axes of a gearbox and of its hinge, in quarter octaves below 0.9, where they are parallel."""
+
+    def accepts(angle):
+        hinge = Record(
+            parent=None, child="wheel", kind="revolute", name="h", axes=[Record(direction=np.array([0, 0, 1.0]))]
+        )
+        try:
+            return bool(
+                gears._hinge(Record(where="g"), [hinge], None, "wheel", np.array([np.sin(angle), 0, np.cos(angle)]))
+            )
+        except RobotFault:
+            return False
+
+    return count_while(lambda angle: not accepts(angle), BELOW)
+
+
 DECISIONS = {
+    "robots.sdf.files:MOST_FILES": most_included_files,
+    "robots.sdf.gears:PARALLEL": axes_of_a_gearbox,
     "live.app:LARGEST": largest_request,
     "live.page:FRAME_HEIGHT": height_of_a_frame,
     "live.requests:MOST_CASES": most_cases,
@@ -118,6 +153,7 @@ DECISIONS = {
     ),
 }  # fmt: skip
 EXPECTED = {
+    "robots.sdf.files:MOST_FILES": 27, "robots.sdf.gears:PARALLEL": 40,
     "robots.mjcf.model:MOST_COPIES": 27,
     "live.app:LARGEST": 35, "live.page:FRAME_HEIGHT": 760, "live.requests:MOST_CASES": 41, "live.requests:MOST_INSTANTS": 400,
     "live.worker:BETWEEN": 0.2, "live.workers:MOST_PAGES": 6, "commands.process:AGAIN": 0.01, "commands.progress:SHOWN_AFTER": 18,

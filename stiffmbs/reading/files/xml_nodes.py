@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers.expat import ExpatError, ParserCreate
 
+from .quoted import quoted
 from .requested import Fields
 
 
@@ -18,18 +19,25 @@ class Node:
     """Element of an XML file.
 
     `kind`: tags from the root to the element without the root's own, separated by ``/``. `owner`: name of the nearest
-    named element. `defaults`: values without effect, by kind.
+    named element. `defaults`: values without effect, by kind. `outer`: tags that kinds omit, with all above them.
     """
 
     def __init__(
-        self, element: Element, kind: str = "", owner: str = "", defaults: Mapping[str, Mapping[str, Any]] | None = None
+        self,
+        element: Element,
+        kind: str = "",
+        owner: str = "",
+        defaults: Mapping[str, Mapping[str, Any]] | None = None,
+        outer: Sequence[str] = (),
     ) -> None:
         self.tag, self.attributes, self.text = element.tag, element.attrib, (element.text or "").strip()
-        below, kind = f"{kind}/" if kind else "", kind or element.tag
+        below, kind = f"{kind}/" if kind and element.tag not in outer else "", kind or element.tag
         children = {_child(child.tag): child.tag for child in element}
         own = {name: value for name, value in element.attrib.items() if not name.startswith("xmlns")}
         self._fields = Fields(kind, owner, {**own, **children}, (defaults or {}).get(kind))
-        self._children = [Node(child, f"{below}{child.tag}", child.get("name") or owner, defaults) for child in element]
+        self._children = [
+            Node(child, f"{below}{child.tag}", child.get("name") or owner, defaults, outer) for child in element
+        ]
 
     def get(self, name: str, default: str | None = None) -> str | None:
         """Return an attribute."""
@@ -45,6 +53,15 @@ class Node:
         self._fields.request(_child(tag))
         found = [child for child in self._children if child.tag == tag]
         return [below for child in found for below in child.findall(rest)] if rest else found
+
+    def unrecorded(self, tag: str) -> str | None:
+        """Return the text of the first child of a tag, without requesting it; None if it is missing."""
+        return next((child.text for child in self._children if child.tag == tag), None)
+
+    def among(self, *tags: str) -> list[Node]:
+        """Return the children with one of several tags."""
+        self._fields.request(*map(_child, tags))
+        return [child for child in self._children if child.tag in tags]
 
     def children(self) -> list[Node]:
         """Return all children."""
@@ -75,13 +92,24 @@ def _child(tag: str) -> str:
     return f"<{tag}>"
 
 
-def parsed(text: str, expected: str, defaults: Mapping[str, Mapping[str, Any]]) -> Node:
-    """Read an XML file; namespace prefixes need not be declared. Raises FileFault for text that is not well-formed."""
+def _refuse(entity: str) -> None:
+    raise FileFault(f"found the entity &{quoted(entity)}; without a value in the file")
+
+
+def parsed(text: str, expected: str, defaults: Mapping[str, Mapping[str, Any]], outer: Sequence[str] = ()) -> Node:
+    """Read an XML file; namespace prefixes need not be declared. Raises FileFault for text that is not well-formed.
+
+    `defaults`, `outer`: as for `Node`.
+    """
     builder, parser = TreeBuilder(), ParserCreate()
     parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
     parser.CharacterDataHandler = builder.data
+    parser.ExternalEntityRefHandler = lambda *_: 0  # an error; without it, the text would be empty
+    parser.SkippedEntityHandler = lambda name, _: _refuse(name)
     try:
         parser.Parse(text, True)
     except ExpatError as error:
         raise FileFault(f"found no well-formed XML ({error}), expected {expected}") from None
-    return Node(builder.close(), defaults=defaults)
+    except FileFault as fault:
+        raise FileFault(f"{fault}, expected {expected}") from None
+    return Node(builder.close(), defaults=defaults, outer=outer)

@@ -103,18 +103,26 @@ def motion(frame: Placed, center_of_mass: tuple[float, ...]) -> Content:
     return found | {key: vector(rate) for key, rate in (("velocity", velocity), ("omega", omega)) if np.any(rate)}
 
 
-KINDS = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical"}
-CREEP = {"hinge": 1e-3, "slide": 1e-4}
+KINDS = {"hinge": "revolute", "slide": "prismatic", "screw": "screw", "ball": "spherical"}
+CREEP = {"hinge": 1e-3, "slide": 1e-4, "screw": 1e-3}
 """Transition rate of smoothed dry friction, rad/s or m/s."""
 
 
 def joints(robot: Robot, mechanism: Mechanism) -> Content:
     """Return the scene's joints by name."""
-    found = {hold.name: {"type": KINDS[hold.joint.kind], "i": hold.i, "j": hold.j} for hold in mechanism.holds.values()}
+    found = {hold.name: _joint(hold) for hold in mechanism.holds.values()}
     found |= {name: {"type": "fixed", "i": i, "j": j} for name, (i, j) in mechanism.fixed.items()}
     found |= {name: entry for relation in robot.relations for name, entry in _relation(mechanism, relation)}
     found |= {name: entry for connection in robot.connections for name, entry in _connection(mechanism, connection)}
     return found
+
+
+def _joint(hold: Hold) -> Content:
+    entry: Content = {"type": KINDS[hold.joint.kind], "i": hold.i, "j": hold.j}
+    if hold.joint.kind == "screw":
+        pitch = hold.joint.pitch
+        entry |= {"pitch": plain(pitch), "offset": plain(pitch * hold.turns / (2 * np.pi))}
+    return entry
 
 
 def passive(robot: Robot, mechanism: Mechanism) -> Content:
@@ -137,7 +145,7 @@ def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, 
     joint, ends = hold.joint, {"i": hold.i, "j": hold.j}
     rest = plain(joint.rest - hold.zero)
     k, d = plain(joint.stiffness), plain(joint.damping)
-    if (k or d) and joint.kind == "hinge":
+    if (k or d) and joint.is_rotary:
         spring: dict[str, object] = {"type": "torsion_spring", **ends}
         spring |= {"stiffness": k, "free_angle": rest} if k else {}
         yield mechanism.names.take(f"{hold.name}_spring"), spring | ({"damping": d} if d else {})
@@ -153,8 +161,8 @@ def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, 
 
 
 def along_axis(hold: Hold, formula: str) -> dict[str, object]:
-    """Return a torque about a hinge axis, or a force along a slide axis, on marker i with its reaction on j."""
-    kind = "torque" if hold.joint.kind == "hinge" else "force"
+    """Return a torque about the axis of a hinge or screw, or a force along a slide axis, on marker i with its reaction on j."""
+    kind = "torque" if hold.joint.is_rotary else "force"
     return {"type": kind, "i": hold.i, "j": hold.j, "frame": hold.j, kind: [0, 0, formula]}
 
 
@@ -166,7 +174,7 @@ def _relation(mechanism: Mechanism, relation: Relation) -> Iterator[tuple[str, C
     name = mechanism.names.take(relation.name)
     first, *rest = relation.coefficients
     if other is not None and rest and rest[0] and not any(rest[1:]):
-        ratio = {"joint_1": hold.name, "joint_2": other.name, "scale": plain(rest[0])}
+        ratio = {"joint_1": hold.reference, "joint_2": other.reference, "scale": plain(rest[0])}
         yield name, {"type": "coupler", **ratio, "offset": plain(first + rest[0] * other.turns - hold.turns)}
         return
     x = "" if other is None else f"({other.coordinate} - {other.joint.zero!r})"

@@ -51,16 +51,22 @@ def _law(hold: Hold, inertia: float, names: Mapping[str, str]) -> str:
 
 
 def _inertias(robot: Robot, placed: Mapping[str, tuple[Placed, ...]]) -> Iterator[tuple[LinkJoint, float]]:
-    """Yield the hinges and slides with the inertia that each carries about or along its axis, kg m^2 or kg."""
+    """Yield the joints of one coordinate with the inertia that each carries about or along its axis, kg m^2 or kg."""
     carried = _carried(robot)
-    for link in robot.links:
-        for joint, frame in zip(link.joints, placed[link.name], strict=False):
-            axis, point = np.array(rotated(frame.orientation, joint.axis)), frame.point(joint.point)
-            if joint.kind == "slide":
-                yield joint, joint.armature + sum(each.mass for each in carried[link.name])
-            elif joint.kind == "hinge":
-                about = (_about(each, placed[each.name][-1], point, axis) for each in carried[link.name])
-                yield joint, joint.armature + sum(about)
+    in_tree = (
+        (link.name, joint, frame)
+        for link in robot.links
+        for joint, frame in zip(link.joints, placed[link.name], strict=False)
+    )
+    in_loops = ((each.link, joint, placed[each.link][-1]) for each in robot.closures for joint in each.joints)
+    for link, joint, frame in (*in_tree, *in_loops):
+        axis, point = np.array(rotated(frame.orientation, joint.axis)), frame.point(joint.point)
+        lead = 1.0 if joint.kind == "slide" else joint.pitch / (2.0 * np.pi)
+        inertia = joint.armature + lead**2 * sum(each.mass for each in carried[link])
+        if joint.is_rotary:
+            inertia += sum(_about(each, placed[each.name][-1], point, axis) for each in carried[link])
+        if joint.is_single:
+            yield joint, inertia
 
 
 def _about(link: Link, frame: Placed, point: np.ndarray, axis: np.ndarray) -> float:

@@ -17,7 +17,7 @@ from ...reading.formula.functions import FUNCTIONS
 from ...reading.marker import GROUND
 from ...reading.units.units import UNITS
 from ..pose import Placed, frames
-from ..robot import Link, LinkJoint, Robot
+from ..robot import Closure, Link, LinkJoint, Robot
 
 ROUNDING = 1e-12
 """Tolerance, in turns, within which an initial angle counts as half a turn; measures then give a positive angle."""
@@ -78,13 +78,18 @@ class Hold:
     @property
     def coordinate(self) -> str:
         """Formula of the joint's coordinate, rad or m."""
-        measure = f"az({self.i}, {self.j})" if self.joint.kind == "hinge" else f"dz({self.i}, {self.j}, {self.j})"
+        measure = f"az({self.i}, {self.j})" if self.joint.is_rotary else f"dz({self.i}, {self.j}, {self.j})"
         return f"({measure} + {self.zero!r})" if self.zero else measure
 
     @property
     def rate(self) -> str:
         """Formula of its rate, rad/s or m/s."""
-        return f"{'wz' if self.joint.kind == 'hinge' else 'vz'}({self.i}, {self.j}, {self.j})"
+        return f"{'wz' if self.joint.is_rotary else 'vz'}({self.i}, {self.j}, {self.j})"
+
+    @property
+    def reference(self) -> str:
+        """Name of the coordinate in couplers."""
+        return f"{self.name}.angle" if self.joint.kind == "screw" else self.name
 
 
 class Mechanism:
@@ -120,27 +125,40 @@ class Mechanism:
             else:
                 self.seats[link.name] = carrier
                 self._mark(carrier, called[link.name])
+        of_name = {link.name: link for link in robot.links}
+        for closure in robot.closures:
+            self._close(closure, of_name[closure.link], called[closure.link], placed[closure.link][-1])
 
     def _move(self, link: Link, name: str, carrier: Seat, placed: tuple[Placed, ...]) -> None:
         """Add a link, a body between each two of its joints, and the joints."""
-        *between, last = link.joints
+        self.seats[link.name] = Seat(name)
+        self._chain(link.joints, link, name, carrier, placed[1:-1])
+        self.bodies[name] = (link, placed[-1])
+
+    def _close(self, closure: Closure, link: Link, name: str, placed: Placed) -> None:
+        """Add the joints of a closure, and a body between each two of them in the link's pose."""
+        carrier = self.seats[closure.parent].on(closure.position, closure.orientation)
+        self._chain(closure.joints, link, name, carrier, (placed,) * (len(closure.joints) - 1))
+
+    def _chain(
+        self, joints: tuple[LinkJoint, ...], link: Link, name: str, carrier: Seat, placed: tuple[Placed, ...]
+    ) -> None:
+        """Add joints between a carrier and a link, with a body between each two of them."""
         before = carrier
-        for joint, frame in zip(between, placed[1:-1], strict=True):
+        for joint, frame in zip(joints[:-1], placed, strict=True):
             body = self.names.take(f"{name}_{joint.name}")
             self.bodies[body] = (link, frame)
             self.between.add(body)
-            before = self._hold(joint, body, before)
-        self.bodies[name] = (link, placed[-1])
-        self.seats[link.name] = self._hold(last, name, before)
+            before = self._hold(joint, Seat(body), before)
+        self._hold(joints[-1], self.seats[link.name], before)
 
-    def _hold(self, joint: LinkJoint, body: str, before: Seat) -> Seat:
-        """Add a joint between a body and the frame before it; return the body's own frame."""
-        after = Seat(body)
+    def _hold(self, joint: LinkJoint, after: Seat, before: Seat) -> Seat:
+        """Add a joint between a frame and the one before it; return the first."""
         if joint.kind != "free":
             name, axes = self.names.take(joint.name, "joint"), along_z(joint.axis)
             i = self._mark(after.on(joint.point, axes), name)
             j, angle = self._mark(before.on(joint.point, axes), name), self._coordinates.get(joint.name, joint.zero)
-            turns = whole_turns(angle - joint.zero) if joint.kind == "hinge" else 0.0
+            turns = whole_turns(angle - joint.zero) if joint.is_rotary else 0.0
             self.holds[joint.name] = Hold(joint, name, i, j, turns)
         return after
 
@@ -184,8 +202,8 @@ def along_z(axis: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _with_mass(robot: Robot) -> set[str]:
-    """Return the links that have mass, inertia or a rotor, or carry links that do."""
-    found: set[str] = set()
+    """Return the links that have mass, inertia or a rotor, are in a loop, or carry such links."""
+    found = {name for closure in robot.closures for name in (closure.link, closure.parent) if name is not None}
     for link in reversed(robot.links):
         if link.name in found or link.is_heavy or any(joint.armature > 0 for joint in link.joints):
             found.add(link.name)

@@ -60,7 +60,7 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
 
 
 def _check_joints(robot: Robot, given: Mapping[str, float]) -> None:
-    known = {name for name, joint in robot.joints().items() if joint.kind in ("hinge", "slide")}
+    known = {name for name, joint in robot.joints().items() if joint.is_single}
     for name in given:
         if name not in known:
             raise RobotFault(
@@ -86,7 +86,7 @@ def _limits(mechanism: Mechanism, coordinates: Mapping[str, float], held: bool) 
     for hold in mechanism.holds.values():
         if (limits := hold.joint.limits) is None:
             continue
-        unit = "rad" if hold.joint.kind == "hinge" else "m"
+        unit = "rad" if hold.joint.is_rotary else "m"
         words.append(f"{hold.name} {plain(limits[0]):g} .. {plain(limits[1]):g} {unit}")
         start = coordinates.get(hold.joint.name, hold.joint.zero)
         if not limits[0] <= start <= limits[1]:
