@@ -1,0 +1,42 @@
+"""Simulation whose states are recorded, for channels after its steps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..model.model_data import ModelData
+from ..model.settings import RunSettings
+from ..notes import Note
+from ..results.solution import Solution
+from ..solve.settings import settings_notes
+from ..solve.stiff_rows import States
+from ..solve.trajectory import Outcome
+from ..studies.simulation import Simulation
+from ..studies.solved_states import solution_of
+from ..tuning import in_use
+
+
+class RecordedSimulation(Simulation):
+    """Simulation that returns a solution from recorded states."""
+
+    @property
+    def data(self) -> ModelData:
+        """Return the model with the initial values of the inputs."""
+        return self._job.data
+
+    @property
+    def settings(self) -> RunSettings:
+        """Return the settings of the steps."""
+        return self._job.settings
+
+    def notes(self) -> list[Note]:
+        """Return notes on the settings of the steps."""
+        with in_use(self.settings.tuning):
+            return list(settings_notes(self.settings, self._job.dynamics.system))
+
+    def solution(self, t: np.ndarray, states: States, outcome: Outcome, message: str) -> Solution:
+        """Return the solution from positions and velocities at some instants, between which no input changed."""
+        with in_use(self.settings.tuning):
+            return solution_of(
+                self._job, t, states, np.zeros(len(t)), self._job.on_constraints, outcome, message, self.notes()
+            )
