@@ -8,18 +8,23 @@ from typing import Any, get_args
 import click
 
 from ..analyses.load_scene import load_scene
-from ..solver_names import SchemeName
+from ..errors import InputError
+from ..reading.did_you_mean import instead_of
+from ..solver_names import SchemeName, SolverName
 from .process import Status
 from .scene import CHANGES, assigned, in_file, option, refusing
+from .subcommands import is_quiet
 
-DEFAULT = "extrapolated_euler"
+DEFAULT, PROJECTED = "extrapolated_euler", "projected"
+SOLVERS = tuple(name for name in get_args(SolverName) if name != PROJECTED)
+"""Solvers in addition to the schemes of `projected`."""
 
 
 @click.command(short_help="A scene in real time, with inputs and outputs.")
 @click.argument("scene")
 @option("--step TEXT", "Time step, s, or with a unit: 1ms; by default that of a scene with fixed steps.")
 @option("--duration TEXT", "Time to solve, s, or with a unit; by default that of SCENE.")
-@option("--solver NAME", f"{', '.join(get_args(SchemeName))}, bdf, radau or auto.", default=DEFAULT)
+@option("--solver NAME", f"{', '.join((*get_args(SchemeName), *SOLVERS))}.", default=DEFAULT)
 @option("--channels NAME,...", "Outputs, which are read after each step.", default="")
 @option("--input NAME=VALUE ...", "An input in addition to those of SCENE: a parameter or a path, with its value", "inputs")
 @option("--as-fast-as-possible", "Do not wait for the clock; with --udp, take a step for each packet.")
@@ -46,10 +51,11 @@ def realtime(
 
     with refusing(scene, as_json):
         numbers = assigned("--input NAME=VALUE", inputs, float)
-        wanted = [*changes, *([("run.duration", duration)] if duration else [])]
-        loaded = load_scene(scene, wanted)
+        of_run = {"run.duration": duration, "run.step": step}
+        chosen = _chosen(solver)
+        loaded = load_scene(scene, [*changes, *((path, text) for path, text in of_run.items() if text is not None)])
         named = [name.strip() for name in channels.split(",") if name.strip()]
-        settings: dict[str, Any] = {**_chosen(solver), **({"step": step} if step else {})}
+        settings: dict[str, Any] = chosen if step is None else {**chosen, "step": loaded.run.step}
         with in_file(scene):
             found = taken(loaded, None, numbers, named, not as_fast_as_possible, udp, network, _tell, **settings)
     click.echo(json_line(found.as_dict(scene)) if as_json else str(found))
@@ -60,8 +66,13 @@ def realtime(
 
 def _chosen(solver: str) -> dict[str, str]:
     """Return the settings of a solver or of a scheme of `projected`."""
-    return {"solver": "projected", "scheme": solver} if solver in get_args(SchemeName) else {"solver": solver}
+    if solver in get_args(SchemeName):
+        return {"solver": PROJECTED, "scheme": solver}
+    if solver not in SOLVERS:
+        raise InputError(f"--solver: found '{solver}'{instead_of(solver, (*get_args(SchemeName), *SOLVERS))}")
+    return {"solver": solver}
 
 
 def _tell(sentence: str) -> None:
-    click.echo(f"stiffmbs: {sentence}", err=True)
+    if not is_quiet():
+        click.echo(f"stiffmbs: {sentence}", err=True)

@@ -29,7 +29,7 @@ class Difference:
     - `channel`: channel with this difference.
     - `largest`: the difference, in the unit.
     - `t`: its time, s.
-    - `size`: largest value of this channel, in the unit; for places, its largest change.
+    - `size`: largest value of this channel, in the unit; for places, its largest change, NaN for rotations.
     """
 
     kind: str
@@ -96,7 +96,7 @@ def differences(steps: Solution, controlled: Solution) -> list[Difference]:
             apart = difference(one, other, name)
             at = int(np.nanargmax(apart)) if np.isfinite(apart).any() else 0
             if kind not in found or apart[at] > found[kind].largest:
-                size = np.pi if turned else _size(other[name], kind)
+                size = np.nan if turned else _size(other[name], kind)
                 found[kind] = Difference(kind, name, float(apart[at]), unit, float(controlled.time[at]), size)
     return list(found.values())
 

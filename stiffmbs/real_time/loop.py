@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 import time
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -47,14 +48,15 @@ class Record:
 
     - `spent`: times that steps took, ns.
     - `late`: times by which steps ended after the next one was due, ns.
-    - `t`, `q`, `u`: recorded times, s, and states; the first is the start.
+    - `t`, `q`, `u`, `lengths`: recorded times, s, states and lengths of implicit steps, s; the first are those of the start.
     - `done`: number of steps so far.
     """
 
     def __init__(self, sim: RecordedSimulation, steps: int, every: int) -> None:
         rows = 1 + steps // every
         self.spent, self.late = np.zeros(steps, np.int64), np.zeros(steps, np.int64)
-        self.t, self.q, self.u = np.zeros(rows), np.zeros((rows, len(sim.q))), np.zeros((rows, len(sim.u)))
+        self.t, self.lengths = np.zeros(rows), np.zeros(rows)
+        self.q, self.u = np.zeros((rows, len(sim.q))), np.zeros((rows, len(sim.u)))
         self.done, self._every = 0, every
         self._put(0, sim)
 
@@ -66,17 +68,18 @@ class Record:
             self._put(self.done // self._every, sim)
 
     def _put(self, row: int, sim: RecordedSimulation) -> None:
-        self.t[row], self.q[row], self.u[row] = sim.t, sim.q, sim.u
+        self.t[row], self.q[row], self.u[row], self.lengths[row] = sim.t, sim.q, sim.u, sim.length
 
-    def solved(self) -> tuple[np.ndarray, States]:
-        """Return the recorded times, and positions and velocities."""
+    def solved(self) -> tuple[np.ndarray, States, np.ndarray]:
+        """Return the recorded times, positions and velocities, and lengths of implicit steps."""
         rows = 1 + self.done // self._every
-        return self.t[:rows], (self.q[:rows], self.u[:rows])
+        return self.t[:rows], (self.q[:rows], self.u[:rows]), self.lengths[:rows]
 
 
 def warm_up(sim: RecordedSimulation, loop: Loop) -> None:
     """Take some steps and return to the start, so that all code is loaded; steps that fail do so again in the loop."""
-    with Ending():
+    with warnings.catch_warnings(), Ending():
+        warnings.simplefilter("ignore", RuntimeWarning)
         for _ in range(REAL_TIME.warming):
             sim.step(loop.dt)
             for name in loop.channels:

@@ -8,7 +8,7 @@ from ..model.model_data import ModelData
 from ..model.settings import RunSettings
 from ..notes import Note
 from ..results.solution import Solution
-from ..solve.settings import settings_notes
+from ..solve.settings import IGNORED, settings_notes
 from ..solve.stiff_rows import States
 from ..solve.trajectory import Outcome
 from ..studies.simulation import Simulation
@@ -29,14 +29,23 @@ class RecordedSimulation(Simulation):
         """Return the settings of the steps."""
         return self._job.settings
 
-    def notes(self) -> list[Note]:
-        """Return notes on the settings of the steps."""
-        with in_use(self.settings.tuning):
-            return list(settings_notes(self.settings, self._job.dynamics.system))
+    @property
+    def length(self) -> float:
+        """Return the length of the implicit step that contains the current time, s; 0 for explicit steps."""
+        return self._stepper.length
 
-    def solution(self, t: np.ndarray, states: States, outcome: Outcome, message: str) -> Solution:
-        """Return the solution from positions and velocities at some instants, between which no input changed."""
+    def notes(self) -> list[Note]:
+        """Return notes on the settings of the steps; settings that they do not read are those of a run with error control."""
         with in_use(self.settings.tuning):
-            return solution_of(
-                self._job, t, states, np.zeros(len(t)), self._job.on_constraints, outcome, message, self.notes()
-            )
+            notes = settings_notes(self.settings, self._job.dynamics.system)
+            return [note for note in notes if note.kind != IGNORED.name]
+
+    def solution(
+        self, t: np.ndarray, states: States, lengths: np.ndarray, outcome: Outcome, message: str
+    ) -> Solution:
+        """Return the solution from positions and velocities at some instants, between which no input changed.
+
+        `lengths`: values of `length` at these instants, s.
+        """
+        with in_use(self.settings.tuning):
+            return solution_of(self._job, t, states, lengths, self._job.on_constraints, outcome, message, self.notes())

@@ -12,7 +12,7 @@ import numpy as np
 from ..notes import note_lines
 from ..results.solution import Solution
 from ..solve.trajectory import Outcome
-from .accuracy import Accuracy
+from .accuracy import Accuracy, Difference
 from .exchange import Exchanged
 
 PERCENTAGES = (50.0, 99.0, 99.99)
@@ -163,7 +163,7 @@ class RealTime:
         if self.accuracy.differences:
             yield f"largest differences from {self.accuracy.solver}, up to t = {self.accuracy.end:.6g} s:"
             rows = [
-                (one.kind, f"{one.largest:.2g} {one.unit}", f"of {one.size:.3g} {one.unit}", f"{one.channel} at t = {one.t:.4g} s")
+                (one.kind, f"{one.largest:.2g} {one.unit}", _of(one), f"{one.channel} at t = {one.t:.4g} s")
                 for one in self.accuracy.differences
             ]
             widths = [max(map(len, column)) for column in list(zip(*rows, strict=True))[:-1]]
@@ -172,6 +172,10 @@ class RealTime:
                 yield "  ".join(["", *padded, last])
         if self.accuracy.message:
             yield f"accuracy: {self.accuracy.message}"
+
+
+def _of(one: Difference) -> str:
+    return "" if np.isnan(one.size) else f"of {one.size:.3g} {one.unit}"
 
 
 def duration(seconds: float) -> str:

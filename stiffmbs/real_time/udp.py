@@ -16,8 +16,8 @@ from .exchange import Exchanged
 from .packets import NUMBER, Packet
 from .parameters import REAL_TIME
 
-LARGEST_DATAGRAM = 65535
-"""Largest length of a datagram, bytes."""
+LARGEST_DATAGRAM = 65507
+"""Largest length of the content of a datagram over IPv4, bytes."""
 LARGEST_PORT = 65535
 Address = tuple[Any, ...]
 """Address of a socket: host, port, and for IPv6 two numbers."""
@@ -65,7 +65,7 @@ class UdpExchange:
         host, port = self._socket.getsockname()[:2]
         self.address = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
         self._in_turns, self._client = in_turns, None
-        self._received, self._taken, self._sent = bytearray(LARGEST_DATAGRAM), self._in.empty(), self._out.empty()
+        self._received, self._taken, self._sent = bytearray(LARGEST_DATAGRAM + 1), self._in.empty(), self._out.empty()
         self._counts, self._first_taken, self._latest = Counts(), False, -np.inf
 
     def layouts(self) -> tuple[str, str]:
