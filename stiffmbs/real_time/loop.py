@@ -84,6 +84,7 @@ def warm_up(sim: RecordedSimulation, loop: Loop) -> None:
             sim.step(loop.dt)
             for name in loop.channels:
                 sim[name]
+        sim.warm_up(loop.dt)
     sim.reset()
 
 

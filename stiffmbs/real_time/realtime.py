@@ -8,6 +8,7 @@ from typing import Unpack
 
 from ..analyses.job import Runnable, data_of, settings_of
 from ..compile.bodies import PLANE, SPACE
+from ..compile.machine.routines import fully_compiled
 from ..errors import InputError, refuse_text
 from ..model.settings import DEFAULT_POINTS, RunSettings, Settings, takes_settings
 from ..results.solution import Solution
@@ -28,6 +29,7 @@ TOO_SHORT = "not determined, as no output time was reached"
 
 
 @takes_settings
+@fully_compiled()
 def realtime(
     model: Runnable,
     settings: RunSettings | None = None,

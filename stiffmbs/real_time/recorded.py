@@ -13,6 +13,7 @@ from ..solve.stiff_rows import States
 from ..solve.trajectory import Outcome
 from ..studies.simulation import Simulation
 from ..studies.solved_states import solution_of
+from ..studies.stepping import FixedSteps
 from ..tuning import in_use
 
 
@@ -33,6 +34,12 @@ class RecordedSimulation(Simulation):
     def length(self) -> float:
         """Return the length of the implicit step that contains the current time, s; 0 for explicit steps."""
         return self._stepper.length
+
+    def warm_up(self, dt: float) -> None:
+        """Take a step as after a breakpoint of an input, whose code is loaded on first use."""
+        if isinstance(self._stepper, FixedSteps) and self._job.dynamics.system.has_inputs:
+            self._stepper.pass_breakpoints(self.t + dt)
+            self._stepper.restart(self.t + dt, self.q, self.u)
 
     def notes(self) -> list[Note]:
         """Return notes on the settings of the steps; settings that they do not read are those of a run with error control."""
