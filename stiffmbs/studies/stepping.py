@@ -110,7 +110,8 @@ def sound(integrator: Integrator[NativeEngine], reached: Reached) -> Reached:
 def _breaks(features: InputFeatures, t: float, end: float) -> bool:
     """Return True if an input has a breakpoint between two times, s."""
     between = features.breakpoints
-    return len(between) > 0 and bool(np.any((between >= just_before(t)) & (between <= just_after(end))))
+    first = int(between.searchsorted(just_before(t))) if len(between) else 0
+    return first < len(between) and bool(between[first] <= just_after(end))
 
 
 class Stepper(Protocol):
