@@ -26,7 +26,9 @@ SOLVERS = tuple(name for name in get_args(SolverName) if name != PROJECTED)
 @option("--duration TEXT", "Time to solve, s, or with a unit; by default that of SCENE.")
 @option("--solver NAME", f"{', '.join((*get_args(SchemeName), *SOLVERS))}.", default=DEFAULT)
 @option("--channels NAME,...", "Outputs, which are read after each step.", default="")
-@option("--input NAME=VALUE ...", "An input in addition to those of SCENE: a parameter or a path, with its value", "inputs")
+@option(
+    "--input NAME=VALUE ...", "An input in addition to those of SCENE: a parameter or a path, with its value", "inputs"
+)
 @option("--as-fast-as-possible", "Do not wait for the clock; with --udp, take a step for each packet.")
 @option("--udp HOST:PORT", "Receive inputs and send outputs by packets, such as at 127.0.0.1:5005.", default="")
 @option("--network", "Allow a HOST that other computers can reach.")

@@ -21,9 +21,7 @@ from .recorded import RecordedSimulation
 
 NANO = 1e-9
 PROCESSOR, ELAPSED = "processor time", "elapsed time"
-CLOCK, MEASURED = (
-    (time.perf_counter_ns, ELAPSED) if sys.platform == "win32" else (time.thread_time_ns, PROCESSOR)
-)
+CLOCK, MEASURED = (time.perf_counter_ns, ELAPSED) if sys.platform == "win32" else (time.thread_time_ns, PROCESSOR)
 """Clock of the times of steps, and its name: Windows counts processor time in units longer than a step."""
 
 

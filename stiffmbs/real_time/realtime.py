@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from typing import Unpack
+from typing import Any, Unpack
 
 from ..analyses.job import Runnable, data_of, settings_of
 from ..compile.bodies import PLANE, SPACE
@@ -108,7 +108,7 @@ def steps_of(own: RunSettings, changes: Settings) -> RunSettings:
 
     Raises InputError if there is no step, or if a setting is invalid.
     """
-    chosen = {name: changes[name] for name in ("step", "solver", "scheme") if name in changes}  # type: ignore[literal-required]
+    chosen: dict[str, Any] = {name: changes[name] for name in ("step", "solver", "scheme") if name in changes}  # type: ignore[literal-required]
     if not {"solver", "scheme"} & chosen.keys() and not traits_of(own).fixed_steps:
         chosen |= DEFAULT_SOLVER
     if "scheme" in chosen:

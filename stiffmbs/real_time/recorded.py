@@ -47,9 +47,7 @@ class RecordedSimulation(Simulation):
             notes = settings_notes(self.settings, self._job.dynamics.system)
             return [note for note in notes if note.kind != IGNORED.name]
 
-    def solution(
-        self, t: np.ndarray, states: States, lengths: np.ndarray, outcome: Outcome, message: str
-    ) -> Solution:
+    def solution(self, t: np.ndarray, states: States, lengths: np.ndarray, outcome: Outcome, message: str) -> Solution:
         """Return the solution from positions and velocities at some instants, between which no input changed.
 
         `lengths`: values of `length` at these instants, s.

@@ -182,5 +182,7 @@ def duration(seconds: float) -> str:
     """Return a time with three digits in s, ms or us."""
     if not np.isfinite(seconds):
         return "-"
-    unit, factor = next(((unit, factor) for unit, factor in (("s", 1.0), ("ms", 1e3)) if seconds * factor >= 1), ("us", 1e6))
+    unit, factor = next(
+        ((unit, factor) for unit, factor in (("s", 1.0), ("ms", 1e3)) if seconds * factor >= 1), ("us", 1e6)
+    )
     return f"{seconds * factor:.3g} {unit}"

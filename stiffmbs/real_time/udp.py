@@ -60,11 +60,14 @@ class UdpExchange:
     ) -> None:
         self._in, self._out = Packet(tuple(inputs)), Packet(tuple(outputs))
         if self._out.size > LARGEST_DATAGRAM:
-            raise InputError(f"udp: found {len(outputs)} outputs, expected at most {LARGEST_DATAGRAM // NUMBER.itemsize - 1}")
+            raise InputError(
+                f"udp: found {len(outputs)} outputs, expected at most {LARGEST_DATAGRAM // NUMBER.itemsize - 1}"
+            )
         self._socket = _bound(address, network)
         host, port = self._socket.getsockname()[:2]
         self.address = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
-        self._in_turns, self._client = in_turns, None
+        self._in_turns = in_turns
+        self._client: Address | None = None
         self._received, self._taken, self._sent = bytearray(LARGEST_DATAGRAM + 1), self._in.empty(), self._out.empty()
         self._counts, self._first_taken, self._latest = Counts(), False, -np.inf
 
@@ -116,7 +119,9 @@ class UdpExchange:
             self._counts.ignore("finite", f"found no finite number for '{name}', expected one")
             return False
         if values[0] < self._latest:
-            self._counts.ignore("order", f"found the time {values[0]:g} s after {self._latest:g} s, expected no earlier one")
+            self._counts.ignore(
+                "order", f"found the time {values[0]:g} s after {self._latest:g} s, expected no earlier one"
+            )
             return False
         self._client, self._latest = sender, float(values[0])
         self._taken[:] = values
@@ -131,8 +136,9 @@ class UdpExchange:
     def send(self, t: float, values: np.ndarray) -> None:
         """See `stiffmbs.real_time.exchange.Exchange`."""
         self._sent[0], self._sent[1:] = t, values
+        assert self._client is not None
         try:
-            self._socket.sendto(self._sent, self._client)
+            self._socket.sendto(self._sent.data, self._client)
         except OSError as error:
             self._counts.ignore("send", f"a packet of outputs could not be sent ({error.strerror})")
         else:
@@ -160,7 +166,9 @@ def _bound(address: str, network: bool) -> socket.socket:
     host, _, port = address.rpartition(":")
     host = host.removeprefix("[").removesuffix("]")
     if not host or not (port.isascii() and port.isdigit() and int(port) <= LARGEST_PORT):
-        raise InputError(f"udp: found '{address}', expected HOST:PORT with a port of 0 to {LARGEST_PORT}, such as 127.0.0.1:5005")
+        raise InputError(
+            f"udp: found '{address}', expected HOST:PORT with a port of 0 to {LARGEST_PORT}, such as 127.0.0.1:5005"
+        )
     try:
         family, kind, protocol, _, place = socket.getaddrinfo(host, int(port), type=socket.SOCK_DGRAM)[0]
     except (OSError, UnicodeError):

@@ -9,6 +9,7 @@ import numpy as np
 from ..analyses.job import Job
 from ..elements.requests.order import units
 from ..model.scene import Scene
+from ..notes import Note
 from ..reading.units.display import SI_UNITS
 from ..results.channels import channels_of
 from ..results.energy_balance import energy_balance
@@ -20,7 +21,7 @@ from ..solve.trajectory import History, Outcome
 
 def solution_of(
     job: Job, t: np.ndarray, states: States, lengths: np.ndarray, project: bool, outcome: Outcome, message: str,
-    notes: Sequence[str] = (),
+    notes: Sequence[Note] = (),
 ) -> Solution:  # fmt: skip
     """Return the solution at the given instants, from the start on.
 

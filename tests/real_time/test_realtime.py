@@ -131,9 +131,7 @@ def test_the_clock_is_waited_for():
 def test_no_garbage_is_collected_between_steps(monkeypatch):
     enabled = []
     own = RecordedSimulation.step
-    monkeypatch.setattr(
-        RecordedSimulation, "step", lambda sim, dt: enabled.append(gc.isenabled()) or own(sim, dt)
-    )
+    monkeypatch.setattr(RecordedSimulation, "step", lambda sim, dt: enabled.append(gc.isenabled()) or own(sim, dt))
     stiffmbs.realtime(PENDULUM, step=1e-2, duration=0.1, paced=False)
     assert not any(enabled[-10:])
     assert gc.isenabled()
