@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from .exchange import Exchange
 from .parameters import REAL_TIME
 from .recorded import RecordedSimulation
 
-NANO = 1e-9
+NANO: Final = 1e-9
 PROCESSOR, ELAPSED = "processor time", "elapsed time"
 CLOCK, MEASURED = (time.perf_counter_ns, ELAPSED) if sys.platform == "win32" else (time.thread_time_ns, PROCESSOR)
 """Clock of the times of steps, and its name: Windows counts processor time in units longer than a step."""

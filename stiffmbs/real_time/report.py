@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -15,8 +15,8 @@ from ..solve.trajectory import Outcome
 from .accuracy import Accuracy, Difference
 from .exchange import Exchanged
 
-PERCENTAGES = (50.0, 99.0, 99.99)
-"""Percentages of the steps whose largest times are reported."""
+PERCENTAGES: Final = (50.0, 99.0, 99.99)
+"""Percentages of the steps whose largest times are in the report: those in which real time is usually specified."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -7,7 +7,7 @@ import ipaddress
 import socket
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -16,9 +16,9 @@ from .exchange import Exchanged
 from .packets import NUMBER, Packet
 from .parameters import REAL_TIME
 
-LARGEST_DATAGRAM = 65507
+LARGEST_DATAGRAM: Final = 65507
 """Largest length of the content of a datagram over IPv4, bytes."""
-LARGEST_PORT = 65535
+LARGEST_PORT: Final = 65535
 Address = tuple[Any, ...]
 """Address of a socket: host, port, and for IPv6 two numbers."""
 

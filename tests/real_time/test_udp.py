@@ -3,6 +3,7 @@
 import socket
 import struct
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -178,3 +179,25 @@ def test_a_port_in_use_is_refused():
 def test_outputs_must_fit_into_a_datagram():
     with pytest.raises(InputError, match="found 9000 outputs, expected at most 8187"):
         UdpExchange("127.0.0.1:0", [], ["x"] * 9000, in_turns=False, network=False)
+
+
+def test_the_client_of_the_guide_pushes_the_cart(monkeypatch):
+    text = (Path(stiffmbs.__file__).parents[1] / "docs" / "guide" / "studies.md").read_text(encoding="utf-8")
+    guide = text.partition("### Inputs and outputs over UDP")[2]
+    scene = guide.partition("# cart.yaml\n")[2].partition("```")[0]
+    client = guide.partition("```{code-block} python\n")[2].partition("```")[0]
+    names, threads = {}, []
+
+    def tell(sentence):
+        if "waiting" in sentence:
+            code = client.replace("5005", sentence.rpartition(":")[2])
+            threads.append(threading.Thread(target=exec, args=(code, names), daemon=True))
+            threads[0].start()
+
+    found = stiffmbs.realtime(
+        stiffmbs.read_scene(scene), step=1e-3, udp="127.0.0.1:0", channels=["cart.x", "cart.vx"], paced=False, tell=tell
+    )
+    threads[0].join(WITHIN)
+    assert (found.steps, found.exchanged.ignored) == (2000, 0)
+    assert names["t"] == pytest.approx(2.0)
+    assert names["speed"] == pytest.approx(1 - np.exp(-10), abs=1e-3)
