@@ -81,7 +81,10 @@ def _controlled(own: RunSettings, times: np.ndarray) -> RunSettings:
     """Return the settings of a run with error control and output at equally spaced times."""
     control = CONTROLLED if traits_of(own).fixed_steps else {}
     span = float(times[-1] - times[0])
-    return changed(own, {**control, "start": float(times[0]), "duration": span, "points": len(times), "errors": False})
+    return changed(
+        own,
+        {**control, "start": float(times[0]), "duration": span, "points": len(times), "errors": False, "accuracy": {}},
+    )
 
 
 def differences(steps: Solution, controlled: Solution) -> list[Difference]:

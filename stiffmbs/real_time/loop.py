@@ -7,13 +7,13 @@ import sys
 import time
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from ..errors import AssemblyError, InputError
+from ..errors import AssemblyError, InputError, SolverError
 from ..solve.stiff_rows import States
 from ..solve.trajectory import Ending
 from .exchange import Exchange
@@ -77,7 +77,7 @@ class Record:
 
 def warm_up(sim: RecordedSimulation, loop: Loop) -> None:
     """Take some steps and return to the start, so that all code is loaded; steps that fail do so again in the loop."""
-    with warnings.catch_warnings(), Ending():
+    with warnings.catch_warnings(), suppress(SolverError, AssemblyError):
         warnings.simplefilter("ignore", RuntimeWarning)
         for _ in range(REAL_TIME.warming):
             sim.step(loop.dt)

@@ -9,11 +9,12 @@ from typing import Any, Unpack
 from ..analyses.job import Runnable, data_of, settings_of
 from ..compile.bodies import PLANE, SPACE
 from ..compile.machine.routines import fully_compiled
-from ..errors import InputError, refuse_text
+from ..errors import InputError, StiffmbsError, refuse_text
 from ..model.settings import DEFAULT_POINTS, RunSettings, Settings, takes_settings
 from ..results.solution import Solution
 from ..solve.settings import changed, output_grid, traits_of
 from ..studies.simulation import simulation_of
+from ..tuning import in_use
 from .accuracy import Accuracy, accuracy
 from .exchange import Alone
 from .loop import MEASURED, NANO, Loop, Record, take_steps, warm_up
@@ -141,13 +142,14 @@ def _reported(
     sim: RecordedSimulation, loop: Loop, own: RunSettings, exchange: UdpExchange | None, say: Callable[[str], None]
 ) -> RealTime:
     """Take the steps, and return their report."""
-    warm_up(sim, loop)
+    with in_use(sim.settings.tuning):
+        warm_up(sim, loop)
     record = Record(sim, loop.steps, _steps_between_outputs(own, loop))
     if exchange is not None:
         say(f"waiting for the first packet at {exchange.address}")
         exchange.wait()
     say("taking steps")
-    with warnings.catch_warnings(record=True) as caught:
+    with in_use(sim.settings.tuning), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RuntimeWarning)
         ending = take_steps(sim, loop, exchange or Alone(), record)
     solution = None if exchange else sim.solution(*record.solved(), ending.outcome, ending.message)
@@ -177,4 +179,7 @@ def _accuracy(
     if len(solution.time) < 2:
         return Accuracy.unknown(TOO_SHORT)
     say("solving with error control")
-    return accuracy(solution, sim.data, own)
+    try:
+        return accuracy(solution, sim.data, own)
+    except StiffmbsError as error:
+        return Accuracy.unknown(f"not determined, as the run with error control failed: {error}")

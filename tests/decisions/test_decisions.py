@@ -21,9 +21,9 @@ MODULES = [
     import_module(f"tests.decisions.{name}")
     for name in (
         "adams", "analyses", "cache", "cad", "commands", "comparison", "compiling", "dynamics", "elements", "equilibria", "error_estimate",
-        "flexible_bodies", "linear.linear_analysis", "linear.linearised", "machine", "model", "presolve", "reading", "real_time", "redundancy", "results", "run_checks",
+        "flexible_bodies", "linear.linear_analysis", "linear.linearised", "machine", "model", "presolve", "reading", "redundancy", "results", "run_checks",
         "show", "studies", "verification", "solving.auto", "solving.error_control", "solving.event_search",
-        "solving.events", "solving.explicit_steps", "solving.linear_solvers", "solving.radau", "solving.sensitivities", "vehicles.handling",
+        "solving.events", "solving.explicit_steps", "solving.linear_solvers", "solving.radau", "solving.real_time", "solving.sensitivities", "vehicles.handling",
         "vehicles.suspension",
     )
 ]  # fmt: skip

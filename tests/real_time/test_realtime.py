@@ -15,6 +15,7 @@ from stiffmbs.real_time.accuracy import Accuracy
 from stiffmbs.real_time.recorded import RecordedSimulation
 from stiffmbs.real_time.report import RealTime, duration
 from stiffmbs.solve.trajectory import Outcome
+from stiffmbs.studies.stepping import FixedSteps
 
 from .scenes import driven
 
@@ -199,3 +200,41 @@ def test_an_invalid_request_is_refused(settings, message):
 )
 def test_durations_have_units(seconds, text):
     assert duration(seconds) == text
+
+
+def test_a_report_is_kept_if_the_controlled_run_fails(monkeypatch):
+    monkeypatch.setattr("stiffmbs.real_time.accuracy.run", lambda *_: (_ for _ in ()).throw(SolverError("no start")))
+    found = stiffmbs.realtime(driven(), step=1e-2, paced=False)
+    assert found.steps == 20
+    assert "the run with error control failed: no start" in str(found)
+
+
+def test_a_warm_up_that_fails_is_not_reported(monkeypatch):
+    own, calls = RecordedSimulation.step, []
+
+    def step(sim, dt):
+        calls.append(dt)
+        if len(calls) == 3:
+            raise SolverError("singular")
+        own(sim, dt)
+
+    monkeypatch.setattr(RecordedSimulation, "step", step)
+    found = stiffmbs.realtime(driven(), step=1e-2, paced=False)
+    assert (found.outcome, found.steps) == (Outcome.DONE, 20)
+
+
+def test_code_for_breakpoints_is_loaded_before_the_first_step(monkeypatch):
+    scene = stiffmbs.read_scene(
+        "{bodies: {a: {mass: 1, inertia: 1}}, forces: {push: {type: force, i: a, force: ['step(t, 0.05, 0, 0.06, 1)', 0]}}, "
+        "run: {duration: 0.1, points: 11}}"
+    )
+    passed = []
+    own = FixedSteps.pass_breakpoints
+    monkeypatch.setattr(FixedSteps, "pass_breakpoints", lambda self, t: passed.append(t) or own(self, t))
+    found = stiffmbs.realtime(scene, step=1e-3, paced=False)
+    assert passed[0] == pytest.approx(0.011)
+    assert [t for t in passed[1:] if t < 0.049] == []
+    sim = stiffmbs.simulation(scene, **LINEARLY_IMPLICIT, step=1e-3)
+    for _ in range(100):
+        sim.step(1e-3)
+    assert found.solution["a.vx"][-1] == sim["a.vx"]
