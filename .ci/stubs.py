@@ -92,6 +92,8 @@ from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity
 from .studies.sensitivities.sensitivities import sensitivities as sensitivities
 from .studies.fmu.build import build_fmu as build_fmu
 from .studies.follow import follow as follow
+from .real_time.realtime import realtime as realtime
+from .real_time.report import RealTime as RealTime
 from .studies.simulation import Simulation as Simulation
 from .studies.simulation import simulation as simulation
 from .studies.simulations import Simulations as Simulations

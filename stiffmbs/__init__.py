@@ -39,7 +39,7 @@ _LATER = {
     "RoadLoads": ".studies.suspension.road_loads", "road_loads": ".studies.suspension.road_loads",
     "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
     "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance", "VehicleOptions": ".studies.suspension.vehicle",
-    "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "Simulations": ".studies.simulations", "simulations": ".studies.simulations", "follow": ".studies.follow",
+    "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "Simulations": ".studies.simulations", "simulations": ".studies.simulations", "follow": ".studies.follow", "realtime": ".real_time.realtime", "RealTime": ".real_time.report",
     "JointSpace": ".studies.joint_space.space", "joint_space": ".studies.joint_space.space",
     "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw", "html": ".show.html", "plot": ".show.figure",

@@ -70,6 +70,8 @@ from .reading.handle import Handle as _Handle
 from .reading.python_function import PythonFunction as PythonFunction
 from .reading.units import si as si
 from .reading.variation import Range as Range
+from .real_time.realtime import realtime as realtime
+from .real_time.report import RealTime as RealTime
 from .results.listings import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state

@@ -54,6 +54,7 @@ SUBSYSTEMS = {
     "precision": "solve.error_control.precision:PRECISION",
     "presolve": "presolve.relations:PRESOLVE",
     "radau": "solve.radau.parameters:RADAU",
+    "real_time": "real_time.parameters:REAL_TIME",
     "redundancy": "redundancy.parameters:REDUNDANCY",
     "relaxation": "solve.error_control.relaxation:RELAXATION",
     "restarts": "solve.events.restart:RESTARTS",

@@ -24,6 +24,7 @@ SECTIONS = {
         "compare": "compare",
         "bench": "compare",
     },
+    "Real time": {"realtime": "realtime"},
     "Suspensions and vehicles": {"kc": "vehicles", "loads": "vehicles", "handling": "vehicles"},
     "Tyres": {"tyre": "vehicles"},
     "Pictures and reports": {

@@ -10,18 +10,12 @@ import numpy as np
 
 from ..analyses.job import Job, Runnable, data_of, prepare, settings_of
 from ..analyses.start_from import StartFrom
-from ..elements.requests.order import units
 from ..errors import InputError
-from ..model.scene import Scene
 from ..model.settings import DEFAULT_POINTS, RunSettings, Settings, takes_settings
-from ..reading.units.display import SI_UNITS
-from ..results.channels import channels_of
-from ..results.energy_balance import energy_balance
-from ..results.provenance import provenance_of
 from ..results.solution import Solution
 from ..solve.settings import changed
-from ..solve.stiff_rows import States, with_stiff_forces
-from ..solve.trajectory import Ending, History, Outcome
+from ..solve.trajectory import Ending, Outcome
+from .solved_states import solution_of
 from .stepping import stepper_of
 
 SHARE = 5.0
@@ -98,24 +92,9 @@ def _followed(job: Job, every: float) -> Iterator[Solution]:
             solved = k + 1
             begun = time.monotonic()
             if begun - reported >= pause and solved < len(instants):
-                yield _so_far(job, instants[:solved], (q[:solved], u[:solved]), lengths, Outcome.STOPPED, STILL_SOLVING)
+                found = instants[:solved], (q[:solved], u[:solved]), lengths
+                yield solution_of(job, *found, project=True, outcome=Outcome.STOPPED, message=STILL_SOLVING)
                 reported = time.monotonic()
                 pause = max(every, SHARE * (reported - begun))
-    yield _so_far(job, instants[:solved], (q[:solved], u[:solved]), lengths, ending.outcome, ending.message)
-
-
-def _so_far(job: Job, t: np.ndarray, states: States, lengths: np.ndarray, outcome: Outcome, message: str) -> Solution:
-    """Return the solution at the given instants, from the start on."""
-    system = job.dynamics.system
-    with job.dynamics.state.unchanged():
-        rows = job.dynamics.report(t, *states, project=True)
-        rows = with_stiff_forces(job.dynamics, states, rows, lengths, job.settings.rtol)
-    channels = channels_of(job.data, system, rows)
-    return Solution(
-        name=job.data.name, time=job.shown(rows.t), channels=channels, outcome=outcome, message=message, notes=(),
-        solver={"name": job.settings.solver}, history=History(np.empty(0), np.empty(0, dtype=int)), not_unique=job.redundancy.not_unique,
-        balance=energy_balance(system, rows),
-        requested=units(job.data.outputs()), figure=job.data.figure if isinstance(job.data, Scene) else None,
-        display=job.data.display if isinstance(job.data, Scene) else SI_UNITS,
-        provenance=provenance_of(job.data, job.settings, state=job.start_from),
-    )  # fmt: skip
+    found = instants[:solved], (q[:solved], u[:solved]), lengths
+    yield solution_of(job, *found, project=True, outcome=ending.outcome, message=ending.message)

@@ -28,8 +28,9 @@ from ..solve.explicit.fixed import (
     MANY_IN_LOOP,
     ONE_IN_LOOP,
     failed,
-    solve_with_fixed_steps,
+    restart_after,
     steps_between,
+    take_steps_to,
     unresolved_growth,
 )
 from ..solve.explicit.integration import Integration
@@ -109,7 +110,8 @@ def sound(integrator: Integrator[NativeEngine], reached: Reached) -> Reached:
 def _breaks(features: InputFeatures, t: float, end: float) -> bool:
     """Return True if an input has a breakpoint between two times, s."""
     between = features.breakpoints
-    return len(between) > 0 and bool(np.any((between >= just_before(t)) & (between <= just_after(end))))
+    first = int(between.searchsorted(just_before(t))) if len(between) else 0
+    return first < len(between) and bool(between[first] <= just_after(end))
 
 
 class Stepper(Protocol):
@@ -277,7 +279,7 @@ class FixedSteps:
     def advance(self, t: float) -> None:
         """See `Stepper`."""
         if self._has_inputs and self._breaks(t):
-            self._run(t)
+            self.pass_breakpoints(t)
             return
         start, kept = self._t, (self.q.copy(), self.u.copy()) if self._has_limits else None
         steps = steps_between(start, t, self._step)
@@ -347,8 +349,8 @@ class FixedSteps:
             self._changes = self._dynamics.input_changes
         return _breaks(self._features, t, end)
 
-    def _run(self, t: float) -> None:
-        """Advance by a short run, which restarts at breakpoints of inputs; the state is kept if it fails."""
+    def pass_breakpoints(self, t: float) -> None:
+        """Advance to a time by steps that end at breakpoints of inputs, with restarts there; the state is kept if one fails."""
         dynamics, kept = self._dynamics, (self.q.copy(), self.u.copy())
         if self._t != self.time:  # just after a breakpoint
             self._begin(self._t, *kept)
@@ -356,16 +358,25 @@ class FixedSteps:
         self._work.forget_rates()
         place = dynamics.sides(t)[0]
         try:
-            grid = Grid(self._t, place, np.array([self._t, place]))
             with in_use(self._settings.tuning):
-                found = solve_with_fixed_steps(dynamics, self._work, grid, self._settings, lambda _: None)
-            if found.outcome is Outcome.INTERRUPTED:
-                raise KeyboardInterrupt
+                self._run(place)
         except (SolverError, KeyboardInterrupt):
             self.q[:], self.u[:] = kept
             raise
         self._t, self.time = dynamics.sides(t)[1], place
         self._warn_of_growth()
+
+    def _run(self, end: float) -> None:
+        """Take steps to a time, and restart at breakpoints of inputs before it."""
+        t, grid = self._t, Grid(self._t, end, None)
+        features = self._dynamics.input_features(t, end)
+        stops = features.breakpoints - grid.aside
+        for stop in sorted({*grid.before(np.array([end]), features).tolist(), *stops.tolist()}):
+            take_steps_to(self._dynamics, self._work, t, stop, steps_between(t, stop, self._step))
+            t = stop
+            if stop in stops:
+                restart_after(self._dynamics, self._work, stop, grid.aside, self._settings)
+                t = self._work.t
 
     def _begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Start from consistent values near given ones at a time, s."""

@@ -120,7 +120,10 @@ def reports_of_a_run():
         clock[0] += seconds
 
     with patch.multiple(
-        follow, stepper_of=lambda *_: found, _so_far=lambda *_: after(1.0), time=Record(monotonic=lambda: clock[0])
+        follow,
+        stepper_of=lambda *_: found,
+        solution_of=lambda *_, **__: after(1.0),
+        time=Record(monotonic=lambda: clock[0]),
     ):
         return len([*follow._followed(job, 0.5)])
 

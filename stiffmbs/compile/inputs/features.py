@@ -38,7 +38,7 @@ ALIKE = 2.0
 class InputFeatures:
     """Features of all inputs between two times.
 
-    `breakpoints`: times to stop and restart at, s. `starts`, `longest`: start of each interval and longest step that
+    `breakpoints`: times to stop and restart at in increasing order, s. `starts`, `longest`: start of each interval and longest step that
     may touch it, s; empty if nothing limits steps. `note`: note for the user, or ''. `at_ends`: breakpoints at the
     first and the last time, s. `bends`: other times at which the curvature of a force's table jumps, s.
     """

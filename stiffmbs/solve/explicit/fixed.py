@@ -73,23 +73,17 @@ def solve_with_fixed_steps(
         for end in sorted({*outputs[1:].tolist(), *stops.tolist()}):
             count = steps_between(t, end, settings.step)
             longest = max(longest, (end - t) / count)
-            status = FIXED_STEPS.call(t, (end - t) / count, count, work.at)
-            if status < 0:
-                raise failed(t, status)
+            take_steps_to(dynamics, work, t, end, count)
             t, steps = end, steps + count
-            refuse_beyond_limits(dynamics, t, work.q, work.u)
             while row < len(times) and outputs[row] <= t:
                 rows.append(times[row], work.q, work.u)
                 row += 1
             if not note and (row - 1) % apart == 0:
                 note = _jumps(dynamics, work, t, settings.step)
             if t in stops:
-                t += 2.0 * grid.aside
-                before = dynamics.system.of_body.moved(work.q, 2.0 * grid.aside * work.u), work.u.copy()
-                start = restarted(dynamics, t, *before, settings.projection)
+                before = restart_after(dynamics, work, t, grid.aside, settings)
+                t = work.t
                 jumps.note(t, *before)
-                work.t = t
-                work.begin(start)
             watch(t)
             grid.look(rows)
     statistics: dict[str, int | float | str] = {
@@ -98,6 +92,29 @@ def solve_with_fixed_steps(
     narrow = narrower_than_steps(features, settings.step, work.scheme.name)
     note = "; ".join(filter(None, (note, jumps.sentence(), narrow, unresolved_growth(work), _cut(longest, settings))))
     return Trajectory(*rows.stored, ending.outcome, ending.message, statistics, note=note)
+
+
+def take_steps_to(dynamics: Dynamics, work: Integration, t: float, end: float, count: int) -> None:
+    """Take equal steps between two times without breakpoints of inputs; raise a SolverError if one fails."""
+    status = FIXED_STEPS.call(t, (end - t) / count, count, work.at)
+    if status < 0:
+        raise failed(t, status)
+    refuse_beyond_limits(dynamics, end, work.q, work.u)
+
+
+def restart_after(
+    dynamics: Dynamics, work: Integration, t: float, aside: float, settings: RunSettings
+) -> tuple[np.ndarray, np.ndarray]:
+    """Restart just after a breakpoint of an input; return positions and velocities there before the restart.
+
+    `t`: time just before the breakpoint, s. `aside`: distance of this time from the breakpoint, s.
+    """
+    after = t + 2.0 * aside
+    before = dynamics.system.of_body.moved(work.q, 2.0 * aside * work.u), work.u.copy()
+    start = restarted(dynamics, after, *before, settings.projection)
+    work.t = after
+    work.begin(start)
+    return before
 
 
 def _jumps(dynamics: Dynamics, work: Integration, t: float, step: float) -> str:

@@ -75,16 +75,17 @@ class LinearlyImplicit:
             "start": np.zeros(n), "whole": np.zeros(n),
         }  # fmt: skip
         self.table = packed(LINEARLY_IMPLICIT, self._arrays)
+        self._row = self.table.view(LINEARLY_IMPLICIT.cells)[0]
         self.forget()
 
     def forget(self) -> None:
         """Forget that earlier steps did not resolve a growth."""
-        self.table.view(LINEARLY_IMPLICIT.cells)[0]["unresolved"] = np.nan
+        self._row["unresolved"] = np.nan
 
     @property
     def unresolved(self) -> float:
         """Time of the first step that did not resolve a growth, s; NaN if there is none."""
-        return float(self.table.view(LINEARLY_IMPLICIT.cells)[0]["unresolved"])
+        return float(self._row["unresolved"])
 
 
 def _cells(memory: Memory) -> dict[str, np.ndarray]:
