@@ -197,14 +197,8 @@ class NativeIda:
         self.begun, self._look, self.cells["next_size"] = False, self._usual_batch, 0.0
         self.ask("IDAReInit", 0.0, self.y_vector, self.yp_vector)  # resets IDA's counters
         self._statistics.forget()
-        for each in (
-            self.history,
-            self.whole_steps,
-            self.output_correction,
-            self._closing,
-            self.error_norm,
-            self._formula,
-        ):
+        corrections = self.output_correction, self._closing
+        for each in (self.history, self.whole_steps, *corrections, self.error_norm, self._formula):
             each.forget()
         self._assembled.forget()
 

@@ -98,11 +98,10 @@ def _largest_row_sum(w, s, values, count, source, row, scale):
 
 @compiled
 def _look_at_stiffness(w, s, t):
-    """Store `stiffmbs.solve.error_control.newton.stiffness_at` at the current state, and Newton's tolerance for it."""
+    """Store `stiffmbs.solve.error_control.newton.stiffness_at` at the current state."""
     values = evaluate(s, TANGENT, t)
     w.of_positions = _largest_row_sum(w, s, values, w.n_f_q, w.f_q_source, w.f_q_row, w.f_q_scale)
     w.of_velocities = _largest_row_sum(w, s, values, w.n_f_u, w.f_u_source, w.f_u_row, w.f_u_scale)
-    allow_remainder(w)
 
 
 @compiled
@@ -214,6 +213,7 @@ def prepare(w, s, m, e, c, t):
         _find_algebraic_rates(w, s, m, t)
     _relax(w, s, t)
     _look_at_stiffness(w, s, t)
+    allow_remainder(w)
     _fill_unknowns(w, s, e, array_of(c, c.y), array_of(c, c.yp))
 
 
