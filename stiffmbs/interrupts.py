@@ -44,7 +44,7 @@ def collect_from_now_on() -> None:
 
 @contextlib.contextmanager
 def uncollected() -> Iterator[None]:
-    """Suspend garbage collection during derivation and translation, whose objects stay alive."""
+    """Suspend garbage collection, as during derivation and translation, whose objects stay alive."""
     enabled = gc.isenabled()
     gc.disable()
     try:

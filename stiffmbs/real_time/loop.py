@@ -6,14 +6,15 @@ import gc
 import sys
 import time
 import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from ..errors import AssemblyError, InputError, SolverError
+from ..interrupts import uncollected
 from ..solve.stiff_rows import States
 from ..solve.trajectory import Ending
 from .exchange import Exchange
@@ -91,7 +92,8 @@ def take_steps(sim: RecordedSimulation, loop: Loop, exchange: Exchange, record: 
     """Take the steps of a loop; return how it ended."""
     outputs = np.zeros(len(loop.channels))
     period = round(loop.dt / NANO)
-    with _no_collection(), Ending() as ending:
+    gc.collect()
+    with uncollected(), Ending() as ending:  # a collection takes longer than a step
         begun = time.perf_counter_ns()
         try:
             for k in range(loop.steps):
@@ -127,16 +129,3 @@ def _wait_until(due: int) -> None:
         time.sleep(left - REAL_TIME.polled)
     while time.perf_counter_ns() < due:
         pass
-
-
-@contextmanager
-def _no_collection() -> Iterator[None]:
-    """Suspend the garbage collector, whose pauses are longer than steps."""
-    enabled = gc.isenabled()
-    gc.collect()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
