@@ -136,8 +136,8 @@ def axes_of_a_gearbox():
 
 
 DECISIONS = {
-    "robots.sdf.files:MOST_FILES": most_included_files,
-    "robots.sdf.gears:PARALLEL": axes_of_a_gearbox,
+    "robots.sdf.parameters:SdfParameters.files": most_included_files,
+    "robots.sdf.parameters:SdfParameters.parallel": axes_of_a_gearbox,
     "live.app:LARGEST": largest_request,
     "live.page:FRAME_HEIGHT": height_of_a_frame,
     "live.requests:MOST_CASES": most_cases,
@@ -153,7 +153,7 @@ DECISIONS = {
     ),
 }  # fmt: skip
 EXPECTED = {
-    "robots.sdf.files:MOST_FILES": 27, "robots.sdf.gears:PARALLEL": 40,
+    "robots.sdf.parameters:SdfParameters.files": 27, "robots.sdf.parameters:SdfParameters.parallel": 40,
     "robots.mjcf.model:MOST_COPIES": 27,
     "live.app:LARGEST": 35, "live.page:FRAME_HEIGHT": 760, "live.requests:MOST_CASES": 41, "live.requests:MOST_INSTANTS": 400,
     "live.worker:BETWEEN": 0.2, "live.workers:MOST_PAGES": 6, "commands.process:AGAIN": 0.01, "commands.progress:SHOWN_AFTER": 18,

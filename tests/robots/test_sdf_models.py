@@ -238,7 +238,7 @@ def test_what_is_not_used_of_a_link_is_noted(tmp_path, given):
         (model(link("l") + joint("j", "revolute", "world", "l", "<xyz>0 0 1</xyz>", more="<physics/>")), "(settings of the simulator): joint <physics> of j"),
         (SDF.format("1.9", f"<world name='w'><light name='sun'/><state/><model name='m'>{link('l')}</model></world>"), "(graphics): world <light> of w"),
         (SDF.format("1.9", f"<world name='w'><state/><model name='m'>{link('l')}</model></world>"), "(models start where their poses place them): world <state> of w"),
-        (SDF.format("1.9", f"<world name='w'><include><uri>model://sun</uri></include><model name='m'>{link('l')}</model></world>"), "scenery that is not beside the file is left out: model://sun"),
+        (SDF.format("1.9", f"<world name='w'><include><uri>model://sun</uri></include><model name='m'>{link('l')}</model></world>"), "scenery that is not next to the file is left out: model://sun"),
     ],
 )  # fmt: skip
 def test_what_is_not_used_is_noted(tmp_path, text, said):
@@ -247,7 +247,7 @@ def test_what_is_not_used_is_noted(tmp_path, text, said):
 
 BOX = model(link("l"))
 REFUSED = {
-    "an uri of no file": ("1.9", "<include><uri>model://nothing</uri></include>", "model m: the include model://nothing: found no such file, expected it beside the file"),
+    "an uri of no file": ("1.9", "<include><uri>model://nothing</uri></include>", "model m: the include model://nothing: found no such file, expected it next to the file"),
     "an uri of the network": ("1.9", "<include><uri>https://fuel.gazebosim.org/1.0/x/models/y</uri></include>", "found the uri https://fuel.gazebosim.org/1.0/x/models/y of a network, expected a file"),
     "no uri": ("1.9", "<include/>", "model m: found an <include> without <uri>"),
     "a file that includes itself": ("1.9", "<include><uri>robot.sdf</uri></include>", "which includes itself"),

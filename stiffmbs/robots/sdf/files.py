@@ -13,13 +13,12 @@ from ...reading.files.quoted import quoted
 from ...reading.files.text_file import file_text
 from ...reading.files.xml_nodes import FileFault, Node, parsed
 from ..robot import RobotFault
+from .parameters import SDF
 from .poses import text_of
 
 Version = tuple[int, ...]
 OLDEST: Final[Version] = (1, 3)
 NEWEST: Final[Version] = (1, 12)
-MOST_FILES = 1000
-"""Largest number of files that a file includes, repeated ones and those of included files counted."""
 OUTER = ("world", "model")
 """Elements that contain whole models; the kinds of elements in notes omit them."""
 CONFIGURATION, MODEL = "model.config", "model.sdf"
@@ -71,8 +70,8 @@ class Files:
             raise RobotFault(
                 f"{where}: found the file {quoted(str(path))}, which includes itself, expected another one"
             )
-        if len(self.read) > MOST_FILES:
-            raise RobotFault(f"{where}: found more than {MOST_FILES} included files, expected fewer")
+        if len(self.read) > SDF.files:
+            raise RobotFault(f"{where}: found more than {SDF.files} included files, expected fewer")
         return self.source(path, chain)
 
     def _places(self, where: str, uri: str, by: Source) -> Iterator[Path]:

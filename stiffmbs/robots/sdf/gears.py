@@ -9,10 +9,8 @@ import numpy as np
 from ...reading.files.quoted import quoted
 from ..robot import Relation, RobotFault
 from .joints import AXES, BALL, GEARBOX, KINDS, Arc, limits
+from .parameters import SDF
 from .poses import number, text_of
-
-PARALLEL = 1e-3
-"""Largest sine of the angle between the axes of a gearbox and of the hinge that it turns."""
 
 
 def relations(arcs: Sequence[Arc]) -> Iterator[Relation]:
@@ -71,7 +69,7 @@ def _hinge(
     for other in arcs:
         if {other.parent, other.child} == {carrier, link} and KINDS[other.kind] == ("hinge",):
             axis = other.axes[0].direction
-            if np.linalg.norm(np.cross(axis, direction)) < PARALLEL:
+            if np.linalg.norm(np.cross(axis, direction)) < SDF.parallel:
                 sense = float(np.sign(axis @ direction))
                 return other.name, sense if other.parent == carrier else -sense
     raise RobotFault(

@@ -13,7 +13,7 @@ SCENERY = ("sun", "ground_plane")
 """Models of Gazebo that have nothing that moves; worlds without them are the same."""
 MERGE = "merge"
 WITHOUT_LINKS = ("light", "actor")
-"""What files may include instead of a model."""
+"""Elements of included files without a model."""
 
 
 class Models:
@@ -60,7 +60,9 @@ class Models:
                 self.omitted.append(uri)
                 include.without_effect("pose", "name", "static")
                 return
-            raise RobotFault(f"{where}: found no such file, expected it beside the file: copy the model's folder there")
+            raise RobotFault(
+                f"{where}: found no such file, expected it next to the file: copy the model's folder there"
+            )
         if any(found.root.unrecorded(tag) is not None for tag in WITHOUT_LINKS):
             return  # the notes name it
         models = found.root.findall("model")

@@ -187,4 +187,4 @@ def _notes(
     if assumed:
         yield f"links without mass or inertia have the defaults of SDF, 1 kg and 1 kg m^2: {listed(assumed)}"
     if models.omitted:
-        yield f"included scenery that is not beside the file is left out: {listed(models.omitted)}"
+        yield f"included scenery that is not next to the file is left out: {listed(models.omitted)}"
