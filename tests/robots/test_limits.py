@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 
 import stiffmbs
 from stiffmbs.commands.main import main
+from stiffmbs.errors import InputError
 from stiffmbs.robots.load import load_robot
 
 T = 0.02
@@ -74,18 +75,27 @@ def test_limits_are_listed_held_or_not(tmp_path):
     assert other.exit_code == 2 and "found --limits, expected it with a robot alone" in other.output
 
 
-LOOP = """<sdf version="1.9"><model name="press">
+PRESS = """<sdf version="1.9"><model name="press">
   <link name="nut"><pose>0 0 0.1 0 0 0</pose><inertial><mass>2</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.04</izz></inertia></inertial></link>
   <joint name="thread" type="screw"><parent>world</parent><child>nut</child><screw_thread_pitch>{pitch}</screw_thread_pitch>
-    <axis><xyz>0 0 1</xyz><limit><lower>-1</lower><upper>0.5</upper></limit></axis></joint>
+    <axis><xyz>0 0 1</xyz><limit>{lower}<upper>0.5</upper></limit></axis></joint>
 </model></sdf>"""
 
 
-def test_a_screw_is_held_with_the_mass_that_it_lifts(tmp_path):
-    """The inertia of a screw with the pitch p is I + m (p/2 pi)^2."""
+@pytest.mark.parametrize("lower", ["<lower>-1</lower>", ""])
+def test_a_screw_is_held_with_the_mass_that_it_lifts(tmp_path, lower):
+    """The inertia of a screw with the pitch p is I + m (p/2 pi)^2. A side without a limit has no stop."""
     path, speed = tmp_path / "press.sdf", 2.0
-    path.write_text(LOOP.format(pitch=0.5))
+    path.write_text(PRESS.format(pitch=0.5, lower=lower))
     scene = load_robot(path, [("gravity", "[0, 0, 0]")], rates={"thread": speed}, limits=True)
     found = stiffmbs.run(scene, duration=0.5 / speed + 3 * T, points=2001, solver="radau", rtol=1e-9)
     angle = next(name for name in found.channels if name.startswith("thread") and name.endswith("angle"))
     assert (found[angle] - 0.5).max() == pytest.approx(speed * T / np.e, rel=1e-4)
+
+
+def test_limits_in_the_wrong_order_are_refused(tmp_path):
+    """Both stops would have acted at once between them."""
+    with pytest.raises(
+        InputError, match="joint shoulder: found the limits -0.5 and -0.8, expected the lower one first"
+    ):
+        load_robot(robot(tmp_path, upper=-0.8), limits=True)

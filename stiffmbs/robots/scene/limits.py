@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import isfinite
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from ...elements.spatial.number_format import plain
 from ...elements.spatial.orientation import matrix, rotated
 from ...reading.files.yaml_text import Content
 from ..pose import Placed, frames
-from ..robot import Link, LinkJoint, Robot
+from ..robot import Link, LinkJoint, Robot, RobotFault
 from .joints import along_axis
 from .mechanism import Hold, Mechanism
 
@@ -24,7 +25,7 @@ def stops(robot: Robot, mechanism: Mechanism, coordinates: Mapping[str, float]) 
 
     A stop at a distance x beyond a limit acts with max(0, k x + c x'), k = I/T^2 and c = 2 zeta I/T, for the inertia I of the links
     that the joint carries, about its axis at the start. Alone, with zeta = 1, it turns a speed v round within 2 T, at a distance of at
-    most v T/e, to v/e^2.
+    most v T/e, to v/e^2. Raises RobotFault if a lower limit is above the upper one.
     """
     placed = frames(robot, coordinates, {})
     held = {hold.joint.name: hold for hold in mechanism.holds.values() if hold.joint.limits is not None}
@@ -42,12 +43,17 @@ def stops(robot: Robot, mechanism: Mechanism, coordinates: Mapping[str, float]) 
 def _law(hold: Hold, inertia: float, names: Mapping[str, str]) -> str:
     """Return the formula of the torque or force of both stops of a joint."""
     assert hold.joint.limits is not None
-    lower, upper = (repr(plain(limit)) for limit in hold.joint.limits)
+    lower, upper = hold.joint.limits
+    if lower > upper:
+        raise RobotFault(
+            f"joint {hold.joint.name}: found the limits {lower:g} and {upper:g}, expected the lower one first"
+        )
     k = f"{inertia!r}/{names[TIME]}^2"
     c = f"{2.0 * inertia!r}*{names[DAMPING]}/{names[TIME]}"
-    below = f"max(0, {k}*({lower} - {hold.coordinate}) - {c}*{hold.rate})"
-    above = f"-max(0, {k}*({hold.coordinate} - {upper}) + {c}*{hold.rate})"
-    return f"branch({hold.coordinate} - {lower}, {below}, 0, 0) + branch({hold.coordinate} - {upper}, 0, 0, {above})"
+    below, above = f"{plain(lower)!r} - {hold.coordinate}", f"{hold.coordinate} - {plain(upper)!r}"
+    terms = [f"branch({below}, 0, 0, max(0, {k}*({below}) - {c}*{hold.rate}))"] if isfinite(lower) else []
+    terms += [f"branch({above}, 0, 0, -max(0, {k}*({above}) + {c}*{hold.rate}))"] if isfinite(upper) else []
+    return " + ".join(terms)
 
 
 def _inertias(robot: Robot, placed: Mapping[str, tuple[Placed, ...]]) -> Iterator[tuple[LinkJoint, float]]:
