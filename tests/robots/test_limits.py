@@ -95,7 +95,5 @@ def test_a_screw_is_held_with_the_mass_that_it_lifts(tmp_path, lower):
 
 def test_limits_in_the_wrong_order_are_refused(tmp_path):
     """Both stops would have acted at once between them."""
-    with pytest.raises(
-        InputError, match="joint shoulder: found the limits -0.5 and -0.8, expected the lower one first"
-    ):
+    with pytest.raises(InputError, match=r"found the limits -0\.5 and -0\.8, expected the lower one first"):
         load_robot(robot(tmp_path, upper=-0.8), limits=True)
