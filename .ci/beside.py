@@ -35,7 +35,7 @@ class Version:
 
     def __init__(self, checkout: Path) -> None:
         self._process = subprocess.Popen(
-            [sys.executable, str(HERE), "--serve"], env={**os.environ, "PYTHONPATH": str(checkout)}, cwd=checkout,
+            [sys.executable, str(HERE), "--serve"], env={**os.environ, "PYTHONPATH": str(checkout), "STIFFMBS_DRAFTS": "0"}, cwd=checkout,
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
         )  # fmt: skip
 

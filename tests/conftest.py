@@ -18,6 +18,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 from scipy.integrate import solve_ivp
 
+from stiffmbs.cache.entries import DIRECTORY_VARIABLE, cache_directory
 from stiffmbs.commands.starting import scene_files
 from stiffmbs.compile.machine import drafts, object_code
 from stiffmbs.error_estimate.parameters import ESTIMATE
@@ -49,6 +50,10 @@ def quickly_compiled(assembly: str, level: int, unrolled: bool) -> bytes:
 
 
 drafts.object_code = quickly_compiled
+if (
+    "PYTEST_XDIST_WORKER" not in os.environ
+):  # workers have that of their session; runs would take code of lower levels for their own
+    os.environ[DIRECTORY_VARIABLE] = str(cache_directory() / "tests")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -71,3 +71,9 @@ def test_forces_have_one_kernel_for_motion_and_acceleration(system):
 def test_powers_that_cancel_are_zero(text, expected):
     """Also if a factor is zero at the numbers that are tried first."""
     assert _vanishes(sp.sympify(text)) == expected
+
+
+def test_the_cache_of_the_tests_is_its_own():
+    """Entries of a run and of a test have the same names, but other levels of optimisation."""
+    assert drafts.object_code is not object_code.object_code
+    assert entries.cache_directory().name == "tests"

@@ -18,9 +18,9 @@ from pathlib import Path
 
 import stiffmbs
 
-from ..conftest import EXAMPLES
 from ..show.page import browser
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 SLIDERS = {"cart_pendulum": "L", "half_car": "k_b", "car": "k_b"}
 PLAYED = 2.0
 """Duration over which pictures are counted, s."""
