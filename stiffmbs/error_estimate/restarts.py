@@ -109,10 +109,13 @@ def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.n
 
 
 def _crossing(value: Callable[[float], float], step: float) -> float:
-    """Return the time next to 0 at which a function changes its sign, NaN if there is none; `step`: where the search begins, s."""
+    """Return the time nearest to 0 at which a function changes its sign, NaN if there is none.
+
+    `step`: of differences, s. The search begins with far shorter times: the sign may have changed for an instant only.
+    """
     from scipy.optimize import bisect
 
-    reach = step
+    reach = step * ESTIMATE.difference
     while (value(-reach) > 0.0) == (value(reach) > 0.0):
         reach *= 2.0
         if reach > step / ESTIMATE.difference:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.error_estimate import restarts
 from tests.error_estimate.test_against_truth import ratio
 
 QUARTER_CAR = """
@@ -63,3 +64,13 @@ def test_row_at_the_jump_of_a_force(solver):
     bar, size = found.errors["touch.fz"], np.abs(found["touch.fz"]).max()
     assert bar.over_time < 1e-3 * size
     assert max(bar.sampled_least, bar.sampled_greatest) < 0.05 * size
+
+
+@pytest.mark.parametrize("late", [0.0, 2e-13, -3e-12])
+def test_the_nearest_crossing_of_a_function_that_changes_its_sign_for_an_instant(late):
+    """Two wheels met an edge within 9 ns, and the function of one jumped twice: a delay of 7 s was found, and a solution lost."""
+
+    def value(later):
+        return 2349.0 if late - 9.5e-9 < later <= late else -41.8 if abs(later) < 1.0 else 300.0
+
+    assert restarts._crossing(value, 1e-7) == pytest.approx(late, abs=1e-13)
