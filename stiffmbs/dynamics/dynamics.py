@@ -236,8 +236,8 @@ class Dynamics:
         first, last, found = self._features
         if not first <= start <= end <= last:
             found = input_features(self.system, start, end)
-            self._features = start, end, found
-        return found.within(start, end)
+            first, last, found = self._features = start, end, found
+        return found if (start, end) == (first, last) else found.within(start, end)
 
     def follow(self, varied: VariedInput) -> None:
         """Take an input that changes formulas of time, whose elements follow when its features are determined."""

@@ -262,15 +262,18 @@ class Jumps:
 
     def is_jump(self, change: np.ndarray) -> bool:
         """Return True if a change of velocities to those of the current state is a jump."""
-        largest, after = float(np.max(self.scale * np.abs(change), initial=0.0)), self._dynamics.state.u
+        largest = float((self.scale * np.abs(change)).max(initial=0.0))
+        if largest <= self.least:
+            return False
+        after = self._dynamics.state.u
         fastest = np.max(self.scale * np.maximum(np.abs(after), np.abs(after - change)), initial=0.0)
-        return largest > max(self.least, VELOCITY_JUMP.least * float(fastest))
+        return largest > VELOCITY_JUMP.least * float(fastest)
 
     def note(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Note jumps from a state just before a breakpoint; the state of the dynamics is that just after it."""
         system, state = self._dynamics.system, self._dynamics.state
         move, change = system.move(q, state.q), state.u - u
-        if np.max(self.scale * np.abs(move), initial=0.0) > self.least and self._leads_on(t, q) > self.least:
+        if (self.scale * np.abs(move)).max(initial=0.0) > self.least and self._leads_on(t, q) > self.least:
             k = int(np.argmax(self.scale * np.abs(move)))
             self._messages.append(
                 f"at t = {t:.6g} s a drive makes positions jump ('{system.bodies[k // system.of_body.n_u]}' by {abs(move[k]):.3g}): no "

@@ -85,13 +85,25 @@ def _by_closing(b, s, e, t):
 
 
 @compiled
-def _left(b, s, e, t):
-    """Return the largest relative imbalance of the equations of motion, as interpolated and with joints closed."""
-    part = _unbalanced(b, b.defect)
+def _are_closed(b):
+    """Return True if the joints are closed: a projection would move no stiff elements."""
     opening = 0.0
     for k in range(b.n_joint_rows):
         opening = max(opening, abs(b.defect[b.joint_row[k]]))
-    return part if part > 1.0 or opening <= CONSISTENCY.position_tolerance else max(part, _by_closing(b, s, e, t))
+    return opening <= CONSISTENCY.position_tolerance
+
+
+@compiled
+def _is_balanced(b):
+    """Return True if forces balance and joints are closed. Where they are not, a correction costs less than a projection."""
+    return _are_closed(b) and _unbalanced(b, b.defect) <= 1.0
+
+
+@compiled
+def _left(b, s, e, t):
+    """Return the largest relative imbalance of the equations of motion, as interpolated and with joints closed."""
+    part = _unbalanced(b, b.defect)
+    return part if part > 1.0 or _are_closed(b) else max(part, _by_closing(b, s, e, t))
 
 
 @compiled
@@ -124,7 +136,7 @@ def _remaining(b, s, e, t, once):
             return 0.0
         before = size
         _look(b, s, e, t)
-        if _left(b, s, e, t) <= 1.0:
+        if _is_balanced(b):
             return 0.0
         if k > 0 and not rate < POLISHING.slowest:
             break
@@ -155,7 +167,10 @@ def _by_new_factors(b, s, e, t, parts):
         if not 0.0 < size < before:
             break
         before = size
-    return size == 0.0 or (size <= NEWTON.loosest and b.balanced * _left(b, s, e, t) <= POLISHING.rounded_off)
+    if size == 0.0:
+        return True
+    left = _left(b, s, e, t)
+    return left <= 1.0 or (size <= NEWTON.loosest and b.balanced * left <= POLISHING.rounded_off)
 
 
 @compiled
@@ -207,7 +222,7 @@ def corrected(output_correction, state, equations, t):
     if not _placed(b, t):
         return False
     _look(b, s, e, t)
-    if _left(b, s, e, t) <= 1.0:
+    if _is_balanced(b):
         return True
     if call_int(b.weights, (b.memory, b.at_weight)) < OK:
         return False
