@@ -104,7 +104,7 @@ def corrections(ratio):
     """Return the number of corrections of a state that remains unbalanced."""
     sizes = iter(ratio ** np.arange(100))
     count = []
-    replaced = {"_corrected": lambda *_: count.append(1) or next(sizes), "_look": nothing, "_left": lambda *_: 2.0}
+    replaced = {"_corrected": lambda *_: count.append(1) or next(sizes), "_look": nothing, "_is_balanced": lambda *_: False}
     with interpreted(output_correction, **replaced):
         output_correction._remaining(Record(enough=0.0, factored=1.0), None, None, 0.0, False)
     return len(count)
@@ -115,10 +115,10 @@ def largest_rounded_off_imbalance():
 
     def converges(part):
         replaced = {
-            "_corrected_by": always, "_factored": always, "_remaining": lambda *_: 1e-3, "_left": lambda *_: part,
+            "_corrected_by": always, "_factored": always, "_remaining": lambda *_: 1e-3, "_left": lambda *_: 1e3 * part,
         }  # fmt: skip
         with interpreted(output_correction, **replaced):
-            return output_correction._by_new_factors(Record(current=1.0, balanced=1.0), None, None, 0.0, 1.0)
+            return output_correction._by_new_factors(Record(current=1.0, balanced=1e-3), None, None, 0.0, 1.0)
 
     return count_while(converges, 1e-6 * DOUBLES[:200])
 
