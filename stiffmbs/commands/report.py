@@ -14,6 +14,7 @@ from ..analyses.load_scene import load_scene
 from ..errors import StiffmbsError
 from ..notes import note_lines
 from ..reading.files.text_file import STANDARD_INPUT, file_text
+from ..results.verification_words import INTERRUPTED
 from .pictures import runs_of
 from .process import Status
 from .scene import changes_of, file_beside, option, output_option, refuse_file, refusing, solve_scene, solving_options
@@ -71,6 +72,7 @@ def report(
         text = "" if scene == STANDARD_INPUT else file_text(scene)
         write_report(path, loaded, solution, text, sections, compared_with)
     click.echo("\n".join([*note_lines(solution.notes), f"report: {path}"]))
+    complete = complete and INTERRUPTED not in solution.verification
     sys.exit(0 if solution.outcome.name == "DONE" and complete else Status.FAILED)
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..analyses.load_scene import load_scene
+from ..results.verification_words import INTERRUPTED
 from .process import Status
 from .scene import (
     changes_of,
@@ -81,7 +82,7 @@ def run(
         click.echo(summary.as_json(scene, solution))
     else:
         summary.print_summary(scene, solution, results, _console_for(solution), all_loads)
-    unverified = "verification interrupted by the user" in solution.verification
+    unverified = INTERRUPTED in solution.verification
     sys.exit(0 if solution.outcome.name == "DONE" and written and not unverified else Status.FAILED)
 
 

@@ -88,8 +88,12 @@ def _angle_back(model: ModelData, i: Any, turns: int) -> Any:
 
 
 def _between_quaternions(model: ModelData, i: Any, j: Any) -> int:
+    """Return 1 for a rotation beyond half a turn. Half a turn is positive about z, else about y, else about x."""
+    from .spatial.orientation import conjugate, product  # not loaded by planar models
+
     p, q = (_quaternion(model, marker) for marker in (i, j))
-    return int(sum(a * b for a, b in zip(p, q, strict=True)) < 0)
+    w, x, y, z = product(conjugate(q), p)
+    return int(next((part for part in (w, z, y, x) if abs(part) > INITIAL_COUNT / 2), 0) < 0)
 
 
 def _quaternion_back(model: ModelData, i: Any, turns: int) -> Any:

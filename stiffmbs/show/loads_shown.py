@@ -9,6 +9,7 @@ import numpy as np
 
 from ..model.scene import Scene
 from ..results.solution import Solution
+from ..results.verification_words import has_reruns
 from .curves import Curve, curve_chart, polar_chart, round_step, spark_line
 from .driving_angle import DrivingAngle, driving_angle, rotating_loads
 from .loads import Column, Load, LoadRow, load_rows
@@ -74,7 +75,7 @@ def _bars_words(solution: Solution, loads: Sequence[Load]) -> str:
         return "Each peak is the largest magnitude at an output instant."
     reruns = (
         "from reruns at a smaller tolerance and with another integrator"
-        if solution.verification
+        if has_reruns(solution.verification)
         else "as estimated with the run"
     )
     return f"The bar \N{PLUS-MINUS SIGN} bounds the error of a peak, {reruns}."

@@ -25,6 +25,7 @@ from ..results.files import write_text
 from ..results.provenance import provenance_of
 from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
+from ..results.verification_words import verification_outcome
 from ..solve.trajectory import History
 from .drawing.derive import drawing_of
 from .drawing.draw import marks_of
@@ -94,7 +95,7 @@ def report_page(
         sections=_with_figures(sections), first=_with_figures(first), steps=[_embedded(figure, points) for figure in steps],
         counted=[f"{label}: {text}" for label, text in solver_lines(solution.solver)], violation=float(np.nanmax(solution.channels["constraint.position"])),
         **loads_shown(scene, solution, loads), unloaded=unloaded, notes=note_rows(solution.notes), modes=lines, moving=moving, modes_moving=shapes,
-        verified="reruns agree within the error bars" if solution.verification else "not verified", **parts,
+        verified=verification_outcome(solution.verification), **parts,
     )  # fmt: skip
 
 

@@ -37,6 +37,7 @@ from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.error_bars import UNKNOWN, error_bar
 from ..results.scales import scales
 from ..results.solution import Solution
+from ..results.verification_words import INTERRUPTED, KINEMATIC, RERUN
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..tuning import in_use
@@ -78,10 +79,6 @@ def verify(
         return with_discretisation(job, found)
     except KeyboardInterrupt:
         return replace(first, verification=(INTERRUPTED,))
-
-
-INTERRUPTED = "verification interrupted by the user"
-"""Sentence of a run that was completed, but not verified: commands end with a failure."""
 
 
 def with_discretisation(job: Job, found: Solution) -> Solution:
@@ -138,10 +135,15 @@ class _Verification:
         self._skipped: list[str] = []
 
     def result(self) -> Solution:
-        """Return the first run with error bars, notes and a list of reruns."""
+        """Return the first run with error bars, notes and a list of reruns.
+
+        Raises KeyboardInterrupt before the end of the first rerun: the run is then not verified.
+        """
         try:
             self._solve()
         except KeyboardInterrupt:
+            if not self._completed():
+                raise
             self._skipped.append(INTERRUPTED)
         comparison = self._comparison()
         of_steps = tuple(step_diagnostics(comparison, self._along, self._shorter))
@@ -280,14 +282,22 @@ class _Verification:
                 bars[name] = UNKNOWN if lost else error_bar(values, others, fine, rounding)
         return Comparison(self._job, self._first, tighter, other, self._dense, bars, self._sizes)
 
-    def _messages(self) -> list[str]:
-        runs = [run for run in (*self._tighter.values(), self._other, self._shorter) if run is not None]
-        done = [
-            run.name for run in runs if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
+    def _reruns(self) -> list[Again]:
+        return [run for run in (*self._tighter.values(), self._other, self._shorter) if run is not None]
+
+    def _completed(self) -> list[str]:
+        """Return the names of the completed reruns."""
+        return [
+            run.name
+            for run in self._reruns()
+            if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
         ]
-        found = [f"rerun with {' and '.join(done)}"] if done else []
+
+    def _messages(self) -> list[str]:
+        runs, done = self._reruns(), self._completed()
+        found = [f"{RERUN} {' and '.join(done)}"] if done else []
         if self._exact:
-            found = ["kinematic: positions are exact up to rounding; the error bars are those of sampling"]
+            found = [KINEMATIC]
         found += [f"{run.name}: {run.obstacle}" for run in runs if run.obstacle]
         found += [f"{run.name}, not counted: {run.blind}" for run in runs if run.blind]
         if self._other is not None and self._other.remark:

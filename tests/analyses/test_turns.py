@@ -1,5 +1,6 @@
 """Full turns of angles at the start, in welds, bushings and beams, with drives, in stages and after restarts."""
 
+import json
 import math
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import spatial
+from stiffmbs.elements.spatial.orientation import matrix, product, unit_quaternion
 
 TURN = 2 * math.pi
 
@@ -91,6 +93,39 @@ run: {duration: 0.01}
     for found in (read(text, turns=turns), spatial.in_space(read(text, turns=turns))):
         solution = stiffmbs.run(found)
         assert solution["m.torque" if "m.torque" in solution else "m.tz"][0] == pytest.approx(-10)
+
+
+HALF_A_TURN = """
+bodies: {a: {mass: 1, inertia: 0.1, angle: FIRST}, b: {mass: 1, inertia: 0.2, angle: SECOND}}
+forces: {m: {type: bushing, i: a, j: b, stiffness: [1000, 1000, 50]}}
+run: {duration: 0.001, points: 2}
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [(0, 180), (180, 0), (10, -170), *(pytest.param(0, b, marks=pytest.mark.long) for b in (-180, 540))]
+)  # fmt: skip
+def test_a_bushing_at_half_a_turn_has_the_same_torque_in_plane_and_space(first, second):
+    plane = read(HALF_A_TURN, first=f"{first} deg", second=f"{second} deg")
+    assert stiffmbs.run(plane)["m.torque"][0] == pytest.approx(-50 * math.pi)
+    assert stiffmbs.run(spatial.in_space(plane))["m.tz"][0] == pytest.approx(-50 * math.pi)
+
+
+@pytest.mark.parametrize("turned", ["i", "j"])
+@pytest.mark.parametrize("axis", [(0, 0, 1), (0, 0.8, -0.6), (-0.6, 0.8, 0), (-1, 0, 0)])
+def test_half_a_turn_in_space_is_positive_about_z_or_else_about_y_or_x(axis, turned):
+    """In an oblique pose, in which the cosine of half the angle is not 0, but rounding."""
+    poses = dict.fromkeys("ij", unit_quaternion((0.5, -0.5, 0.1, 0.7)))
+    poses[turned] = product(poses[turned], (0, *axis))
+    bodies = {k: {"mass": 1, "inertia": [0.1, 0.1, 0.1], "orientation": list(pose)} for k, pose in poses.items()}
+    connection = {"type": "bushing", "i": "i", "j": "j", "stiffness": [1, 1, 1, 50, 50, 50]}
+    scene = stiffmbs.read_scene(json.dumps({"dimensions": 3, "bodies": bodies, "forces": {"m": connection}}))
+    solution = stiffmbs.run(scene, duration=0.001, points=2)
+    sense = math.copysign(1, next(part for part in reversed(axis) if part))
+    found = [solution[f"m.t{k}"][0] for k in "xyz"]
+    in_axes_of_j = matrix(poses["j"]).T @ found
+    assert not solution.notes
+    np.testing.assert_allclose(in_axes_of_j, -50 * math.pi * sense * np.array(axis), atol=1e-9)
 
 
 TURNING = """

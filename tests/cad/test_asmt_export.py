@@ -1,11 +1,14 @@
 """Scenes written as assemblies for FreeCAD's solver, and read again."""
 
+import re
+
 import numpy as np
 import pytest
 
 import stiffmbs
 from stiffmbs.cad.load import load_cad
 from stiffmbs.cad.ondsel.write import written_assembly
+from stiffmbs.errors import InputError
 from stiffmbs.model.read_scene import read_scene
 
 SCENE = """
@@ -47,6 +50,52 @@ def test_a_scene_is_the_same_after_a_file(tmp_path):
                 other[f"{body}.{what}"], one[f"{body}.{what}"], atol=1e-7, err_msg=f"{body}.{what}"
             )
     np.testing.assert_allclose(other["hinge.fx"], one["hinge.fx"], atol=1e-5)
+
+
+PENDULUM = """
+dimensions: 3
+gravity: [0, -9.81, 0]
+bodies: {b: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}}
+joints: {j: {type: revolute, i: {body: b, point: [-1, 0, 0]}, j: ground}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("added", "said"),
+    [
+        ("start: equilibrium", "start (describe the bodies in the pose of the start, and use start: described)"),
+        ("start: settled", "start (describe"),
+        ("at_start: {held: {type: drive, joint: j, position: 0.2}}", "at_start (describe bodies in the pose"),
+        ("stages: [{run: {duration: 1}}, {run: {duration: 2}}]", "stages (write each stage as a scene of its own)"),
+    ],
+)
+def test_a_start_and_stages_are_refused_with_a_remedy(added, said):
+    with pytest.raises(InputError, match=re.escape(f"rig.yaml: an .asmt file cannot contain {said}")):
+        written_assembly(read_scene(PENDULUM + added), "rig.yaml")
+
+
+def test_an_offset_of_a_thread_is_refused():
+    with pytest.raises(InputError, match=r"cannot contain joint\.offset of spindle"):
+        written_assembly(read_scene(SCENE.replace("pitch: 0.3141592653589793", "pitch: 0.3, offset: 0.1")))
+
+
+def test_fields_without_an_effect_on_the_motion_are_left_out_with_a_note():
+    added = "name: swing\nnotes: [of a clock]\nrun: {duration: 1, points: steps, rtol: 1e-8}"
+    text = PENDULUM.replace("inertia:", "open: [omega], geometry: [{type: sphere, radius: 0.1}], inertia:") + added
+    notes = " ".join(written_assembly(read_scene(text)).notes)
+    for name in ("name", "notes", "body open of b", "body geometry of b", "run points", "run rtol"):
+        assert name in notes
+
+
+@pytest.mark.long
+def test_a_run_that_starts_later_is_written_with_its_time(tmp_path):
+    driven = PENDULUM.replace("ground}}", "ground}, m: {type: drive, joint: j, position: 0.5*t*t}}")
+    scene = read_scene(driven + "run: {start: 1, duration: 0.5, output: 0.1, rtol: 1e-9}")
+    path = tmp_path / "rig.asmt"
+    path.write_text(written_assembly(scene).text)
+    one, other = stiffmbs.run(scene), stiffmbs.run(load_cad(path), rtol=1e-9)
+    np.testing.assert_allclose(other.t, one.t - 1)
+    np.testing.assert_allclose(other["b.wz"], one["b.wz"], atol=1e-7)
 
 
 def test_a_law_that_the_solver_cannot_read_is_not_written():

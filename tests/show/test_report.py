@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from stiffmbs.commands.main import main
+from stiffmbs.verification import verify
 
 from ..conftest import EXAMPLES
 
@@ -91,6 +92,27 @@ def test_a_run_is_not_verified_where_one_says_so(page_of):
     page = page_of("bar_pendulum", "--no-verify", "--set", "run.errors=false")
     assert "not verified: peaks have no error bars" in page.texts
     assert not any("\u00b1" in text for text in page.texts)
+
+
+@pytest.mark.parametrize("completed", [0, 1])
+def test_an_interrupted_verification_claims_no_agreement(completed, tmp_path, monkeypatch):
+    """Peaks have error bars if a rerun was completed before."""
+    reruns = iter([verify.solve_again] * completed)
+
+    def interrupted(*arguments):
+        rerun = next(reruns, None)
+        if rerun is None:
+            raise KeyboardInterrupt
+        return rerun(*arguments)
+
+    monkeypatch.setattr(verify, "solve_again", interrupted)
+    path = tmp_path / "page.html"
+    result = stiffmbs("report", EXAMPLES / "bar_pendulum.yaml", "-o", path, "--duration", "0.1")
+    assert result.exit_code == 1, result.output
+    text = "\n".join(Page(path.read_text(encoding="utf-8")).texts)
+    assert "verification interrupted by the user" in text
+    assert "reruns agree" not in text
+    assert ("rerun with" in text) == ("\u00b1" in text) == bool(completed)
 
 
 @pytest.mark.long

@@ -77,10 +77,7 @@ def written_dataset(scene: SpatialData, source: str = "scene") -> WrittenDataset
     commands: list[str] = []
     if isinstance(scene, Scene):
         commands = _commands(scene, model, recording.of(scene.run, "run"), refused)
-    refused += [
-        f"{f'{kind}.' if kind else ''}{name}{f' of {owner}' if owner else ''}{_hint(name)}"
-        for kind, owner, name in recording.refused()
-    ]
+    refused += recording.refusals(REMEDIES)
     if refused:
         raise InputError(f"{source}: a dataset has no statement for " + "; ".join(refused))
     requests = [f"not written (a dataset has no function for them): requests {listed(lost)}"] if lost else []
@@ -94,10 +91,6 @@ def written_dataset(scene: SpatialData, source: str = "scene") -> WrittenDataset
 
 def _text(lines: list[str]) -> str:
     return in_ascii("\n".join(lines)) + "\n"
-
-
-def _hint(name: str) -> str:
-    return f" ({REMEDIES[name]})" if name in REMEDIES else ""
 
 
 def _statements(scene: Any, refused: list[str]) -> tuple[list[str], list[str]]:
@@ -133,7 +126,7 @@ def _commands(scene: Scene, recorded: Any, run: Any, refused: list[str]) -> list
     if scene.start == EQUILIBRIUM:
         written(recorded, "start")
     spacing = run.output or run.duration / (DEFAULT_POINTS - 1)
-    steps = run.points - 1 if isinstance(run.points, int) else round(run.duration / spacing)
+    steps = run.points - 1 if isinstance(scene.run.points, int) else round(run.duration / spacing)
     longest = [f"HMAX = {number(run.max_step)}"] if run.max_step else []
     return [
         f"INTEGRATOR/{', '.join([f'ERROR = {number(run.rtol)}', *longest])}",

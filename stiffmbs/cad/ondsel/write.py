@@ -11,9 +11,11 @@ import numpy as np
 
 from ...elements.spatial.orientation import matrix
 from ...errors import InputError
-from ...model.settings import DEFAULT_POINTS
+from ...model.scene import Scene
+from ...model.settings import DEFAULT_POINTS, RunSettings
 from ...model.spatial_model import SpatialData
 from ...reading.files.quoted import listed
+from ...reading.files.written_fields import Recording, written
 from ...reading.formula.formula import Formula
 from ...reading.formula.text import parse
 from ...reading.marker import GROUND
@@ -31,6 +33,25 @@ ON_J = {"point_on_line": "PointInLineJoint", "point_on_plane": "PointInPlaneJoin
 ROD = "SphSphJoint"
 WITHOUT = ("forces", "states", "inputs", "requests", "variables")
 """Sections of a scene that the file cannot contain."""
+IN_LAWS = ("parameters", "tables", "roads")
+"""Sections of a scene of which only what drives, forces and other entries use could be written."""
+_IN_VIEW, _SOLVER = "the file has nothing of this kind; the motion is the same", "settings of this package"
+LEFT_OUT = {
+    "": dict.fromkeys(("name", "figure", "units", "notes", "vehicle", "path"), _IN_VIEW),
+    "body": {
+        "geometry": _IN_VIEW, "any_moments": _IN_VIEW, "markers": "no joint in the file refers to them",
+        "open": "joints and motions change all velocities at the start",
+    },
+    "joint": {"turns": _IN_VIEW},
+    "run": {"*": _SOLVER},
+}  # fmt: skip
+"""Reasons why fields are left out of the file with a note, by kind of their owner; all others are refused."""
+REMEDIES = {
+    "at_start": "describe bodies in the pose and with the velocities that it gives, and remove it",
+    "stages": "write each stage as a scene of its own",
+    "start": "describe the bodies in the pose of the start, and use start: described",
+    "offset": "describe the bodies in the pose that the offset gives, and remove it",
+}
 OF_LAWS = {value: key for key, value in FUNCTIONS.items()} | {"t": "time", "pi": "pi"}
 OPERATIONS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.USub)
 
@@ -46,30 +67,39 @@ class WrittenAssembly:
 def written_assembly(scene: SpatialData, source: str = "scene") -> WrittenAssembly:
     """Return a spatial scene as an .asmt file in SI units; what it cannot contain is in the notes.
 
-    `source`: name of the scene in messages. Raises InputError for a scene with bodies that are not rigid.
+    `source`: name of the scene in messages. Raises InputError for a scene with bodies that are not rigid, or with
+    fields on which the motion depends and that the file cannot contain; names all of them.
     """
     if flexible := [name for name, body in scene.bodies.items() if not body.rigid]:
         raise InputError(
             f"{source}: found the flexible bodies {listed(flexible)}, expected rigid ones in an .asmt file"
         )
-    writer = _Writer(scene)
+    recording = Recording(LEFT_OUT)
+    sections = {"bodies": recording.section(scene.bodies, "body"), "joints": recording.section(scene.joints, "joint")}
+    model = recording.of(scene.model_copy(update=sections), "")
+    written(model, "dimensions", "markers", "run", *WITHOUT, *IN_LAWS)
+    run = scene.run if isinstance(scene, Scene) else RunSettings(duration=1.0)
+    equally_spaced = ("points",) if isinstance(run.points, int) else ()
+    written(recording.of(run, "run"), "start", "duration", "output", *equally_spaced)
+    writer = _Writer(model, run)
     lines = [*writer.assembly()]
+    if refused := recording.refusals(REMEDIES):
+        raise InputError(f"{source}: an .asmt file cannot contain {'; '.join(refused)}")
     lost = [
         f"{section[:-1] if section != 'variables' else 'variable'} {listed(list(found))}"
         for section in WITHOUT
         if (found := getattr(scene, section, None))
     ]
     lost += [f"joint {name} ({reason})" for name, reason in writer.lost.items()]
-    return WrittenAssembly(
-        "\n".join(lines) + "\n", tuple(f"not written, because an .asmt file cannot contain it: {one}" for one in lost)
-    )
+    notes = [f"not written, because an .asmt file cannot contain it: {one}" for one in lost]
+    return WrittenAssembly("\n".join(lines) + "\n", (*notes, *recording.notes()))
 
 
 class _Writer:
-    """Lines of one scene; `lost`: reasons why joints are not written."""
+    """Lines of one scene and its run; `lost`: reasons why joints are not written."""
 
-    def __init__(self, scene: SpatialData) -> None:
-        self.scene = scene
+    def __init__(self, scene: Any, run: RunSettings) -> None:
+        self.scene, self.run = scene, run
         self.lost: dict[str, str] = {}
         self.frames = {
             name: Frame(np.array(body.position), matrix(body.orientation)) for name, body in scene.bodies.items()
@@ -97,16 +127,14 @@ class _Writer:
         yield from ("\t\tGeneralConstraintSets", "\tForceTorques")
         yield from _row(1, "ConstantGravity", self.scene.gravity)
         yield "\tSimulationParameters"
-        run = getattr(self.scene, "run", None)
-        end = run.duration if run is not None else 1.0
-        points = run.points if run is not None and isinstance(run.points, int) else DEFAULT_POINTS
-        step = (run.output if run is not None else None) or end / (points - 1)
+        run = self.run
+        points = run.points if isinstance(run.points, int) else DEFAULT_POINTS
         for key, value in (
-            ("tstart", 0.0),
-            ("tend", end),
+            ("tstart", run.start),
+            ("tend", run.start + run.duration),
             ("hmin", 1e-9),
-            ("hmax", end),
-            ("hout", step),
+            ("hmax", run.duration),
+            ("hout", run.output or run.duration / (points - 1)),
             ("errorTol", 1e-6),
         ):
             yield from _entry(2, key, repr(float(value)))
@@ -122,6 +150,7 @@ class _Writer:
             yield from _entry(2, key, word)
 
     def _part(self, name: str, body: Any) -> Iterator[str]:
+        written(body, "inertia")
         frame = self.frames[name]
         omega = frame.axes @ np.array(body.omega)
         centre = np.array(body.center_of_mass)
@@ -159,6 +188,7 @@ class _Writer:
     def _joint(self, name: str, joint: Any) -> Iterator[str]:
         kind = joint.kind
         if kind in KINDS and not (kind == "constant_velocity" and joint.at_initial_pose(self.scene).axes == "same"):
+            written(joint, "axes")
             fields = {"offset": 0.0} if kind == "planar" else {"pitch": joint.pitch} if kind == "thread" else {}
             yield from self._between(name, KINDS[kind], joint.i, joint.j, fields)
         elif kind in ON_J:
@@ -172,6 +202,7 @@ class _Writer:
             yield from self._between(f"{name}_thread", "ScrewJoint", joint.i, joint.j, {"pitch": joint.pitch})
         else:
             self.lost[name] = f"kind {kind}"
+            written(joint)
 
     def _between(self, name: str, kind: str, i: Any, j: Any, fields: dict[str, float]) -> Iterator[str]:
         yield f"\t\t\t{kind}"
@@ -201,6 +232,7 @@ class _Writer:
         law = self._law(drive.prescribed_position)
         if joint is None or not motion or law is None or KINDS.get(joint.kind, "") not in COORDINATES[motion]:
             self.lost[name] = "its coordinate or its law"
+            written(drive)
             return
         yield f"\t\t\t{motion}"
         yield from _entry(4, "Name", name)

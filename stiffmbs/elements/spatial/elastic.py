@@ -12,7 +12,7 @@ from ...reading.files.quoted import written
 from ...reading.units import si
 from ..element import Expr, Force, Matrix, Symbolic
 from ..forces.elastic_matrix import C, Cc, Ct, K, Kc, Kt, Rows, check_symmetric, from_diagonal, times
-from ..turns import WithinHalfATurn
+from ..turns import INITIAL_COUNT, WithinHalfATurn
 from .marker import Marker
 from .wrench import Pairs, along_axes, velocity
 
@@ -86,7 +86,7 @@ class Elastic(WithinHalfATurn, Force):
         "found its bodies rotated by three quarters of a revolution relative to each other (an axis about which they are free: "
         "tilted by 135 degrees), expected less; a vibration that grows, as shimmy, is shown by 'stiffmbs modes' with an earlier --at"
     )
-    doubtful = math.sqrt(0.5)  # half a turn, or a tilt of 90 degrees
+    doubtful = math.sqrt(0.5) - INITIAL_COUNT / 2  # half a turn up to rounding, or a tilt of 90 degrees
     doubt = (
         "rotates its bodies by more than half a revolution relative to each other (an axis about which they are free: tilts it by more than a "
         "right angle)"

@@ -77,6 +77,14 @@ class Recording:
             )
         ]
 
+    def refusals(self, remedies: Mapping[str, str]) -> list[str]:
+        """Return the words of a message on each refused field. `remedies`: instructions by the name of a field."""
+        return [
+            f"{f'{kind}.' if kind else ''}{name}{f' of {owner}' if owner else ''}"
+            f"{f' ({remedies[name]})' if name in remedies else ''}"
+            for kind, owner, name in self.refused()
+        ]
+
 
 def written(entry: Any, *names: str) -> None:
     """Record fields that a writer does not read itself, but through a method; all of them if no names are given."""

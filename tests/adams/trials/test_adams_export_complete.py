@@ -63,6 +63,7 @@ def test_what_would_change_the_motion_is_refused_by_name(more, named):
         ("figure: {y: [b.x]}", "the motion is the same.*figure"),
         ("notes: [made by hand]", "the motion is the same.*notes"),
         ("run: {solver: radau, max_order: 2}", "settings of this package.*run solver, run max_order"),
+        ("run: {points: steps}", "settings of this package.*run points"),
         ("requests: {e: energy.total}", "requests e"),
     ],
 )
