@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +25,7 @@ from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_i
 from ..solve.error_control.relaxation import DRIFT, Drift, drift_of, drifts
 from ..solve.settings import traits_of
 from ..solve.trajectory import Outcome, Trajectory
+from .solved_again import velocities_again
 
 if TYPE_CHECKING:
     from ..compile.system import System
@@ -83,9 +85,11 @@ def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> C
     """Compute a job until no checked instant contradicts its steps; return it with a note on missed events."""
     found, missed = _checked(job, compute(job)), list[Overlooked]()
     left = _overlooked(job, found)
-    shortens = job.dynamics.system.has_functions and "max_step" in traits_of(job.settings).reads
+    may_shorten = job.dynamics.system.has_functions and "max_step" in traits_of(job.settings).reads
+    shortens = False
     while left is not None and len(missed) < ROUNDS and found.trajectory.outcome is not Outcome.INTERRUPTED:
         missed.append(left)
+        shortens = may_shorten and _longest_step(missed) < math.inf  # found at output times alone, it has no duration
         other = _shortened(job, missed) if shortens else _restarted(job, missed)
         if other is None or (again := _checked(job, compute(other))).trajectory.outcome is Outcome.INTERRUPTED:
             break
@@ -129,10 +133,16 @@ def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
         return None
     whole_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.whole_steps
     found = [
-        overlooked(job.dynamics, computed.rows, trajectory, job.settings),
+        overlooked(job.dynamics, computed.rows, trajectory, job.settings, partial(_again, computed)),
         *(overlooked_in_whole_steps(steps, job.settings, float(trajectory.t[-1])) for steps in whole_steps),
     ]
     return together([each for each in found if each is not None])
+
+
+def _again(computed: Computed, k: int) -> np.ndarray | None:
+    """Return the velocities at the output row after row `k` from a solution that starts at row `k`, or None."""
+    rows, job = computed.rows, computed.job.of_one_solver(computed.trajectory)
+    return velocities_again(job, rows.t[k : k + 2], rows.q[k], rows.u[k])
 
 
 def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Computed:
