@@ -70,10 +70,10 @@ def test_a_function_without_narrow_features_is_left_alone():
     assert not told(stiffmbs.run(model, duration=1.0, points=2))
 
 
-@pytest.mark.parametrize("how", SOLVERS[:3], ids=lambda how: how.get("scheme", how["solver"]))
+@pytest.mark.parametrize("how", [{"solver": "bdf"}, {"solver": "radau"}], ids=lambda how: how["solver"])
 def test_a_function_that_output_instants_alone_meet(how):
     """The repeated run had max_step inf, which was refused; no sample between outputs meets its force."""
-    found = stiffmbs.run(ball(1e-5, (5.0,)), duration=1.0, points=41, rtol=1e-5, errors=False, **how)
+    found = stiffmbs.run(ball(1e-5, (5.0,)), duration=1.0, points=41, rtol=1e-4, errors=False, **how)
     assert "missed 'push' at t = 0.5 s" in told(found)[0] and "repeated with a restart" in told(found)[0]
     assert found["ball.vx"][-1] == pytest.approx(behind(1e-5), abs=2e-3)
 
