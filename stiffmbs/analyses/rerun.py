@@ -20,17 +20,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..dynamics.dynamics import OutputRows
+from ..errors import SolverError
 from ..notes import Note, NoteKind, Severity
 from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_in_whole_steps, together, unchecked_from
 from ..solve.error_control.relaxation import DRIFT, Drift, drift_of, drifts
+from ..solve.events.restart import restarted
+from ..solve.missing_rows import reported
 from ..solve.settings import traits_of
-from ..solve.trajectory import Outcome, Trajectory
-from .solved_again import velocities_again
+from ..solve.trajectory import Grid, Outcome, Trajectory
+from .job import Job, up_to_a_fault
 
 if TYPE_CHECKING:
     from ..compile.system import System
     from ..model.settings import RunSettings
-    from .job import Job
 
 ROUNDS, STARTS = 3, 1000
 """Number of reruns, and of restarts in a rerun, at most."""
@@ -143,6 +145,26 @@ def _again(computed: Computed, k: int) -> np.ndarray | None:
     """Return the velocities at the output row after row `k` from a solution that starts at row `k`, or None."""
     rows, job = computed.rows, computed.job.of_one_solver(computed.trajectory)
     return velocities_again(job, rows.t[k : k + 2], rows.q[k], rows.u[k])
+
+
+def velocities_again(job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray | None:
+    """Return the velocities at the second of two output times, s, from a solution that starts at the first one.
+
+    `q`, `u` of shapes (n_q,), (n_u,): state at the first time. None if the solution does not reach the second time.
+    """
+    try:
+        start = restarted(job.dynamics, t[0], q, u, project=False)
+        subsystems = tuple(
+            each._replace(start=restarted(each.dynamics, t[0], *each.part.reduced(q, u), project=False))
+            for each in job.subsystems
+        )
+        grid = Grid(float(t[0]), float(t[1]), t)
+        interval = replace(job, grid=grid, start=start, subsystems=subsystems, monitor=None)
+        found = up_to_a_fault(job.dynamics.system, interval.integrate())
+    except SolverError:
+        return None
+    rows, _ = reported(job.dynamics, found, job.on_constraints, job.settings.rtol)
+    return rows.u[-1] if found.outcome is Outcome.DONE and len(rows.t) == len(t) else None
 
 
 def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Computed:
