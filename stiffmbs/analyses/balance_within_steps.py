@@ -11,7 +11,6 @@ from numpy.polynomial import legendre
 from ..dynamics.dynamics import OutputRows
 from ..results.energy_balance import Balance, balance_of_steps, energy_balance
 from ..results.energy_balance_notes import PER_TOLERANCE, is_broken
-from ..solve import SOLVERS
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.missing_rows import reported
 from ..solve.sampling import restarts
@@ -37,7 +36,7 @@ def balance_within_steps(job: Job, trajectory: Trajectory, rows: OutputRows) -> 
     Other numbers of nodes are tried while it is broken. If the first part of a long run is not, the balance at output times is
     returned with the energy that this part exchanges.
     """
-    found, job = None, _of_one_solver(job, trajectory)
+    found, job = None, job.of_one_solver(trajectory)
     for nodes in NODES:
         steps = _steps(job, trajectory, rows, nodes)
         again: OutputRows | None = _at_nodes(job, steps, nodes) if len(steps) else None
@@ -55,13 +54,6 @@ def balance_within_steps(job: Job, trajectory: Trajectory, rows: OutputRows) -> 
             return replace(first, scale=max(first.scale, balance.scale)), rows
         found = balance, again
     return found
-
-
-def _of_one_solver(job: Job, trajectory: Trajectory) -> Job:
-    """Return a job with the solver that `auto` chose for the whole run; for a part of the run it may choose another one."""
-    solver = trajectory.solver
-    chosen = job.settings.solver == "auto" and solver in SOLVERS
-    return job.varied({"solver": solver}) if chosen else job
 
 
 def _steps(job: Job, trajectory: Trajectory, rows: OutputRows, nodes: int) -> np.ndarray:

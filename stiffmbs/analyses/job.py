@@ -166,6 +166,12 @@ class Job:
         grid = self.grid if times is None else replace(self.grid, end=float(times[-1]), times=times)
         return replace(self, settings=changed(self.settings, changes) if changes else self.settings, grid=grid)
 
+    def of_one_solver(self, trajectory: Trajectory) -> Job:
+        """Return a job with the solver that `auto` chose for the whole run; for a part of the run it may choose another one."""
+        solver = trajectory.solver
+        chosen = self.settings.solver == "auto" and solver in SOLVERS
+        return self.varied({"solver": solver}) if chosen else self
+
     def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
         """Integrate the presolved model from its start; see `stiffmbs.solve.trajectory`."""
         solve, watch = SOLVERS[self.settings.solver].solve, watch or unwatched

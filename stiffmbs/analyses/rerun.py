@@ -14,21 +14,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..dynamics.dynamics import OutputRows
+from ..errors import SolverError
 from ..notes import Note, NoteKind, Severity
 from ..run_checks.overlooked import MISSED, Overlooked, overlooked, overlooked_in_whole_steps, together, unchecked_from
 from ..solve.error_control.relaxation import DRIFT, Drift, drift_of, drifts
+from ..solve.events.restart import restarted
+from ..solve.missing_rows import reported
 from ..solve.settings import traits_of
-from ..solve.trajectory import Outcome, Trajectory
+from ..solve.trajectory import Grid, Outcome, Trajectory
+from .job import Job, up_to_a_fault
 
 if TYPE_CHECKING:
     from ..compile.system import System
     from ..model.settings import RunSettings
-    from .job import Job
 
 ROUNDS, STARTS = 3, 1000
 """Number of reruns, and of restarts in a rerun, at most."""
@@ -83,9 +87,11 @@ def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> C
     """Compute a job until no checked instant contradicts its steps; return it with a note on missed events."""
     found, missed = _checked(job, compute(job)), list[Overlooked]()
     left = _overlooked(job, found)
-    shortens = job.dynamics.system.has_functions and "max_step" in traits_of(job.settings).reads
+    may_shorten = job.dynamics.system.has_functions and "max_step" in traits_of(job.settings).reads
+    shortens = False
     while left is not None and len(missed) < ROUNDS and found.trajectory.outcome is not Outcome.INTERRUPTED:
         missed.append(left)
+        shortens = may_shorten and _longest_step(missed) < math.inf  # found at output times alone, it has no duration
         other = _shortened(job, missed) if shortens else _restarted(job, missed)
         if other is None or (again := _checked(job, compute(other))).trajectory.outcome is Outcome.INTERRUPTED:
             break
@@ -129,10 +135,36 @@ def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
         return None
     whole_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.whole_steps
     found = [
-        overlooked(job.dynamics, computed.rows, trajectory, job.settings),
+        overlooked(job.dynamics, computed.rows, trajectory, job.settings, partial(_again, computed)),
         *(overlooked_in_whole_steps(steps, job.settings, float(trajectory.t[-1])) for steps in whole_steps),
     ]
     return together([each for each in found if each is not None])
+
+
+def _again(computed: Computed, k: int) -> np.ndarray | None:
+    """Return the velocities at the output row after row `k` from a solution that starts at row `k`, or None."""
+    rows, job = computed.rows, computed.job.of_one_solver(computed.trajectory)
+    return velocities_again(job, rows.t[k : k + 2], rows.q[k], rows.u[k])
+
+
+def velocities_again(job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray | None:
+    """Return the velocities at the second of two output times, s, from a solution that starts at the first one.
+
+    `q`, `u` of shapes (n_q,), (n_u,): state at the first time. None if the solution does not reach the second time.
+    """
+    try:
+        start = restarted(job.dynamics, t[0], q, u, project=False)
+        subsystems = tuple(
+            each._replace(start=restarted(each.dynamics, t[0], *each.part.reduced(q, u), project=False))
+            for each in job.subsystems
+        )
+        grid = Grid(float(t[0]), float(t[1]), t)
+        interval = replace(job, grid=grid, start=start, subsystems=subsystems, monitor=None)
+        found = up_to_a_fault(job.dynamics.system, interval.integrate())
+    except SolverError:
+        return None
+    rows, _ = reported(job.dynamics, found, job.on_constraints, job.settings.rtol)
+    return rows.u[-1] if found.outcome is Outcome.DONE and len(rows.t) == len(t) else None
 
 
 def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Computed:

@@ -3,14 +3,15 @@
 The integrator has a polynomial in each step, and the block system gives accelerations at every output time. Between two
 output times in one step, the mean of their accelerations times the interval is the velocity change. For smooth motions
 the difference is small, and errors within the tolerance cause a limited number of tolerances. A force that acts within
-the step only, and at an output time, exceeds both. Velocities that joints and drives prescribe follow no force, so that
-differences in them are left out.
+the step only, and at an output time, exceeds both. So does half a period of a vibration within one step of a high order:
+the interval is solved again from its first output time, and only if the velocities at its end differ, an event was missed.
+Velocities that joints and drives prescribe follow no force, so that differences in them are left out.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,6 +33,9 @@ MISSED = (
     "solution of the step"
 )
 """Text of notes on missed events."""
+
+SolvedAgain = Callable[[int], np.ndarray | None]
+"""Solves the interval after an output row again, from the state of this row; returns the velocities at its end or None."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,7 @@ def together(found: Sequence[Overlooked]) -> Overlooked | None:
 
 
 def overlooked(
-    dynamics: Dynamics, rows: OutputRows, trajectory: Trajectory, settings: RunSettings
+    dynamics: Dynamics, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, again: SolvedAgain
 ) -> Overlooked | None:
     """Return the events that the steps of a run missed; None if there are none or no force law has breakpoints."""
     system, steps = dynamics.system, trajectory.step_times
@@ -91,6 +95,8 @@ def overlooked(
     off = _free_part(dynamics, rows, pairs, _contradictions(rows, pairs))
     over_step = np.abs(off) * step[:, None] / (RUN_CHECKS.overlooked_tolerances * tolerance)
     found = np.flatnonzero((over_step > 1).any(axis=1))
+    if len(found) <= RUN_CHECKS.most_instants:
+        found = found[[_ends_elsewhere(rows, int(pairs[k]), tolerance[k], again) for k in found]]
     if not len(found):
         return None
     _, first = np.unique(number[found], return_index=True)
@@ -99,6 +105,12 @@ def overlooked(
     velocity, peak = system.name_of(int(np.nanargmax(over_step[k])), system.of_body.velocities), int(at[0])
     around = max(peak - 1, 0), min(peak + 1, len(rows.t) - 1)
     return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, peak, around))
+
+
+def _ends_elsewhere(rows: OutputRows, k: int, tolerance: np.ndarray, again: SolvedAgain) -> bool:
+    """Return True if a solution from row `k` on has velocities at the next row that differ by more than the tolerance."""
+    found = again(k)
+    return found is None or not (np.abs(found - rows.u[k + 1]) <= tolerance).all()
 
 
 def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray, least: np.ndarray) -> np.ndarray:

@@ -253,13 +253,13 @@ def within_steps(record):
     """Record the nodes of the quadratures of a balance that stays broken, or the steps that it examines."""
     rows = Record(t=np.array([0.0, 1.0]), values=np.zeros((1, 1)))
     system = Record(n_q=999, n_u=0, keeps_energy=False, sampling=np.empty((0, 2)), sampled=np.empty(0, dtype=bool))
-    job = Record(dynamics=Record(system=system), settings=None, grid=Record(aside=0.0))
+    job = Record(dynamics=Record(system=system), settings=None, grid=Record(aside=0.0), of_one_solver=lambda _: job)
     trajectory = Record(step_times=np.linspace(0.0, 1.0, 10_001))
     if record == "steps":
         return len(balance_within_steps._steps(job, trajectory, rows, 5))
     found = []
     changes = {
-        "_of_one_solver": lambda job, _: job, "_steps": lambda *_: np.array([[0.0, 1.0]]), "_at_nodes": lambda *asked: found.append(asked[2]) or rows,
+        "_steps": lambda *_: np.array([[0.0, 1.0]]), "_at_nodes": lambda *asked: found.append(asked[2]) or rows,
         "balance_of_steps": lambda *_: None, "is_broken": lambda *_: True, "_weights_and_jumps": lambda *_: (None, None),
     }  # fmt: skip
     with patch.multiple(balance_within_steps, **changes):

@@ -200,7 +200,8 @@ def velocity_within_tolerances():
 
     def accepted(tolerances):
         with patch.multiple(overlooked, absolute_tolerances=lambda *_: np.array([1e-6]), acting=lambda *_: ""):
-            found = overlooked.overlooked(dynamics, rows_of(1e-6 * tolerances, 0.0), Record(step_times=STEPS), SETTINGS)
+            rows, steps = rows_of(1e-6 * tolerances, 0.0), Record(step_times=STEPS)
+            found = overlooked.overlooked(dynamics, rows, steps, SETTINGS, nothing)
         return found is None
 
     return count_while(accepted, DOUBLES)

@@ -70,6 +70,27 @@ def test_a_function_without_narrow_features_is_left_alone():
     assert not told(stiffmbs.run(model, duration=1.0, points=2))
 
 
+@pytest.mark.parametrize("how", [{"solver": "bdf"}, {"solver": "radau"}], ids=lambda how: how["solver"])
+def test_a_function_that_output_instants_alone_meet(how):
+    """The repeated run had max_step inf, which was refused; no sample between outputs meets its force."""
+    found = stiffmbs.run(ball(1e-5, (5.0,)), duration=1.0, points=41, rtol=1e-4, errors=False, **how)
+    assert "missed 'push' at t = 0.5 s" in told(found)[0] and "repeated with a restart" in told(found)[0]
+    assert found["ball.vx"][-1] == pytest.approx(behind(1e-5), abs=2e-3)
+
+
+@pytest.mark.parametrize("stiffness", [50, 90])
+def test_half_a_period_within_a_step_is_not_missed(stiffness):
+    """The mean of two accelerations is not the mean rate there, so that runs were repeated with a restart."""
+    model = stiffmbs.Model(gravity=(0, 0))
+    q, u = -0.004961717094919651, 0.3500491410465814
+    model.add("b", stiffmbs.Body(mass=2, inertia=1, position=(q, 0), velocity=(u, 0)))
+    model.add("r", stiffmbs.Prismatic(i="b", j="ground"))
+    law = f"-{stiffness}*b.x - 0.4*b.vx + 3.0*sin(3.3*t)"
+    model.add("s", stiffmbs.AppliedForce(i="b", force=(law, 0)))
+    found = stiffmbs.run(model, duration=1000, points=2001, solver="radau", rtol=1e-6, errors=False)
+    assert not told(found)
+
+
 def test_motion_within_steps_is_that_of_their_polynomial():
     part = np.array([0.1, 0.5, 0.93])
     t = 2.0 + 0.5 * WHOLE

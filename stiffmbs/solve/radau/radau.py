@@ -87,7 +87,10 @@ def driven_by_radau(dynamics: Dynamics, settings: RunSettings, control: ErrorCon
         stages = None if settings.stages == "auto" else settings.stages
         of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
         of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)
-        rounding = min(NEWTON.loosest, float(np.sqrt(NEWTON.precision / settings.rtol)))  # small remainders drown in it
+        coordinates = max(1.0, dynamics.system.size)  # joints transmit their rounding to unknowns near zero
+        rounding = min(
+            NEWTON.loosest, float(np.sqrt(NEWTON.precision * coordinates / settings.rtol))
+        )  # hides remainders
         parameters = replace(parameters_of(RADAU), remainder=max(RADAU.remainder, rounding))
         formula = Radau(equations, matrix, dynamics.state, stages, of_steps, parameters)
         return NativeEngine(equations, dynamics, matrix, settings, control, formula)

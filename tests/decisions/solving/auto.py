@@ -45,7 +45,7 @@ def switches_in_a_note():
 
 def mechanism():
     """Return dynamics of 100 unknowns and 6000 operations."""
-    return Record(kept=lambda *_: 100, system=Record(n_operations=lambda _: 6000))
+    return Record(kept=lambda *_: 100, system=Record(n_operations=lambda _: 6000, size=1.0))
 
 
 def of_five_stages(name):

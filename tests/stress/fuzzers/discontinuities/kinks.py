@@ -240,7 +240,7 @@ class Chain:
                     return np.concatenate([y[len(free) :], accelerations(t, y, 0.0)[0]])
 
                 found = solve_ivp(
-                    rates, (begin, until), y, method="Radau", rtol=1e-10, atol=1e-12, t_eval=np.unique([*inside, until])
+                    rates, (begin, until), y, method="LSODA", rtol=1e-10, atol=1e-12, t_eval=np.unique([*inside, until])
                 )
                 states = dict(zip(found.t.tolist(), found.y.T, strict=True))
             for t in inside.tolist():
