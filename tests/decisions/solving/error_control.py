@@ -104,7 +104,11 @@ def corrections(ratio):
     """Return the number of corrections of a state that remains unbalanced."""
     sizes = iter(ratio ** np.arange(100))
     count = []
-    replaced = {"_corrected": lambda *_: count.append(1) or next(sizes), "_look": nothing, "_is_balanced": lambda *_: False}
+    replaced = {
+        "_corrected": lambda *_: count.append(1) or next(sizes),
+        "_look": nothing,
+        "_is_balanced": lambda *_: False,
+    }
     with interpreted(output_correction, **replaced):
         output_correction._remaining(Record(enough=0.0, factored=1.0), None, None, 0.0, False)
     return len(count)
