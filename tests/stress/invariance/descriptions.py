@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -108,7 +109,7 @@ def as_one_body(content: Content, rng: np.random.Generator) -> Change:
         with_vector(
             kept, first, ("vx", "vy", "vz"), vector(channels, first, ("vx", "vy", "vz")) + np.cross(spin, arm, axis=0)
         )
-        for key, body in _equations(rest, (first, second)).items():
+        for key, body in _equations(rest, (first, second), bodies).items():
             own = (centres[1] if body == second else one) - centre
             _about(kept, key, np.einsum("nij,j->in", axes_over_time(channels, first), own))
         return kept
@@ -149,13 +150,13 @@ def _composite(first: Content, masses: list[float], centres: list[np.ndarray], t
     return found | {"inertia": whole.tolist(), "position": position.tolist(), "velocity": velocity.tolist()}
 
 
-def _equations(joints: Content, pair: tuple[str, str]) -> dict[str, str]:
-    """Return the equations on one of two bodies, with its name."""
+def _equations(joints: Content, pair: tuple[str, str], bodies: Iterable[str]) -> dict[str, str]:
+    """Return the equations whose reactions are on one of two bodies, that which is named first, with its name."""
     found: dict[str, str] = {}
     for key, joint in joints.items():
         if joint["type"] in ("equation", "velocity_equation"):
-            named = [body for body in pair if re.search(rf"\b{re.escape(body)}\b", joint["zero"])]
-            found |= {key: named[0]} if len(named) == 1 else {}
+            first = next((name for name in re.findall(r"\w+", joint["zero"]) if name in bodies), "")
+            found |= {key: first} if first in pair else {}
     return found
 
 
