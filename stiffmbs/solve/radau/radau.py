@@ -88,10 +88,8 @@ def driven_by_radau(dynamics: Dynamics, settings: RunSettings, control: ErrorCon
         of_bdf = ImplicitCost.of(dynamics, 1e-3 * cost)
         of_steps = replace(of_bdf, residual=RESIDUAL * of_bdf.residual)
         coordinates = max(1.0, dynamics.system.size)  # joints transmit their rounding to unknowns near zero
-        rounding = min(
-            NEWTON.loosest, float(np.sqrt(NEWTON.precision * coordinates / settings.rtol))
-        )  # hides remainders
-        parameters = replace(parameters_of(RADAU), remainder=max(RADAU.remainder, rounding))
+        hidden = float(np.sqrt(NEWTON.precision * coordinates / settings.rtol))  # remainder that rounding hides
+        parameters = replace(parameters_of(RADAU), remainder=max(RADAU.remainder, min(NEWTON.loosest, hidden)))
         formula = Radau(equations, matrix, dynamics.state, stages, of_steps, parameters)
         return NativeEngine(equations, dynamics, matrix, settings, control, formula)
 
