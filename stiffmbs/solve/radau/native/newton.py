@@ -27,6 +27,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.solve.error_control.native.parameters import NEWTON
 from stiffmbs.solve.events.native.parameters import INDISTINCT
+from stiffmbs.solve.explicit.native.parameters import FIRST_STEP
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
 
@@ -191,14 +192,24 @@ def solved_real(x):
 
 
 @compiled
+def predicted(x, h):
+    """Return True if the polynomial of the last step predicts a step of length h.
+
+    There is none after a start. That of a step much shorter, cut off before an event, magnifies rounding: its degree is the
+    number of stages.
+    """
+    return h <= x.h_past * (1.0 / FIRST_STEP.part)
+
+
+@compiled
 def extrapolated(x, c, h):
     """Fill the stages from the polynomial of the last step, continued.
 
-    After a start, they are zero, as rates may belong to motions that decay at once; or follow from the rates if a step of
-    known length is taken.
+    Without one that predicts them, they are zero, as rates may belong to motions that decay at once; or follow from the
+    rates if a step of known length is taken.
     """
     n = x.n_all
-    if x.h_past == 0.0:
+    if not predicted(x, h):
         predicts = x.first > 0.0 and x.acting == 0
         for i in range(c.stages):
             z = shifted(x.z, i * n)

@@ -21,6 +21,7 @@ from stiffmbs.solve.radau.native.newton import (
     factored,
     iterated,
     most_iterations,
+    predicted,
     size_in_tolerances,
     stage_time,
     store_efforts,
@@ -301,7 +302,7 @@ def step(x):
         if not h > SMALLEST * abs(x.t):
             return ERROR_TEST_FAILED if x.rejected else NO_CONVERGENCE
         x.failures += 1
-        if not x.ahead or x.h_past > 0.0:  # a first step goes on from the iterates that failed
+        if not x.ahead or predicted(x, h):  # without a prediction, a step goes on from the iterates that failed
             extrapolated(x, c, h)
         if not _has_matrices(x, c, h):
             h *= x.after_failure
