@@ -8,7 +8,10 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Model, Prismatic
+from stiffmbs.analyses.job import prepare
+from stiffmbs.solve.radau.native import newton
 from stiffmbs.solve.trajectory import Outcome
+from tests.decisions.common import Record
 
 STIFFNESS, HEIGHT, G = 1e4, 0.1, 9.81
 
@@ -38,6 +41,22 @@ def test_a_mass_that_bounces_on_a_spring_keeps_to_the_tolerance():
     assert np.median(errors) < 0.2
     assert np.max(errors) < 20
     assert np.quantile(errors, 0.9) < 5
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+def test_iterations_converge_after_a_step_cut_off_just_before_an_event(rtol):
+    """The polynomial of a step of 1e-7 s, extrapolated over a step of 0.1 s, consists of rounding."""
+    model = Model(gravity=(0, -G))
+    model.add("mass", Body(mass=1, inertia=1, position=(0, HEIGHT), velocity=(2, 0)))
+    model.add("waves", AppliedForce(i="mass", force=("0", f"max(0, {STIFFNESS}*(0.02*(1 - cos(3*mass.x)) - mass.y))")))
+    found = prepare(model, duration=2.0, rtol=rtol, solver="radau").integrate()
+    assert found.statistics["events"] == 12
+    assert found.statistics["newton_failures"] == 0
+
+
+@pytest.mark.parametrize(("last", "predicts"), [(0.0, False), (1e-7, False), (0.02, True), (1.0, True)])
+def test_the_last_step_predicts_the_next_one_if_it_is_not_much_shorter(last, predicts):
+    assert newton.predicted(Record(h_past=last), 1.0) == predicts
 
 
 @pytest.mark.parametrize("before", [0.0, 1.6e-15, 3e-15, 4e-15, 1e-14])

@@ -53,7 +53,8 @@ class FirstStepParameters:
 
     part: float = 0.01
     """Fraction of the state changed by the first explicit Euler step, size of the highest-order term in tolerances, and
-    least ratio of the trial step to the step."""
+    least ratio of the trial step to the step. The polynomial of a step of `radau` predicts
+    steps up to that ratio."""
     small: float = 1e-5
     """Sizes of states and rates, in tolerances, below which they do not determine a step."""
     short: float = 1e-6

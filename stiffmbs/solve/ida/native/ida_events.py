@@ -175,7 +175,10 @@ def _resolve_intervals(c, w, s, most):
 
 @compiled
 def _aim(c, w, s, ahead):
-    """Make the next step end just before an event of the motion extrapolated by accelerations."""
+    """Make the next step end just before an event of the motion extrapolated by accelerations.
+
+    From there, a one-step method takes a step to just after the event. It would take one of the length before otherwise.
+    """
     t, back = c.returned, -time_of_difference(w, ahead, c.returned)
     go_ahead(c, s, ahead + back)
     noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, t + ahead + back), back, w.n)
@@ -194,6 +197,8 @@ def _aim(c, w, s, ahead):
     least = max(NEXT_STEP.short_of * w.longest, 10.0 * INDISTINCT * abs(t))
     if 3.0 * least < ahead * place < ahead:
         w.target = t + ahead * place - max(least, SEARCH.finest * ahead * place)
+    elif c.repeat and place <= 1.0:
+        w.target = t + ahead * place + 3.0 * least
 
 
 @compiled
