@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -247,18 +246,14 @@ class Jumps:
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
         self._dynamics, self._settings = dynamics, settings
+        self.scale, self.least = dynamics.kept("velocity jumps", settings, self._scale_and_least)
         self._messages: list[str] = []
 
-    @cached_property
-    def scale(self) -> np.ndarray:
+    def _scale_and_least(self) -> tuple[np.ndarray, float]:
         system = self._dynamics.system
-        return np.ascontiguousarray(system.per_velocity(1.0, system.size))
-
-    @cached_property
-    def least(self) -> float:
-        system = self._dynamics.system
+        scale = np.ascontiguousarray(system.per_velocity(1.0, system.size))
         tolerances = absolute_tolerances(system, self._settings)[system.n_q :]
-        return float(np.min(self.scale * tolerances, initial=np.inf))
+        return scale, float(np.min(scale * tolerances, initial=np.inf))
 
     def is_jump(self, change: np.ndarray) -> bool:
         """Return True if a change of velocities to those of the current state is a jump."""
