@@ -175,6 +175,9 @@ class FlexibleBody(Described):
     matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or files of K, M and nodes")
     units: Units = Field(description="units of the file")
     material: Material | None = Field(None, description="material of a mesh")
+    materials: dict[str, Material] | None = Field(
+        None, description="materials by groups of the mesh's elements, in place of one material"
+    )
     thickness: Thickness | None = Field(None, description="stretch of a mesh along its thickness")
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
@@ -201,10 +204,12 @@ class FlexibleBody(Described):
         if (self.mesh is None) == (self.matrices is None):
             found = "both" if self.mesh else "neither"
             raise ValueError(f"found {found} of 'mesh' and 'matrices', expected exactly one of them")
-        if (self.mesh is None) != (self.material is None):
-            found = "no material" if self.mesh else "a material"
+        given = [name for name in ("material", "materials") if getattr(self, name)]
+        if len(given) != (self.mesh is not None):
+            found = " and ".join(given) or "no material"
             raise ValueError(
                 f"found {found}, expected {'E, nu and density for a mesh' if self.mesh else 'none: K and M have it'}"
+                f"{', in one of them' * (len(given) > 1)}"
             )
         if self.thickness is not None and self.mesh is None:
             raise ValueError("found a thickness with matrices, expected a mesh")
@@ -218,6 +223,24 @@ class FlexibleBody(Described):
     def is_stiffened(self) -> bool:
         """True if geometric stiffening is included."""
         return self.mesh is not None and self.stiffening is not False
+
+    @property
+    def scales(self) -> tuple[float, float]:
+        """Young's modulus, N/m^2, and density, kg/m^3, by which all stiffness and mass is scaled: the first material's."""
+        material = self.material or next(iter((self.materials or {}).values()), None)
+        return (material.E, material.density) if material else (1.0, 1.0)
+
+    def scaled(self) -> FlexibleBody:
+        """Return the body with materials in units of `scales`, on whose values its reduction does not depend."""
+        modulus, density = self.scales
+
+        def own(material: Material) -> Material:
+            return material.model_copy(update={"E": material.E / modulus, "density": material.density / density})
+
+        materials = {name: own(material) for name, material in (self.materials or {}).items()}
+        return self.model_copy(
+            update={"material": self.material and own(self.material), "materials": materials or None}
+        )
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -259,10 +282,10 @@ class FlexibleBody(Described):
                 return from_archive(contents[0], *units)
             from .mesh import from_mesh
 
-            assert self.material is not None
-            stretch, material = self.thickness, self.material
+            stretch, materials = self.thickness, self.material or self.materials
+            assert materials is not None
             return from_mesh(
-                folder / self.files[0], units[0], material.E, material.nu, material.density,
+                folder / self.files[0], units[0], materials,
                 (lambda nodes: nodes) if stretch is None else (lambda nodes: stretch.moved(nodes, nodes, stretch.scale)),
             )  # fmt: skip
 

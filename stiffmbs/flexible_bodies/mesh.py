@@ -15,12 +15,15 @@ from scipy.sparse import csr_array
 from ..errors import InputError, needs
 from ..reading.files.quoted import first_line
 from .finite_elements import PRECISION, FiniteElements
+from .materials import PHYSICAL, ElementMaterials, element_groups, of_elements, parts_of
 from .mesh_files import for_reader, refuse_ignored, sets_of_sets
 from .solid import Solid
 
 if TYPE_CHECKING:
     import meshio
     import skfem
+
+    from .description import Material
 
 LOGGER = logging.getLogger(__name__)
 SOLIDS = {
@@ -40,14 +43,14 @@ HARMLESS = {"vertex", "line", "line3", "triangle", "triangle6", "quad", "quad8",
 
 
 def from_mesh(
-    path: Path, length: float, modulus: float, poisson: float, density: float,
+    path: Path, length: float, materials: Material | Mapping[str, Material],
     placed: Callable[[np.ndarray], np.ndarray] = lambda nodes: nodes,
 ) -> FiniteElements:  # fmt: skip
     """Return the model of a mesh of tetrahedra or hexahedra of first or second order.
 
-    `path`: file of a format of meshio: Gmsh, Abaqus, Nastran, VTK. `length`: unit of the mesh, m. `modulus`, `poisson`,
-    `density`: Young's modulus, N/m^2, Poisson's ratio, and density, kg/m^3. `placed`: function of the positions of
-    all nodes, shape (n, 3), m, that returns other ones. Raises InputError.
+    `path`: file of a format of meshio: Gmsh, Abaqus, Nastran, VTK. `length`: unit of the mesh, m. `materials`: one of all
+    elements, or by groups of elements. `placed`: function of the positions of all nodes, shape (n, 3), m, that returns
+    other ones. Raises InputError.
     """
     LOGGER.info("reading and assembling the mesh %s", path.name)
     mesh = _read(path)
@@ -67,8 +70,12 @@ def from_mesh(
         raise InputError(
             f"found an element with a node outside the {len(mesh.points)} nodes of the mesh, expected only these"
         )
-    if "gmsh:physical" in mesh.cell_data:  # Gmsh repeats elements of several physical groups (format 2)
-        connected = connected[np.sort(np.unique(connected, axis=0, return_index=True)[1])]
+    groups = element_groups(mesh, kind)
+    if PHYSICAL in mesh.cell_data:  # Gmsh repeats elements of several physical groups (format 2)
+        _, first, unique = np.unique(connected, axis=0, return_index=True, return_inverse=True)
+        kept = np.sort(first)
+        connected, numbered = connected[kept], np.searchsorted(kept, first[unique.ravel()])
+        groups = {name: np.unique(numbered[elements]) for name, elements in groups.items()}
     used, inverse = np.unique(connected, return_inverse=True)
     cells = inverse.reshape(connected.shape)
     nodes = np.asarray(mesh.points, dtype=float)[used] * length
@@ -79,10 +86,12 @@ def from_mesh(
     nodes = placed(nodes)
     _check_volumes(nodes, cells, kind)
     _check_repeated(cells, kind)
-    stiffness, mass, shapes = _assembled(nodes, cells, kind, modulus, poisson, density)
+    stiffness, mass, shapes = _assembled(nodes, cells, kind, of_elements(materials, groups, connected))
     numbers = np.full(len(mesh.points), -1)
     numbers[used] = np.arange(len(used))
-    return FiniteElements(nodes, stiffness, mass, _groups(mesh, numbers, sets_of_sets(path)), {kind: cells}, shapes)
+    parts = "" if isinstance(materials, Mapping) else parts_of(path, mesh, groups)
+    of_nodes = _groups(mesh, numbers, sets_of_sets(path))
+    return FiniteElements(nodes, stiffness, mass, of_nodes, {kind: cells}, shapes, parts=parts)
 
 
 def _read(path: Path) -> meshio.Mesh:
@@ -147,7 +156,7 @@ def _check_jacobians(mesh: skfem.Mesh, element: skfem.Element, order: int, cells
 
 
 def _assembled(
-    nodes: np.ndarray, cells: np.ndarray, kind: str, modulus: float, poisson: float, density: float
+    nodes: np.ndarray, cells: np.ndarray, kind: str, materials: ElementMaterials
 ) -> tuple[csr_array, csr_array, Solid]:
     with needs("skfem", "flexible"):
         import skfem
@@ -175,8 +184,8 @@ def _assembled(
     of_dofs = np.empty(basis.N, dtype=np.int64)
     of_dofs[basis.element_dofs] = of_shapes
     _check_edges(of_dofs[basis.element_dofs], of_shapes)
-    solid = Solid(of_skfem, scalar, order, of_shapes, modulus, poisson)
-    return solid.stiffness(), solid.mass(density), solid
+    solid = Solid(of_skfem, scalar, order, of_shapes, materials.modulus, materials.poisson)
+    return solid.stiffness(), solid.mass(materials.density), solid
 
 
 def _nodes_of_shapes(nodes: np.ndarray, cells: np.ndarray, places: np.ndarray, kind: str) -> np.ndarray:
@@ -217,7 +226,7 @@ def _groups(mesh: skfem.Mesh, numbers: np.ndarray, within: Mapping[str, Sequence
         for block, members in zip(mesh.cells, of_blocks, strict=False):
             if members is not None and len(members):
                 found.setdefault(name, []).append(np.unique(block.data[members]))
-    physical = mesh.cell_data.get("gmsh:physical")
+    physical = mesh.cell_data.get(PHYSICAL)
     for name, (tag, dimension) in mesh.field_data.items() if physical is not None else ():
         for block, tags in zip(mesh.cells, physical, strict=True):
             members = np.flatnonzero(tags == tag)

@@ -61,16 +61,23 @@ class ReducedBody:
     dependent: int  # number of combinations of modes left out as linearly dependent
     second_order: SecondOrder  # terms of second order, of a mesh: geometric stiffening
     elements: str  # type of the elements of a mesh, in the words of meshio; empty for matrices
+    parts: str  # names of parts of one material to which the file may give several; empty if there are none
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Return a note on elements of first order, whose strain is too stiff in bending (shear locking)."""
-        if self.elements not in FIRST_ORDER:
-            return ()
-        return (
-            f"its mesh has elements of first order ({self.elements}), which are too stiff in bending; expected elements of second order "
-            f"({FIRST_ORDER[self.elements]}), or several elements over each thickness",
-        )
+        """Return notes on elements of first order, too stiff in bending (shear locking), and on one material of several parts."""
+        found = []
+        if self.elements in FIRST_ORDER:
+            found.append(
+                f"its mesh has elements of first order ({self.elements}), which are too stiff in bending; expected elements of second "
+                f"order ({FIRST_ORDER[self.elements]}), or several elements over each thickness"
+            )
+        if self.parts:
+            found.append(
+                f"the file of its mesh tells apart {self.parts}, which all have the one material of the description; "
+                "'materials' gives each group of elements its own"
+            )
+        return tuple(found)
 
     def of_material(self, stiffer: float, heavier: float) -> ReducedBody:
         """Return the body with other factors of its stiffness and its mass matrix."""
@@ -173,6 +180,7 @@ def reduce(
         np.array([interface.size for interface in interfaces], dtype=int),
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
         second_order(model, interfaces, solver, static, held, centre, modes), next(iter(model.cells or {}), ""),
+        model.parts,
     )  # fmt: skip
 
 

@@ -21,16 +21,16 @@ LARGEST_PART = 10_000_000
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """Isoparametric elements of an isotropic, linearly elastic material."""
+    """Isoparametric elements of isotropic, linearly elastic materials."""
 
     mesh: skfem.Mesh
     element: skfem.Element
     order: int  # order of quadrature
     # of int, shape (nodes of an element, elements): nodes of the body in the order of the shape functions
     nodes: np.ndarray
-    # modulus, poisson: Young's modulus, N/m^2, and Poisson's ratio
-    modulus: float
-    poisson: float
+    # of shape (elements,): Young's modulus, N/m^2, and Poisson's ratio
+    modulus: np.ndarray
+    poisson: np.ndarray
 
     @cached_property
     def pairs(self) -> NodePairs:
@@ -51,25 +51,29 @@ class Solid:
             products = (at_points[part] * weights[part, None]) @ at_points[part].swapaxes(1, 2)
             products = products.reshape(-1, functions, 3, functions, 3)
             same = np.einsum("enama->enm", products)[..., None, None] * np.eye(3)
-            own = lame * products.swapaxes(2, 3) + shear * (products.transpose(0, 1, 3, 4, 2) + same)
+            own_shear, own_lame = (x[part].reshape(-1, 1, 1, 1, 1) for x in (shear, lame))
+            own = own_lame * products.swapaxes(2, 3) + own_shear * (products.transpose(0, 1, 3, 4, 2) + same)
             self.pairs.add(blocks, part, own)
         return csr_array(bsr_array((blocks, self.pairs.columns, self.pairs.starts)))
 
-    def mass(self, density: float) -> csr_array:
-        """Return the consistent mass matrix for a density, kg/m^3, shape (3 n, 3 n), kg."""
+    def mass(self, density: np.ndarray) -> csr_array:
+        """Return the consistent mass matrix for densities of the elements, kg/m^3, shape (3 n, 3 n), kg."""
         basis = self._basis()
         at_points = np.array([np.asarray(basis.basis[k][0]) for k in range(len(self.nodes))]).transpose(1, 0, 2)
-        return csr_array(kron(self.pairs.matrix(at_points, density * basis.dx[:, None] * at_points), eye_array(3)))
+        return csr_array(
+            kron(self.pairs.matrix(at_points, (density[:, None] * basis.dx)[:, None] * at_points), eye_array(3))
+        )
 
-    def _constants(self) -> tuple[float, float]:
-        """Return Lame's constants mu and lambda, N/m^2."""
+    def _constants(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return Lame's constants mu and lambda of the elements, N/m^2, of shape (elements, 1)."""
         shear = self.modulus / (2 * (1 + self.poisson))
-        return shear, self.modulus * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
+        lame = self.modulus * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
+        return shear[:, None], lame[:, None]
 
     def stress(self, strain: np.ndarray) -> np.ndarray:
-        """Return the stress of displacement gradients or symmetric tensors, shape (3, 3, ...)."""
+        """Return the stress of displacement gradients or symmetric tensors, shape (3, 3, elements, points)."""
         shear, lame = self._constants()
-        identity = np.eye(3).reshape(3, 3, *(1,) * (strain.ndim - 2))
+        identity = np.eye(3)[:, :, None, None]
         trace = strain[0, 0] + strain[1, 1] + strain[2, 2]
         return lame * trace * identity + shear * (strain + strain.swapaxes(0, 1))
 

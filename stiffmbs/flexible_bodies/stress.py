@@ -12,21 +12,24 @@ PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 
 
 def nodal_stresses(model: FiniteElements, displacements: np.ndarray) -> np.ndarray:
-    """Return the stresses of displacements at the nodes, the mean of the elements there.
+    """Return the stresses of displacements at the nodes: the mean of the elements there, of the stiffest material alone.
 
-    `displacements` of shape (3 n, k). The result of shape (k, n, 6): xx, yy, zz, xy, yz, zx, N/m^2. Raises InputError
+    Between materials, the stress jumps. `displacements` of shape (3 n, k). The result of shape (k, n, 6): xx, yy, zz, xy, yz, zx, N/m^2. Raises InputError
     if the model has no shape functions.
     """
     solid = model.solid
     if solid is None:
         raise InputError("found a body described by matrices, expected a mesh: stresses need its shape functions")
     gradients, _ = solid.gradients(at_nodes=True)
-    count = np.bincount(solid.nodes.ravel(), minlength=len(model.nodes))
+    stiffest = np.zeros(len(model.nodes))
+    np.maximum.at(stiffest, solid.nodes, np.tile(solid.modulus, (len(solid.nodes), 1)))
+    counted = solid.modulus == stiffest[solid.nodes]
+    count = np.bincount(solid.nodes.ravel(), counted.ravel(), len(model.nodes))
     found = np.zeros((displacements.shape[1], len(model.nodes), 6))
     for own, displacement in zip(found, displacements.T, strict=True):
         stress = solid.stress(solid.displacement_gradient(gradients, displacement))
         for k, (a, b) in enumerate(PLACES):
-            np.add.at(own[:, k], solid.nodes, stress[a, b].T)  # (elements, nodes) by (nodes, elements)
+            np.add.at(own[:, k], solid.nodes, counted * stress[a, b].T)  # (elements, nodes) by (nodes, elements)
         own /= count[:, None]
     return found
 

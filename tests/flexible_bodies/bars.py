@@ -6,6 +6,7 @@ import meshio
 import numpy as np
 from skfem import MeshHex, MeshHex2, MeshTet, MeshTet2
 
+from stiffmbs.flexible_bodies.description import Material
 from stiffmbs.flexible_bodies.finite_elements import FiniteElements
 from stiffmbs.flexible_bodies.interfaces import Interface
 from stiffmbs.flexible_bodies.mesh import from_mesh
@@ -14,6 +15,7 @@ REFERENCES = Path(__file__).parents[3] / "shared" / "references" / "flexible"
 """Reference data outside of the repository; tests that need them are skipped where they are absent."""
 LENGTH, WIDTH, HEIGHT = 0.4, 0.03, 0.02
 E, NU, DENSITY = 2.1e11, 0.3, 7850.0
+STEEL = Material(E=E, nu=NU, density=DENSITY)
 MASS = LENGTH * WIDTH * HEIGHT * DENSITY
 
 
@@ -38,7 +40,7 @@ def bar(folder: Path, kind: str = "tetra10", **divisions: int) -> FiniteElements
     """Return the model of a bar from its mesh file."""
     path = folder / "bar.vtu"
     mesh_of_bar(kind, **divisions).write(path)
-    return from_mesh(path, 1e-3, E, NU, DENSITY)
+    return from_mesh(path, 1e-3, STEEL)
 
 
 def face(model: FiniteElements, x: float, name: str, kind: str = "rigid") -> Interface:

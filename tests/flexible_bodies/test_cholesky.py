@@ -16,7 +16,7 @@ from stiffmbs.flexible_bodies.cholesky import Cholesky, dissection
 from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.solid import NodePairs
 
-from .bars import DENSITY, HEIGHT, LENGTH, NU, WIDTH, E, bar, face, mesh_of_bar
+from .bars import DENSITY, HEIGHT, LENGTH, NU, STEEL, WIDTH, E, bar, face, mesh_of_bar
 
 
 @pytest.mark.long
@@ -126,7 +126,7 @@ def test_modes_are_those_of_arpack(tmp_path, count):
     mesh = mesh_of_bar("tetra10", along=10, across=2)
     mesh.points[:, 1] *= HEIGHT / WIDTH
     mesh.write(tmp_path / "bar.vtu")
-    model = from_mesh(tmp_path / "bar.vtu", 1e-3, E, NU, DENSITY)
+    model = from_mesh(tmp_path / "bar.vtu", 1e-3, STEEL)
     solver = StaticSolver(model, [face(model, 0.0, "a")], np.empty((3 * len(model.nodes), 0)))
     widths, solve = set(), solver._factors.solve
     solver._factors.solve = lambda right: widths.add(right.shape[1]) or solve(right)

@@ -12,7 +12,7 @@ from meshio._helpers import extension_to_filetypes
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.mesh import _read, from_mesh
 from stiffmbs.flexible_bodies.mesh_files import for_reader
-from tests.flexible_bodies.bars import mesh_of_bar
+from tests.flexible_bodies.bars import STEEL, mesh_of_bar
 
 POINTS = [(x, y, z) for x in (0, 1, 2) for y in (0, 1) for z in (0, 1)]
 ELEMENTS = [(1, 5, 7, 3, 2, 6, 8, 4), (5, 9, 11, 7, 6, 10, 12, 8)]
@@ -30,7 +30,7 @@ def nastran(system="", more=""):
 
 def read(path, text):
     path.write_text(text)
-    return from_mesh(path, 1.0, 2.1e11, 0.3, 7850.0)
+    return from_mesh(path, 1.0, STEEL)
 
 
 def test_supports_and_rigid_elements_are_left_out(tmp_path):
@@ -116,7 +116,7 @@ def test_nodes_at_one_place_stay_apart_at_a_slit(tmp_path, kind):
         mesh.points = np.vstack([points, points[slit] + [0, opening, 0]])
         block.data[above] = other[block.data[above]]
         mesh.write(tmp_path / "slit.vtu")
-        found = from_mesh(tmp_path / "slit.vtu", 1e-3, 2.1e11, 0.3, 7850.0)
+        found = from_mesh(tmp_path / "slit.vtu", 1e-3, STEEL)
         found.check()
         return found.stiffness
 
@@ -133,7 +133,7 @@ def test_elements_that_share_an_edge_share_the_node_on_it(tmp_path):
     mesh.cells[0].data[0, 4] = len(mesh.points) - 1
     mesh.write(tmp_path / "a.vtu")
     with pytest.raises(InputError, match=r"found the nodes [0-9]+ and [0-9]+ at the same place"):
-        from_mesh(tmp_path / "a.vtu", 1e-3, 2.1e11, 0.3, 7850.0)
+        from_mesh(tmp_path / "a.vtu", 1e-3, STEEL)
 
 
 @pytest.mark.parametrize(
@@ -150,7 +150,7 @@ def test_elements_without_their_nodes_are_refused(monkeypatch, tmp_path, cells, 
     )
     monkeypatch.setattr("stiffmbs.flexible_bodies.mesh._read", lambda _: mesh)
     with pytest.raises(InputError, match=message):
-        from_mesh(tmp_path / "a.vtk", 1.0, 2.1e11, 0.3, 7850.0)
+        from_mesh(tmp_path / "a.vtk", 1.0, STEEL)
 
 
 @pytest.mark.parametrize(
