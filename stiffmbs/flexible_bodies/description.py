@@ -171,7 +171,7 @@ class FlexibleBody(Described):
     A mesh needs a material; its elements are solids.
     """
 
-    mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
+    mesh: str | None = Field(None, description="file of a mesh of tetrahedra, hexahedra, wedges or pyramids")
     matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or files of K, M and nodes")
     units: Units = Field(description="units of the file")
     material: Material | None = Field(None, description="material of a mesh")

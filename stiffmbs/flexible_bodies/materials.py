@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -34,7 +34,7 @@ class ElementMaterials(NamedTuple):
 def of_elements(
     materials: Material | Mapping[str, Material], groups: Mapping[str, np.ndarray], cells: np.ndarray
 ) -> ElementMaterials:
-    """Return the materials of the elements of a mesh.
+    """Return the materials of elements.
 
     `materials`: one of all elements, or by groups of elements. `groups`: numbers of the elements of each group. `cells` of
     shape (elements, nodes): nodes of the elements. Raises InputError if an element is in none or in several of the groups.
@@ -43,16 +43,21 @@ def of_elements(
         return ElementMaterials(*(np.full(len(cells), x) for x in (materials.E, materials.nu, materials.density)))
     found = np.full((3, len(cells)), np.nan)
     for name, material in materials.items():
-        if name not in groups:
-            listed = ", ".join(groups) or "none"
-            raise InputError(
-                f"materials.{name}: found no group of solid elements '{name}'{did_you_mean(name, groups)}, expected one of the file "
-                f"({listed})"
-            )
-        _refuse(groups[name][~np.isnan(found[0, groups[name]])], f"of the group {name} in another group as well", cells)
-        found[:, groups[name]] = np.array([[material.E], [material.nu], [material.density]])
+        own = groups.get(name, np.empty(0, dtype=np.int64))
+        _refuse(own[~np.isnan(found[0, own])], f"of the group {name} in another group as well", cells)
+        found[:, own] = np.array([[material.E], [material.nu], [material.density]])
     _refuse(np.flatnonzero(np.isnan(found[0])), f"in none of the groups {', '.join(materials)}", cells)
     return ElementMaterials(*found)
+
+
+def refuse_unknown(materials: Material | Mapping[str, Material], groups: Collection[str]) -> None:
+    """Raise an InputError if there is no group of elements for a material."""
+    for name in materials if isinstance(materials, Mapping) else ():
+        if name not in groups:
+            raise InputError(
+                f"materials.{name}: found no group of solid elements '{name}'{did_you_mean(name, groups)}, expected one of the file "
+                f"({', '.join(groups) or 'none'})"
+            )
 
 
 def _refuse(elements: np.ndarray, where: str, cells: np.ndarray) -> None:
@@ -64,9 +69,9 @@ def _refuse(elements: np.ndarray, where: str, cells: np.ndarray) -> None:
 
 
 def element_groups(mesh: meshio.Mesh, kind: str) -> dict[str, np.ndarray]:
-    """Return the numbers of the solid elements of each group: sets, physical volumes of Gmsh, properties of Nastran.
+    """Return the numbers of the elements of one kind in each group: sets, physical volumes of Gmsh, properties of Nastran.
 
-    `kind`: type of the solid elements, which are numbered in the order of their blocks. Groups without a name are called
+    Elements are numbered in the order of the blocks of their kind. Groups without a name are called
     ``physical 2`` or ``PSOLID 2``, by their number.
     """
     names = {(tag, dimension): name for name, (tag, dimension) in mesh.field_data.items()}
@@ -87,14 +92,18 @@ def element_groups(mesh: meshio.Mesh, kind: str) -> dict[str, np.ndarray]:
     return {name: np.concatenate(parts) for name, parts in found.items()}
 
 
-def parts_of(path: Path, mesh: meshio.Mesh, groups: Mapping[str, np.ndarray]) -> str:
+def parts_of(path: Path, mesh: meshio.Mesh, groups: Sequence[Mapping[str, np.ndarray]]) -> str:
     """Return the names of parts that may have materials of their own; empty if there are fewer than two.
 
     These are the materials of the sections of an Abaqus or Nastran file, or physical volumes of Gmsh that share no element.
+    `groups`: elements of each group, by kinds of elements.
     """
     parts = materials_of_sections(path)
     if PHYSICAL in mesh.cell_data:
-        parts = [name for name in groups if name in mesh.field_data or name.startswith(UNNAMED[PHYSICAL])]
-        elements = np.concatenate([groups[name] for name in parts])
-        parts = parts if len(np.unique(elements)) == len(elements) else []
+        names = dict.fromkeys(name for of_kind in groups for name in of_kind)
+        parts = [name for name in names if name in mesh.field_data or name.startswith(UNNAMED[PHYSICAL])]
+        for of_kind in groups:
+            elements = np.concatenate([of_kind.get(name, np.empty(0, dtype=np.int64)) for name in parts])
+            if len(np.unique(elements)) < len(elements):
+                return ""
     return " and ".join(parts) if len(parts) > 1 else ""

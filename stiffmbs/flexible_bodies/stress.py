@@ -20,17 +20,19 @@ def nodal_stresses(model: FiniteElements, displacements: np.ndarray) -> np.ndarr
     solid = model.solid
     if solid is None:
         raise InputError("found a body described by matrices, expected a mesh: stresses need its shape functions")
-    gradients, _ = solid.gradients(at_nodes=True)
     stiffest = np.zeros(len(model.nodes))
-    np.maximum.at(stiffest, solid.nodes, np.tile(solid.modulus, (len(solid.nodes), 1)))
-    counted = solid.modulus == stiffest[solid.nodes]
-    count = np.bincount(solid.nodes.ravel(), counted.ravel(), len(model.nodes))
-    found = np.zeros((displacements.shape[1], len(model.nodes), 6))
-    for own, displacement in zip(found, displacements.T, strict=True):
-        stress = solid.stress(solid.displacement_gradient(gradients, displacement))
-        for k, (a, b) in enumerate(PLACES):
-            np.add.at(own[:, k], solid.nodes, counted * stress[a, b].T)  # (elements, nodes) by (nodes, elements)
-        own /= count[:, None]
+    for block in solid.blocks:
+        np.maximum.at(stiffest, block.nodes, np.tile(block.materials.modulus, (len(block.nodes), 1)))
+    found, count = np.zeros((displacements.shape[1], len(model.nodes), 6)), np.zeros(len(model.nodes))
+    for block in solid.blocks:
+        gradients, _ = block.gradients(at_nodes=True)
+        counted = block.materials.modulus == stiffest[block.nodes]
+        np.add.at(count, block.nodes, counted)
+        for own, displacement in zip(found, displacements.T, strict=True):
+            stress = block.stress(block.displacement_gradient(gradients, displacement))
+            for k, (a, b) in enumerate(PLACES):
+                np.add.at(own[:, k], block.nodes, counted * stress[a, b].T)  # (elements, nodes) by (nodes, elements)
+    found /= count[:, None]
     return found
 
 

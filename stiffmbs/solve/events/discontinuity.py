@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -246,8 +247,19 @@ class Jumps:
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
         self._dynamics, self._settings = dynamics, settings
-        self.scale, self.least = dynamics.kept("velocity jumps", settings, self._scale_and_least)
         self._messages: list[str] = []
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        return self._kept[0]
+
+    @cached_property
+    def least(self) -> float:
+        return self._kept[1]
+
+    @property
+    def _kept(self) -> tuple[np.ndarray, float]:
+        return self._dynamics.kept("velocity jumps", self._settings, self._scale_and_least)
 
     def _scale_and_least(self) -> tuple[np.ndarray, float]:
         system = self._dynamics.system
