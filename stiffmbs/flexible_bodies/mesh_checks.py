@@ -62,7 +62,7 @@ def check_shared(cells: Mapping[str, np.ndarray]) -> None:
         shared = element.middles[: len(element.middles) - element.inside]
         rows += [_rows(of_kind, between, node) for between, node in zip(shared, of_kind.T[first:], strict=False)]
     middles = np.unique(np.concatenate([np.empty((0, 5), dtype=np.int64), *rows]), axis=0)
-    _, first, count = np.unique(middles[:, :4], axis=0, return_index=True, return_counts=True)
+    _, start, count = np.unique(middles[:, :4], axis=0, return_index=True, return_counts=True)
     apart = np.flatnonzero(count > 1)
     of_one = np.unique(middles[:, 4], return_counts=True)[1]
     if of_one.max(initial=1) > 1 or np.isin(middles[:, 4], np.concatenate(corners)).any():
@@ -70,7 +70,7 @@ def check_shared(cells: Mapping[str, np.ndarray]) -> None:
             "found elements that share nodes on edges or faces but not their corners, expected both or neither"
         )
     if len(apart):
-        one, other = middles[first[apart[0]] : first[apart[0]] + 2, 4]
+        one, other = middles[start[apart[0]] : start[apart[0]] + 2, 4]
         raise InputError(
             f"found the nodes {one} and {other} at the same place of an edge or face that elements share, expected one node"
         )

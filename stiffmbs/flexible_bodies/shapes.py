@@ -1,7 +1,7 @@
 """Shape functions and quadrature of isoparametric solid elements, with nodes in the order of meshio and VTK.
 
-A shape function is the polynomial that is 1 at one node and 0 at the others. Polynomials are those of a space, such as the
-serendipity space of hexahedra of 20 nodes (Zienkiewicz & Taylor, The finite element method, volume 1, chapter on shape functions).
+A shape function is the polynomial that is 1 at one node and 0 at the others. Hexahedra of 20 nodes have the serendipity space
+(Zienkiewicz & Taylor, The finite element method, volume 1, chapter on shape functions).
 """
 
 from __future__ import annotations
