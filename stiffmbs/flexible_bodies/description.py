@@ -16,8 +16,9 @@ from ..reading.fields import Described, sentence
 from ..reading.files.quoted import written
 from ..reading.files.text_file import file_content
 from ..reading.units import si
+from .areas import nodal_areas
 from .finite_elements import PRECISION, FiniteElements
-from .interfaces import POINT, Interface
+from .interfaces import AVERAGE, POINT, Interface
 
 Point = si.Point3
 
@@ -108,7 +109,12 @@ class InterfaceOfNodes(Described):
         "rigid",
         description="rigid: the nodes are a rigid body (RBE2); average: their mean motion (RBE3); point: one node",
     )
-    point: Point | None = Field(None, description="reference point, m; the mean of the nodes by default")
+    weights: Literal["equal", "area"] = Field(
+        "equal", description="of the nodes of an average: equal, or area: shares of the faces between them"
+    )
+    point: Point | None = Field(
+        None, description="reference point, m; the mean of the nodes, with their weights, by default"
+    )
 
     @model_validator(mode="after")
     def _one_selection(self) -> Self:
@@ -116,6 +122,8 @@ class InterfaceOfNodes(Described):
         if len(given) != 1:
             found = " and ".join(given) or "none"
             raise ValueError(f"found {found} of nodes, group, sphere and plane, expected exactly one of them")
+        if self.weights == "area" and self.type != AVERAGE:
+            raise ValueError(f"found weights: area with type: {self.type}, expected them with type: average")
         return self
 
     def on(self, name: str, model: FiniteElements) -> Interface:
@@ -123,8 +131,19 @@ class InterfaceOfNodes(Described):
         nodes = np.unique(np.asarray(self._selected(name, model), dtype=np.int64))
         if self.point is not None and self.type == POINT:
             raise InputError(f"interfaces.{name}.point: found a reference point, expected none for type: point")
-        mean = model.nodes[nodes].mean(axis=0) if len(nodes) else np.zeros(3)
-        return Interface(name, self.type, nodes, mean if self.point is None else np.array(self.point))
+        weights = self._weights(name, model, nodes)
+        mean = np.average(model.nodes[nodes], axis=0, weights=weights) if len(nodes) else np.zeros(3)
+        return Interface(name, self.type, nodes, mean if self.point is None else np.array(self.point), weights)
+
+    def _weights(self, name: str, model: FiniteElements, nodes: np.ndarray) -> np.ndarray | None:
+        if self.weights == "equal":
+            return None
+        areas = nodal_areas(model, nodes)
+        if not areas.sum() > 0:
+            raise InputError(
+                f"interfaces.{name}.weights: found no face of an element between the nodes, expected a surface of a mesh"
+            )
+        return areas
 
     def _selected(self, name: str, model: FiniteElements) -> object:
         if self.group is not None:

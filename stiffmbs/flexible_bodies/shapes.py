@@ -158,6 +158,23 @@ def _of_pyramid(count: int) -> tuple[np.ndarray, np.ndarray]:
     return np.array([x * z, y * z, z]), weights
 
 
+def face_rule(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return points, two directions at each and weights of a quadrature on a face with corners in reference coordinates.
+
+    Their shapes are (3, points), (3, 2, points) and (points,).
+    """
+    if len(corners) == 3:
+        (x, y), weights = _simplex("RefTri", 4)
+        values, slopes = np.array([1 - x - y, x, y]), np.array([[-1, -1], [1, 0], [0, 1]])[:, :, None] + 0 * x
+    else:
+        at, lengths = _gauss(3)
+        x, y = (each.ravel() for each in np.meshgrid(at, at))
+        weights = np.outer(lengths, lengths).ravel()
+        values = np.array([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y])
+        slopes = np.array([[y - 1, x - 1], [1 - y, -x], [y, x], [-y, 1 - x]])
+    return corners.T @ values, np.einsum("na,nkp->akp", corners, slopes), weights
+
+
 def _tetra(order: int) -> np.ndarray:
     return _powers(order, lambda a, b, c: a + b + c <= order)
 
