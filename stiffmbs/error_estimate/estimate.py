@@ -16,7 +16,7 @@ from ..notes import Note, NoteKind
 from ..results.digits import KnownErrors, largest_bar, over_time
 from ..results.error_bars import UNKNOWN, ErrorEstimate, bars
 from ..results.solution import Solution
-from ..run_checks.uncertain_forces import rounded_forces
+from ..run_checks.lost_digits import rounded_forces
 from ..solve.settings import near_constraints, traits_of
 from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
