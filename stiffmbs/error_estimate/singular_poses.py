@@ -36,14 +36,6 @@ def nearly_singular(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndar
 
 def _velocity_constraints(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return J of many states, shape (count, n_c, n_u)."""
-    system, state = dynamics.system, dynamics.state
-    term = system.term("motion", "J")
-    values = np.empty((len(t), len(term.source)))
-    for k in range(len(t) if len(term.source) else 0):
-        state.q[:], state.u[:] = q[k], u[k]
-        state.evaluate("motion", float(t[k]))
-        values[k] = state.values["motion"][term.source]
-    found = np.zeros((len(t), system.n_c, system.n_u))
-    for entry, (row, column) in enumerate(zip(term.row.tolist(), term.column.tolist(), strict=True)):
-        found[:, row, column] += values[:, entry]
+    J, found = dynamics.system.term("motion", "J"), np.zeros((len(t), dynamics.system.n_c, dynamics.system.n_u))
+    np.add.at(found, (slice(None), J.row, J.column), dynamics.state.values_at("motion", J.source, t, q, u))
     return found

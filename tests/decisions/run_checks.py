@@ -106,12 +106,11 @@ def largest_velocity_violation(coefficient):
         "V": Record(source=[0], row=[0]),
         "J": Record(source=np.array([1]), row=np.array([0]), column=np.array([0])),
     }
-    state = Record(q=np.zeros(1), u=np.zeros(1), evaluate=nothing)
-    dynamics = Record(system=Record(term=lambda _, name: terms[name], n_c=1), state=state)
     solved = Record(q=np.zeros((1, 1)), u=np.ones((1, 1)), t=np.zeros(1))
 
     def accepted(violation):
-        state.values = {"motion": np.array([violation, coefficient])}
+        state = Record(values_at=lambda *_: np.array([[violation, coefficient]]))
+        dynamics = Record(system=Record(term=lambda _, name: terms[name], n_c=1), state=state)
         return locked._first(dynamics, np.array([0]), solved, np.array([0])) is None
 
     return count_while(lambda violation: accepted(1e-4 * violation), DOUBLES)
@@ -143,11 +142,12 @@ def departed(gap, assembled, poses=1):
 
 def largest_turn():
     system = Record(term=lambda *_: Record(source=[0], row=[0]))
-    rows = Record(position_violation=np.zeros(1), t=np.zeros(1), q=np.zeros((1, 1)))
+    rows = Record(position_violation=np.zeros(1), t=np.zeros(1), q=np.zeros((1, 1)), u=np.zeros((1, 1)))
 
     def is_silent(apart):
-        with patch.multiple(motion, _apart=lambda *_: np.array([[apart]]), writer=lambda *_: "j"):
-            return silent(motion.missed_revolutions_notes(Record(system=system, state=None), rows))
+        state = Record(values_at=lambda *_: np.array([[apart]]))
+        with patch.object(motion, "writer", lambda *_: "j"):
+            return silent(motion.missed_revolutions_notes(Record(system=system, state=state), rows))
 
     return count_while(lambda apart: is_silent(0.01 * apart), DOUBLES)
 
