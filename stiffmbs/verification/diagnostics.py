@@ -54,7 +54,7 @@ STEPS_MISS = NoteKind(
 )
 STEP_LENGTH = NoteKind(
     "step-length",
-    "the results depend on the step length: {different} in {run}, but not at a smaller tolerance alone",
+    "the results depend on the step length: from t = {t:.4g} s on {body} differs in {run}, but not at a smaller tolerance alone",
     "set max_step to this value, and reduce it until two runs agree",
 )
 STEPPED_OVER = NoteKind(
@@ -178,7 +178,11 @@ class Comparison:
         """Return the divergences, or None, between successive tighter runs, and of the first run from the other's."""
         runs = [self.first.channels, *(run.channels for run in self.tighter)]
         pairs = [*itertools.pairwise(runs), *([(runs[0], self.other.channels)] if self.other else [])]
-        return [divergence(self.first.time, distance(one, two, self.sizes)) for one, two in pairs]
+        return [self.divergence(one, two) for one, two in pairs]
+
+    def divergence(self, one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> Divergence | None:
+        """Return the divergence of the channels of two runs, or None."""
+        return divergence(self.first.time, distance(one, other, self.sizes))
 
     @property
     def suspicious(self) -> bool:
@@ -288,39 +292,24 @@ def _missed_note(comparison: Comparison, missed: list[str]) -> Note:
 
 
 def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[Note]:
-    """Yield a note on missed events, else on different runs with shorter steps, else on an open energy balance.
+    """Yield a note on missed events, else on runs that differ by their longest step alone.
 
     `comparison`: of the run with others. `along`: result of sampling along the run. `shorter`: rerun with a shorter
     longest step.
     """
     if along.stretches:
         yield _stepped_over(comparison, along.stretches[0], shorter)
+    elif shorter is None or not shorter.whole:
         return
-    if by_luck(comparison, shorter):
-        assert shorter is not None
-        yield STEPS_MISS(run=shorter.name)
-        return
-    different = _different(comparison, shorter)
-    if shorter is not None and different:
-        yield STEP_LENGTH(different=different, run=shorter.name)
-
-
-def by_luck(comparison: Comparison, shorter: Again | None) -> bool:
-    """Return True if a run agrees with one of shorter steps, but not with others."""
-    if not any(comparison.divergences()) or not _whole(shorter):
-        return False
-    return not _parts(comparison, comparison.first.channels, shorter)
-
-
-def _whole(shorter: Again | None) -> bool:
-    return shorter is not None and shorter.solution is not None and not shorter.obstacle and not shorter.remark
-
-
-def _parts(comparison: Comparison, channels: Mapping[str, np.ndarray], shorter: Again | None) -> str:
-    """Return a clause on the divergence from the motion with shorter steps, or an empty string."""
-    assert shorter is not None
-    found = divergence(comparison.first.time, distance(channels, shorter.channels, comparison.sizes))
-    return f"from t = {found.t:.4g} s on {found.body} differs" if found is not None else ""
+    elif any(comparison.divergences()):
+        if comparison.divergence(comparison.first.channels, shorter.channels) is None:
+            yield STEPS_MISS(run=shorter.name)
+    elif (
+        comparison.tighter
+        and not comparison.tighter[-1].obstacle
+        and (found := comparison.divergence(comparison.tighter[-1].channels, shorter.channels))
+    ):
+        yield STEP_LENGTH(t=found.t, body=found.body, run=shorter.name)
 
 
 def _stepped_over(comparison: Comparison, found: SteppedOver, shorter: Again | None) -> Note:
@@ -343,13 +332,3 @@ def _off(comparison: Comparison, shorter: Again | None) -> str:
         return ""
     unit = comparison.first.unit(name)
     return f"{name} differs by up to {parts[name] * comparison.sizes[name]:.3g} {unit} ({shorter.name})"
-
-
-def _different(comparison: Comparison, shorter: Again | None) -> str:
-    """Return a clause on the divergence of shorter steps from a run of their tolerance that agrees with the first."""
-    if not _whole(shorter) or not comparison.tighter or any(comparison.divergences()):
-        return ""
-    tight = comparison.tighter[-1].channels
-    if len(tight["energy.total"]) < len(comparison.first.time):
-        return ""
-    return _parts(comparison, tight, shorter)

@@ -41,7 +41,7 @@ from ..results.verification_words import INTERRUPTED, KINEMATIC, RERUN
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..tuning import in_use
-from .diagnostics import Comparison, by_luck, diagnostics, distance, divergence, step_diagnostics
+from .diagnostics import STEPPED_OVER, STEPS_MISS, Comparison, diagnostics, distance, divergence, step_diagnostics
 from .missed_events import Along, DenseSamples, SteppedOver, dense_samples, looked_along, more_instants
 from .parameters import VERIFICATION
 from .solve_again import Again, levels_of, other_integrators, shorter_step, solve_again, tolerances
@@ -147,11 +147,11 @@ class _Verification:
             self._skipped.append(INTERRUPTED)
         comparison = self._comparison()
         of_steps = tuple(step_diagnostics(comparison, self._along, self._shorter))
-        steps_decide = self._along.stretches or by_luck(comparison, self._shorter)
-        messages = () if steps_decide else tuple(diagnostics(comparison))  # their only remedy is the tolerance
+        steps_decide = any(note.kind in (STEPPED_OVER.name, STEPS_MISS.name) for note in of_steps)
+        messages = () if steps_decide else diagnostics(comparison)  # their only remedy is the tolerance
         return replace(
             self._first, errors=comparison.bars, verification=tuple(self._messages()),
-            notes=(*self._first.notes, *messages, *of_steps), balance=self._first.balance,
+            notes=(*self._first.notes, *messages, *of_steps),
         )  # fmt: skip
 
     def _solve(self) -> None:
@@ -159,7 +159,7 @@ class _Verification:
         if self._exact:
             return
         self._ask_the_other()
-        if self._other is None or self._other.obstacle or not _judges(self._other) or self._comparison().suspicious:
+        if self._other is None or not self._other.whole or self._comparison().suspicious:
             self._tighten()
         self._look_along()
 
@@ -184,7 +184,7 @@ class _Verification:
         """Search runs that diverge from the first, to exclude those that missed events."""
         for level, run in self._tighter.items():
             self._tighter[level] = self._looked_along(run, self._tighter_settings(level)[1], allowed)
-        if self._other is not None and _judges(self._other):
+        if self._other is not None and self._other.usable:
             self._other = self._looked_along(self._other, self._other_settings, allowed)
         if self._dense is not None and any(run.blind for run in self._tighter.values()):
             self._dense = None
@@ -221,18 +221,15 @@ class _Verification:
                 self._run(level)
                 return
 
-    def _again(self, name: str, changes: dict[str, object], allowed: float) -> Again:
-        """Return a rerun with the output times of the first run."""
-        return solve_again(self._job, name, changes, self._first.time, np.arange(len(self._first.time)), allowed)
+    def _again(self, name: str, changes: dict[str, object], allowed: float, times: np.ndarray | None = None) -> Again:
+        """Return a rerun with the output times of the first run, or with more."""
+        times = self._first.time if times is None else times
+        return solve_again(self._job, name, changes, times, np.searchsorted(times, self._first.time), allowed)
 
     def _run(self, level: int, times: np.ndarray | None = None) -> Again:
         """Make a tighter run, with the output times of the first run or with more."""
         name, changes = self._tighter_settings(level)
-        if times is None:
-            run = self._again(name, changes, self._left())
-        else:
-            at = np.searchsorted(times, self._first.time)
-            run = solve_again(self._job, name, changes, times, at, self._left())
+        run = self._again(name, changes, self._left(), times)
         if not self._exact:
             self._tighter[level] = run
         return run
@@ -261,7 +258,7 @@ class _Verification:
             changes = self._other_settings = {**integrator, **tighter}
             name = f"{traits_of(changed(settings, changes)).name} at rtol {changes['rtol']:.3g}"
             self._other = self._again(name, changes, self._left())
-            if _judges(self._other) and not self._other.obstacle:
+            if self._other.whole:
                 return
 
     def _left(self) -> float:
@@ -270,10 +267,9 @@ class _Verification:
     def _comparison(self) -> Comparison:
         levels = [self._tighter[level] for level in sorted(self._tighter)]
         tighter = tuple(run for run in levels if run.solution is not None and not run.blind)
-        other = self._other if _judges(self._other) else None
-        shorter = self._shorter if _judges(self._shorter) else None
-        lost = bool(self._along.stretches) and (shorter is None or bool(shorter.obstacle))
-        runs = [*tighter, *([other] if other else []), *([shorter] if shorter else [])]
+        other, shorter = (run if run and run.usable else None for run in (self._other, self._shorter))
+        lost = self._along.stretches and not (shorter and shorter.whole)
+        runs = [run for run in (*tighter, other, shorter) if run]
         bars = {}
         for name, values in self._first.items():
             if name not in self._first.not_unique and not name.startswith("constraint."):
@@ -290,7 +286,7 @@ class _Verification:
         return [
             run.name
             for run in self._reruns()
-            if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
+            if not run.obstacle and not run.blind and (run is not self._other or run.usable)
         ]
 
     def _messages(self) -> list[str]:
@@ -310,8 +306,3 @@ class _Verification:
                 "there, and their peaks are those of other times"
             )
         return [*found, *self._skipped]
-
-
-def _judges(other: Again | None) -> bool:
-    """Return True if a run of the other solver is usable: explicit steps at their stability limit are noisy."""
-    return other is not None and other.solution is not None and not other.remark and not other.blind
