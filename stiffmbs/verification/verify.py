@@ -6,9 +6,8 @@
 3. The same solver at an intermediate tolerance (a quarter of the step), if the other integrator gives no result or the
    first two differ. It shows the order of convergence.
 
-All of these may miss events within one step. The run is therefore searched for them
-(`stiffmbs.verification.missed_events`). If the scene has force laws or events in the state, it is solved again with
-another longest step:
+All of these may miss events within one step. If the scene has force laws or events in the state, the run is therefore
+searched for them (`stiffmbs.verification.missed_events`), and solved again with another longest step:
 
 4. As 1, with several times as many steps, or with steps that resolve the events found by the search.
 
@@ -164,8 +163,8 @@ class _Verification:
         self._look_along()
 
     def _look_along(self) -> None:
-        """Search the first run for missed events, and rerun with shorter steps if there may be some."""
-        if self._traits.fixed_steps:
+        """Search the first run for missed events, and rerun with shorter steps, if there may be some."""
+        if self._traits.fixed_steps or not self._job.dynamics.system.has_laws:
             return
         spare = self._allowed / 2
         self._along = looked_along(self._job, self._first, spare)
@@ -174,11 +173,10 @@ class _Verification:
             self._skipped.append(self._along.obstacle)
         elif not self._along.stretches:
             self._look_along_others(spare)
-        if self._along.stretches or self._job.dynamics.system.has_laws:
-            longest = min([shorter_step(self._first), *(found.max_step for found in self._narrow)])
-            name, changes = self._tighter_settings(self._levels()[0])
-            name = f"{name} with steps of at most {longest:.3g} s"
-            self._shorter = self._again(name, {**changes, "max_step": longest}, spare)
+        longest = min([shorter_step(self._first), *(found.max_step for found in self._narrow)])
+        name, changes = self._tighter_settings(self._levels()[0])
+        name = f"{name} with steps of at most {longest:.3g} s"
+        self._shorter = self._again(name, {**changes, "max_step": longest}, spare)
 
     def _look_along_others(self, allowed: float) -> None:
         """Search runs that diverge from the first, to exclude those that missed events."""

@@ -38,7 +38,10 @@ def test_a_bump_that_no_step_has_seen_is_found_along_the_run(monkeypatch):
 
 
 def _unaware(monkeypatch, job):
-    """The run of a body that flies straight on in one step, and every further one that is not given a longest step."""
+    """The run of a body that flies straight on in one step, and every further one that is not given a longest step.
+
+    A solution of a single interval between output times sees what is there.
+    """
     from dataclasses import replace
 
     from stiffmbs.analyses.job import Job
@@ -47,7 +50,7 @@ def _unaware(monkeypatch, job):
     truly = Job.integrate
 
     def integrate(self, watch=None):
-        if self.settings.max_step:
+        if self.settings.max_step or len(self.grid.times) == 2:
             return truly(self, watch)
         t = self.grid.times
         x = 10 * t
