@@ -174,11 +174,9 @@ def refuse_path(option: str, path: Path, kind: str) -> None:
 def write(path: Path, solution: Solution) -> None:
     """Write all channels to a file, completely or not at all.
 
-    The suffix selects the format: .csv (a header line of names and units, time first), .npz, .nc, .mat, .xlsx, .parquet, .tab
-    (tab-separated columns), or .res (Adams' XML).  A file .npz has arrays by channel name, ``time``, and further data for
-    `Solution.load` under names with a slash.  Channels without a unique value are marked: by a column ``rail.fy.not_unique`` of ones, an array
-    ``not_unique`` of names, or the attribute ``unique`` of each variable.  The origin of the results is in the file, or next
-    to a table in ``NAME.csv-metadata.json``.
+    The suffix selects the format (`WRITERS`). Channels without a unique value are marked: by a column
+    ``rail.fy.not_unique`` of ones, an array ``not_unique`` of names, or the attribute ``unique`` of each variable. The
+    origin of the results is in the file, or next to a table in ``NAME.csv-metadata.json``.
     """
     written_whole(path, lambda part: WRITERS[path.suffix](part, solution))
     if path.suffix not in WITH_ORIGIN:
