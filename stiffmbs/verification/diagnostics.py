@@ -18,7 +18,7 @@ from ..results.error_bars import ErrorBar
 from ..results.scales import kind_of
 from ..results.solution import Solution
 from ..solve.settings import traits_of
-from .missed_events import Along, DenseSamples, SteppedOver, beyond, poses_of
+from .missed_events import Along, DenseSamples, beyond, poses_of
 from .parameters import VERIFICATION
 from .solve_again import Again
 
@@ -297,8 +297,11 @@ def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None
     `comparison`: of the run with others. `along`: result of sampling along the run. `shorter`: rerun with a shorter
     longest step.
     """
-    if along.stretches:
-        yield _stepped_over(comparison, along.stretches[0], shorter)
+    if along.missed:
+        missed = along.missed
+        whose = f"'{missed.element}' acts" if missed.element else "something acts"
+        known = _off(comparison, shorter) or "the errors after it are unknown, and there are no error bars"
+        yield STEPPED_OVER(missed.element, whose=whose, t=missed.times[0], known=known, max_step=along.max_step)
     elif shorter is None or not shorter.whole:
         return
     elif any(comparison.divergences()):
@@ -310,12 +313,6 @@ def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None
         and (found := comparison.divergence(comparison.tighter[-1].channels, shorter.channels))
     ):
         yield STEP_LENGTH(t=found.t, body=found.body, run=shorter.name)
-
-
-def _stepped_over(comparison: Comparison, found: SteppedOver, shorter: Again | None) -> Note:
-    whose = f"'{found.element}' acts" if found.element else "something acts"
-    known = _off(comparison, shorter) or "the errors after it are unknown, and there are no error bars"
-    return STEPPED_OVER(found.element, whose=whose, t=found.at, known=known, max_step=found.max_step)
 
 
 def _off(comparison: Comparison, shorter: Again | None) -> str:

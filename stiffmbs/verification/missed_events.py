@@ -6,60 +6,47 @@ The run is repeated with many output times, within its steps too. At these it is
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..analyses.job import Job
 from ..analyses.rerun import velocities_again
 from ..compile.inputs.features import InputFeatures
-from ..dynamics.dynamics import OutputRows
 from ..errors import StiffmbsError
 from ..results.error_bars import Fine
 from ..results.frames import from_own_axes
 from ..results.scales import ROUNDING, kind_of
 from ..results.solution import Solution
-from ..run_checks.overlooked import overlooked
+from ..run_checks.overlooked import Overlooked, overlooked
 from ..run_checks.singular_poses import PosesBetween
 from ..solve.events.narrow_inputs import NARROW_INPUTS
 from ..solve.missing_rows import reported
 from ..solve.settings import near_constraints
-from ..solve.trajectory import Trajectory
 from .parameters import VERIFICATION
 from .solve_again import Again, Deadline, uninterrupted
-
-
-@dataclass(frozen=True)
-class SteppedOver:
-    """Interval of a run with a missed event.
-
-    `at`: time at which forces contradict the step, s. `width`: distance of the next sample, s. `element`: name of the
-    force or joint, or an empty string.
-    """
-
-    at: float
-    width: float
-    element: str
-
-    @property
-    def max_step(self) -> float:
-        """Longest step that resolves it, s."""
-        return float(f"{self.width / VERIFICATION.fewest_steps:.1g}")
 
 
 @dataclass(frozen=True)
 class Along:
     """Result of the search along a run.
 
-    - `stretches`: missed events of the run.
+    - `missed`: missed events of the run, or None. Their duration is the distance of samples.
     - `elsewhere`: missed events of the repeated run if it differs.
     - `obstacle`: why no search was made, or an empty string.
     """
 
-    stretches: tuple[SteppedOver, ...] = ()
-    elsewhere: tuple[SteppedOver, ...] = ()
+    missed: Overlooked | None = None
+    elsewhere: Overlooked | None = None
     obstacle: str = ""
+
+    @property
+    def max_step(self) -> float:
+        """Longest step that resolves the events, s; infinite if none was missed."""
+        durations = [each.shortest for each in (self.missed, self.elsewhere) if each]
+        return float(f"{min(durations, default=math.inf) / VERIFICATION.fewest_steps:.1g}")
 
 
 def looked_along(job: Job, first: Solution, allowed: float) -> Along:
@@ -76,10 +63,15 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     if deadline.passed:
         return Along(obstacle="missed events were not searched: the limit of evaluations is reached")
     rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings), job.settings.rtol)
-    stretches = _stepped_over(job, rows, trajectory)
-    if not _same_motion(first, rows.t, rows.kinetic):
-        return Along(elsewhere=stretches)
-    return Along(stretches)
+
+    def again(k: int) -> np.ndarray | None:
+        return velocities_again(job, rows.t[k : k + 2], rows.q[k], rows.u[k])
+
+    found = overlooked(job.dynamics, rows, trajectory, job.settings, again)
+    if found is not None:
+        k = max(1, int(np.searchsorted(rows.t, found.times[0])))
+        found = replace(found, shortest=float(np.diff(rows.t[k - 1 : k + 1])[0]))
+    return Along(found) if _same_motion(first, rows.t, rows.kinetic) else Along(elsewhere=found)
 
 
 def _same_motion(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
@@ -100,20 +92,6 @@ def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
     found = np.union1d(reported_at, apart(steps[(steps > start) & (steps < end)], reported_at))
     spread = np.linspace(start, end, most)[1:-1]
     return np.union1d(found, apart(spread, found)) if most > 2 else found
-
-
-def _stepped_over(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[SteppedOver, ...]:
-    """Return the first event that the steps of a run with many output times missed, if there is one."""
-
-    def again(k: int) -> np.ndarray | None:
-        return velocities_again(job, rows.t[k : k + 2], rows.q[k], rows.u[k])
-
-    found = overlooked(job.dynamics, rows, trajectory, job.settings, again)
-    if found is None:
-        return ()
-    at = float(found.times[0])
-    k = min(int(np.searchsorted(rows.t, at)), len(rows.t) - 2)
-    return (SteppedOver(at, float(rows.t[k + 1] - rows.t[k]), found.element),)
 
 
 @dataclass(frozen=True)

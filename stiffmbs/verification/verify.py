@@ -41,7 +41,7 @@ from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..tuning import in_use
 from .diagnostics import STEPPED_OVER, STEPS_MISS, Comparison, diagnostics, distance, divergence, step_diagnostics
-from .missed_events import Along, DenseSamples, SteppedOver, dense_samples, looked_along, more_instants
+from .missed_events import Along, DenseSamples, dense_samples, looked_along, more_instants
 from .parameters import VERIFICATION
 from .solve_again import Again, levels_of, other_integrators, shorter_step, solve_again, tolerances
 
@@ -130,7 +130,7 @@ class _Verification:
         self._other_settings: dict[str, object] = {}
         self._along = Along()
         self._shorter: Again | None = None
-        self._narrow: tuple[SteppedOver, ...] = ()
+        self._max_steps: list[float] = []
         self._skipped: list[str] = []
 
     def result(self) -> Solution:
@@ -168,12 +168,12 @@ class _Verification:
             return
         spare = self._allowed / 2
         self._along = looked_along(self._job, self._first, spare)
-        self._narrow = self._along.stretches + self._along.elsewhere
+        self._max_steps.append(self._along.max_step)
         if self._along.obstacle:
             self._skipped.append(self._along.obstacle)
-        elif not self._along.stretches:
+        elif not self._along.missed:
             self._look_along_others(spare)
-        longest = min([shorter_step(self._first), *(found.max_step for found in self._narrow)])
+        longest = min(shorter_step(self._first), *self._max_steps)
         name, changes = self._tighter_settings(self._levels()[0])
         name = f"{name} with steps of at most {longest:.3g} s"
         self._shorter = self._again(name, {**changes, "max_step": longest}, spare)
@@ -194,12 +194,12 @@ class _Verification:
         if divergence(self._first.time, distance(self._first.channels, run.channels, self._sizes)) is None:
             return run
         found = looked_along(self._job.varied(changes), run.solution, allowed)
-        self._narrow += found.stretches + found.elsewhere
-        if not found.stretches:
+        self._max_steps.append(found.max_step)
+        if not found.missed:
             return run
-        whose = f"'{found.stretches[0].element}'" if found.stretches[0].element else "something"
+        whose = f"'{found.missed.element}'" if found.missed.element else "something"
         return replace(
-            run, blind=f"its steps missed {whose} at t = {found.stretches[0].at:.6g} s, which this run located"
+            run, blind=f"its steps missed {whose} at t = {found.missed.times[0]:.6g} s, which this run located"
         )
 
     def _sample_densely(self) -> None:
@@ -266,7 +266,7 @@ class _Verification:
         levels = [self._tighter[level] for level in sorted(self._tighter)]
         tighter = tuple(run for run in levels if run.solution is not None and not run.blind)
         other, shorter = (run if run and run.usable else None for run in (self._other, self._shorter))
-        lost = self._along.stretches and not (shorter and shorter.whole)
+        lost = self._along.missed and not (shorter and shorter.whole)
         runs = [run for run in (*tighter, other, shorter) if run]
         bars = {}
         for name, values in self._first.items():

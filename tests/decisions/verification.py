@@ -13,7 +13,7 @@ from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.verification import diagnostics, missed_events, verify
 from stiffmbs.verification.diagnostics import Comparison, divergence
-from stiffmbs.verification.missed_events import SteppedOver
+from stiffmbs.verification.missed_events import Along
 from stiffmbs.verification.solve_again import Deadline, OutOfTime, shorter_step, tolerances
 from tests.decisions.common import Reached, Record, nothing, parameters
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
@@ -221,7 +221,7 @@ DECISIONS = {
     "verification.samples": sampled,
     "verification.of_effort_left": effort_of_samples,
     "verification.elsewhere": lambda: count_while(lambda off: not same_motion(off), HALVES),
-    "verification.fewest_steps": lambda: SteppedOver(0.0, 1.0, "").max_step,
+    "verification.fewest_steps": lambda: Along(Record(shortest=1.0)).max_step,
     "verification.most_effort": lambda: effort(10**9),
     "verification.effort_allowed": lambda: effort(1),
     "verification.other_of_fixed": tolerance_of_the_other,
