@@ -108,11 +108,8 @@ class _Iteration:
         """Return the states without some errors, the residuals e' - F(z) + F(z - e) - d and their sizes."""
         at = self._at.at(rows)
         there = evaluated(self._dynamics, at.t, *displaced(self._dynamics.system, at.q, at.u, -errors))
-        residuals = (
-            slopes
-            - self._defects[rows]
-            + as_rows(self._dynamics.system, there.q_rates - at.q_rates, there.acceleration - at.acceleration)
-        )
+        change = as_rows(self._dynamics.system, there.q_rates - at.q_rates, there.acceleration - at.acceleration)
+        residuals = slopes - self._defects[rows] + change
         sizes = self._size(residuals)
         open_ = np.flatnonzero(sizes > self._enough[rows])
         if len(open_) and self._dynamics.system.n_c:

@@ -25,7 +25,8 @@ def nearly_singular(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndar
     """
     system = dynamics.system
     J, matrices = system.term("motion", "J"), np.zeros((len(t), system.n_c, system.n_u))
-    np.add.at(matrices, (slice(None), J.row, J.column), dynamics.state.values_at("motion", J.source, t, q, u))
+    values = dynamics.state.values_at("motion", J.source, t, q, u)
+    np.add.at(matrices.transpose(1, 2, 0), (J.row, J.column), values.T)
     matrices = (matrices * system.per_velocity(system.size, 1.0))[:, system.active]
     if not 0 < matrices.shape[1] < matrices.shape[2]:
         return np.zeros(len(t), dtype=bool)

@@ -107,11 +107,8 @@ def _note_without_mesh(
 def _ratios(numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray, chosen: np.ndarray) -> np.ndarray:
     """Return the extreme ratios by interface forces, rotation, acceleration of the frame and weight, shape (times, 2)."""
     (pose, motion), modal = places[0], (places[1:, :1] + np.arange(3)).ravel()
-    y, turn, spin = (
-        rows.q[np.ix_(chosen, modal)],
-        rows.q[chosen, pose + 3 : pose + 7],
-        rows.u[chosen, motion + 3 : motion + 6],
-    )
+    y, turn = rows.q[np.ix_(chosen, modal)], rows.q[chosen, pose + 3 : pose + 7]
+    spin = rows.u[chosen, motion + 3 : motion + 6]
     stiffness, static, Gamma = numbers["stiffness"][:, 0], numbers["static"], numbers["Gamma"]
     p = y
     if numbers["stretch"][0]:

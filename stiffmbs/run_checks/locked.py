@@ -45,12 +45,8 @@ def locked(dynamics: Dynamics, redundancy: Redundancy, solved: Trajectory) -> tu
     )
 
 
-Unfollowed = tuple[int, int, float]
-"""First output at which a velocity equation does not hold, its row, and the violation, m/s or rad/s."""
-
-
-def unfollowed(dynamics: Dynamics, solved: Trajectory) -> Unfollowed | None:
-    """Return the violation at the first output at which a nonholonomic equation does not hold, or None.
+def unfollowed(dynamics: Dynamics, solved: Trajectory) -> tuple[int, int, float] | None:
+    """Return the first output at which a nonholonomic equation does not hold, its row, and the violation, m/s or rad/s.
 
     The relaxed formulation lets velocities drift if multipliers grow without bound. Holonomic equations cannot remain
     violated in this way. The state of `dynamics` is changed.
@@ -66,8 +62,10 @@ def unfollowed(dynamics: Dynamics, solved: Trajectory) -> Unfollowed | None:
     return _first(dynamics, rows, solved, np.arange(before, seen[0] + 1))
 
 
-def _first(dynamics: Dynamics, rows: np.ndarray, solved: Trajectory, outputs: np.ndarray) -> Unfollowed | None:
-    """Return the largest violation of some equations at the first of some outputs at which one is too large."""
+def _first(
+    dynamics: Dynamics, rows: np.ndarray, solved: Trajectory, outputs: np.ndarray
+) -> tuple[int, int, float] | None:
+    """Return the first of some outputs at which one of some equations is violated too much, its row, and the violation."""
     system, (t, q, u) = dynamics.system, (each[outputs] for each in (solved.t, solved.q, solved.u))
     V, J = system.term("motion", "V"), system.term("motion", "J")
     used = np.isin(J.row, rows)

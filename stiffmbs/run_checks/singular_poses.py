@@ -158,9 +158,8 @@ def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:
     if len(J) <= RUN_CHECKS.few_rows:
         vectors, values, _ = np.linalg.svd(J, full_matrices=False)
         squares = values**2 + RUN_CHECKS.floor
-        share = (
-            squares[-1] / squares
-        ) ** RUN_CHECKS.iterations  # reduction by inverse iteration; several equally small values all count
+        # reduction by inverse iteration; several equally small values all count
+        share = (squares[-1] / squares) ** RUN_CHECKS.iterations
         return float(np.sqrt(squares[-1])), np.sqrt(vectors**2 @ share**2)
     from scipy.sparse import csc_matrix, identity
     from scipy.sparse.linalg import splu
