@@ -198,9 +198,8 @@ def diagnostics(comparison: Comparison) -> Iterator[Note]:
         yield _divergence_note(comparison, divergences, min(met, key=lambda found: found.t))
     if comparison.uncertain:
         yield _uncertain_note(comparison, parted=bool(met))
-    missed = _missed(comparison)
-    if missed and not met:
-        yield _missed_note(comparison, missed)
+    if not met:
+        yield from _peaks_between(comparison)
 
 
 def _divergence_note(comparison: Comparison, divergences: list[Divergence | None], first: Divergence) -> Note:
@@ -213,18 +212,17 @@ def _divergence_note(comparison: Comparison, divergences: list[Divergence | None
             for body, words in zip(pose.bodies[: VERIFICATION.named], pose.poses[: VERIFICATION.named], strict=True)
         )
         return BRANCH(first.body, pose=pose.t, where=where, joints=", ".join(pose.joints), t=first.t)
-    others = [comparison.other.name] if comparison.other else []
-    names = ["this run", *(run.name for run in comparison.tighter), *others]
+    names = [run.name for run in (*comparison.tighter, comparison.other) if run]
     of_levels = divergences[: len(comparison.tighter)]
     if len(of_levels) > 1 and of_levels[0] and of_levels[1]:
         begin = comparison.job.grid.start
         later = of_levels[1].t - begin
         if later < VERIFICATION.sensitive * (of_levels[0].t - begin):
             return SENSITIVE(
-                of_levels[0].body, tighter=names[1], t=of_levels[0].t, tightest=names[2], later=of_levels[1].t
+                of_levels[0].body, tighter=names[0], t=of_levels[0].t, tightest=names[1], later=of_levels[1].t
             )
     setting = "the step" if traits_of(settings).fixed_steps else "rtol"
-    other = names[1] if of_levels and of_levels[0] else names[-1]
+    other = names[0] if of_levels and of_levels[0] else names[-1]
     return NOT_RESOLVED(first.body, t=first.t, other=other, setting=setting)
 
 
@@ -267,28 +265,25 @@ def _remedy(comparison: Comparison, name: str, parted: bool) -> str:
     return f"they converge; rtol {settings.rtol / ratio**steps:.1g} should suffice"
 
 
-def _missed(comparison: Comparison) -> list[str]:
-    """Return the channels with peaks between output times, the worst first."""
+def _peaks_between(comparison: Comparison) -> Iterator[Note]:
+    """Yield a note on the channel whose peak between output times exceeds its reported values most, if it does by much."""
     if comparison.between is None:
-        return []
+        return
     parts = {
         name: max(beyond(*comparison.between.fine(name)[1:])) / comparison.sizes[name]
         for name in comparison.bars
         if comparison.sizes[name]
     }
-    return sorted((name for name, part in parts.items() if part > VERIFICATION.blown_up), key=lambda name: -parts[name])
-
-
-def _missed_note(comparison: Comparison, missed: list[str]) -> Note:
-    name = missed[0]
-    assert comparison.between is not None
-    times, values, at = comparison.between.fine(name)
-    below, above = beyond(values, at)
-    low = below > above
-    k = int(np.nanargmin(values) if low else np.nanargmax(values))
-    reported = np.nanmin(values[at]) if low else np.nanmax(values[at])
-    more = f", and {len(missed) - 1} more channels" if len(missed) > 1 else ""
-    return PEAKS_BETWEEN(name, value=values[k], t=times[k], reported=reported, more=more)
+    missed = [name for name, part in parts.items() if part > VERIFICATION.blown_up]
+    if missed:
+        name = max(missed, key=lambda each: parts[each])
+        times, values, at = comparison.between.fine(name)
+        below, above = beyond(values, at)
+        extreme, place = (np.nanmin, np.nanargmin) if below > above else (np.nanmax, np.nanargmax)
+        more = f", and {len(missed) - 1} more channels" if len(missed) > 1 else ""
+        yield PEAKS_BETWEEN(
+            name, value=extreme(values), t=times[place(values)], reported=extreme(values[at]), more=more
+        )
 
 
 def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[Note]:
