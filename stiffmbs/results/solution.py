@@ -148,13 +148,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         )
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a table with a column for each channel, over time, s; its ``attrs`` hold the units (needs pandas).
-
-        Raises
-        ------
-        InputError
-            If pandas is not installed.
-        """
+        """Return a table with a column for each channel, over time, s; its ``attrs`` hold the units (needs pandas)."""
         refuse_missing("pandas", "pandas")
         import pandas
 
@@ -163,13 +157,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         return frame
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return a data set of all channels over time, s, with their units (needs xarray, the extra ``netcdf``).
-
-        Raises
-        ------
-        InputError
-            If xarray is not installed.
-        """
+        """Return a data set of all channels over time, s, with their units (needs xarray, the extra ``netcdf``)."""
         refuse_missing("xarray", "'stiffmbs[netcdf]'")
         import xarray
 
