@@ -7,9 +7,6 @@ import numpy as np
 from .finite_elements import FiniteElements
 from .shapes import ELEMENTS, face_rule
 
-EDGE = 1e-12
-"""Value of a shape function that is zero on a face but for rounding."""
-
 
 def nodal_areas(model: FiniteElements, nodes: np.ndarray) -> np.ndarray:
     """Return the integrals of the shape functions of some nodes over the faces between these, m^2.
@@ -25,7 +22,7 @@ def nodal_areas(model: FiniteElements, nodes: np.ndarray) -> np.ndarray:
         for face in (*element.shape.triangles, *element.shape.quadrilaterals):
             points, along, weights = face_rule(element.shape.corners[list(face)])
             values, slopes = element.values(points), element.slopes(points)
-            own = np.flatnonzero(np.abs(values).max(axis=1) > EDGE)
+            own = element.nodes_of(face)
             for cell in cells[chosen[cells[:, own]].all(axis=1)]:
                 sides = np.einsum("na,nbp,bkp->kpa", model.nodes[cell], slopes, along, optimize=True)
                 size = np.linalg.norm(np.cross(*sides), axis=1) * weights

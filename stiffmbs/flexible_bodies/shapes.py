@@ -89,6 +89,11 @@ class Element:
             for face in (*self.shape.triangles, *self.shape.quadrilaterals)
         )
 
+    def nodes_of(self, face: tuple[int, ...]) -> list[int]:
+        """Return the nodes on a face given by its corners; the shape functions of all others are zero there."""
+        first = len(self.shape.corners)
+        return [*face, *(first + k for k, between in enumerate(self.middles) if set(between) <= set(face))]
+
     @cached_property
     def _coefficients(self) -> np.ndarray:
         return np.linalg.inv(_monomials(self.nodes.T, self.powers))

@@ -148,7 +148,13 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         )
 
     def to_pandas(self) -> pandas.DataFrame:
-        """Return a table with a column for each channel, over time, s; its ``attrs`` hold the units (needs pandas)."""
+        """Return a table with a column for each channel, over time, s; its ``attrs`` hold the units (needs pandas).
+
+        Raises
+        ------
+        InputError
+            If pandas is not installed.
+        """
         refuse_missing("pandas", "pandas")
         import pandas
 
@@ -157,7 +163,13 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         return frame
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return a data set of all channels over time, s, with their units (needs xarray, the extra ``netcdf``)."""
+        """Return a data set of all channels over time, s, with their units (needs xarray, the extra ``netcdf``).
+
+        Raises
+        ------
+        InputError
+            If xarray is not installed.
+        """
         refuse_missing("xarray", "'stiffmbs[netcdf]'")
         import xarray
 
