@@ -21,9 +21,9 @@ from ..redundancy.messages.presolve_report import StructureNotes
 from ..results.channels import series_of
 from ..results.energy_balance_notes import range_notes, undefined_values
 from ..run_checks.growth import motion_within_tolerance, senseless
+from ..run_checks.lost_digits import lost_digits_notes
 from ..run_checks.motion import motion_notes
 from ..run_checks.tables import departure_notes, left_by_requests, left_tables, tabled_drive_notes
-from ..run_checks.uncertain_forces import uncertain_forces
 from ..solve.settings import settings_notes, traits_of
 from ..solve.trajectory import Trajectory
 from .job import Job
@@ -134,7 +134,7 @@ CHECKS = (
     Check("flexible bodies", lambda run: flexible_body_notes(run.system, run.rows)),
     Check("impossible results", lambda run: senseless(run.job.dynamics, run.rows, run.job.on_constraints, run.broken)),
     Check("motion", lambda run: motion_notes(run.job.dynamics, run.rows, run.job.settings.rtol, run.again)),
-    Check("uncertain forces", lambda run: uncertain_forces(run.job.dynamics, run.trajectory, run.rows)),
+    Check("lost digits", lambda run: lost_digits_notes(run.job.dynamics, run.rows), lambda run: run.trajectory.statistics.get("jacobians")),
     Check("undefined values", lambda run: undefined_values(run.rows, run.channels or {}), lambda run: run.channels),
 )  # fmt: skip
 """All checks of a run."""

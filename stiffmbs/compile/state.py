@@ -124,6 +124,18 @@ class State:
         self.load(term_set)
         self._evaluate(t, SETS.index(term_set), self._at)
 
+    def values_at(
+        self, term_set: str, places: slice | np.ndarray, t: np.ndarray, q: np.ndarray, u: np.ndarray
+    ) -> np.ndarray:
+        """Return some values of a set at many states, one row for each; the last one becomes the current state."""
+        self.load(term_set)
+        found = np.empty((len(t), len(self.values[term_set][places])))
+        for k, at in enumerate(t.tolist()):
+            self.q[:], self.u[:] = q[k], u[k]
+            self.evaluate(term_set, at)
+            found[k] = self.values[term_set][places]
+        return found
+
     def restart_counters(self, t: float) -> None:
         """Reset the turn counters to their current angles."""
         term = self.system.term("position", "continuous_angle")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.native.parameters import CONSISTENCY
 from ..solve.radau.collocation import radau
 from ..solve.recorded_steps import Piece
-from .closed import Closed, closed
+from .closed import closed
 from .coordinates import displaced, displacements, width, with_rates
 from .defects import Points, curve_of_bdf, nonlinear_defects, woven
 from .evaluated import Evaluated, evaluated, motion
@@ -54,14 +53,6 @@ class StateErrors:
     fast: FastMotions | None = None
 
 
-LocalErrors = Callable[[np.ndarray, np.ndarray], np.ndarray]
-"""Errors at the points of some steps, by number, with some defects, from their starts."""
-Nonlinear: TypeAlias = tuple[np.ndarray, np.ndarray]
-"""Defects of some steps, and a mask of those that are known."""
-NonlinearDefects = Callable[[np.ndarray], Nonlinear]
-"""Defects of some steps, by number, whose linear equations give the errors of the nonlinear ones."""
-
-
 @dataclass(frozen=True)
 class _Prepared:
     """Piece with its evaluated states, the points of its steps at which errors are transported, and the defects there.
@@ -83,15 +74,6 @@ class _Prepared:
         return np.diff(self.piece.t[:: self.piece.points])
 
 
-@dataclass(frozen=True)
-class _Found:
-    """Errors and their rates, at all rows of a piece but for the rate at its start, which is NaN."""
-
-    piece: _Prepared
-    errors: np.ndarray
-    slopes: np.ndarray
-
-
 def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> StateErrors:
     """Return the errors of the states of a run with a tolerance; raise a SolverError if a state has no solution."""
     starts = np.append(0, np.cumsum([len(piece.t) for piece in pieces]))
@@ -108,24 +90,27 @@ def state_errors(dynamics: Dynamics, pieces: Sequence[Piece], rtol: float) -> St
         never = np.zeros(len(t), dtype=bool)
         return StateErrors(t, q, u, states.rows, states.q, states.u, nothing, left_out, never, restarts)
     transport = Transport(dynamics, states)
-    found: list[_Found] = []
+    prepared: list[_Prepared] = []
+    of_pieces: list[tuple[np.ndarray, np.ndarray]] = []  # errors and their rates
     error, shift = np.zeros(width(dynamics.system)), 0.0
     for k, (piece, first) in enumerate(zip(pieces, starts, strict=False)):
         opened = k > 0 and bool(pieces[k - 1].fired)
         each = _prepared(dynamics, transport, piece, states.at(slice(first, first + len(piece.t))), opened, rtol)
         if k:
-            error, shift = _restarted(dynamics, found[-1].piece, each, error, shift)
+            error, shift = _restarted(dynamics, prepared[-1], each, error, shift)
         errors, slopes = _transported(transport, each, error)
         error = errors[-1]
-        found.append(_Found(each, errors + shift * motion(dynamics.system, each.states), slopes))
-    errors = np.concatenate([each.errors for each in found])
+        prepared.append(each)
+        of_pieces.append((errors + shift * motion(dynamics.system, each.states), slopes))
+    errors = np.concatenate([each for each, _ in of_pieces])
     lost = _are_lost(dynamics.system, q, errors)
     if lost.any():
         return StateErrors(t, q, u, states.rows, q, u, errors, left_out, lost, restarts)
-    q_better, u_better, fails = (
-        np.concatenate(parts)
-        for parts in zip(*(_without_errors(dynamics, transport, each) for each in found), strict=True)
-    )
+    better = [
+        closed(dynamics, transport, each.states, *errors_and_slopes, each.at_rows, float(each.sizes.max()))
+        for each, errors_and_slopes in zip(prepared, of_pieces, strict=True)
+    ]
+    q_better, u_better, fails = (np.concatenate(parts) for parts in zip(*better, strict=True))
     left_out |= fails
     for k in np.flatnonzero(fired).tolist():
         before = np.arange(starts[k], starts[k + 1] - 1)
@@ -167,8 +152,8 @@ def _prepared(
     def local_errors(steps: np.ndarray, rates: np.ndarray) -> np.ndarray:
         return transport.apart(of_points[steps], points.sizes[steps], rates)
 
-    def nonlinear(steps: np.ndarray) -> Nonlinear:
-        """Return the defects of some steps by nonlinear equations; refuse singular poses."""
+    def nonlinear(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the defects of some steps by nonlinear equations, and a mask of those that are known; refuse singular poses."""
         rows = np.append(len(points.t) * np.arange(3) // 3, points.rows[steps].ravel())  # others show usual poses
         q, u = np.hsplit(points.states[rows], [dynamics.system.n_q])
         refuse_singular(dynamics, points.t[rows], q, u)  # rates are those of rounding there
@@ -227,9 +212,13 @@ def _with_inner(
 
 
 def _with_large_errors(
-    points: Points, defects: np.ndarray, local_errors: LocalErrors, nonlinear: NonlinearDefects, at: Motion
+    points: Points,
+    defects: np.ndarray,
+    local_errors: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    nonlinear: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+    at: Motion,
 ) -> np.ndarray:
-    """Return the defects at the points of steps, with those of nonlinear equations where the local errors are large.
+    """Return the defects at the points of steps, with those of `nonlinear` equations where the `local_errors` are large.
 
     Where their iteration does not converge, as over kinks, the defects have the same integrals as those of a curve. These become
     NaN in `defects`.
@@ -262,7 +251,7 @@ def _with_large_errors(
     if len(steps):
         curve = Curve.through(points.t[rows[steps]], points.states[rows[steps]], ends[steps], ends[steps + 1])
         places, most = np.append(0.0, method.nodes), ESTIMATE.intervals * len(points.t)
-        integrals, _ = integrals_of_motion(curve, places, points.system.n_q, at, scale, most)
+        integrals = integrals_of_motion(curve, places, points.system.n_q, at, scale, most)
         exact = without(steps, integrals)
         errors, plain = of_steps(local_errors(steps, exact)), of_steps(points.changes_in(rows[steps]) - integrals)
         is_stiff = (errors < CONSISTENCY.restored * plain) | (plain < CONSISTENCY.restored * errors)
@@ -272,7 +261,7 @@ def _with_large_errors(
 
 
 def _transported(transport: Transport, each: _Prepared, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the errors at all rows of a piece, from that at its start, and their rates."""
+    """Return the errors at all rows of a piece, from that at its start, and their rates, which are NaN at the start."""
     errors, slopes = transport.along(each.points, each.sizes, each.defects, error)
     if each.piece.points == 1:
         errors, slopes = errors[:, -1:], slopes[:, -1:]
@@ -281,12 +270,6 @@ def _transported(transport: Transport, each: _Prepared, error: np.ndarray) -> tu
         np.vstack([error[None], errors.reshape(-1, len(error))]),
         np.vstack([unknown, slopes.reshape(-1, len(error))]),
     )
-
-
-def _without_errors(dynamics: Dynamics, transport: Transport, found: _Found) -> Closed:
-    """Return q and u at the rows of a piece without their errors, closed, and a mask of failures."""
-    each = found.piece
-    return closed(dynamics, transport, each.states, found.errors, found.slopes, each.at_rows, float(each.sizes.max()))
 
 
 def _restarted(

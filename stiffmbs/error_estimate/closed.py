@@ -7,8 +7,6 @@ are stiff within a step. Its moves are of the second order in e: larger ones, as
 
 from __future__ import annotations
 
-from typing import TypeAlias
-
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics
@@ -18,15 +16,12 @@ from .evaluated import Evaluated, evaluated, motion
 from .parameters import ESTIMATE
 from .transport import Transport
 
-Closed: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Positions and velocities, one state per row, and a mask of those whose stiff forces say nothing."""
-
 
 def closed(
     dynamics: Dynamics, transport: Transport, at: Evaluated, errors: np.ndarray, slopes: np.ndarray, defects: np.ndarray,
     step: float,
-) -> Closed:  # fmt: skip
-    """Return q and u of states without their errors (dq, du, ds), closed onto the equations where that is possible, and where not.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+    """Return q and u of states without their errors (dq, du, ds), closed onto the equations where that is possible, and a mask of others.
 
     `slopes`, `defects`: e' and d at the states, NaN where they are unknown. `step`: longest step, s; as in a stiff projection, the
     matrix of a part of it separates the directions that are stiff.
@@ -113,11 +108,8 @@ class _Iteration:
         """Return the states without some errors, the residuals e' - F(z) + F(z - e) - d and their sizes."""
         at = self._at.at(rows)
         there = evaluated(self._dynamics, at.t, *displaced(self._dynamics.system, at.q, at.u, -errors))
-        residuals = (
-            slopes
-            - self._defects[rows]
-            + as_rows(self._dynamics.system, there.q_rates - at.q_rates, there.acceleration - at.acceleration)
-        )
+        change = as_rows(self._dynamics.system, there.q_rates - at.q_rates, there.acceleration - at.acceleration)
+        residuals = slopes - self._defects[rows] + change
         sizes = self._size(residuals)
         open_ = np.flatnonzero(sizes > self._enough[rows])
         if len(open_) and self._dynamics.system.n_c:

@@ -62,13 +62,8 @@ class Points:
     def with_inner(self, t: np.ndarray, states: np.ndarray, exact: np.ndarray) -> Points:
         """Return the points with others within each step, in rows of their order."""
         inner = len(t) // len(self.sizes)
-        return replace(
-            self,
-            points=inner + 1,
-            t=woven(self.t, t),
-            states=woven(self.states, states),
-            exact=woven(self.exact, exact),
-        )
+        all_states, all_exact = woven(self.states, states), woven(self.exact, exact)
+        return replace(self, points=inner + 1, t=woven(self.t, t), states=all_states, exact=all_exact)
 
     def changes(self, change: np.ndarray) -> np.ndarray:
         """Return changes of (q, u) as rows (dq, du, ds)."""

@@ -16,7 +16,7 @@ from ..notes import Note, NoteKind
 from ..results.digits import KnownErrors, largest_bar, over_time
 from ..results.error_bars import UNKNOWN, ErrorEstimate, bars
 from ..results.solution import Solution
-from ..run_checks.uncertain_forces import rounded_forces
+from ..run_checks.lost_digits import rounded_forces
 from ..solve.settings import near_constraints, traits_of
 from ..solve.subsystems import Subsystem
 from ..solve.trajectory import Trajectory
@@ -44,17 +44,10 @@ def estimated(
     trajectory: Trajectory, settings: RunSettings,
 ) -> Solution:  # fmt: skip
     """Return the results of a run with its error bars, from the steps that the trajectory recorded."""
-    parts = subsystems or (None,)
+    parts, own = subsystems or (None,), [part.dynamics for part in subsystems] or [dynamics]
     try:
-        found = [
-            state_errors(part.dynamics if part else dynamics, pieces, settings.rtol)
-            for part, pieces in zip(parts, trajectory.recorded, strict=False)
-        ]
-        lost = [
-            t
-            for part, each in zip(parts, found, strict=False)
-            if (t := _lost(part.dynamics if part else dynamics, each)) is not None
-        ]
+        found = [state_errors(*each, settings.rtol) for each in zip(own, trajectory.recorded, strict=False)]
+        lost = [_lost(*each) for each in zip(own, found, strict=False) if each[1].lost.any()]
         if lost:
             return _lost_from(solution, min(lost))
         project, rtol = near_constraints(settings), settings.rtol
@@ -112,13 +105,11 @@ def _large_errors(solution: Solution, known: KnownErrors, settings: RunSettings,
         yield LARGE(worst, error=error, percent=100 * errors[worst], setting=setting)
 
 
-def _lost(dynamics: Dynamics, found: StateErrors) -> float | None:
-    """Return the time from which errors are too large for a linear estimate, s, or None.
+def _lost(dynamics: Dynamics, found: StateErrors) -> float:
+    """Return the time from which errors are too large for a linear estimate, s.
 
     Raise a SolverError if the motion has passed a singular pose before, where the linear equations do not hold.
     """
-    if not found.lost.any():
-        return None
     before = slice(0, int(np.argmax(found.lost)) + 1)
     at = evaluated(dynamics, found.t[before], found.recorded_q[before], found.recorded_u[before])
     refuse_singular(dynamics, at.t, at.q, at.u)

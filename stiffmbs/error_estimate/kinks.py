@@ -88,11 +88,11 @@ def dominant(sizes: np.ndarray) -> np.ndarray:
 
 def integrals_of_motion(
     curve: Curve, ends: np.ndarray, n_q: int, motion: Motion, scale: np.ndarray, most: float
-) -> tuple[np.ndarray, float]:
+) -> np.ndarray:
     """Return the integrals of z' from the starts of steps to places in them, shape (steps, places, full), by adaptive quadrature.
 
     `ends`: 0 and the places, from 0 to 1. `n_q`: number of coordinates. `scale` of shape (full,): sizes to which errors of the
-    integrals are relative. `most`: largest number of intervals to halve; what is left of it is returned too.
+    integrals are relative. `most`: largest number of intervals to halve.
     """
     steps, places = len(curve.start), len(ends) - 1
 
@@ -117,4 +117,4 @@ def integrals_of_motion(
         begin, end = (np.concatenate(pair) for pair in ((begin[open_], middle[open_]), (middle[open_], end[open_])))
         whole, owner = np.concatenate([half[open_] for half in halves]), np.tile(owner[open_], 2)
     np.add.at(found, owner, whole)
-    return np.cumsum(found.reshape(steps, places, -1), axis=1), most
+    return np.cumsum(found.reshape(steps, places, -1), axis=1)

@@ -92,14 +92,12 @@ def _late(dynamics: Dynamics, at: Evaluated, fired: tuple[int, ...], error: np.n
 
     def value(later: float, part: float) -> float:
         q, u = displaced(dynamics.system, at.q, at.u, part * error[None])
-        return float(
-            _event_values(dynamics, fired, t + later, q[0] + later * rates[:n_q], u[0] + later * rates[n_q:])[0]
-        )
+        moved = q[0] + later * rates[:n_q], u[0] + later * rates[n_q:]
+        return float(_event_values(dynamics, fired, t + later, *moved)[0])
 
     before, now, after = (value(later, 0.0) for later in (-step, 0.0, step))
-    if abs(before - 2.0 * now + after) > ESTIMATE.smooth * abs(
-        after - before
-    ):  # it jumps, by an event of another function
+    jumps = abs(before - 2.0 * now + after) > ESTIMATE.smooth * abs(after - before)
+    if jumps:  # by an event of another function
         late = _crossing(lambda later: value(later, size), step) - _crossing(lambda later: value(later, -size), step)
         return late / (2.0 * size) if np.isfinite(late) else 0.0
     slope, by_error = (after - before) / (2.0 * step), (value(0.0, size) - value(0.0, -size)) / (2.0 * size)
@@ -121,14 +119,11 @@ def _crossing(value: Callable[[float], float], step: float) -> float:
         if reach > step / ESTIMATE.difference:
             return np.nan
     is_after = value(reach) > 0.0
-    return float(
-        bisect(
-            lambda later: 1.0 if (value(later) > 0.0) == is_after else -1.0,
-            -reach,
-            reach,
-            xtol=step * ESTIMATE.difference,
-        )
-    )
+
+    def side(later: float) -> float:
+        return 1.0 if (value(later) > 0.0) == is_after else -1.0
+
+    return float(bisect(side, -reach, reach, xtol=step * ESTIMATE.difference))
 
 
 def _jumped(dynamics: Dynamics, at: Evaluated, t: float, error: np.ndarray) -> np.ndarray:

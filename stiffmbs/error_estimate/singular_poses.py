@@ -24,26 +24,13 @@ def nearly_singular(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndar
     At a distance d, as a part of the usual one, their nonlinearity is `ESTIMATE.difference` / d^2.
     """
     system = dynamics.system
-    scale = system.per_velocity(system.size, 1.0)
-    matrices = (_velocity_constraints(dynamics, t, q, u) * scale)[:, system.active]
+    J, matrices = system.term("motion", "J"), np.zeros((len(t), system.n_c, system.n_u))
+    values = dynamics.state.values_at("motion", J.source, t, q, u)
+    np.add.at(matrices.transpose(1, 2, 0), (J.row, J.column), values.T)
+    matrices = (matrices * system.per_velocity(system.size, 1.0))[:, system.active]
     if not 0 < matrices.shape[1] < matrices.shape[2]:
         return np.zeros(len(t), dtype=bool)
     sizes = np.linalg.norm(matrices, axis=2, keepdims=True).max(axis=0)  # a row may vanish in the pose itself
     r = np.linalg.qr((matrices / np.where(sizes > 0, sizes, 1.0)).transpose(0, 2, 1), mode="r")
     least = np.abs(np.diagonal(r, axis1=1, axis2=2)).min(axis=1)
     return np.asarray(ESTIMATE.difference > ESTIMATE.large * (least / least.max()) ** 2)
-
-
-def _velocity_constraints(dynamics: Dynamics, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Return J of many states, shape (count, n_c, n_u)."""
-    system, state = dynamics.system, dynamics.state
-    term = system.term("motion", "J")
-    values = np.empty((len(t), len(term.source)))
-    for k in range(len(t) if len(term.source) else 0):
-        state.q[:], state.u[:] = q[k], u[k]
-        state.evaluate("motion", float(t[k]))
-        values[k] = state.values["motion"][term.source]
-    found = np.zeros((len(t), system.n_c, system.n_u))
-    for entry, (row, column) in enumerate(zip(term.row.tolist(), term.column.tolist(), strict=True)):
-        found[:, row, column] += values[:, entry]
-    return found

@@ -16,8 +16,9 @@ from ..reading.fields import Described, sentence
 from ..reading.files.quoted import written
 from ..reading.files.text_file import file_content
 from ..reading.units import si
+from .areas import nodal_areas
 from .finite_elements import PRECISION, FiniteElements
-from .interfaces import POINT, Interface
+from .interfaces import AVERAGE, POINT, Interface
 
 Point = si.Point3
 
@@ -108,7 +109,12 @@ class InterfaceOfNodes(Described):
         "rigid",
         description="rigid: the nodes are a rigid body (RBE2); average: their mean motion (RBE3); point: one node",
     )
-    point: Point | None = Field(None, description="reference point, m; the mean of the nodes by default")
+    weights: Literal["equal", "area"] = Field(
+        "equal", description="of the nodes of an average: equal, or area: shares of the faces between them"
+    )
+    point: Point | None = Field(
+        None, description="reference point, m; the mean of the nodes, with their weights, by default"
+    )
 
     @model_validator(mode="after")
     def _one_selection(self) -> Self:
@@ -116,6 +122,8 @@ class InterfaceOfNodes(Described):
         if len(given) != 1:
             found = " and ".join(given) or "none"
             raise ValueError(f"found {found} of nodes, group, sphere and plane, expected exactly one of them")
+        if self.weights == "area" and self.type != AVERAGE:
+            raise ValueError(f"found weights: area with type: {self.type}, expected them with type: average")
         return self
 
     def on(self, name: str, model: FiniteElements) -> Interface:
@@ -123,8 +131,19 @@ class InterfaceOfNodes(Described):
         nodes = np.unique(np.asarray(self._selected(name, model), dtype=np.int64))
         if self.point is not None and self.type == POINT:
             raise InputError(f"interfaces.{name}.point: found a reference point, expected none for type: point")
-        mean = model.nodes[nodes].mean(axis=0) if len(nodes) else np.zeros(3)
-        return Interface(name, self.type, nodes, mean if self.point is None else np.array(self.point))
+        weights = self._weights(name, model, nodes)
+        mean = np.average(model.nodes[nodes], axis=0, weights=weights) if len(nodes) else np.zeros(3)
+        return Interface(name, self.type, nodes, mean if self.point is None else np.array(self.point), weights)
+
+    def _weights(self, name: str, model: FiniteElements, nodes: np.ndarray) -> np.ndarray | None:
+        if self.weights == "equal":
+            return None
+        areas = nodal_areas(model, nodes)
+        if not areas.sum() > 0:
+            raise InputError(
+                f"interfaces.{name}.weights: found no face of an element between the nodes, expected a surface of a mesh"
+            )
+        return areas
 
     def _selected(self, name: str, model: FiniteElements) -> object:
         if self.group is not None:
@@ -171,10 +190,13 @@ class FlexibleBody(Described):
     A mesh needs a material; its elements are solids.
     """
 
-    mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
+    mesh: str | None = Field(None, description="file of a mesh of tetrahedra, hexahedra, wedges or pyramids")
     matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or files of K, M and nodes")
     units: Units = Field(description="units of the file")
     material: Material | None = Field(None, description="material of a mesh")
+    materials: dict[str, Material] | None = Field(
+        None, description="materials by groups of the mesh's elements, in place of one material"
+    )
     thickness: Thickness | None = Field(None, description="stretch of a mesh along its thickness")
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
@@ -201,10 +223,12 @@ class FlexibleBody(Described):
         if (self.mesh is None) == (self.matrices is None):
             found = "both" if self.mesh else "neither"
             raise ValueError(f"found {found} of 'mesh' and 'matrices', expected exactly one of them")
-        if (self.mesh is None) != (self.material is None):
-            found = "no material" if self.mesh else "a material"
+        given = [name for name in ("material", "materials") if getattr(self, name)]
+        if len(given) != (self.mesh is not None):
+            found = " and ".join(given) or "no material"
             raise ValueError(
                 f"found {found}, expected {'E, nu and density for a mesh' if self.mesh else 'none: K and M have it'}"
+                f"{', in one of them' * (len(given) > 1)}"
             )
         if self.thickness is not None and self.mesh is None:
             raise ValueError("found a thickness with matrices, expected a mesh")
@@ -218,6 +242,24 @@ class FlexibleBody(Described):
     def is_stiffened(self) -> bool:
         """True if geometric stiffening is included."""
         return self.mesh is not None and self.stiffening is not False
+
+    @property
+    def scales(self) -> tuple[float, float]:
+        """Young's modulus, N/m^2, and density, kg/m^3, by which all stiffness and mass is scaled: the first material's."""
+        material = self.material or next(iter((self.materials or {}).values()), None)
+        return (material.E, material.density) if material else (1.0, 1.0)
+
+    def scaled(self) -> FlexibleBody:
+        """Return the body with materials in units of `scales`, on whose values its reduction does not depend."""
+        modulus, density = self.scales
+
+        def own(material: Material) -> Material:
+            return material.model_copy(update={"E": material.E / modulus, "density": material.density / density})
+
+        materials = {name: own(material) for name, material in (self.materials or {}).items()}
+        return self.model_copy(
+            update={"material": self.material and own(self.material), "materials": materials or None}
+        )
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -259,10 +301,10 @@ class FlexibleBody(Described):
                 return from_archive(contents[0], *units)
             from .mesh import from_mesh
 
-            assert self.material is not None
-            stretch, material = self.thickness, self.material
+            stretch, materials = self.thickness, self.material or self.materials
+            assert materials is not None
             return from_mesh(
-                folder / self.files[0], units[0], material.E, material.nu, material.density,
+                folder / self.files[0], units[0], materials,
                 (lambda nodes: nodes) if stretch is None else (lambda nodes: stretch.moved(nodes, nodes, stretch.scale)),
             )  # fmt: skip
 

@@ -33,6 +33,7 @@ class FiniteElements:
     solid: Solid | None = None  # shape functions and material, for stresses and geometric stiffening
     # of int, shape (n,), optional: increasing numbers by which the file names the nodes; from 0 without them
     numbers: np.ndarray | None = None
+    parts: str = ""  # names of parts of one material to which the file may give several
 
     def rigid_modes(self, about: np.ndarray) -> np.ndarray:
         """Return displacements by unit translations and rotations about a point, shape (3 n, 6)."""

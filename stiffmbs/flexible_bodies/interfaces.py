@@ -22,6 +22,7 @@ class Interface:
     kind: str
     nodes: np.ndarray  # of int
     point: np.ndarray  # shape (3,): reference point, m
+    weights: np.ndarray | None = None  # of the nodes of an average, shape (nodes,); equal by default
 
     @property
     def size(self) -> int:
@@ -39,7 +40,10 @@ class Interface:
 
     def mean(self, model: FiniteElements) -> np.ndarray:
         """Return its coordinates by the displacements of its nodes in the sense of least squares (RBE3)."""
-        return np.linalg.pinv(self.rigid(model))
+        if self.weights is None:
+            return np.linalg.pinv(self.rigid(model))
+        weighted = self.rigid(model).T * np.repeat(self.weights, 3)
+        return np.linalg.solve(weighted @ self.rigid(model), weighted)
 
 
 def check_interfaces(interfaces: list[Interface], model: FiniteElements) -> None:

@@ -14,9 +14,10 @@ from ..errors import InputError
 from ..reading.files.quoted import first_line
 from .finite_elements import FiniteElements
 from .node_files import readable
+from .shapes import ELEMENTS
 
-CELL = re.compile(r"^(tetra|tetra10|hexahedron|hexahedron20|hexahedron27)$|^hex(8|20|27)$|^el$")
-CELL_TYPES = {4: "tetra", 10: "tetra10", 8: "hexahedron", 20: "hexahedron20", 27: "hexahedron27"}
+CELL_TYPES = {len(element.powers): kind for kind, element in ELEMENTS.items()}
+CELL = re.compile(rf"^({'|'.join(ELEMENTS)})$|^hex(8|20|27)$|^el$")
 NODES = ("nodes", "X")
 PARTS = {"data": ("_data", "data"), "indices": ("_indices", "ind"), "indptr": ("_indptr", "ptr")}
 """Suffixes of the arrays of a sparse matrix by rows (CSR), such as ``K_data``."""

@@ -64,6 +64,26 @@ def sets_of_sets(path: Path) -> dict[str, list[str]]:
     return found
 
 
+def materials_of_sections(path: Path) -> list[str]:
+    """Return the materials that the sections of solids in an Abaqus or Nastran file have, each once."""
+    suffix, found = path.suffix.lower(), []
+    if suffix == ABAQUS:
+        for words in (line.replace(" ", "").upper().split(",") for line in _lines(path)):
+            if words[0] == "*SOLIDSECTION":
+                found += [word.removeprefix("MATERIAL=") for word in words if word.startswith("MATERIAL=")]
+    elif suffix in NASTRAN:
+        for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
+            if line[:6].upper() == "PSOLID":
+                found.append(f"MAT {_fields(line)[2].strip()}")
+    return list(dict.fromkeys(found))
+
+
+def _fields(line: str) -> list[str]:
+    """Return the first three fields of a Nastran card, or more."""
+    second, third = (24, 40) if "*" in line[:8] else (16, 24)
+    return line.split(",") if "," in line else [line[:8], line[8:second], line[second:third]]
+
+
 def _check_nastran(text: str) -> None:
     if not any(line.startswith("ENDDATA") for line in text.rpartition(BULK)[2].splitlines()):
         raise InputError("found no line ENDDATA after the bulk data, expected a complete Nastran file")
@@ -73,8 +93,7 @@ def _check_nastran(text: str) -> None:
                 f"found {card}, a mass besides the elements, expected none: fix a rigid body to an interface"
             )
         if line[:4].upper() == "GRID" or line[:6].upper() == "GRDSET":
-            second, third = (24, 40) if "*" in line[:8] else (16, 24)
-            fields = line.split(",") if "," in line else [line[:8], line[8:second], line[second:third]]
+            fields = _fields(line)
             if len(fields) > 2 and fields[2].strip() not in ("", "0"):
                 raise InputError(
                     f"found {fields[0].strip()} {fields[1].strip()} in the coordinate system {fields[2].strip()}, "

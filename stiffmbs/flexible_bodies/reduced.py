@@ -30,10 +30,9 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     The shapes of a mesh's modes do not depend on Young's modulus and density: it is reduced once for all their values.
     `folder`: folder of relative file names. Raises InputError.
     """
-    modulus, density = (body.material.E, body.material.density) if body.material else (1.0, 1.0)
+    modulus, density = body.scales
     highest = body.modes.up_to * np.sqrt(density / modulus) if isinstance(body.modes, UpTo) else None
-    if body.material:
-        body = body.model_copy(update={"material": body.material.model_copy(update={"E": 1.0, "density": 1.0})})
+    body = body.scaled()
     name = _name(body, highest, folder)
     stored = entries.read(name)
     if stored is not None:

@@ -30,7 +30,7 @@ DEPENDENT = 1e-10
 ratio of an eigenvalue of the mass matrix, or of a singular value, to the largest."""
 ZERO = 10.0
 """Frequency of the lowest elastic mode that is refused as zero, relative to the highest of the rigid modes."""
-FIRST_ORDER = {"tetra": "tetra10", "hexahedron": "hexahedron20"}
+FIRST_ORDER = {"tetra": "tetra10", "hexahedron": "hexahedron20", "wedge": "wedge15"}
 """Elements of first order, and those of second order in their place."""
 MORE_MODES = 20
 """Modes of the first search up to a frequency, doubled until one is above it."""
@@ -60,17 +60,25 @@ class ReducedBody:
     pairs: np.ndarray  # shape (n, n, 3, 3): sum m psi_l psi_k^T by l and k
     dependent: int  # number of combinations of modes left out as linearly dependent
     second_order: SecondOrder  # terms of second order, of a mesh: geometric stiffening
-    elements: str  # type of the elements of a mesh, in the words of meshio; empty for matrices
+    elements: str  # types of the elements of a mesh, in the words of meshio; empty for matrices
+    parts: str  # names of parts of one material to which the file may give several; empty if there are none
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Return a note on elements of first order, whose strain is too stiff in bending (shear locking)."""
-        if self.elements not in FIRST_ORDER:
-            return ()
-        return (
-            f"its mesh has elements of first order ({self.elements}), which are too stiff in bending; expected elements of second order "
-            f"({FIRST_ORDER[self.elements]}), or several elements over each thickness",
-        )
+        """Return notes on elements of first order, too stiff in bending (shear locking), and on one material of several parts."""
+        found = []
+        better = [FIRST_ORDER[kind] for kind in self.elements.split(", ") if kind in FIRST_ORDER]
+        if better:
+            found.append(
+                f"its mesh has elements of first order ({self.elements}), which are too stiff in bending; expected elements of second "
+                f"order ({', '.join(better)}), or several elements over each thickness"
+            )
+        if self.parts:
+            found.append(
+                f"the file of its mesh tells apart {self.parts}, which all have the one material of the description; "
+                "'materials' gives each group of elements its own"
+            )
+        return tuple(found)
 
     def of_material(self, stiffer: float, heavier: float) -> ReducedBody:
         """Return the body with other factors of its stiffness and its mass matrix."""
@@ -172,7 +180,8 @@ def reduce(
         np.array([interface.point for interface in interfaces]).reshape(-1, 3),
         np.array([interface.size for interface in interfaces], dtype=int),
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
-        second_order(model, interfaces, solver, static, held, centre, modes), next(iter(model.cells or {}), ""),
+        second_order(model, interfaces, solver, static, held, centre, modes), ", ".join(model.cells),
+        model.parts,
     )  # fmt: skip
 
 

@@ -2,76 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import bsr_array, csr_array, eye_array, kron
 
-from ..errors import needs
-
-if TYPE_CHECKING:
-    import skfem
+from .materials import ElementMaterials
+from .shapes import ELEMENTS
 
 LARGEST_PART = 10_000_000
 """Numbers in the element matrices that are computed together; they take 80 MB."""
 
 
 @dataclass(frozen=True, eq=False)
-class Solid:
-    """Isoparametric elements of an isotropic, linearly elastic material."""
+class Block:
+    """Isoparametric elements of one kind."""
 
-    mesh: skfem.Mesh
-    element: skfem.Element
-    order: int  # order of quadrature
-    # of int, shape (nodes of an element, elements): nodes of the body in the order of the shape functions
-    nodes: np.ndarray
-    # modulus, poisson: Young's modulus, N/m^2, and Poisson's ratio
-    modulus: float
-    poisson: float
-
-    @cached_property
-    def pairs(self) -> NodePairs:
-        """Pairs of nodes that share an element."""
-        return NodePairs(self.nodes)
-
-    def stiffness(self) -> csr_array:
-        """Return the stiffness matrix, shape (3 n, 3 n), N/m.
-
-        Zienkiewicz & Taylor, The finite element method, volume 1, section on the displacement approximation.
-        """
-        shear, lame = self._constants()
-        gradients, weights = self.gradients()
-        functions, _, elements, points = gradients.shape
-        blocks = self.pairs.zeros((3, 3))
-        at_points = gradients.transpose(2, 0, 1, 3).reshape(elements, 3 * functions, points)
-        for part in self.pairs.parts(elements):
-            products = (at_points[part] * weights[part, None]) @ at_points[part].swapaxes(1, 2)
-            products = products.reshape(-1, functions, 3, functions, 3)
-            same = np.einsum("enama->enm", products)[..., None, None] * np.eye(3)
-            own = lame * products.swapaxes(2, 3) + shear * (products.transpose(0, 1, 3, 4, 2) + same)
-            self.pairs.add(blocks, part, own)
-        return csr_array(bsr_array((blocks, self.pairs.columns, self.pairs.starts)))
-
-    def mass(self, density: float) -> csr_array:
-        """Return the consistent mass matrix for a density, kg/m^3, shape (3 n, 3 n), kg."""
-        basis = self._basis()
-        at_points = np.array([np.asarray(basis.basis[k][0]) for k in range(len(self.nodes))]).transpose(1, 0, 2)
-        return csr_array(kron(self.pairs.matrix(at_points, density * basis.dx[:, None] * at_points), eye_array(3)))
-
-    def _constants(self) -> tuple[float, float]:
-        """Return Lame's constants mu and lambda, N/m^2."""
-        shear = self.modulus / (2 * (1 + self.poisson))
-        return shear, self.modulus * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
-
-    def stress(self, strain: np.ndarray) -> np.ndarray:
-        """Return the stress of displacement gradients or symmetric tensors, shape (3, 3, ...)."""
-        shear, lame = self._constants()
-        identity = np.eye(3).reshape(3, 3, *(1,) * (strain.ndim - 2))
-        trace = strain[0, 0] + strain[1, 1] + strain[2, 2]
-        return lame * trace * identity + shear * (strain + strain.swapaxes(0, 1))
+    kind: str
+    places: np.ndarray  # shape (n, 3): positions of all nodes of the body, m
+    nodes: np.ndarray  # of int, shape (nodes of an element, elements)
+    materials: ElementMaterials
 
     def gradients(self, at_nodes: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Return the gradients of the shape functions, 1/m, and the weights of the points, m^3.
@@ -79,31 +31,87 @@ class Solid:
         Their shapes are (nodes of an element, 3, elements, points) and (elements, points). `at_nodes`: take the nodes of
         each element as points instead of those of the quadrature.
         """
-        basis = self._basis(at_nodes)
-        return np.array([basis.basis[k][0].grad for k in range(len(self.nodes))]), basis.dx
+        element = ELEMENTS[self.kind]
+        points, weights = (element.nodes.T, np.ones(len(element.nodes))) if at_nodes else element.rule()
+        slopes = element.slopes(points)
+        jacobians = self.jacobians(points)
+        at = np.einsum("nbp,epba->naep", slopes, np.linalg.inv(jacobians), optimize=True)
+        return at, np.linalg.det(jacobians) * weights
 
-    def _basis(self, at_nodes: bool = False) -> skfem.CellBasis:
-        with needs("skfem", "flexible"):
-            import skfem
-        rule: dict[str, object] = {"intorder": self.order}
-        if at_nodes:
-            places = self.element.doflocs.T
-            rule = {"quadrature": (places, np.ones(places.shape[1]))}
-        return skfem.Basis(self.mesh, self.element, **rule)
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """Return the derivatives of positions by reference coordinates, shape (elements, points, 3, 3)."""
+        slopes = ELEMENTS[self.kind].slopes(points)
+        return np.einsum("nea,nbp->epab", self.places[self.nodes], slopes, optimize=True)
+
+    def stress(self, strain: np.ndarray) -> np.ndarray:
+        """Return the stress of displacement gradients or symmetric tensors, shape (3, 3, elements, points)."""
+        shear, lame = self.constants()
+        trace = strain[0, 0] + strain[1, 1] + strain[2, 2]
+        return lame[:, None] * trace * np.eye(3)[:, :, None, None] + shear[:, None] * (strain + strain.swapaxes(0, 1))
+
+    def constants(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return Lame's constants mu and lambda of the elements, N/m^2."""
+        modulus, poisson, _ = self.materials
+        return modulus / (2 * (1 + poisson)), modulus * poisson / ((1 + poisson) * (1 - 2 * poisson))
 
     def displacement_gradient(self, gradients: np.ndarray, displacement: np.ndarray) -> np.ndarray:
         """Return du_a/dx_b of nodal displacements, shape (3 n,), as shape (3, 3, elements, points)."""
         of_nodes = displacement.reshape(-1, 3)[self.nodes]
         return np.einsum("nea,nbep->abep", of_nodes, gradients, optimize=True)
 
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """Isoparametric elements of isotropic, linearly elastic materials, by kinds of elements."""
+
+    blocks: tuple[Block, ...]
+
+    @cached_property
+    def pairs(self) -> NodePairs:
+        """Pairs of nodes that share an element."""
+        return NodePairs([block.nodes for block in self.blocks])
+
+    def stiffness(self) -> csr_array:
+        """Return the stiffness matrix, shape (3 n, 3 n), N/m.
+
+        Zienkiewicz & Taylor, The finite element method, volume 1, section on the displacement approximation.
+        """
+        sums = self.pairs.zeros((3, 3))
+        for number, block in enumerate(self.blocks):
+            constants = block.constants()
+            gradients, weights = block.gradients()
+            functions, _, elements, points = gradients.shape
+            at_points = gradients.transpose(2, 0, 1, 3).reshape(elements, 3 * functions, points)
+            for part in self.pairs.parts(number):
+                shear, lame = (each[part].reshape(-1, 1, 1, 1, 1) for each in constants)
+                products = (at_points[part] * weights[part, None]) @ at_points[part].swapaxes(1, 2)
+                products = products.reshape(-1, functions, 3, functions, 3)
+                same = np.einsum("enama->enm", products)[..., None, None] * np.eye(3)
+                own = lame * products.swapaxes(2, 3) + shear * (products.transpose(0, 1, 3, 4, 2) + same)
+                self.pairs.add(sums, number, part, own)
+        return csr_array(bsr_array((sums, self.pairs.columns, self.pairs.starts)))
+
+    def mass(self) -> csr_array:
+        """Return the consistent mass matrix, shape (3 n, 3 n), kg."""
+        factors = []
+        for block in self.blocks:
+            points, weights = ELEMENTS[block.kind].rule()
+            values = np.broadcast_to(
+                ELEMENTS[block.kind].values(points), (block.nodes.shape[1], len(block.nodes), points.shape[1])
+            )
+            volumes = np.linalg.det(block.jacobians(points)) * weights
+            factors.append((values, (block.materials.density[:, None] * volumes)[:, None] * values))
+        return csr_array(kron(self.pairs.matrix(factors), eye_array(3)))
+
     def second_order_force(self, displacement: np.ndarray) -> np.ndarray:
         """Return the nodal forces of the strain of second order G^T G / 2 of a displacement, shape (3 n,)."""
-        at, weights = self.gradients()
-        slope = self.displacement_gradient(at, displacement)
-        stress = self.stress(np.einsum("caep,cbep->abep", slope, slope) / 2)
         found = np.zeros(len(displacement))
-        force = np.einsum("abep,nbep,ep->nea", stress, at, weights, optimize=True)
-        np.add.at(found, 3 * self.nodes[:, :, None] + np.arange(3), force)
+        for block in self.blocks:
+            at, weights = block.gradients()
+            slope = block.displacement_gradient(at, displacement)
+            stress = block.stress(np.einsum("caep,cbep->abep", slope, slope) / 2)
+            force = np.einsum("abep,nbep,ep->nea", stress, at, weights, optimize=True)
+            np.add.at(found, 3 * block.nodes[:, :, None] + np.arange(3), force)
         return found
 
 
@@ -112,7 +120,7 @@ class InitialStress:
 
     def __init__(self, solid: Solid) -> None:
         self._solid = solid
-        self._gradients, self._weights = solid.gradients()
+        self._gradients = [block.gradients() for block in solid.blocks]
 
     def matrix(self, displacement: np.ndarray) -> csr_array:
         """Return the integral of grad N_a . sigma . grad N_b by nodes a, b, with the stress of a displacement.
@@ -120,45 +128,54 @@ class InitialStress:
         The matrix, N/m, has the shape (n, n) and applies to each component of displacements, shape (3 n,). Zienkiewicz &
         Taylor, The finite element method, volume 2, section on geometric stiffness.
         """
-        at, nodes = self._gradients, self._solid.nodes
-        stress = self._solid.stress(self._solid.displacement_gradient(at, displacement)) * self._weights
-        pulled = sum(stress[:, b] * at[:, None, b] for b in range(3))
-        left, right = (each.transpose(2, 0, 1, 3).reshape(nodes.shape[1], len(nodes), -1) for each in (at, pulled))
-        return self._solid.pairs.matrix(left, right)
+        factors = []
+        for block, (at, weights) in zip(self._solid.blocks, self._gradients, strict=True):
+            stress = block.stress(block.displacement_gradient(at, displacement)) * weights
+            pulled = sum(stress[:, b] * at[:, None, b] for b in range(3))
+            rows = (
+                (each.transpose(2, 0, 1, 3).reshape(block.nodes.shape[1], len(block.nodes), -1))
+                for each in (at, pulled)
+            )
+            factors.append(tuple(rows))
+        return self._solid.pairs.matrix(factors)
 
 
 class NodePairs:
     """Pairs of nodes that share an element: the entries of the assembled matrices.
 
-    `nodes` of shape (functions, elements): nodes of the shape functions of the elements. `starts`, shape (n + 1,), and
+    `nodes`: nodes of the elements of each block, shape (nodes of an element, elements). `starts`, shape (n + 1,), and
     `columns`, shape (pairs,): second nodes of the pairs, by first nodes (the format CSR).
     """
 
-    def __init__(self, nodes: np.ndarray) -> None:
-        count = int(nodes.max()) + 1
-        pairs, place = np.unique(nodes.T[:, :, None] * count + nodes.T[:, None, :], return_inverse=True)
-        self._count, self._place = count, place.reshape(nodes.shape[1], -1)
-        first, self.columns = np.divmod(pairs, count)
-        self.starts = np.concatenate([[0], np.cumsum(np.bincount(first, minlength=count))])
+    def __init__(self, nodes: Sequence[np.ndarray]) -> None:
+        self._count = 1 + max(int(each.max()) for each in nodes)
+        every = [(each.T[:, :, None] * self._count + each.T[:, None, :]).reshape(each.shape[1], -1) for each in nodes]
+        pairs, place = np.unique(np.concatenate([each.ravel() for each in every]), return_inverse=True)
+        ends = np.cumsum([each.size for each in every])[:-1]
+        self._places = [part.reshape(own.shape) for part, own in zip(np.split(place.ravel(), ends), every, strict=True)]
+        first, self.columns = np.divmod(pairs, self._count)
+        self.starts = np.concatenate([[0], np.cumsum(np.bincount(first, minlength=self._count))])
 
     def zeros(self, shape: tuple[int, ...]) -> np.ndarray:
         """Return a block of zeros for each pair."""
         return np.zeros((len(self.columns), *shape))
 
-    def parts(self, elements: int) -> Iterator[slice]:
-        """Yield parts of the elements whose matrices fit into memory together."""
-        most = max(1, LARGEST_PART // (9 * self._place.shape[1]))
+    def parts(self, block: int) -> Iterator[slice]:
+        """Yield parts of the elements of a block whose matrices fit into memory together."""
+        elements, pairs = self._places[block].shape
+        most = max(1, LARGEST_PART // (9 * pairs))
         yield from (slice(start, start + most) for start in range(0, elements, most))
 
-    def add(self, sums: np.ndarray, part: slice, of_elements: np.ndarray) -> None:
+    def add(self, sums: np.ndarray, block: int, part: slice, of_elements: np.ndarray) -> None:
         """Add the blocks of some elements, shape (elements, functions, functions, ...), to the sums of their pairs."""
         width = sums[0].size
-        entries = width * self._place[part].reshape(-1, 1) + np.arange(width)
+        entries = width * self._places[block][part].reshape(-1, 1) + np.arange(width)
         np.add.at(sums.reshape(-1), entries.ravel(), of_elements.ravel())
 
-    def matrix(self, left: np.ndarray, right: np.ndarray) -> csr_array:
-        """Return the assembled products left right^T of the elements, each of shape (elements, functions, points)."""
+    def matrix(self, factors: Sequence[tuple[np.ndarray, ...]]) -> csr_array:
+        """Return the assembled products left right^T of each block's elements, both of shape (elements, functions, points)."""
         sums = self.zeros(())
-        for part in self.parts(len(left)):
-            self.add(sums, part, left[part] @ right[part].swapaxes(1, 2))
+        for block, (left, right) in enumerate(factors):
+            for part in self.parts(block):
+                self.add(sums, block, part, left[part] @ right[part].swapaxes(1, 2))
         return csr_array((sums, self.columns, self.starts), shape=(self._count, self._count))

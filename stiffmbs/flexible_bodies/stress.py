@@ -12,22 +12,27 @@ PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 
 
 def nodal_stresses(model: FiniteElements, displacements: np.ndarray) -> np.ndarray:
-    """Return the stresses of displacements at the nodes, the mean of the elements there.
+    """Return the stresses of displacements at the nodes: the mean of the elements there, of the stiffest material alone.
 
-    `displacements` of shape (3 n, k). The result of shape (k, n, 6): xx, yy, zz, xy, yz, zx, N/m^2. Raises InputError
+    Between materials, the stress jumps. `displacements` of shape (3 n, k). The result of shape (k, n, 6): xx, yy, zz, xy, yz, zx, N/m^2. Raises InputError
     if the model has no shape functions.
     """
     solid = model.solid
     if solid is None:
         raise InputError("found a body described by matrices, expected a mesh: stresses need its shape functions")
-    gradients, _ = solid.gradients(at_nodes=True)
-    count = np.bincount(solid.nodes.ravel(), minlength=len(model.nodes))
-    found = np.zeros((displacements.shape[1], len(model.nodes), 6))
-    for own, displacement in zip(found, displacements.T, strict=True):
-        stress = solid.stress(solid.displacement_gradient(gradients, displacement))
-        for k, (a, b) in enumerate(PLACES):
-            np.add.at(own[:, k], solid.nodes, stress[a, b].T)  # (elements, nodes) by (nodes, elements)
-        own /= count[:, None]
+    stiffest = np.zeros(len(model.nodes))
+    for block in solid.blocks:
+        np.maximum.at(stiffest, block.nodes, np.tile(block.materials.modulus, (len(block.nodes), 1)))
+    found, count = np.zeros((displacements.shape[1], len(model.nodes), 6)), np.zeros(len(model.nodes))
+    for block in solid.blocks:
+        gradients, _ = block.gradients(at_nodes=True)
+        counted = block.materials.modulus == stiffest[block.nodes]
+        np.add.at(count, block.nodes, counted)
+        for own, displacement in zip(found, displacements.T, strict=True):
+            stress = block.stress(block.displacement_gradient(gradients, displacement))
+            for k, (a, b) in enumerate(PLACES):
+                np.add.at(own[:, k], block.nodes, counted * stress[a, b].T)  # (elements, nodes) by (nodes, elements)
+    found /= count[:, None]
     return found
 
 

@@ -23,8 +23,7 @@ from .saved_state import SET_UP
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
     """Return all channels by name: bodies, joints and forces, energies, constraint violations, requests."""
     channels = motion_channels(system, rows.q, rows.u, rows.acceleration)
-    if system.states or any(group.entries["signal"] for group in system.groups):
-        channels |= state_channels(system, rows.q, rows.values)
+    channels |= state_channels(system, rows.q, rows.values)
     channels |= reactions(system, rows.values)
     if (angles := joint_angles(system)) is not None:
         channels |= angles.continuous(rows)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -47,14 +47,9 @@ class KnownErrors:
         if solution.estimate:
             resolved = {name: solution.estimate.resolved for name, own in self.group.items() if own in MOTIONS}
             self.sizes |= {name: max(self.sizes[name], least) for name, least in resolved.items()}
-            self.sizes |= dict.fromkeys(self._by_rounding(solution.estimate), 0.0)
-
-    def _by_rounding(self, estimate: ErrorEstimate) -> Iterator[str]:
-        """Yield the channels of forces and torques that may be rounding of coordinates."""
-        resolved = {"force": estimate.resolved_force, "torque": estimate.resolved_torque}
-        for name, own in self.group.items():
-            if own == "forces" and self.sizes[name] <= resolved[kind_of(name)]:
-                yield name
+            rounding = {"force": solution.estimate.resolved_force, "torque": solution.estimate.resolved_torque}
+            forces = [name for name, own in self.group.items() if own == "forces"]
+            self.sizes |= {name: 0.0 for name in forces if self.sizes[name] <= rounding[kind_of(name)]}
 
     def relative(self, error_of: Callable[[ErrorBar], float], group: str = "") -> dict[str, float]:
         """Return known errors by channel, of one group or of all groups."""

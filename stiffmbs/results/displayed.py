@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass, field, fields, replace
+from dataclasses import astuple, dataclass, field
 
 from .error_bars import ErrorBar
 from .solution import Solution
@@ -37,7 +37,5 @@ def displayed(solution: Solution, other: Solution | None = None) -> Solution:
         name: ErrorBar(*(part * factors[name] for part in astuple(bar))) if name in factors else bar
         for name, bar in solution.errors.items()
     }
-    own = {
-        part.name: getattr(replace(solution, channels=channels, errors=errors), part.name) for part in fields(Solution)
-    }
-    return Displayed(**own, shown={name: unit for name, (unit, _) in found.items()})
+    shown = {name: unit for name, (unit, _) in found.items()}
+    return Displayed(**{**vars(solution), "channels": channels, "errors": errors}, shown=shown)

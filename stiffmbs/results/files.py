@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import BinaryIO
 from zipfile import ZipFile, ZipInfo
@@ -23,19 +23,21 @@ from .solution import Solution
 NAMESPACE = "http://www.mscsoftware.com/:xrf10"
 
 
+def _write_columns(path: Path, heads: Sequence[str], columns: Sequence[np.ndarray], delimiter: str, form: str) -> None:
+    """Write columns of numbers below a line of heads, one block of rows after the other to save memory."""
+    with path.open("w", encoding="utf-8") as file:
+        print(delimiter.join(heads), file=file)
+        for block in blocks(len(columns[0])):
+            np.savetxt(file, np.column_stack([each[block] for each in columns]), fmt=form, delimiter=delimiter)
+            release(*columns)
+
+
 def _write_csv(path: Path, solution: Solution) -> None:
     # Columns of ones mark channels without a unique value, so that the names of channels stay unchanged.
-    marks = [f"{name}.not_unique" for name in solution.not_unique]
+    marks = {f"{name}.not_unique": np.broadcast_to(1.0, len(solution.time)) for name in solution.not_unique}
     heads = [f"{name} ({unit})" if (unit := solution.unit(name)) else name for name in ("time", *solution.channels)]
-    columns = (solution.time, *solution.channels.values())
-    with path.open("w", encoding="utf-8") as file:
-        print(",".join([*heads, *marks]), file=file)
-        for block in blocks(len(solution.time)):
-            ones = np.ones((block.stop - block.start, len(marks)))
-            np.savetxt(
-                file, np.column_stack([*(column[block] for column in columns), ones]), delimiter=",", fmt="%.17g"
-            )
-            release(*columns)
+    columns = (solution.time, *solution.channels.values(), *marks.values())
+    _write_columns(path, [*heads, *marks], columns, ",", "%.17g")
 
 
 class WithoutSeeking:
@@ -72,8 +74,7 @@ def _write_netcdf(path: Path, solution: Solution) -> None:
 def _write_table(path: Path, solution: Solution) -> None:
     """Write tab-separated columns with names in double quotes, as Adams/PostProcessor exports tables."""
     heads = [f'"{name}"' for name in ("time", *solution.channels)]
-    columns = np.column_stack([solution.time, *solution.channels.values()])
-    np.savetxt(path, columns, delimiter="\t", fmt="%.16e", header="\t".join(heads), comments="", encoding="utf-8")
+    _write_columns(path, heads, (solution.time, *solution.channels.values()), "\t", "%.16e")
 
 
 def _write_adams(path: Path, solution: Solution) -> None:
@@ -88,24 +89,18 @@ def _write_adams(path: Path, solution: Solution) -> None:
         file.write('<?xml version="1.0" encoding="UTF-8"?>\n')
         file.write(f'<Results xmlns="{NAMESPACE}">\n<Analysis name={quoteattr(solution.name or "run")}>\n')
         file.write('<StepMap name="map_001">\n<Entity name="time">\n<Component name="TIME" id="1"/>\n</Entity>\n')
-        file.writelines(_entities(solution))
+        for number, channel in enumerate(solution.channels, start=2):
+            entity, _, component = channel.rpartition(".")
+            file.write(
+                f"<Entity name={quoteattr(entity or channel)}>\n"
+                f'<Component name={quoteattr(component if entity else "")} id="{number}"/>\n</Entity>\n'
+            )
         file.write('</StepMap>\n<Data name="dynamic_001">\n')
         columns = (solution.time, *solution.channels.values())
         for k in range(len(solution.time)):
             numbers = "\n".join(f"{column[k]:.16e}" for column in columns)
             file.write(f'<Step type="dynamic">\n{numbers}\n</Step>\n')
         file.write("</Data>\n</Analysis>\n</Results>\n")
-
-
-def _entities(solution: Solution) -> Iterator[str]:
-    from xml.sax.saxutils import quoteattr
-
-    for number, channel in enumerate(solution.channels, start=2):
-        entity, _, component = channel.rpartition(".")
-        yield (
-            f"<Entity name={quoteattr(entity or channel)}>\n"
-            f'<Component name={quoteattr(component if entity else "")} id="{number}"/>\n</Entity>\n'
-        )
 
 
 WRITERS: dict[str, Callable[[Path, Solution], None]] = {
@@ -179,11 +174,9 @@ def refuse_path(option: str, path: Path, kind: str) -> None:
 def write(path: Path, solution: Solution) -> None:
     """Write all channels to a file, completely or not at all.
 
-    The suffix selects the format: .csv (a header line of names and units, time first), .npz, .nc, .mat, .xlsx, .parquet, .tab
-    (tab-separated columns), or .res (Adams' XML).  A file .npz has arrays by channel name, ``time``, and further data for
-    `Solution.load` under names with a slash.  Channels without a unique value are marked: by a column ``rail.fy.not_unique`` of ones, an array
-    ``not_unique`` of names, or the attribute ``unique`` of each variable.  The origin of the results is in the file, or next
-    to a table in ``NAME.csv-metadata.json``.
+    The suffix selects the format (`WRITERS`). Channels without a unique value are marked: by a column
+    ``rail.fy.not_unique`` of ones, an array ``not_unique`` of names, or the attribute ``unique`` of each variable. The
+    origin of the results is in the file, or next to a table in ``NAME.csv-metadata.json``.
     """
     written_whole(path, lambda part: WRITERS[path.suffix](part, solution))
     if path.suffix not in WITH_ORIGIN:

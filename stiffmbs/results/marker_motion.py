@@ -70,6 +70,16 @@ def times(p: Quaternion, r: Quaternion) -> Quaternion:
     return a * b - dot((*v,), (*w,)), x, y, z
 
 
+def _vector(in_plane: str, in_space: str, in_own_axes: bool = False) -> cached_property[Vector]:
+    """Return a vector of a body in ground axes, by its channels in the plane and those in space."""
+
+    def found(body: BodyFrame) -> Vector:
+        x, y, z = body.read(in_plane if body.planar else in_space)
+        return turned(body.matrix, (x, y, z)) if in_own_axes and not body.planar else (x, y, z)
+
+    return cached_property(found)
+
+
 class BodyFrame:
     """Centre of mass of a body with the body's own axes; each part is read when it is needed.
 
@@ -77,54 +87,36 @@ class BodyFrame:
     """
 
     def __init__(self, read: Callable[[str], tuple[Value, ...]], planar: bool, maths: ModuleType) -> None:
-        self._read, self._planar, self._maths = read, planar, maths
-
-    def _vector(self, in_plane: str, in_space: str) -> Vector:
-        x, y, z = self._read(in_plane if self._planar else in_space)
-        return x, y, z
+        self.read, self.planar, self._maths = read, planar, maths
 
     @cached_property
     def quaternion(self) -> Quaternion:
         """Quaternion of the axes."""
-        if self._planar:
-            (angle,) = self._read("angle")
+        if self.planar:
+            (angle,) = self.read("angle")
             return self._maths.cos(angle / 2), 0.0, 0.0, self._maths.sin(angle / 2)
-        w, x, y, z = self._read("q0 q1 q2 q3")
+        w, x, y, z = self.read("q0 q1 q2 q3")
         return w, x, y, z
 
     @cached_property
     def matrix(self) -> Matrix:
         """Rotation matrix, with the axes as columns."""
-        if self._planar:
-            (angle,) = self._read("angle")
+        if self.planar:
+            (angle,) = self.read("angle")
             c, s = self._maths.cos(angle), self._maths.sin(angle)
             return (c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)
         return rotation(self.quaternion)
 
-    @cached_property
-    def point(self) -> Vector:
-        """Position, m."""
-        return self._vector("x y 0", "x y z")
-
-    @cached_property
-    def velocity(self) -> Vector:
-        """Velocity, m/s."""
-        return self._vector("vx vy 0", "vx vy vz")
-
-    @cached_property
-    def acceleration(self) -> Vector:
-        """Acceleration, m/s^2."""
-        return self._vector("ax ay 0", "ax ay az")
-
-    @cached_property
-    def omega(self) -> Vector:
-        """Angular velocity, rad/s."""
-        return self._vector("0 0 omega", "") if self._planar else turned(self.matrix, self._vector("", "wx wy wz"))
-
-    @cached_property
-    def alpha(self) -> Vector:
-        """Angular acceleration, rad/s^2."""
-        return self._vector("0 0 alpha", "") if self._planar else turned(self.matrix, self._vector("", "wdx wdy wdz"))
+    point = _vector("x y 0", "x y z")
+    """Position, m."""
+    velocity = _vector("vx vy 0", "vx vy vz")
+    """Velocity, m/s."""
+    acceleration = _vector("ax ay 0", "ax ay az")
+    """Acceleration, m/s^2."""
+    omega = _vector("0 0 omega", "wx wy wz", in_own_axes=True)
+    """Angular velocity, rad/s."""
+    alpha = _vector("0 0 alpha", "wdx wdy wdz", in_own_axes=True)
+    """Angular acceleration, rad/s^2."""
 
 
 class GroundFrame(BodyFrame):

@@ -12,6 +12,7 @@ from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
 from ..elements.spatial.flexible.layout import components, parts
 from ..notes import Note, NoteKind, Severity
+from .motion import some_instants
 from .parameters import RUN_CHECKS
 
 BEAM = "use a body of type: beam, or divide the body into several"
@@ -75,7 +76,7 @@ def _length(numbers: dict[str, np.ndarray]) -> float:
 
 def _note(name: str, numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray) -> Iterator[Note]:
     """Yield a note by the extreme eigenvalues of geometric and elastic stiffness, of all deformations of the free body."""
-    chosen = np.unique(np.linspace(0, len(rows.t) - 1, RUN_CHECKS.most_instants).astype(int))
+    chosen = some_instants(len(rows.t))
     ratios = _ratios(numbers, rows, places, chosen)
     at = int(np.abs(ratios).max(axis=1).argmax())
     lowest, highest = ratios[at]
@@ -106,11 +107,8 @@ def _note_without_mesh(
 def _ratios(numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray, chosen: np.ndarray) -> np.ndarray:
     """Return the extreme ratios by interface forces, rotation, acceleration of the frame and weight, shape (times, 2)."""
     (pose, motion), modal = places[0], (places[1:, :1] + np.arange(3)).ravel()
-    y, turn, spin = (
-        rows.q[np.ix_(chosen, modal)],
-        rows.q[chosen, pose + 3 : pose + 7],
-        rows.u[chosen, motion + 3 : motion + 6],
-    )
+    y, turn = rows.q[np.ix_(chosen, modal)], rows.q[chosen, pose + 3 : pose + 7]
+    spin = rows.u[chosen, motion + 3 : motion + 6]
     stiffness, static, Gamma = numbers["stiffness"][:, 0], numbers["static"], numbers["Gamma"]
     p = y
     if numbers["stretch"][0]:

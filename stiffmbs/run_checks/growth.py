@@ -65,7 +65,7 @@ def _grown(system: System, rows: OutputRows) -> Iterator[Note]:
         speed[block] = np.max(np.abs(rows.u[block]) * of_rates, axis=1)
         release(rows.q, rows.u)
     farthest, fastest = (
-        lambda row: np.abs(rows.q[row] - rows.q[0])[..., : system.first_state] * of_places[: system.first_state],
+        lambda row: (np.abs(rows.q[row] - rows.q[0]) * of_places)[..., : system.n_pose],
         lambda row: np.abs(rows.u[row]) * of_rates,
     )
     if np.nanmax(far) > limit and exponential(rows.t, np.fmax.accumulate(far)):

@@ -45,12 +45,8 @@ def locked(dynamics: Dynamics, redundancy: Redundancy, solved: Trajectory) -> tu
     )
 
 
-Unfollowed = tuple[int, int, float]
-"""First output at which a velocity equation does not hold, its row, and the violation, m/s or rad/s."""
-
-
-def unfollowed(dynamics: Dynamics, solved: Trajectory) -> Unfollowed | None:
-    """Return the violation at the first output at which a nonholonomic equation does not hold, or None.
+def unfollowed(dynamics: Dynamics, solved: Trajectory) -> tuple[int, int, float] | None:
+    """Return the first output at which a nonholonomic equation does not hold, its row, and the violation, m/s or rad/s.
 
     The relaxed formulation lets velocities drift if multipliers grow without bound. Holonomic equations cannot remain
     violated in this way. The state of `dynamics` is changed.
@@ -66,21 +62,18 @@ def unfollowed(dynamics: Dynamics, solved: Trajectory) -> Unfollowed | None:
     return _first(dynamics, rows, solved, np.arange(before, seen[0] + 1))
 
 
-def _first(dynamics: Dynamics, rows: np.ndarray, solved: Trajectory, outputs: np.ndarray) -> Unfollowed | None:
-    """Return the largest violation of some equations at the first of some outputs at which one is too large."""
-    system, state = dynamics.system, dynamics.state
+def _first(
+    dynamics: Dynamics, rows: np.ndarray, solved: Trajectory, outputs: np.ndarray
+) -> tuple[int, int, float] | None:
+    """Return the first of some outputs at which one of some equations is violated too much, its row, and the violation."""
+    system, (t, q, u) = dynamics.system, (each[outputs] for each in (solved.t, solved.q, solved.u))
     V, J = system.term("motion", "V"), system.term("motion", "J")
     used = np.isin(J.row, rows)
-    row, column, source = J.row[used], J.column[used], J.source[used]
-    violations, coefficients = np.empty((len(outputs), len(V.source))), np.empty((len(outputs), len(source)))
-    for k, output in enumerate(outputs.tolist()):
-        state.q[:], state.u[:] = solved.q[output], solved.u[output]
-        state.evaluate("motion", float(solved.t[output]))
-        values = state.values["motion"]
-        violations[k], coefficients[k] = values[V.source], values[source]
+    places = np.concatenate([V.source, J.source[used]])
+    violations, coefficients = np.hsplit(dynamics.state.values_at("motion", places, t, q, u), [len(V.source)])
     gaps, sizes = np.zeros((2, len(outputs), system.n_c))
     gaps[:, V.row] = np.abs(violations)
-    np.add.at(sizes.T, row, np.abs(coefficients * solved.u[outputs][:, column]).T)
+    np.add.at(sizes.T, J.row[used], np.abs(coefficients * u[:, J.column[used]]).T)
     excess = (gaps - np.maximum(RUN_CHECKS.unfollowed_part * sizes, RUN_CHECKS.unfollowed_velocity))[:, rows]
     wrong = np.flatnonzero(np.any(excess > 0, axis=1))
     if not len(wrong):

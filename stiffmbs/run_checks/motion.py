@@ -7,9 +7,6 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..compile.machine.layout import address, addresses
-from ..compile.machine.routines import Routine
-from ..compile.state import State
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics, OutputRows
@@ -61,19 +58,14 @@ def motion_notes(
 
 def near_limits_notes(dynamics: Dynamics, rows: OutputRows) -> Iterator[Note]:
     """Yield a note on the first force outside the range in which its kind is reliable; the state is changed."""
-    system, state = dynamics.system, dynamics.state
-    first, end = system.first_limit, system.n_event_functions
-    if not len(rows.t):
-        return
+    system, at = dynamics.system, some_instants(len(rows.t))
     doubtful, doubts = _doubts(system)
-    for k in some_instants(len(rows.t)):
-        state.q[:], state.u[:] = rows.q[k], rows.u[k]
-        state.evaluate("event_function", rows.t[k])
-        passed = np.flatnonzero(state.values["event_function"][first:end] < doubtful)
-        if len(passed):
-            name, doubt = doubts[passed[0]]
-            yield OUT_OF_RANGE(name, doubt=doubt, t=rows.t[k])
-            return
+    limits = slice(system.first_limit, system.n_event_functions)
+    passed = dynamics.state.values_at("event_function", limits, rows.t[at], rows.q[at], rows.u[at]) < doubtful
+    if passed.any():
+        k, limit = np.argwhere(passed)[0]
+        name, doubt = doubts[limit]
+        yield OUT_OF_RANGE(name, doubt=doubt, t=rows.t[at[k]])
 
 
 def _doubts(system: System) -> tuple[np.ndarray, tuple[tuple[str, str], ...]]:
@@ -88,37 +80,21 @@ def _doubts(system: System) -> tuple[np.ndarray, tuple[tuple[str, str], ...]]:
     return np.array([value for value, _ in found]), tuple(doubt for _, doubt in found)
 
 
-APART_FROM_COUNTERS = Routine(
-    "stiffmbs.run_checks.native.turns",
-    "apart_from_counters",
-    "void(int64, int64, float64*, float64*, int64, int64*, int64*, float64*, int64*)",
-)
-
-
 def missed_revolutions_notes(dynamics: Dynamics, rows: OutputRows) -> Iterator[Note]:
     """Yield a note on the angle that differs most from the counter of its turns, if the turn is uncertain."""
-    system, state = dynamics.system, dynamics.state
+    system = dynamics.system
     solved = np.flatnonzero(~np.isnan(rows.position_violation))
     if not len(solved):
         return
     counted = system.term("position", "continuous_angle")
-    instants = solved[some_instants(len(solved))]
-    apart = _apart(state, rows.t[instants], rows.q[instants], counted.source, counted.row)
+    at = solved[some_instants(len(solved))]
+    angles = dynamics.state.values_at("position", counted.source, rows.t[at], rows.q[at], rows.u[at])
+    apart = np.abs(angles - rows.q[np.ix_(at, counted.row)])
     if not np.nanmax(apart) > RUN_CHECKS.uncertain_turn:
         return
     k, worst = np.unravel_index(int(np.nanargmax(apart)), apart.shape)
     name = writer(system, "position", int(counted.source[worst]))
-    yield UNCERTAIN_TURNS(name, t=rows.t[instants[k]], apart=apart[k, worst])
-
-
-def _apart(state: State, t: np.ndarray, q: np.ndarray, source: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """Return the distances of angles (position terms) from their counters, rad, shape (len(t), len(row))."""
-    state.load("position")
-    apart = np.empty((len(t), len(row)))
-    source, row = (np.ascontiguousarray(places, dtype=np.int64) for places in (source, row))
-    at_t, at_q, at_source, at_row, at_apart = addresses(t, q, source, row, apart)
-    APART_FROM_COUNTERS.call(*q.shape, at_t, at_q, len(row), at_source, at_row, at_apart, address(state.table))
-    return apart
+    yield UNCERTAIN_TURNS(name, t=rows.t[at[k]], apart=apart[k, worst])
 
 
 def several_solutions_note(dynamics: Dynamics, rows: OutputRows) -> Iterator[Note]:

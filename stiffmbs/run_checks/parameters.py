@@ -49,9 +49,6 @@ class RunCheckParameters:
     """Velocity contradiction over a step, in tolerances, from which on an event counts as missed."""
     overlooked_part: float = 0.3
     """Velocity contradiction, relative to the larger mass-weighted acceleration times the interval, of a missed event."""
-    contradicted_part: float = 0.02
-    """Difference of an acceleration from the mean rate of velocities in a step of order 1, relative to the largest
-    acceleration, from which stiff forces are uncertain."""
     dip: float = 0.25
     """Minimum of a parabola through the det at three outputs, relative to its ends, below which a rerun resolves it."""
     most_dips: int = 5

@@ -90,12 +90,7 @@ class PosesBetween:
     @cached_property
     def usual(self) -> float:
         """Largest smallest singular value at a few poses of the motion; 0 without equations that may be dependent."""
-        if not len(self._rows):
-            return 0.0
-        if len(self._rows) > RUN_CHECKS.few_rows:
-            return max(self._least(k)[0] for k in _few_of(len(self._t)))
-        values = np.linalg.svd(np.array([self._scaled(k) for k in _few_of(len(self._t))]), compute_uv=False)
-        return float(np.sqrt(values[:, -1].max() ** 2 + RUN_CHECKS.floor))
+        return max(self._least(k)[0] for k in _few_of(len(self._t))) if len(self._rows) else 0.0
 
     @property
     def products(self) -> float:
@@ -163,9 +158,8 @@ def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:
     if len(J) <= RUN_CHECKS.few_rows:
         vectors, values, _ = np.linalg.svd(J, full_matrices=False)
         squares = values**2 + RUN_CHECKS.floor
-        share = (
-            squares[-1] / squares
-        ) ** RUN_CHECKS.iterations  # reduction by inverse iteration; several equally small values all count
+        # reduction by inverse iteration; several equally small values all count
+        share = (squares[-1] / squares) ** RUN_CHECKS.iterations
         return float(np.sqrt(squares[-1])), np.sqrt(vectors**2 @ share**2)
     from scipy.sparse import csc_matrix, identity
     from scipy.sparse.linalg import splu

@@ -202,13 +202,8 @@ def _at_states(system: System, times: np.ndarray, q: np.ndarray, u: np.ndarray) 
     arguments = list(table_arguments(system))
     if all(table is None for *_, table in arguments):
         return
-    state, values = State(system), np.empty((len(times), len(arguments)))
     own = slice(system.n_event_functions, system.n_values("event_function"))
-    state.load("event_function")
-    for k, t in enumerate(times.tolist()):
-        state.q[:], state.u[:] = q[k], u[k]
-        state.evaluate("event_function", t)
-        values[k] = state.values["event_function"][own]
+    values = State(system).values_at("event_function", own, times, q, u)
     for (element, label, table), x in zip(arguments, values.T, strict=True):
         if table is not None and np.isfinite(x).all():
             yield from _departure(element, label, table, times, x)

@@ -18,7 +18,7 @@ from ..results.error_bars import ErrorBar
 from ..results.scales import kind_of
 from ..results.solution import Solution
 from ..solve.settings import traits_of
-from .missed_events import Along, DenseSamples, SteppedOver, beyond, poses_of
+from .missed_events import Along, DenseSamples, beyond, poses_of
 from .parameters import VERIFICATION
 from .solve_again import Again
 
@@ -54,7 +54,7 @@ STEPS_MISS = NoteKind(
 )
 STEP_LENGTH = NoteKind(
     "step-length",
-    "the results depend on the step length: {different} in {run}, but not at a smaller tolerance alone",
+    "the results depend on the step length: from t = {t:.4g} s on {body} differs in {run}, but not at a smaller tolerance alone",
     "set max_step to this value, and reduce it until two runs agree",
 )
 STEPPED_OVER = NoteKind(
@@ -178,7 +178,11 @@ class Comparison:
         """Return the divergences, or None, between successive tighter runs, and of the first run from the other's."""
         runs = [self.first.channels, *(run.channels for run in self.tighter)]
         pairs = [*itertools.pairwise(runs), *([(runs[0], self.other.channels)] if self.other else [])]
-        return [divergence(self.first.time, distance(one, two, self.sizes)) for one, two in pairs]
+        return [self.divergence(one, two) for one, two in pairs]
+
+    def divergence(self, one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> Divergence | None:
+        """Return the divergence of the channels of two runs, or None."""
+        return divergence(self.first.time, distance(one, other, self.sizes))
 
     @property
     def suspicious(self) -> bool:
@@ -194,9 +198,8 @@ def diagnostics(comparison: Comparison) -> Iterator[Note]:
         yield _divergence_note(comparison, divergences, min(met, key=lambda found: found.t))
     if comparison.uncertain:
         yield _uncertain_note(comparison, parted=bool(met))
-    missed = _missed(comparison)
-    if missed and not met:
-        yield _missed_note(comparison, missed)
+    if not met:
+        yield from _peaks_between(comparison)
 
 
 def _divergence_note(comparison: Comparison, divergences: list[Divergence | None], first: Divergence) -> Note:
@@ -209,18 +212,17 @@ def _divergence_note(comparison: Comparison, divergences: list[Divergence | None
             for body, words in zip(pose.bodies[: VERIFICATION.named], pose.poses[: VERIFICATION.named], strict=True)
         )
         return BRANCH(first.body, pose=pose.t, where=where, joints=", ".join(pose.joints), t=first.t)
-    others = [comparison.other.name] if comparison.other else []
-    names = ["this run", *(run.name for run in comparison.tighter), *others]
+    names = [run.name for run in (*comparison.tighter, comparison.other) if run]
     of_levels = divergences[: len(comparison.tighter)]
     if len(of_levels) > 1 and of_levels[0] and of_levels[1]:
         begin = comparison.job.grid.start
         later = of_levels[1].t - begin
         if later < VERIFICATION.sensitive * (of_levels[0].t - begin):
             return SENSITIVE(
-                of_levels[0].body, tighter=names[1], t=of_levels[0].t, tightest=names[2], later=of_levels[1].t
+                of_levels[0].body, tighter=names[0], t=of_levels[0].t, tightest=names[1], later=of_levels[1].t
             )
     setting = "the step" if traits_of(settings).fixed_steps else "rtol"
-    other = names[1] if of_levels and of_levels[0] else names[-1]
+    other = names[0] if of_levels and of_levels[0] else names[-1]
     return NOT_RESOLVED(first.body, t=first.t, other=other, setting=setting)
 
 
@@ -263,70 +265,49 @@ def _remedy(comparison: Comparison, name: str, parted: bool) -> str:
     return f"they converge; rtol {settings.rtol / ratio**steps:.1g} should suffice"
 
 
-def _missed(comparison: Comparison) -> list[str]:
-    """Return the channels with peaks between output times, the worst first."""
+def _peaks_between(comparison: Comparison) -> Iterator[Note]:
+    """Yield a note on the channel whose peak between output times exceeds its reported values most, if it does by much."""
     if comparison.between is None:
-        return []
+        return
     parts = {
         name: max(beyond(*comparison.between.fine(name)[1:])) / comparison.sizes[name]
         for name in comparison.bars
         if comparison.sizes[name]
     }
-    return sorted((name for name, part in parts.items() if part > VERIFICATION.blown_up), key=lambda name: -parts[name])
-
-
-def _missed_note(comparison: Comparison, missed: list[str]) -> Note:
-    name = missed[0]
-    assert comparison.between is not None
-    times, values, at = comparison.between.fine(name)
-    below, above = beyond(values, at)
-    low = below > above
-    k = int(np.nanargmin(values) if low else np.nanargmax(values))
-    reported = np.nanmin(values[at]) if low else np.nanmax(values[at])
-    more = f", and {len(missed) - 1} more channels" if len(missed) > 1 else ""
-    return PEAKS_BETWEEN(name, value=values[k], t=times[k], reported=reported, more=more)
+    missed = [name for name, part in parts.items() if part > VERIFICATION.blown_up]
+    if missed:
+        name = max(missed, key=lambda each: parts[each])
+        times, values, at = comparison.between.fine(name)
+        below, above = beyond(values, at)
+        extreme, place = (np.nanmin, np.nanargmin) if below > above else (np.nanmax, np.nanargmax)
+        more = f", and {len(missed) - 1} more channels" if len(missed) > 1 else ""
+        yield PEAKS_BETWEEN(
+            name, value=extreme(values), t=times[place(values)], reported=extreme(values[at]), more=more
+        )
 
 
 def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[Note]:
-    """Yield a note on missed events, else on different runs with shorter steps, else on an open energy balance.
+    """Yield a note on missed events, else on runs that differ by their longest step alone.
 
     `comparison`: of the run with others. `along`: result of sampling along the run. `shorter`: rerun with a shorter
     longest step.
     """
-    if along.stretches:
-        yield _stepped_over(comparison, along.stretches[0], shorter)
+    if along.missed:
+        missed = along.missed
+        whose = f"'{missed.element}' acts" if missed.element else "something acts"
+        known = _off(comparison, shorter) or "the errors after it are unknown, and there are no error bars"
+        yield STEPPED_OVER(missed.element, whose=whose, t=missed.times[0], known=known, max_step=along.max_step)
+    elif shorter is None or not shorter.whole:
         return
-    if by_luck(comparison, shorter):
-        assert shorter is not None
-        yield STEPS_MISS(run=shorter.name)
-        return
-    different = _different(comparison, shorter)
-    if shorter is not None and different:
-        yield STEP_LENGTH(different=different, run=shorter.name)
-
-
-def by_luck(comparison: Comparison, shorter: Again | None) -> bool:
-    """Return True if a run agrees with one of shorter steps, but not with others."""
-    if not any(comparison.divergences()) or not _whole(shorter):
-        return False
-    return not _parts(comparison, comparison.first.channels, shorter)
-
-
-def _whole(shorter: Again | None) -> bool:
-    return shorter is not None and shorter.solution is not None and not shorter.obstacle and not shorter.remark
-
-
-def _parts(comparison: Comparison, channels: Mapping[str, np.ndarray], shorter: Again | None) -> str:
-    """Return a clause on the divergence from the motion with shorter steps, or an empty string."""
-    assert shorter is not None
-    found = divergence(comparison.first.time, distance(channels, shorter.channels, comparison.sizes))
-    return f"from t = {found.t:.4g} s on {found.body} differs" if found is not None else ""
-
-
-def _stepped_over(comparison: Comparison, found: SteppedOver, shorter: Again | None) -> Note:
-    whose = f"'{found.element}' acts" if found.element else "something acts"
-    known = _off(comparison, shorter) or "the errors after it are unknown, and there are no error bars"
-    return STEPPED_OVER(found.element, whose=whose, t=found.at, known=known, max_step=found.max_step)
+    elif any(comparison.divergences()):
+        if comparison.divergence(comparison.first.channels, shorter.channels) is None:
+            yield STEPS_MISS(run=shorter.name)
+    elif (
+        comparison.tighter
+        and not comparison.tighter[-1].obstacle
+        and (found := comparison.divergence(comparison.tighter[-1].channels, shorter.channels))
+    ):
+        yield STEP_LENGTH(t=found.t, body=found.body, run=shorter.name)
 
 
 def _off(comparison: Comparison, shorter: Again | None) -> str:
@@ -343,13 +324,3 @@ def _off(comparison: Comparison, shorter: Again | None) -> str:
         return ""
     unit = comparison.first.unit(name)
     return f"{name} differs by up to {parts[name] * comparison.sizes[name]:.3g} {unit} ({shorter.name})"
-
-
-def _different(comparison: Comparison, shorter: Again | None) -> str:
-    """Return a clause on the divergence of shorter steps from a run of their tolerance that agrees with the first."""
-    if not _whole(shorter) or not comparison.tighter or any(comparison.divergences()):
-        return ""
-    tight = comparison.tighter[-1].channels
-    if len(tight["energy.total"]) < len(comparison.first.time):
-        return ""
-    return _parts(comparison, tight, shorter)

@@ -56,21 +56,10 @@ class VerificationParameters:
     """Largest number of samples."""
     of_effort_left: float = 0.25
     """Fraction of the remaining effort for the sampling."""
-    open_balance: float = 1e-3
-    """Imbalance of momentum in an interval that is checked, relative to the largest mass-weighted velocity."""
     elsewhere: float = 1e-2
-    """Difference of velocities at the end of a repeated interval, relative to the same, or of kinetic energies, relative
-    to the largest, between runs that are not equivalent; impacts magnify differences."""
-    share: float = 1e-3
-    """Smallest change of a force law's reaction, relative to the largest change, for the law to be named."""
-    stretches: int = 4
-    """Largest number of intervals that are solved again."""
-    shorter: int = 50
-    """Number of steps in an unbalanced interval when it is solved again."""
+    """Difference of kinetic energies, relative to the largest, between runs that are not equivalent."""
     fewest_steps: int = 4
-    """Least number of steps in it."""
-    stretch_tolerance: float = 1e-2
-    """Factor on the tolerance of a repeated interval without short steps."""
+    """Least number of steps between the samples next to a missed event."""
     most_effort: float = 10.0
     """Evaluations of all reruns, in those of the first run."""
     effort_allowed: float = 2.5e7

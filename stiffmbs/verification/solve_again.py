@@ -76,6 +76,16 @@ class Again:
         return self.solution[channel][self.at]
 
     @property
+    def usable(self) -> bool:
+        """True if results can be compared: those of explicit steps at their stability limit are noisy."""
+        return self.solution is not None and not self.remark and not self.blind
+
+    @property
+    def whole(self) -> bool:
+        """True if it is usable and reached the end."""
+        return self.usable and not self.obstacle
+
+    @property
     def channels(self) -> dict[str, np.ndarray]:
         """All channels at the times of the first run that were reached."""
         return {name: self.reported(name) for name in self.solution or ()}

@@ -6,9 +6,8 @@
 3. The same solver at an intermediate tolerance (a quarter of the step), if the other integrator gives no result or the
    first two differ. It shows the order of convergence.
 
-All of these may miss events within one step. The run is therefore searched for them
-(`stiffmbs.verification.missed_events`). If the scene has force laws or events in the state, it is solved again with
-another longest step:
+All of these may miss events within one step. If the scene has force laws or events in the state, the run is therefore
+searched for them (`stiffmbs.verification.missed_events`), and solved again with another longest step:
 
 4. As 1, with several times as many steps, or with steps that resolve the events found by the search.
 
@@ -41,8 +40,8 @@ from ..results.verification_words import INTERRUPTED, KINEMATIC, RERUN
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..tuning import in_use
-from .diagnostics import Comparison, by_luck, diagnostics, distance, divergence, step_diagnostics
-from .missed_events import Along, DenseSamples, SteppedOver, dense_samples, looked_along, more_instants
+from .diagnostics import STEPPED_OVER, STEPS_MISS, Comparison, diagnostics, distance, divergence, step_diagnostics
+from .missed_events import Along, DenseSamples, dense_samples, looked_along, more_instants
 from .parameters import VERIFICATION
 from .solve_again import Again, levels_of, other_integrators, shorter_step, solve_again, tolerances
 
@@ -131,7 +130,7 @@ class _Verification:
         self._other_settings: dict[str, object] = {}
         self._along = Along()
         self._shorter: Again | None = None
-        self._narrow: tuple[SteppedOver, ...] = ()
+        self._max_steps: list[float] = []
         self._skipped: list[str] = []
 
     def result(self) -> Solution:
@@ -147,11 +146,11 @@ class _Verification:
             self._skipped.append(INTERRUPTED)
         comparison = self._comparison()
         of_steps = tuple(step_diagnostics(comparison, self._along, self._shorter))
-        steps_decide = self._along.stretches or by_luck(comparison, self._shorter)
-        messages = () if steps_decide else tuple(diagnostics(comparison))  # their only remedy is the tolerance
+        steps_decide = any(note.kind in (STEPPED_OVER.name, STEPS_MISS.name) for note in of_steps)
+        messages = () if steps_decide else diagnostics(comparison)  # their only remedy is the tolerance
         return replace(
             self._first, errors=comparison.bars, verification=tuple(self._messages()),
-            notes=(*self._first.notes, *messages, *of_steps), balance=self._first.balance,
+            notes=(*self._first.notes, *messages, *of_steps),
         )  # fmt: skip
 
     def _solve(self) -> None:
@@ -159,32 +158,31 @@ class _Verification:
         if self._exact:
             return
         self._ask_the_other()
-        if self._other is None or self._other.obstacle or not _judges(self._other) or self._comparison().suspicious:
+        if self._other is None or not self._other.whole or self._comparison().suspicious:
             self._tighten()
         self._look_along()
 
     def _look_along(self) -> None:
-        """Search the first run for missed events, and rerun with shorter steps if there may be some."""
-        if self._traits.fixed_steps:
+        """Search the first run for missed events, and rerun with shorter steps, if there may be some."""
+        if self._traits.fixed_steps or not self._job.dynamics.system.has_laws:
             return
         spare = self._allowed / 2
         self._along = looked_along(self._job, self._first, spare)
-        self._narrow = self._along.stretches + self._along.elsewhere
+        self._max_steps.append(self._along.max_step)
         if self._along.obstacle:
             self._skipped.append(self._along.obstacle)
-        elif not self._along.stretches:
+        elif not self._along.missed:
             self._look_along_others(spare)
-        if self._along.stretches or self._job.dynamics.system.has_laws:
-            longest = min([shorter_step(self._first), *(found.max_step for found in self._narrow)])
-            name, changes = self._tighter_settings(self._levels()[0])
-            name = f"{name} with steps of at most {longest:.3g} s"
-            self._shorter = self._again(name, {**changes, "max_step": longest}, spare)
+        longest = min(shorter_step(self._first), *self._max_steps)
+        name, changes = self._tighter_settings(self._levels()[0])
+        name = f"{name} with steps of at most {longest:.3g} s"
+        self._shorter = self._again(name, {**changes, "max_step": longest}, spare)
 
     def _look_along_others(self, allowed: float) -> None:
         """Search runs that diverge from the first, to exclude those that missed events."""
         for level, run in self._tighter.items():
             self._tighter[level] = self._looked_along(run, self._tighter_settings(level)[1], allowed)
-        if self._other is not None and _judges(self._other):
+        if self._other is not None and self._other.usable:
             self._other = self._looked_along(self._other, self._other_settings, allowed)
         if self._dense is not None and any(run.blind for run in self._tighter.values()):
             self._dense = None
@@ -196,12 +194,12 @@ class _Verification:
         if divergence(self._first.time, distance(self._first.channels, run.channels, self._sizes)) is None:
             return run
         found = looked_along(self._job.varied(changes), run.solution, allowed)
-        self._narrow += found.stretches + found.elsewhere
-        if not found.stretches:
+        self._max_steps.append(found.max_step)
+        if not found.missed:
             return run
-        whose = f"'{found.stretches[0].element}'" if found.stretches[0].element else "something"
+        whose = f"'{found.missed.element}'" if found.missed.element else "something"
         return replace(
-            run, blind=f"its steps missed {whose} at t = {found.stretches[0].at:.6g} s, which this run located"
+            run, blind=f"its steps missed {whose} at t = {found.missed.times[0]:.6g} s, which this run located"
         )
 
     def _sample_densely(self) -> None:
@@ -221,18 +219,15 @@ class _Verification:
                 self._run(level)
                 return
 
-    def _again(self, name: str, changes: dict[str, object], allowed: float) -> Again:
-        """Return a rerun with the output times of the first run."""
-        return solve_again(self._job, name, changes, self._first.time, np.arange(len(self._first.time)), allowed)
+    def _again(self, name: str, changes: dict[str, object], allowed: float, times: np.ndarray | None = None) -> Again:
+        """Return a rerun with the output times of the first run, or with more."""
+        times = self._first.time if times is None else times
+        return solve_again(self._job, name, changes, times, np.searchsorted(times, self._first.time), allowed)
 
     def _run(self, level: int, times: np.ndarray | None = None) -> Again:
         """Make a tighter run, with the output times of the first run or with more."""
         name, changes = self._tighter_settings(level)
-        if times is None:
-            run = self._again(name, changes, self._left())
-        else:
-            at = np.searchsorted(times, self._first.time)
-            run = solve_again(self._job, name, changes, times, at, self._left())
+        run = self._again(name, changes, self._left(), times)
         if not self._exact:
             self._tighter[level] = run
         return run
@@ -261,7 +256,7 @@ class _Verification:
             changes = self._other_settings = {**integrator, **tighter}
             name = f"{traits_of(changed(settings, changes)).name} at rtol {changes['rtol']:.3g}"
             self._other = self._again(name, changes, self._left())
-            if _judges(self._other) and not self._other.obstacle:
+            if self._other.whole:
                 return
 
     def _left(self) -> float:
@@ -270,10 +265,9 @@ class _Verification:
     def _comparison(self) -> Comparison:
         levels = [self._tighter[level] for level in sorted(self._tighter)]
         tighter = tuple(run for run in levels if run.solution is not None and not run.blind)
-        other = self._other if _judges(self._other) else None
-        shorter = self._shorter if _judges(self._shorter) else None
-        lost = bool(self._along.stretches) and (shorter is None or bool(shorter.obstacle))
-        runs = [*tighter, *([other] if other else []), *([shorter] if shorter else [])]
+        other, shorter = (run if run and run.usable else None for run in (self._other, self._shorter))
+        lost = self._along.missed and not (shorter and shorter.whole)
+        runs = [run for run in (*tighter, other, shorter) if run]
         bars = {}
         for name, values in self._first.items():
             if name not in self._first.not_unique and not name.startswith("constraint."):
@@ -290,7 +284,7 @@ class _Verification:
         return [
             run.name
             for run in self._reruns()
-            if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
+            if not run.obstacle and not run.blind and (run is not self._other or run.usable)
         ]
 
     def _messages(self) -> list[str]:
@@ -310,8 +304,3 @@ class _Verification:
                 "there, and their peaks are those of other times"
             )
         return [*found, *self._skipped]
-
-
-def _judges(other: Again | None) -> bool:
-    """Return True if a run of the other solver is usable: explicit steps at their stability limit are noisy."""
-    return other is not None and other.solution is not None and not other.remark and not other.blind

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from stiffmbs.flexible_bodies.description import Material
 from stiffmbs.flexible_bodies.interfaces import Interface
 from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.reduction import reduce
@@ -77,7 +78,7 @@ def measure(mesh: Mesh) -> dict[str, float]:
         path = Path(folder) / "bar.vtu"
         bar.write(path)
         begun = time.process_time()
-        model = from_mesh(path, 1e-3, 2.1e11, 0.3, 7850.0)
+        model = from_mesh(path, 1e-3, Material(E=2.1e11, nu=0.3, density=7850.0))
     read = time.process_time()
     ends = []
     for name, x in (("start", 0.0), ("end", SIZE[0])):

@@ -163,6 +163,29 @@ def random_expression(draw, depth):
     return draw.choice(forms).format(a=a, b=b)
 
 
+GIVEN = """
+def twice(given, x, i):
+    return once(given, once(given, x, i), i)
+
+def once(given, x, i):
+    return given(x, i)
+
+def scaled(x, i):
+    return x * i
+
+def raised(x, i):
+    return x + i
+"""
+
+
+def test_a_function_may_be_given_to_another_one(tmp_path, monkeypatch):
+    (tmp_path / "given_functions.py").write_text(GIVEN)
+    monkeypatch.syspath_prepend(tmp_path)
+    source = "from given_functions import raised, scaled, twice\n"
+    source += "def f(x, i):\n    return twice(scaled, x, i) + 100*twice(raised, x, i)\n"
+    assert compiled_source(source, "f", "float64(float64, int64)").call(1.5, 3) == in_python(source)(1.5, 3) == 763.5
+
+
 def test_random_expressions_have_pythons_values_to_the_last_bit():
     draw = random.Random(7)
     expressions = [random_expression(draw, 4) for _ in range(150)]

@@ -11,7 +11,7 @@ from stiffmbs.flexible_bodies import (
     cholesky,
     finite_elements,
     matrix_files,
-    mesh,
+    mesh_checks,
     reduced,
     reduction,
     solid,
@@ -62,7 +62,7 @@ def flattest_element():
     def accepts(height):
         nodes = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.6, 0.0, height]])
         nodes[3, 0] = np.sqrt(1.0 - height**2)
-        return not refused(lambda: mesh._check_volumes(nodes, np.arange(4)[None], "tetra"))
+        return not refused(lambda: mesh_checks.check_volumes(nodes, np.arange(4)[None], "tetra"))
 
     return count_while(accepts, BELOW)
 
@@ -99,7 +99,9 @@ def lowest_elastic_frequency():
             _free_modes=lambda *_: (np.array([frequency]), eye), _rigid_frequencies=lambda *_: np.ones(1),
             _marker_modes=nothing, _moments=lambda *_: (), second_order=nothing, ReducedBody=nothing,
         ):  # fmt: skip
-            return refused(lambda: reduction.reduce(Record(mass=eye, rigid_modes=lambda _: eye, cells=None), [], 1))
+            return refused(
+                lambda: reduction.reduce(Record(mass=eye, rigid_modes=lambda _: eye, cells={}, parts=""), [], 1)
+            )
 
     return count_while(is_refused, DOUBLES[:40])
 
@@ -147,7 +149,7 @@ DECISIONS = {
         lambda more: not refused(lambda: finite_elements.FiniteElements._check_mass(body(across=1e-8 * more))), DOUBLES
     ),
     "flexible_bodies.matrix_files:NO_ROTATION": largest_rotational_entry,
-    "flexible_bodies.mesh:FLAT": flattest_element,
+    "flexible_bodies.mesh_checks:FLAT": flattest_element,
     "flexible_bodies.reduced:SAME_MASS": lambda: count_while(
         lambda more: not refused(lambda: reduced._check_mass(Record(mass=1.0, mesh=None), 1.0 + 0.001 * more)), DOUBLES
     ),
@@ -158,7 +160,7 @@ DECISIONS = {
         lambda: reduction._normal_modes(Record(normal_modes=reach), None, 1.0)
     ),
     "flexible_bodies.solid:LARGEST_PART": lambda: len(
-        [*solid.NodePairs.parts(Record(_place=np.zeros((1, 100))), 10**6)]
+        [*solid.NodePairs.parts(Record(_places=[np.broadcast_to(0.0, (10**6, 100))]), 0)]
     ),
     "flexible_bodies.static_solver:DENSE": most_unknowns_of_dense_modes,
     "flexible_bodies.static_solver:BLOCK": lambda: lanczos(np.arange(1.0, 101.0))[0],
@@ -167,7 +169,7 @@ DECISIONS = {
 }  # fmt: skip
 EXPECTED = {
     "flexible_bodies.cholesky:LARGEST_PART": 15, "flexible_bodies.cholesky:COLUMNS": 4, "flexible_bodies.finite_elements:SYMMETRY": 27,
-    "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh:FLAT": 119,
+    "flexible_bodies.finite_elements:PRECISION": 27, "flexible_bodies.matrix_files:NO_ROTATION": 27, "flexible_bodies.mesh_checks:FLAT": 119,
     "flexible_bodies.reduced:SAME_MASS": 23,
     "flexible_bodies.reduction:SAME_FREQUENCY": 27, "flexible_bodies.reduction:DEPENDENT": 133, "flexible_bodies.reduction:ZERO": 14,
     "flexible_bodies.reduction:MORE_MODES": 20, "flexible_bodies.solid:LARGEST_PART": 91, "flexible_bodies.static_solver:DENSE": 18,

@@ -13,7 +13,7 @@ from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.verification import diagnostics, missed_events, verify
 from stiffmbs.verification.diagnostics import Comparison, divergence
-from stiffmbs.verification.missed_events import SteppedOver
+from stiffmbs.verification.missed_events import Along
 from stiffmbs.verification.solve_again import Deadline, OutOfTime, shorter_step, tolerances
 from tests.decisions.common import Reached, Record, nothing, parameters
 from tests.solve.test_parameter_thresholds import DOUBLES, HALVES, count_while
@@ -147,44 +147,10 @@ def effort_of_samples():
         return asked(lambda: missed_events.looked_along(job(), None, 1.0))
 
 
-def repeated(missing):
-    """Return the number of intervals that are solved again, of those with imbalances."""
-    count = []
-    rows = Record(t=np.arange(len(missing) + 1.0), q=None)
-    replaced = {
-        "_momentum": lambda *_: (np.asarray(missing), 1.0), "PosesBetween": lambda *_: Record(nearest=nothing_near),
-        "_stretch": lambda t, steps, k: (k, k + 1), "_acting": lambda *_: "a", "_parted": lambda *_: count.append(1) or 0.0,
-    }  # fmt: skip
-    with patch.multiple(missed_events, **replaced):
-        list(missed_events._stepped_over(job(), rows, None, 1e9))
-    return len(count)
-
-
 def same_motion(off):
     first = {"energy.kinetic": np.array([1.0, 1.0])}
     with_time = type("First", (dict,), {"time": np.arange(2.0)})(first)
     return missed_events._same_motion(with_time, np.arange(2.0), np.array([1.0, 1.0 + off]))
-
-
-def acts(change):
-    """Return whether a force law is named whose reaction changes by a part of that of a joint."""
-    system = Record(groups=[Record(record=Record(n_equations=0), names=["a"])])
-    found = {"a.fx": np.array([0.0, change]), "j.fx": np.array([0.0, 1.0])}
-    with patch.object(missed_events, "reactions", lambda *_: found):
-        return bool(missed_events._acting(system, Record(values=np.zeros((1, 1))), 0))
-
-
-def changes_of_an_interval():
-    """Return the settings with which an unbalanced interval of 1 s is solved again."""
-    found = {}
-
-    def solved(job, rows, first, last, allowed, how):
-        found.update(how)
-        return np.zeros(1)
-
-    with patch.object(missed_events, "_solved_again", solved):
-        missed_events._parted(job(mass=np.ones(1)), Record(u=np.zeros((1, 1))), 0, 0, 1.0, 1e9, 1.0)
-    return found
 
 
 def effort(evaluations):
@@ -254,13 +220,8 @@ DECISIONS = {
     "verification.looks_ahead": stopped_at,
     "verification.samples": sampled,
     "verification.of_effort_left": effort_of_samples,
-    "verification.open_balance": lambda: count_while(lambda missing: repeated([missing]), HALVES),
     "verification.elsewhere": lambda: count_while(lambda off: not same_motion(off), HALVES),
-    "verification.share": lambda: count_while(acts, HALVES),
-    "verification.stretches": lambda: repeated(np.ones(20)),
-    "verification.shorter": lambda: changes_of_an_interval()["max_step"],
-    "verification.fewest_steps": lambda: SteppedOver(0.0, 1.0, "").max_step,
-    "verification.stretch_tolerance": lambda: changes_of_an_interval()["rtol"],
+    "verification.fewest_steps": lambda: Along(Record(shortest=1.0)).max_step,
     "verification.most_effort": lambda: effort(10**9),
     "verification.effort_allowed": lambda: effort(1),
     "verification.other_of_fixed": tolerance_of_the_other,
@@ -275,8 +236,7 @@ EXPECTED = {
     "verification.diverged": 18, "verification.together": 62, "verification.sensitive": 15,
     "verification.tightest_rtol": 1e-13, "verification.clearly_tighter": 18, "verification.more_steps": 40000,
     "verification.least_steps": 1000, "verification.looks_ahead": 30, "verification.samples": 20000,
-    "verification.of_effort_left": 0.25, "verification.open_balance": 40, "verification.elsewhere": 27,
-    "verification.share": 40, "verification.stretches": 4, "verification.shorter": 0.02,
-    "verification.fewest_steps": 0.2, "verification.stretch_tolerance": 1e-08, "verification.most_effort": 10000000000,
+    "verification.of_effort_left": 0.25, "verification.elsewhere": 27,
+    "verification.fewest_steps": 0.2, "verification.most_effort": 10000000000,
     "verification.effort_allowed": 12500000, "verification.other_of_fixed": 1e-10, "matrices.dense_up_to": 401,
 }  # fmt: skip

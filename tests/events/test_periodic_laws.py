@@ -58,7 +58,7 @@ def test_a_motion_that_is_only_extrapolated_has_no_note():
         return 0.5
 
     replaced = {
-        "go_ahead": nothing, "take_reactions": nothing, "evaluate_some": lambda *_: np.zeros(1), "note_mean_rates": nothing,
+        "go_ahead": nothing, "take_reactions": nothing, "evaluate_near": lambda *_: np.zeros(1), "note_mean_rates": nothing,
         "suspicious": always, "first_event": first_event,
     }  # fmt: skip
     with interpreted(ida_events, **replaced):

@@ -12,7 +12,8 @@ from meshio._helpers import extension_to_filetypes
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.mesh import _read, from_mesh
 from stiffmbs.flexible_bodies.mesh_files import for_reader
-from tests.flexible_bodies.bars import mesh_of_bar
+from stiffmbs.flexible_bodies.shapes import ELEMENTS as KINDS
+from tests.flexible_bodies.bars import STEEL, mesh_of_bar
 
 POINTS = [(x, y, z) for x in (0, 1, 2) for y in (0, 1) for z in (0, 1)]
 ELEMENTS = [(1, 5, 7, 3, 2, 6, 8, 4), (5, 9, 11, 7, 6, 10, 12, 8)]
@@ -30,7 +31,7 @@ def nastran(system="", more=""):
 
 def read(path, text):
     path.write_text(text)
-    return from_mesh(path, 1.0, 2.1e11, 0.3, 7850.0)
+    return from_mesh(path, 1.0, STEEL)
 
 
 def test_supports_and_rigid_elements_are_left_out(tmp_path):
@@ -116,7 +117,7 @@ def test_nodes_at_one_place_stay_apart_at_a_slit(tmp_path, kind):
         mesh.points = np.vstack([points, points[slit] + [0, opening, 0]])
         block.data[above] = other[block.data[above]]
         mesh.write(tmp_path / "slit.vtu")
-        found = from_mesh(tmp_path / "slit.vtu", 1e-3, 2.1e11, 0.3, 7850.0)
+        found = from_mesh(tmp_path / "slit.vtu", 1e-3, STEEL)
         found.check()
         return found.stiffness
 
@@ -133,7 +134,7 @@ def test_elements_that_share_an_edge_share_the_node_on_it(tmp_path):
     mesh.cells[0].data[0, 4] = len(mesh.points) - 1
     mesh.write(tmp_path / "a.vtu")
     with pytest.raises(InputError, match=r"found the nodes [0-9]+ and [0-9]+ at the same place"):
-        from_mesh(tmp_path / "a.vtu", 1e-3, 2.1e11, 0.3, 7850.0)
+        from_mesh(tmp_path / "a.vtu", 1e-3, STEEL)
 
 
 @pytest.mark.parametrize(
@@ -150,7 +151,7 @@ def test_elements_without_their_nodes_are_refused(monkeypatch, tmp_path, cells, 
     )
     monkeypatch.setattr("stiffmbs.flexible_bodies.mesh._read", lambda _: mesh)
     with pytest.raises(InputError, match=message):
-        from_mesh(tmp_path / "a.vtk", 1.0, 2.1e11, 0.3, 7850.0)
+        from_mesh(tmp_path / "a.vtk", 1.0, STEEL)
 
 
 @pytest.mark.parametrize(
@@ -193,3 +194,48 @@ def test_a_file_of_any_format_that_ends_early_is_read_or_refused(tmp_path, suffi
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+
+
+ORDERS = {
+    ("hexahedron20", ".inp"): "01 12 23 30 45 56 67 74 04 15 26 37",
+    ("hexahedron20", ".bdf"): "01 12 23 30 04 15 26 37 45 56 67 74",
+    ("hexahedron20", ".msh"): "01 03 04 12 15 23 26 37 45 47 56 67",
+    ("wedge15", ".inp"): "01 12 20 34 45 53 03 14 25",
+    ("wedge15", ".bdf"): "01 12 20 03 14 25 34 45 53",
+    ("wedge15", ".msh"): "01 02 03 12 14 25 34 35 45",
+    ("tetra10", ".inp"): "01 12 20 03 13 23",
+    ("tetra10", ".bdf"): "01 12 20 03 13 23",
+    ("tetra10", ".msh"): "01 12 20 03 23 13",
+}
+"""Corners between which the nodes on edges are, in the order of Abaqus' and Nastran's manuals and of Gmsh."""
+WORDS = {"hexahedron20": ("C3D20", "CHEXA", 17), "wedge15": ("C3D15", "CPENTA", 18), "tetra10": ("C3D10", "CTETRA", 11)}
+
+
+@pytest.mark.parametrize(("kind", "suffix"), ORDERS)
+def test_nodes_on_edges_are_in_the_order_of_the_file(tmp_path, kind, suffix):
+    corners = KINDS[kind].shape.corners.astype(float)
+    edges = ORDERS[kind, suffix].split()
+    points = [*corners, *(corners[[int(a), int(b)]].mean(axis=0) for a, b in edges)]
+    grid = [(k + 1, *point) for k, point in enumerate(points)]
+    numbers = [str(k + 1) for k in range(len(points))]
+    abaqus, nastran, gmsh = WORDS[kind]
+    if suffix == ".inp":
+        nodes = "".join(f"{k}, {x}, {y}, {z}\n" for k, x, y, z in grid)
+        text = f"*Node\n{nodes}*Element, type={abaqus}\n1, {', '.join(numbers[:15])}" + (
+            f",\n{', '.join(numbers[15:])}\n" if numbers[15:] else "\n"
+        )
+    elif suffix == ".bdf":
+        nodes = "".join(f"GRID,{k},,{x},{y},{z}\n" for k, x, y, z in grid)
+        lines = [["1", "1", *numbers[:6]], numbers[6:14], numbers[14:]]
+        text = f"BEGIN BULK\nPSOLID,1,1\n{nodes}{nastran}," + ",+\n+,".join(",".join(line) for line in lines if line)
+        text += "\nENDDATA\n"
+    else:
+        nodes = "".join(f"{k} {x} {y} {z}\n" for k, x, y, z in grid)
+        text = f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(grid)}\n{nodes}$EndNodes\n"
+        text += f"$Elements\n1\n1 {gmsh} 2 1 1 {' '.join(numbers)}\n$EndElements\n"
+    found = read(tmp_path / f"a{suffix}", text)
+    volume = {"hexahedron20": 1.0, "wedge15": 0.5, "tetra10": 1 / 6}[kind]
+    assert found.mass.sum() / 3 == pytest.approx(7850 * volume)
+    (cells,) = found.cells.values()
+    for k, (a, b) in enumerate(KINDS[kind].middles, len(corners)):
+        np.testing.assert_allclose(found.nodes[cells[:, k]], found.nodes[cells[:, [a, b]]].mean(axis=1))

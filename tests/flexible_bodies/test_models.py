@@ -9,13 +9,14 @@ import pytest
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.finite_elements import FiniteElements
 from stiffmbs.flexible_bodies.matrices import from_archive
-from stiffmbs.flexible_bodies.mesh import SOLIDS, from_mesh
+from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.reduction import rigid_body
+from stiffmbs.flexible_bodies.shapes import ELEMENTS
 
-from .bars import DENSITY, HEIGHT, LENGTH, MASS, NU, REFERENCES, WIDTH, E, bar, mesh_of_bar
+from .bars import HEIGHT, LENGTH, MASS, NU, REFERENCES, STEEL, WIDTH, E, bar, mesh_of_bar
 
 
-@pytest.mark.parametrize("kind", [kind for kind in SOLIDS if kind != "hexahedron20"])
+@pytest.mark.parametrize("kind", ELEMENTS)
 def test_a_stretched_bar_has_the_energy_of_its_strain(tmp_path, kind):
     model = bar(tmp_path, kind)
     model.check()
@@ -33,7 +34,7 @@ def test_a_stretched_bar_has_the_energy_of_its_strain(tmp_path, kind):
 def test_hexahedra_of_20_nodes_have_the_matrices_of_the_reference(tmp_path):
     reference = from_archive((REFERENCES / "a_bar_hex20.npz").read_bytes(), 1.0, 1.0, 1.0)
     meshio.Mesh(reference.nodes, [("hexahedron20", reference.cells["hexahedron20"])]).write(tmp_path / "bar.vtu")
-    model = from_mesh(tmp_path / "bar.vtu", 1.0, 2.1e11, 0.3, 7850.0)
+    model = from_mesh(tmp_path / "bar.vtu", 1.0, STEEL)
     for found, expected in ((model.stiffness, reference.stiffness), (model.mass, reference.mass)):
         assert np.abs((found - expected).data).max() < 1e-12 * np.abs(expected.data).max()
 
@@ -44,7 +45,7 @@ def test_formats_of_meshes(tmp_path, suffix):
     mesh_of_bar("tetra10" if suffix != ".bdf" else "tetra").write(
         path, **({"file_format": "gmsh"} if suffix == ".msh" else {})
     )
-    assert rigid_body(from_mesh(path, 1e-3, E, NU, DENSITY))[0] == pytest.approx(MASS, rel=1e-5)
+    assert rigid_body(from_mesh(path, 1e-3, STEEL))[0] == pytest.approx(MASS, rel=1e-5)
 
 
 def test_groups_of_nodes_and_of_elements(tmp_path):
@@ -52,7 +53,7 @@ def test_groups_of_nodes_and_of_elements(tmp_path):
     ends = np.flatnonzero(mesh.points[:, 0] == 0)
     named = meshio.Mesh(mesh.points, mesh.cells, point_sets={"end": ends})
     named.write(tmp_path / "bar.inp")
-    model = from_mesh(tmp_path / "bar.inp", 1e-3, E, NU, DENSITY)
+    model = from_mesh(tmp_path / "bar.inp", 1e-3, STEEL)
     np.testing.assert_allclose(model.nodes[model.groups["end"], 0], 0.0)
     assert len(model.groups["end"]) == len(ends)
 
@@ -60,7 +61,7 @@ def test_groups_of_nodes_and_of_elements(tmp_path):
 def test_nodes_without_an_element_are_left_out(tmp_path):
     mesh = mesh_of_bar("hexahedron")
     meshio.Mesh(np.vstack([mesh.points, [[9e3, 9e3, 9e3]]]), mesh.cells).write(tmp_path / "bar.vtu")
-    assert len(from_mesh(tmp_path / "bar.vtu", 1e-3, E, NU, DENSITY).nodes) == len(mesh.points)
+    assert len(from_mesh(tmp_path / "bar.vtu", 1e-3, STEEL).nodes) == len(mesh.points)
 
 
 def _changed(model, **parts):
@@ -108,7 +109,7 @@ def test_loose_parts_are_refused(tmp_path):
     two = meshio.Mesh(np.vstack([mesh.points, there]), [("hexahedron", np.vstack([cells, cells + len(there)]))])
     two.write(tmp_path / "two.vtu")
     with pytest.raises(InputError, match="found 2 parts that are not connected"):
-        from_mesh(tmp_path / "two.vtu", 1e-3, E, NU, DENSITY).check()
+        from_mesh(tmp_path / "two.vtu", 1e-3, STEEL).check()
 
 
 def test_inverted_elements_and_shells_are_refused(tmp_path):
@@ -118,10 +119,10 @@ def test_inverted_elements_and_shells_are_refused(tmp_path):
     points[middle, 0] += 200
     meshio.Mesh(points, mesh.cells).write(tmp_path / "bar.vtu")
     with pytest.raises(InputError, match="inverted or flat elements, the first with nodes"):
-        from_mesh(tmp_path / "bar.vtu", 1e-3, E, NU, DENSITY)
+        from_mesh(tmp_path / "bar.vtu", 1e-3, STEEL)
     meshio.Mesh(mesh.points, [("quad", mesh.cells_dict["hexahedron"][:, :4])]).write(tmp_path / "shell.vtu")
     with pytest.raises(InputError, match="found elements of the types quad, expected solids"):
-        from_mesh(tmp_path / "shell.vtu", 1e-3, E, NU, DENSITY)
+        from_mesh(tmp_path / "shell.vtu", 1e-3, STEEL)
 
 
 @pytest.mark.parametrize("content", [b"", b"$MeshFormat\nnonsense", b"PK\x03\x04", b"*HEADING\n*NODE\n1, a\n"])
@@ -130,7 +131,7 @@ def test_files_that_are_no_mesh_are_refused(tmp_path, suffix, content):
     path = tmp_path / f"part{suffix}"
     path.write_bytes(content)
     with pytest.raises(InputError, match="found"):
-        from_mesh(path, 1e-3, E, NU, DENSITY)
+        from_mesh(path, 1e-3, STEEL)
 
 
 @pytest.mark.long

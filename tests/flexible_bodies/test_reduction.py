@@ -11,7 +11,7 @@ from stiffmbs.flexible_bodies.matrices import from_archive
 from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.reduction import reduce
 
-from .bars import HEIGHT, LENGTH, MASS, NU, REFERENCES, WIDTH, E, bar, face, mesh_of_bar
+from .bars import HEIGHT, LENGTH, MASS, NU, REFERENCES, STEEL, WIDTH, E, bar, face, mesh_of_bar
 
 REFERENCE_BAR = REFERENCES / "a_bar_hex20.npz"
 with_references = pytest.mark.skipif(not REFERENCE_BAR.exists(), reason="without the reference data")
@@ -208,7 +208,7 @@ def test_held_frequencies_scale_with_the_size_of_the_body(tmp_path, size):
     mesh_of_bar("tetra10", along=4, across=1).write(tmp_path / "bar.vtu")
     found = []
     for length in (1e-3, 1e-3 * size):
-        model = from_mesh(tmp_path / "bar.vtu", length, 2.1e11, 0.3, 7850.0)
+        model = from_mesh(tmp_path / "bar.vtu", length, STEEL)
         nodes = np.flatnonzero(model.nodes[:, 0] <= 1e-9 * np.ptp(model.nodes[:, 0]))
         body = reduce(model, [Interface("root", "rigid", nodes, model.nodes[nodes].mean(axis=0))], 6)
         found.append(body.held_frequencies([0])[:6] * length)

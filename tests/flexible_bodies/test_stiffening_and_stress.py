@@ -76,16 +76,17 @@ def test_the_strain_energy_is_that_of_finite_strains_up_to_the_fourth_order(tmp_
     interfaces = [face(model, 0.0, "a", kind), face(model, LENGTH, "b", kind)]
     body = reduce(model, interfaces, 3)
     solver, _ = static_solver(model, interfaces, model.rigid_modes(body.centre))
-    at, weights = model.solid.gradients()
+    (block,) = model.solid.blocks
+    at, weights = block.gradients()
     q = 1e-3 * np.random.default_rng(0).standard_normal(len(body.frequencies)) / (1 + body.frequencies / 200) ** 2
     terms, stiffness = body.second_order, (2 * np.pi * body.frequencies) ** 2
     of_second_order = displacement_of_second_order(model, interfaces, solver, body.modes @ q)
     p = q + terms.static @ np.einsum("ikl,k,l->i", terms.stretch, q, q) / 2
 
     def energy(q, of_second_order):
-        G = model.solid.displacement_gradient(at, body.modes @ q + of_second_order)
+        G = block.displacement_gradient(at, body.modes @ q + of_second_order)
         strain = (G + G.swapaxes(0, 1) + np.einsum("caep,cbep->abep", G, G)) / 2
-        return np.einsum("abep,abep,ep->", model.solid.stress(strain), strain, weights) / 2
+        return np.einsum("abep,abep,ep->", block.stress(strain), strain, weights) / 2
 
     expected, linear = energy(q, of_second_order), stiffness @ q**2 / 2
     assert abs(linear - expected) > 1e-4 * expected

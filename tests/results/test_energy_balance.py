@@ -212,6 +212,26 @@ def test_a_report_of_a_diverged_run_has_no_all_clear():
     assert "diverges" in page and "no problems found" not in page
 
 
+SPRING_THAT_PUSHES = """
+dimensions: 3
+gravity: [0, 0, 0]
+bodies:
+  a: {mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}
+  b: {mass: 1, inertia: [1, 1, 1], position: [2, 0, 0]}
+joints: {pin: {type: revolute, i: a, j: ground}}
+forces:
+  counted: {type: torsion_spring, i: a, j: ground, stiffness: 1}
+  wrong: {type: spring_damper, i: b, j: ground, stiffness: -1e4, free_length: 0.5}
+run: {duration: 2, solver: projected}
+"""
+
+
+def test_a_motion_diverges_next_to_counted_revolutions():
+    """The counter after the coordinates of the bodies ended the run with an error of NumPy."""
+    found = stiffmbs.run(stiffmbs.read_scene(SPRING_THAT_PUSHES))
+    assert "the motion diverges" in found.message and "'b'" in found.message and "'wrong'" in found.message
+
+
 def test_constraints_that_drift_apart_are_told():
     scene = stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml")
     solution = stiffmbs.run(

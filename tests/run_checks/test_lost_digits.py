@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.run_checks import uncertain_forces
+from stiffmbs.run_checks import lost_digits
 
 SCENE = """
 gravity: [0, -9.81]
@@ -35,13 +35,11 @@ def test_a_force_beyond_the_digits_of_coordinates_is_noted(stiffness):
 
 @pytest.mark.parametrize(("lost", "noted"), [(0.9e-4, False), (1.1e-4, True)])
 def test_a_change_of_a_ten_thousandth_of_the_largest_force_is_noted(lost, noted, monkeypatch):
-    monkeypatch.setattr(
-        uncertain_forces, "lost_digits", lambda state, t: uncertain_forces.LostDigits("strut", lost, 1.0)
-    )
+    monkeypatch.setattr(lost_digits, "lost_digits", lambda state, t: ("strut", lost, 1.0))
     state = SimpleNamespace(q=np.zeros(1), u=np.zeros(1))
     rows = SimpleNamespace(t=np.zeros(1), **dict.fromkeys(("q", "u", "acceleration"), np.zeros((1, 1))))
     system = SimpleNamespace(mass=np.ones(1), per_velocity=lambda linear, angular: np.full(1, linear))
-    found = list(uncertain_forces.lost_digits_notes(SimpleNamespace(state=state, system=system), rows))
+    found = list(lost_digits.lost_digits_notes(SimpleNamespace(state=state, system=system), rows))
     assert bool(found) == noted
 
 

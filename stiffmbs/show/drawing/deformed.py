@@ -13,24 +13,13 @@ from ...elements.spatial.flexible.interface import FlexibleInterface
 from ...errors import InputError
 from ...flexible_bodies.finite_elements import FiniteElements
 from ...flexible_bodies.reduced import reduced_body
+from ...flexible_bodies.shapes import ELEMENTS
 from ...flexible_bodies.stress import deviatoric, nodal_stresses
 from ...model.model_data import ModelData
 from . import solids
 from .poses import Poses
 from .scene_graph import Drawing, Part, Solid
 
-QUADRATIC = (
-    (0, 8, 1, 9, 2, 10, 3, 11), (4, 12, 5, 13, 6, 14, 7, 15), (0, 8, 1, 17, 5, 12, 4, 16),
-    (1, 9, 2, 18, 6, 13, 5, 17), (2, 10, 3, 19, 7, 14, 6, 18), (3, 11, 0, 16, 4, 15, 7, 19),
-)  # fmt: skip
-FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
-    "tetra": ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)),
-    "tetra10": ((0, 4, 1, 5, 2, 6), (0, 4, 1, 8, 3, 7), (1, 5, 2, 9, 3, 8), (0, 6, 2, 9, 3, 7)),
-    "hexahedron": tuple(face[::2] for face in QUADRATIC),
-    "hexahedron20": QUADRATIC,
-    "hexahedron27": QUADRATIC,
-}
-"""Nodes around each face of an element, in the order of meshio."""
 AT_ONCE = 1_000_000
 """Number of stresses computed at once."""
 
@@ -70,16 +59,19 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
 
 def surface(model: FiniteElements) -> list[np.ndarray]:
     """Return the nodes around each face that belongs to one element only, counterclockwise as seen from outside."""
-    found: list[np.ndarray] = []
+    every: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
     for kind, cells in model.cells.items():
-        table = np.array(FACES[kind])
-        every = cells[:, table].reshape(-1, table.shape[1])
-        middle = np.repeat(model.nodes[cells].mean(axis=1), len(table), axis=0)
-        _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
-        for face in first[count == 1]:
-            points = model.nodes[every[face]]
-            outward = solids.face_normal(points) @ (points.mean(axis=0) - middle[face]) >= 0
-            found.append(every[face] if outward else every[face][::-1])
+        middles = model.nodes[cells].mean(axis=1)
+        for face in ELEMENTS[kind].faces:
+            every.setdefault(len(face), []).append((cells[:, list(face)], middles))
+    found: list[np.ndarray] = []
+    for of_one_size in every.values():
+        faces, inside = (np.concatenate(each) for each in zip(*of_one_size, strict=True))
+        _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+        for k in first[count == 1]:
+            points = model.nodes[faces[k]]
+            outward = solids.face_normal(points) @ (points.mean(axis=0) - inside[k]) >= 0
+            found.append(faces[k] if outward else faces[k][::-1])
     return found
 
 

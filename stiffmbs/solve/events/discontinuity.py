@@ -251,14 +251,21 @@ class Jumps:
 
     @cached_property
     def scale(self) -> np.ndarray:
-        system = self._dynamics.system
-        return np.ascontiguousarray(system.per_velocity(1.0, system.size))
+        return self._kept[0]
 
     @cached_property
     def least(self) -> float:
+        return self._kept[1]
+
+    @property
+    def _kept(self) -> tuple[np.ndarray, float]:
+        return self._dynamics.kept("velocity jumps", self._settings, self._scale_and_least)
+
+    def _scale_and_least(self) -> tuple[np.ndarray, float]:
         system = self._dynamics.system
+        scale = np.ascontiguousarray(system.per_velocity(1.0, system.size))
         tolerances = absolute_tolerances(system, self._settings)[system.n_q :]
-        return float(np.min(self.scale * tolerances, initial=np.inf))
+        return scale, float(np.min(scale * tolerances, initial=np.inf))
 
     def is_jump(self, change: np.ndarray) -> bool:
         """Return True if a change of velocities to those of the current state is a jump."""

@@ -77,7 +77,7 @@ class EventSearch:
 
     def begin(self) -> None:
         """Forget the last step before a restart of the integrator."""
-        self._cells["ready"] = 0
+        self._cells["begun"] = np.inf
         self.found[:] = 0
 
     def follow_reactions(self, dynamics: Dynamics) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...compile.machine.layout import address, packed
-from ...compile.machine.routines import together
+from ...compile.machine.routines import Routine
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.native.parameters import CONSISTENCY
 from ..events.whole_steps import WholeStepLog
@@ -108,10 +108,8 @@ class Scheme:
         return full
 
 
-ADVANCE, END_AT_EVENT = together(
-    "stiffmbs.solve.explicit.native.runge_kutta",
-    advance="int64(float64, int64, int64, int64, int64*)",
-    end_at_event="int32(int64*)",
+ADVANCE = Routine(
+    "stiffmbs.solve.explicit.native.runge_kutta", "advance", "int64(float64, int64, int64, int64, int64*)"
 )
 WATCH, STEP_BOUND, TIMES = (list(EXPLICIT).index(name) for name in ("watch", "step_bound", "times"))
 """Columns of the table that each run sets."""
@@ -132,19 +130,17 @@ class StepMemory:
 
     def __init__(self, scheme: Scheme, dynamics: Dynamics) -> None:
         system, eliminated = dynamics.system, dynamics.eliminated
-        n, events = system.n_q + system.n_u, system.n_event_functions
+        n = system.n_q + system.n_u
         self.capacity = capacity = max(1, min(LOOP.most_steps, LOOP.most_items // max(n, 1)))
         self.y, self.lam, self.atol = np.zeros(n), np.zeros(system.n_c), np.zeros(n)
         self.row_t, self.row_y, self.ends = np.empty(capacity), np.empty((capacity, n)), np.empty(capacity)
         stages, self.whole_steps = np.zeros((scheme.extended, n)), WholeStepLog(system, n)
         self.end_rates = stages[scheme.stages]
-        searched = system.n_values("event_function") > 0
         nothing = np.zeros(1, dtype=np.int64)
         self._arrays = {
             "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
             "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
             "tolerance": CONSISTENCY.position_tolerance, "atol": self.atol,
-            "n_event_functions": events, "end_at_event": END_AT_EVENT.address if searched else 0,
             "lam": self.lam, "y": self.y, "y_before": np.zeros(n), "y_first": np.zeros(n), "y_stage": np.zeros(n), "k": stages, "difference": np.zeros(n),
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "times": np.empty(0), "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,

@@ -11,6 +11,7 @@ import numpy as np
 
 from stiffmbs import BeamBody, Fixed, Model, Revolute
 from stiffmbs.analyses.job import Job, prepare
+from stiffmbs.flexible_bodies.description import Material
 from stiffmbs.flexible_bodies.mesh import from_mesh
 from stiffmbs.flexible_bodies.reduced import reduced_body
 from stiffmbs.model.read_scene import read_scene
@@ -108,7 +109,7 @@ def bar() -> Scene:
 def hung_bar() -> HungBody:
     """Return the reduced bar as it is put to other tools, with the modes of this package."""
     body, folder = bar().bodies["bar.frame"].source
-    model = from_mesh(folder / "bar.vtu", 1.0, E, NU, DENSITY)
+    model = from_mesh(folder / "bar.vtu", 1.0, Material(E=E, nu=NU, density=DENSITY))
     hinge, end = (np.flatnonzero(np.abs(model.nodes[:, 0] - x) < 1e-9) for x in (0.0, 1.0))
     return HungBody(model, reduced_body(body, folder).modes, (hinge, end), DAMPING, TIMES)
 

@@ -9,7 +9,6 @@ import numpy as np
 from stiffmbs.solve import missing_rows, sampling
 from stiffmbs.solve.events import discontinuity, narrow_inputs
 from stiffmbs.solve.events.native import bounds
-from stiffmbs.solve.explicit.native import explicit_events
 from stiffmbs.solve.ida.native import ida_events, passage
 from stiffmbs.solve.trajectory import Grid, History, Outcome, Trajectory
 from tests.decisions.common import Record, always, never, nothing, searched
@@ -21,7 +20,7 @@ def distance_from_an_event():
     """Return the distance to an event in the middle of a step of 1 s at which the step ends."""
     w = searched(longest=1e5, n_nodes=0)
     replaced = {
-        "go_ahead": nothing, "take_reactions": nothing, "evaluate_some": lambda *_: np.zeros(1), "note_mean_rates": nothing,
+        "go_ahead": nothing, "take_reactions": nothing, "evaluate_near": lambda *_: np.zeros(1), "note_mean_rates": nothing,
         "suspicious": always, "first_event": lambda *_: 0.5,
     }  # fmt: skip
     with interpreted(ida_events, **replaced):
@@ -43,20 +42,6 @@ def largest_part_of_an_interval():
 
     with interpreted(ida_events, _narrowest=lambda *_: 1.0):
         return count_while(lambda k: ida_events._within_intervals(passes(k)), range(1, 200))
-
-
-def span_with_many_signs():
-    """Return the step, in quarter octaves of 1 us, in which 12 signs are determined just after a start."""
-
-    def few(span):
-        calls = []
-        x = Record(watch=searched(), n_event_functions=1, signs=np.zeros(1), y_before=None, span=span, t=1e3)
-        replaced = {"leaves_zero": always, "load_state": nothing, "begin_sides": nothing, "_values_ahead": nothing}
-        with interpreted(explicit_events, note_sides=lambda *_: calls.append(1) or 1, **replaced):
-            explicit_events._note_sides_at_start(x, None)
-        return len(calls) < 12
-
-    return count_while(few, 1e-6 * DOUBLES[:160])
 
 
 def longest_passage():
@@ -162,7 +147,6 @@ def gaps_in_output():
 DECISIONS = {
     "next_step.short_of": distance_from_an_event,
     "next_step.of_an_interval": largest_part_of_an_interval,
-    "next_step.just_after": span_with_many_signs,
     "next_step.soon": longest_passage,
     "next_step.passage_steps": lambda: bounded_passage(searched(n_turns=1)).passage,
     "next_step.first_part": lambda: bounded_passage(searched(n_turns=1)).first,
@@ -178,7 +162,7 @@ DECISIONS = {
 }  # fmt: skip
 """Decision of each parameter: ``subsystem.field``, or ``module:NAME``."""
 EXPECTED = {
-    "next_step.short_of": 0.001, "next_step.of_an_interval": 34, "next_step.just_after": 48, "next_step.soon": 53, "next_step.passage_steps": 0.0625,
+    "next_step.short_of": 0.001, "next_step.of_an_interval": 34, "next_step.soon": 53, "next_step.passage_steps": 0.0625,
     "next_step.first_part": 0.0078125, "next_step.inside": 0.4, "next_step.lifted": 10,
     "narrow_inputs.most_samples": 5000, "jumps.jumps": 99, "jumps.rate_interval": 0.0001,
     "solve.events.native.step_bound:STRETCHED": 99, "solve.events.narrow_inputs:NEAR_INPUT_END": 9, "solve.trajectory:SAME_TIME": 40,

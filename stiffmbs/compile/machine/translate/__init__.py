@@ -1,7 +1,8 @@
 """Translator from a subset of Python to LLVM assembly, in place of numba.
 
 The language of kernels and native routines has int64 and float64 numbers, pointers to them, views of tables,
-arithmetic, comparisons, loops, conditions, the functions of `math`, and calls. Its semantics are those of Python with
+arithmetic, comparisons, loops, conditions, the functions of `math`, and calls. A function may be given to another one,
+which is translated for it. Its semantics are those of Python with
 exceptions: division by zero gives infinity, integers have 64 bits, indices are not checked, ``and`` and ``or`` give
 truth values, `floor` a float. A function returns one number or pointer, or nothing. A variable assigned both integers
 and floats is a float.

@@ -15,7 +15,7 @@ from ....reading.formula.functions import FUNCTIONS as FORMULA_FUNCTIONS
 from ....tuning import parameters_of
 from .arithmetic import compared, computed, negated, number, selected
 from .code import Code, common, constant
-from .values import POINTERS_TO, Builtin, Cell, Operand, Record, Untranslatable, Value, Wider, builtin, refuse
+from .values import POINTERS_TO, Builtin, Cell, Operand, Passed, Record, Untranslatable, Value, Wider, builtin, refuse
 
 
 class Expressions:
@@ -28,6 +28,7 @@ class Expressions:
     - `values`: values of names without memory, in the assigning block and blocks within it.
     - `left`: such names of ended blocks.
     - `records`: views by their names.
+    - `passed`: functions by the names of the parameters that they are given to.
     """
 
     def __init__(
@@ -38,6 +39,7 @@ class Expressions:
         self.values: dict[str, Value] = {}
         self.left: dict[str, Value] = {}
         self.records: dict[str, Record] = {}
+        self.passed: dict[str, Callable[..., object]] = {}
         self._outside, self._wider, self._given_once = outside, wider, given_once
 
     def set(self, name: str, value: Value) -> None:
@@ -136,7 +138,9 @@ class Expressions:
             return constant(found)
         if is_dataclass(found) and not isinstance(found, type):
             return Record(name, {field.name: constant(getattr(found, field.name)) for field in fields(found)})
-        raise Untranslatable(f"'{name}' is no variable and no number")
+        if (function := self.passed.get(name, found)) and hasattr(function, "__code__"):
+            return Passed(function)
+        raise Untranslatable(f"'{name}' is no variable, no number and no function")
 
     def _joined(self, node: ast.Compare | ast.BoolOp) -> Value:
         """Translate ``a < b < c``, ``a and b``, ``a or b`` with short-circuit evaluation."""
@@ -181,7 +185,7 @@ class Expressions:
         return code.load(result)
 
     def _called(self, name: str, arguments: list[Operand]) -> Any:
-        called = self._outside.get(name, getattr(builtins, name, None))
+        called = self.passed.get(name) or self._outside.get(name, getattr(builtins, name, None))
         called = FUNCTIONS.get(called, called) if callable(called) else called
         if isinstance(called, Builtin):
             return called.lower(self.code, *arguments)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from .arithmetic import computed
 from .code import Code, Lines, common
 from .expressions import Expressions
-from .values import Operand, Record, Untranslatable, Value, refuse
+from .values import Operand, Passed, Record, Untranslatable, Value, refuse
 
 
 class Statements:
@@ -166,6 +166,8 @@ def parameters(names: Sequence[str], values: Sequence[Operand], expressions: Exp
             given = Value(value.kind, f"%{name}.")
             expressions.set(name, given)
             declared.append(given.typed)
+        elif isinstance(value, Passed):
+            expressions.passed[name] = value.function
         else:
             raise Untranslatable(f"{name}: found a tuple, expected a value or a view")
     return declared

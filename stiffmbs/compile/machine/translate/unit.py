@@ -13,7 +13,7 @@ from typing import Any
 from .code import Code, tags
 from .expressions import Expressions
 from .statements import Statements, parameters
-from .values import LLVM_TYPES, Operand, Record, Untranslatable, Value, Wider
+from .values import LLVM_TYPES, Operand, Passed, Record, Untranslatable, Value, Wider
 
 KINDS = {
     "int64": "int",
@@ -78,7 +78,7 @@ class Unit:
 
     def called(self, code: Code, function: Callable[..., object], values: Sequence[Operand]) -> Value | None:
         """Write the call of a function in the language; translate it if new."""
-        key = (function, *(value.name if isinstance(value, Record) else _kind(value) for value in values))
+        key = (function, *map(_kind, values))
         if key not in self._known:
             if key in self._begun:
                 raise Untranslatable(f"'{function.__name__}' calls itself")
@@ -128,10 +128,15 @@ class Unit:
         return kind
 
 
-def _kind(value: Operand) -> str:
-    if not isinstance(value, Value):
-        raise Untranslatable(f"found {value} as an argument, expected a value or a view")
-    return value.kind
+def _kind(value: Operand) -> object:
+    match value:
+        case Value():
+            return value.kind
+        case Record():
+            return value.name
+        case Passed():
+            return value.function
+    raise Untranslatable(f"found {value} as an argument, expected a value, a view or a function")
 
 
 def _parts(value: Operand) -> Sequence[Value]:

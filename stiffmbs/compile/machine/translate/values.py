@@ -69,7 +69,14 @@ class Record:
     fields: dict[str, Value]
 
 
-Operand = Value | Record | tuple[Any, ...]
+@dataclass(frozen=True)
+class Passed:
+    """Function given to another one, which is translated for it."""
+
+    function: Callable[..., object]
+
+
+Operand = Value | Record | Passed | tuple[Any, ...]
 
 
 @dataclass(frozen=True)

@@ -135,6 +135,26 @@ def left_out(w, k):
 
 
 @compiled
+def changes(w, values):
+    """Return the number of event functions that have left their intervals at the start of the step."""
+    count = 0
+    for k in range(w.n_event_functions):
+        count += departed(w, k, values[k]) and not left_out(w, k)
+    return count
+
+
+@compiled
+def note_changes(w, values):
+    """Mark the event functions that have left their intervals at the start of the step; return their number."""
+    count = 0
+    for k in range(w.n_event_functions):
+        if departed(w, k, values[k]) and not left_out(w, k):
+            w.found[k] = 1
+            count += 1
+    return count
+
+
+@compiled
 def _bound(start, start_rate, end, end_rate, missed, side):
     """Return a lower (`side` -1) or upper (1) bound of a function with these values and rates times the length.
 

@@ -4,18 +4,10 @@ from sys import float_info
 
 from stiffmbs.compile.machine.native.access import compiled
 from stiffmbs.solve.events.native.parameters import SEARCH
+from stiffmbs.solve.events.native.values import switches
 
 JUST_BEYOND = float_info.min
 """Value of a function that is zero at the start of a step, with the sign that it takes."""
-
-
-@compiled
-def leaves_zero(signs, values, count):
-    """Return True if a function of unknown sign has a value other than zero."""
-    found = 0
-    for k in range(count):
-        found += signs[k] == 0.0 and values[k] != 0.0
-    return found > 0
 
 
 @compiled
@@ -25,14 +17,6 @@ def at_zero(values, count):
     for k in range(count):
         found += values[k] == 0.0
     return found
-
-
-@compiled
-def begin_sides(seen, held, count):
-    """Clear the signs found so far, and their numbers of repetition."""
-    for k in range(count):
-        seen[k] = 0.0
-        held[k] = 0.0
 
 
 @compiled
@@ -53,22 +37,31 @@ def note_sides(signs, values, seen, held, count):
 
 
 @compiled
+def find_sides(x, w, s, t, ahead, most, go_ahead):
+    """Find the signs of functions that are zero at t; return the last time up to `most` at which the motion was looked at.
+
+    `go_ahead(x, s, ahead)` loads the state that the motion reaches.
+    """
+    count = w.n_event_functions
+    undecided = at_zero(w.value_before, count)
+    for k in range(count):
+        w.m[k] = 0.0
+        w.m2[k] = 0.0
+    while undecided > 0 and 0.0 < ahead <= most:
+        go_ahead(x, s, ahead)
+        undecided = note_sides(w.value_before, switches(w, s, t + ahead), w.m, w.m2, count)
+        ahead *= SEARCH.longer
+    return ahead / SEARCH.longer
+
+
+@compiled
 def keep_sides(signs, values, count):
-    """Clear the signs of functions that were zero unless values confirm all; return True if any was found and kept."""
-    found, lost = 0, 0
+    """Clear the signs of functions that were zero unless values confirm all; return True if they are kept."""
+    lost = 0
     for k in range(count):
         if abs(signs[k]) == JUST_BEYOND:
-            found += 1
             lost += (signs[k] > 0.0 and values[k] <= 0.0) or (signs[k] < 0.0 and values[k] >= 0.0)
     for k in range(count):
         if lost > 0 and abs(signs[k]) == JUST_BEYOND:
             signs[k] = 0.0
-    return found > 0 and lost == 0
-
-
-@compiled
-def leave_zero(values, signs, count):
-    """Give values that are exactly zero the sign of the subsequent motion."""
-    for k in range(count):
-        if values[k] == 0.0:
-            values[k] = signs[k]
+    return lost == 0

@@ -54,11 +54,12 @@ class EventSearchParameters:
     """Number of parts after which these are no longer halved, if arguments of sines cannot be followed."""
     difference: float = 1e-6
     """Fraction of a step, or of a part, over which rates are computed. The motion is extrapolated up to it past an event,
-    until a sign change exceeds rounding."""
+    until a sign change exceeds rounding. After a start of IDA it is extrapolated over this part of the time to the next
+    stop, to find the sign of a function that is zero."""
     least_difference: float = 1e-9
     """Least time over which rates are computed: at the end of a step relative to the duration, at a start relative to the
     time to the next stop. Shorter differences are rounding. The new law holds this far after an event, relative to the
-    step."""
+    step. At an explicit start the motion must leave a zero within it, relative to the duration."""
     refined: float = 0.02
     """Fraction of a part over which a parabola is fitted at an extremum."""
     refinements: int = 5
@@ -85,9 +86,6 @@ class NextStepParameters:
     of_an_interval: float = 0.35
     """Fraction of an interval of a law that may be passed on each side of a place within a step: two or three steps
     resolve an interval. Larger fractions save steps, and miss more narrow features."""
-    just_after: float = 1e-3
-    """Part of an explicit step, or of the time to the next stop, that is just after a start, as IDA's longest first step. The
-    motion is extrapolated over no more, to find the sign of a function that is zero."""
     soon: float = 1e-2
     """Passage relative to the time to the next stop above which IDA's first steps are short enough."""
     passage_steps: float = 16.0

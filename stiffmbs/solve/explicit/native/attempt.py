@@ -53,6 +53,18 @@ def attempt(x, c, s, m, h):
 
 
 @compiled
+def retaken(x, c, s, m, h):
+    """Repeat the step with another length; 0 or a negative status."""
+    status = attempt(x, c, s, m, h)
+    if status < 0:
+        return status
+    x.span = h
+    x.t = x.t_before + h
+    x.dense_ready = 0
+    return arrive(x, c, s, m, x.t)
+
+
+@compiled
 def distance_of_end(x):
     """Return the relative distance from a singular pose at the end of a step, the last evaluated state.
 

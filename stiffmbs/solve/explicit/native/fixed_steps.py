@@ -20,6 +20,7 @@ from stiffmbs.dynamics.native.block_systems import (
 from stiffmbs.dynamics.native.parameters import CONSISTENCY
 from stiffmbs.dynamics.native.projection import back_to_constraints
 from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view
+from stiffmbs.solve.events.native.bounds import event_search_view
 from stiffmbs.solve.explicit.native.attempt import attempt
 from stiffmbs.solve.explicit.native.stages import (
     accelerated,
@@ -39,7 +40,7 @@ def _begin(x, c, s, m):
     """Start from consistent values; event functions that are zero there decide which rates the first step has."""
     x.rates_known = 0
     copied(s.lam, x.lam, s.n_c)
-    if x.n_event_functions > 0 and c.by_stages:
+    if event_search_view(x.watch).n_event_functions > 0 and c.by_stages:
         start_steps(x, c, s, m)
         x.rates_known = 1
     x.started = 1

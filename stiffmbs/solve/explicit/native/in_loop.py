@@ -5,6 +5,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.dynamics.native.held_inputs import take_inputs
 from stiffmbs.dynamics.native.joint_coordinates import follow_joints
 from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view, held_inputs_view, joint_coordinates_view
+from stiffmbs.solve.events.native.bounds import event_search_view
 from stiffmbs.solve.explicit.native.fixed_steps import take_steps
 from stiffmbs.solve.explicit.native.stages import explicit_view, load_state, rates, scheme_view
 
@@ -59,7 +60,7 @@ def _begin_at_zeros(x, t):
     """Compute the rates of a state, for a first step that begins where event functions may be zero."""
     c, m = scheme_view(x.scheme), dynamics_view(x.dynamics)
     s = state_view(m.state)
-    if x.n_event_functions > 0 and c.by_stages:
+    if event_search_view(x.watch).n_event_functions > 0 and c.by_stages:
         _forget(x, m)
         load_state(s, x.y)
         x.t = t

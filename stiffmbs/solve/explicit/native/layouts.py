@@ -23,7 +23,7 @@ EXPLICIT = Layout({
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT_CELL,
     "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "stable": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
     "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
-    "n_event_functions": INT, "end_at_event": INT, "at_event": INT_CELL, "uncertain": INT_CELL, "distance": FLOAT_CELL, "distance_of_end": FLOAT_CELL, "watch": INTS,
+    "at_event": INT_CELL, "uncertain": INT_CELL, "distance": FLOAT_CELL, "distance_of_end": FLOAT_CELL, "watch": INTS,
     "started": INT_CELL, "rates_known": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_first": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
     "whole_steps": INTS, "repeats": FLOAT_CELL, "linear_step": INT, "linear": INTS,

@@ -59,8 +59,6 @@ class FirstStepParameters:
     """Sizes of states and rates, in tolerances, below which they do not determine a step."""
     short: float = 1e-6
     """Trial step without information, s."""
-    farthest: float = 1e3
-    """Shortest steps within which the motion must leave a zero of an event function."""
 
 
 FIRST_STEP = tuned("explicit_first_step", FirstStepParameters())

@@ -3,7 +3,6 @@
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
-from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import (
     AT_END,
@@ -16,16 +15,16 @@ from stiffmbs.compile.machine.native.statuses import (
     UNSTABLE,
 )
 from stiffmbs.dynamics.native.views import dynamics_view
+from stiffmbs.solve.events.native.bounds import event_search_view
+from stiffmbs.solve.events.native.layouts import EVENT, NO_EVENT, RETRIED
 from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, next_row, step_bound_view, whole_steps_view
-from stiffmbs.solve.explicit.native.attempt import across, arrive, attempt, distance_of_end, uncertain_end
+from stiffmbs.solve.explicit.native.attempt import across, arrive, attempt, distance_of_end, retaken, uncertain_end
 from stiffmbs.solve.explicit.native.error_estimate import trusted_error
-from stiffmbs.solve.explicit.native.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
+from stiffmbs.solve.explicit.native.explicit_events import begin_search, ended_at_event
 from stiffmbs.solve.explicit.native.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.explicit.native.parameters import CONTROL, ENDS
 from stiffmbs.solve.explicit.native.stages import explicit_view, scheme_view
 from stiffmbs.solve.explicit.native.start import first_step, start_steps
-
-__all__ = ["advance", "end_at_event"]
 
 
 @compiled
@@ -136,26 +135,6 @@ def _step(x, c, s, m, end):
 
 
 @compiled
-def _shortest_to_event(x, c, s, m, explicit):
-    """Take the last attempted step up to an event in it; 0, `RETRIED`, or a negative status with the state unchanged.
-
-    A step across a jump has an error of its length times the jump.  If the motion is closer to the jump than the
-    shortest step, no accepted step reaches it.
-    """
-    status = retaken(x, c, s, m, x.span) if x.span > 0.0 else STEP_TOO_SMALL
-    if status == 0:
-        status = call_int(x.end_at_event, (explicit,))
-    if status == RETRIED:
-        return status
-    if status == 0 and x.at_event:
-        x.at_event = AT_ANOTHER_LAW
-        return 0
-    copied(x.y, x.y_before, x.n)
-    x.t = x.t_before
-    return status if status < 0 else STEP_TOO_SMALL
-
-
-@compiled
 def _keep_whole(x, c, s, m):
     """Store states within the last step if it is to be checked after the run."""
     w = whole_steps_view(x.whole_steps)
@@ -180,9 +159,12 @@ def advance(end, steps, held, own_steps, explicit):
     c = scheme_view(x.scheme)
     m = dynamics_view(x.dynamics)
     s = state_view(m.state)
+    searches = event_search_view(x.watch).n > 0
     if not x.started:
         start_steps(x, c, s, m)
         x.h = first_step(x, c, s, m, end)
+        if searches:
+            begin_search(x, s)
     held += x.stiff_steps
     stored = store_rows(x, c, s, m)
     for _ in range(steps):
@@ -192,20 +174,25 @@ def advance(end, steps, held, own_steps, explicit):
             return PAUSED
         if x.t >= end:
             return AT_END
-        if x.at_event == AT_ANOTHER_LAW:
+        if x.at_event:
             return AT_EVENT
-        x.at_event = 0
         far_beyond = x.far_beyond
         status = _step(x, c, s, m, end)
-        if x.end_at_event:
-            if status == STEP_TOO_SMALL:
-                status = _shortest_to_event(x, c, s, m, explicit)
-            elif status >= 0:
-                status = call_int(x.end_at_event, (explicit,))
+        # a step across a jump has an error of its length times the jump: no accepted step may be short enough to reach it
+        across_jump = searches and status == STEP_TOO_SMALL and x.span > 0.0
+        if across_jump:
+            status = retaken(x, c, s, m, x.span)
+        if searches and status >= 0:
+            status = ended_at_event(x, c, s, m)
+        if across_jump and status <= NO_EVENT:
+            copied(x.y, x.y_before, x.n)
+            x.t = x.t_before
+            status = status if status < 0 else STEP_TOO_SMALL
         if status < 0:
             return status
         if status == RETRIED:
             continue
+        x.at_event = status == EVENT
         x.ends[x.steps % x.capacity] = x.t
         x.steps += 1
         _keep_whole(x, c, s, m)

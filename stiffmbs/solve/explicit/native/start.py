@@ -3,14 +3,16 @@
 from math import isfinite, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
-from stiffmbs.compile.machine.native.evaluate import ACCELERATION, SWITCH, evaluate
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.solve.events.native.bounds import begin_bands, event_search_view
-from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, keep_sides, note_sides
+from stiffmbs.solve.events.native.bounds import event_search_view
+from stiffmbs.solve.events.native.from_zero import at_zero, find_sides, keep_sides
+from stiffmbs.solve.events.native.locate import note_values
 from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
+from stiffmbs.solve.events.native.values import switches
 from stiffmbs.solve.explicit.native.parameters import FIRST_STEP
-from stiffmbs.solve.explicit.native.stages import add_trailing_rates, load_state, rates
+from stiffmbs.solve.explicit.native.stages import add_trailing_rates, load_state, rates, scheme_view
 
 
 @compiled
@@ -25,45 +27,48 @@ def start_steps(x, c, s, m):
     if m.n_trailing > 0:
         evaluate(s, ACCELERATION, x.t)
         add_trailing_rates(s, m, 1.0, k)
-    if x.n_event_functions > 0:
-        w = event_search_view(x.watch)
-        copied(w.value_before, evaluate(s, SWITCH, x.t), w.n)
-        begin_bands(w)
-        if at_zero(w.value_before, x.n_event_functions) > 0:
-            _leave_zeros(x, w, s, m, k)
+    w = event_search_view(x.watch)
+    if w.n > 0:
+        note_values(w, s, x.t)
+        if at_zero(w.value_before, w.n_event_functions) > 0:
+            _leave_zeros(x, c, w, s, m)
     x.started = 1
 
 
 @compiled
-def _go_ahead(x, s, k, ahead):
-    """Load the initial state extrapolated by a time at rates k; return its event functions."""
+def go_straight(x, s, ahead):
+    """Load the end of the last step, moved by a time at the rates in the last stage."""
+    rate = shifted(x.k, scheme_view(x.scheme).stages * x.n)
     for i in range(x.n):
-        x.difference[i] = x.y[i] + ahead * k[i]
-    add_rates(s, shifted(k, s.n_q), 0.5 * ahead * ahead, x.difference)
+        x.difference[i] = x.y[i] + ahead * rate[i]
     load_state(s, x.difference)
-    return evaluate(s, SWITCH, x.t + ahead)
 
 
 @compiled
-def _leave_zeros(x, w, s, m, k):
+def _go_ahead(x, s, ahead):
+    """Load the initial state, moved by a time with its accelerations."""
+    go_straight(x, s, ahead)
+    add_rates(s, shifted(x.k, scheme_view(x.scheme).stages * x.n + s.n_q), 0.5 * ahead * ahead, s.q)
+
+
+@compiled
+def _leave_zeros(x, c, w, s, m):
     """Compute rates slightly after the start if event functions are exactly zero there, where rounding decides the law.
 
     They are rejected if they lead back to the zero, as in sticking friction.
     """
-    count, signs = x.n_event_functions, w.value_before
-    later, ahead = shifted(x.k, x.n), max(x.shortest, INDISTINCT * abs(x.t))
-    begin_sides(w.m, w.m2, count)
-    zeros = at_zero(signs, count)
-    undecided = zeros
-    while undecided > 0 and 0.0 < ahead <= FIRST_STEP.farthest * x.shortest:
-        undecided = note_sides(signs, _go_ahead(x, s, k, ahead), w.m, w.m2, count)
-        ahead *= SEARCH.longer
-    ahead /= SEARCH.longer
-    if at_zero(signs, count) == zeros:
+    zeros = at_zero(w.value_before, w.n_event_functions)
+    first, most = max(x.shortest, INDISTINCT * abs(x.t)), SEARCH.least_difference * w.duration
+    ahead = find_sides(x, w, s, x.t, first, most, _go_ahead)
+    if at_zero(w.value_before, w.n_event_functions) == zeros:
         return
-    _go_ahead(x, s, k, ahead)
-    if rates(x, s, m, 1, x.t + ahead) == 0 and keep_sides(signs, _go_ahead(x, s, later, ahead), count):
-        copied(k, later, x.n)
+    k = shifted(x.k, c.stages * x.n)
+    copied(x.k, k, x.n)
+    _go_ahead(x, s, ahead)
+    found = rates(x, s, m, c.stages, x.t + ahead) == 0
+    _go_ahead(x, s, ahead)
+    if not (found and keep_sides(w.value_before, switches(w, s, x.t + ahead), w.n_event_functions)):
+        copied(k, x.k, x.n)
 
 
 @compiled
@@ -89,9 +94,7 @@ def first_step(x, c, s, m, end):
         if min(of_state, of_rate) > FIRST_STEP.small and isfinite(of_rate)
         else FIRST_STEP.short
     )
-    for i in range(x.n):
-        x.y_stage[i] = x.y[i] + h * rate[i]
-    load_state(s, x.y_stage)
+    go_straight(x, s, h)
     if rates(x, s, m, 1, x.t + h) < 0:
         return h
     later = shifted(x.k, x.n)

@@ -1,6 +1,5 @@
 """Events within a step of IDA; compiled only for scenes with event functions."""
 
-from math import pi
 from typing import Final
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, state_view
@@ -10,92 +9,44 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.solve.events.native.bounds import (
     LOOKED_AT,
-    begin_bands,
     breakpoint_of,
     departed,
     event_search_view,
     interval,
     lands,
-    left_out,
-    longest_by_turns,
-    note_farthest,
-    note_unresolved,
+    note_changes,
     noted_rates,
     overlap,
-    shift_ends,
     suspicious,
     time_of_difference,
-    turned_arguments,
 )
-from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
-from stiffmbs.solve.events.native.layouts import ALWAYS, IN_THIS_STEP
+from stiffmbs.solve.events.native.from_zero import find_sides
+from stiffmbs.solve.events.native.layouts import ALWAYS, EVENT, IN_THIS_STEP, NO_EVENT, PASSED_INTERVAL
+from stiffmbs.solve.events.native.locate import FAR, evaluate_near, go_on, located, note_rates, note_values
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
-from stiffmbs.solve.events.native.outside import note_outside
 from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.values import switches, take_reactions
 from stiffmbs.solve.events.native.within_step import first_event, keep_row
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
-from stiffmbs.solve.ida.native.layouts import EVENT, NO_EVENT, PASSED_INTERVAL
 from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
 
 LARGEST_GROWTH: Final = 2.0
 """Largest ratio of successive steps of IDA (IDASetEtaMax, which is not called)."""
 
 
-@compiled
-def _note_sides(c, w, s, toward):
-    """Find the initial signs of functions that are zero at the start."""
-    count = w.n_event_functions
-    for k in range(count):
-        w.a[k] = float(w.value_before[k] > 0.0) - float(w.value_before[k] < 0.0)
-    begin_sides(w.m, w.m2, count)
-    most = SEARCH.least_difference / NEXT_STEP.just_after * (toward - c.returned)
-    ahead = max(EPSILON * (toward - c.returned), INDISTINCT * abs(c.returned))
-    while ahead <= most:
-        go_ahead(c, s, ahead)
-        if note_sides(w.a, switches(w, s, c.returned + ahead), w.m, w.m2, count) == 0:
-            break
-        ahead *= SEARCH.longer
-    leave_zero(w.value_before, w.a, count)
-
-
 def look_at_start(toward, stop, ida):
     """Evaluate the event functions at a restart of IDA; times of the first step `toward` and of the next breakpoint `stop`."""
     c = native_ida_view(ida)
     w = event_search_view(c.watch)
-    if not w.ready:
-        w.ready = 1
-        w.begun = c.returned
-        ahead = max(SEARCH.least_difference * (toward - c.returned), time_of_difference(w, 0.0, c.returned))
+    if w.begun == float("inf"):
+        t, way = c.returned, toward - c.returned
         s = state_view(c.state)
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
-        keep_row(w, s, 0)
-        copied(w.value_before, switches(w, s, c.returned), w.n)
-        begin_bands(w)
-        go_straight(c, s, ahead)
-        noted_rates(w.rate_before, w.value_before, switches(w, s, c.returned + ahead), ahead, w.n)
-        if at_zero(w.value_before, w.n_event_functions) > 0:
-            _note_sides(c, w, s, toward)
-        if w.n_turns > 0:
-            w.longest = longest_by_turns(w, w.rate_before, SEARCH.turned)
-        w.target = float("inf")
+        note_values(w, s, t)
+        note_rates(c, w, s, t, max(SEARCH.least_difference * way, time_of_difference(w, 0.0, t)), go_straight)
+        find_sides(c, w, s, t, max(EPSILON * way, INDISTINCT * abs(t)), SEARCH.difference * way, go_ahead)
         bound_passage(c, w, s, toward, stop)
     return int32(OK)
-
-
-@compiled
-def _go_on(c, w, s):
-    """Make the end of the step the start of the next, which arguments of sines limit."""
-    if w.n_turns > 0:
-        w.longest = longest_by_turns(w, w.rate_after, SEARCH.turned)
-        if w.longest == float("inf") and turned_arguments(w, w.value_before, w.value_after) > pi:
-            note_unresolved(w, w.begun, w.value_before, w.value_after)
-    note_outside(w, c.returned)
-    keep_row(w, s, 0)
-    w.begun = c.returned
-    note_farthest(w, w.value_after)
-    shift_ends(w)
-    w.target = float("inf")
 
 
 @compiled
@@ -181,7 +132,7 @@ def _aim(c, w, s, ahead):
     """
     t, back = c.returned, -time_of_difference(w, ahead, c.returned)
     go_ahead(c, s, ahead + back)
-    noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, t + ahead + back), back, w.n)
+    noted_rates(w.rate_after, w.value_after, evaluate_near(w, s, t + ahead + back), back, w.n)
     note_mean_rates(w, ahead)
     if not suspicious(w, ahead, w.row, s.q):
         return
@@ -202,15 +153,6 @@ def _aim(c, w, s, ahead):
 
 
 @compiled
-def _evaluate_near(w, s, t):
-    """Evaluate the functions that may change within the step; all if arguments of sines limit the next step."""
-    if w.n_turns > 0:
-        return switches(w, s, t)
-    take_reactions(w, s, t)
-    return evaluate_some(s, SWITCH, t, w.near)
-
-
-@compiled
 def _go_back(c, w, s, begun, h, place):
     """Make a place within the last step IDA's returned state; note all event functions that have changed up to there.
 
@@ -220,7 +162,7 @@ def _go_back(c, w, s, begun, h, place):
     apart = INDISTINCT * abs(end) / h
     changed = 0
     while True:
-        c.returned = _within_last_step(c, min(begun + place * h, end))
+        c.returned = max(min(begun + place * h, end), c.internal - c.size)
         call_int(c.interpolate, (c.memory, c.returned, int32(0), c.y))
         call_int(c.interpolate, (c.memory, c.returned, int32(1), c.yp))
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
@@ -231,9 +173,7 @@ def _go_back(c, w, s, begun, h, place):
             break
         place = min(place + apart, last)
         apart *= SEARCH.longer
-    for k in range(w.n_event_functions):
-        if departed(w, k, values[k]) and not left_out(w, k):
-            w.found[k] = 1
+    note_changes(w, values)
 
 
 @compiled
@@ -253,12 +193,15 @@ def _passes_smoothly(w, h):
 
 
 @compiled
-def _within_last_step(c, t):
-    """Return a time of the searched interval, or the start of the last step if it is earlier.
+def _load_within(c, s, ahead):
+    """Load the state of the last step a time after the start of the search; negative if there is none.
 
-    The interval begins earlier if indistinct steps precede, which are not searched by themselves.
+    The search begins before the step if indistinct steps precede, which are not searched by themselves.
     """
-    return max(t, c.internal - c.size)
+    t = max(event_search_view(c.watch).begun + ahead, c.internal - c.size)
+    flag = call_int(c.interpolate, (c.memory, t, int32(0), c.at_output))
+    load(s, equations_view(c.equations), c.output, array_of(c, c.yp))
+    return flag
 
 
 def look_within(ida):
@@ -269,42 +212,21 @@ def look_within(ida):
     h = c.returned - begun
     if not h > INDISTINCT * abs(begun):
         return int32(NO_EVENT)
-    s = state_view(c.state)
-    e = equations_view(c.equations)
-    load(s, e, array_of(c, c.y), array_of(c, c.yp))
-    copied(w.value_after, switches(w, s, c.returned), w.n)
-    nearby = note_near(w, h, w.row, s.q)
-    if not nearby:
-        note_mean_rates(w, h)
-        _go_on(c, w, s)
-        return int32(NO_EVENT)
-    ahead = -time_of_difference(w, h, c.returned)
-    go_straight(c, s, ahead)
-    noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, c.returned + ahead), ahead, w.n)
-    note_mean_rates(w, h)
-    place = _within_last_step(c, begun + LOOKED_AT * h)
-    if call_int(c.interpolate, (c.memory, place, int32(0), c.at_output)) < 0:
-        return int32(NO_EVENT)
-    load(s, e, c.output, array_of(c, c.yp))
-    copied(w.m, _evaluate_near(w, s, place), w.n)
-    note_farthest(w, w.m)
-    load(s, e, array_of(c, c.y), array_of(c, c.yp))
     if w.at_kinks != ALWAYS:
         w.at_kinks = IN_THIS_STEP if c.repeat and not call_int(c.resolves, (c.memory,)) else 0
-    if suspicious(w, h, w.row, s.q):
-        for node in range(w.n_nodes):
-            at_node = _within_last_step(c, begun + w.node[node] * h)
-            if call_int(c.interpolate, (c.memory, at_node, int32(0), c.at_output)) < 0:
-                return int32(NO_EVENT)
-            load(s, e, c.output, array_of(c, c.yp))
-            take_reactions(w, s, begun + w.node[node] * h)
-            keep_row(w, s, node)
-        place = first_event(w, s, begun, h)
-        passes = place <= 1.0 and _passes_smoothly(w, h)
-        if place <= (1.0 - 2.0 * SEARCH.difference if passes and c.repeat else 1.0):  # a repeated step ends in the law
-            _go_back(c, w, s, begun, h, place)
-            return int32(PASSED_INTERVAL if passes else EVENT)
-        load(s, e, array_of(c, c.y), array_of(c, c.yp))
-    _go_on(c, w, s)
-    _look_ahead(c, w, s)
+    s = state_view(c.state)
+    load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
+    copied(w.value_after, switches(w, s, c.returned), w.n)
+    place = located(c, w, s, c.returned, go_straight, _load_within, _load_within)
+    passes = 0.0 <= place <= 1.0 and _passes_smoothly(w, h)
+    if (
+        0.0 <= place <= (1.0 - 2.0 * SEARCH.difference if passes and c.repeat else 1.0)
+    ):  # a repeated step ends in the law
+        _go_back(c, w, s, begun, h, place)
+        return int32(PASSED_INTERVAL if passes else EVENT)
+    if place >= 0.0:
+        load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
+        go_on(w, s, c.returned)
+        if place != FAR:
+            _look_ahead(c, w, s)
     return int32(NO_EVENT)

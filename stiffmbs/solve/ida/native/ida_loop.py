@@ -7,13 +7,14 @@ from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.events.native.bounds import bounded_by_feature, departed, event_search_view, repeats
+from stiffmbs.solve.events.native.layouts import EVENT, NO_EVENT
 from stiffmbs.solve.events.native.parameters import EPSILON, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, next_row, step_bound_view, whole_steps_view
 from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
-from stiffmbs.solve.ida.native.layouts import EVENT, NO_EVENT, STEP_WIDTH
+from stiffmbs.solve.ida.native.layouts import STEP_WIDTH
 from stiffmbs.solve.ida.native.output_correction import (
     corrected,
     corrected_at_event,

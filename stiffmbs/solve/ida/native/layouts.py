@@ -5,9 +5,6 @@ Letters of these tables in native functions: docs/project/notation.md.
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
-NO_EVENT, EVENT, PASSED_INTERVAL = range(3)
-"""Results of `stiffmbs.solve.ida.native.ida_events.look_within`."""
-
 NATIVE_IDA = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,

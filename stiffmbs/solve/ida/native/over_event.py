@@ -16,7 +16,7 @@ from stiffmbs.compile.machine.native.access import address_of, compiled, equatio
 from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
-from stiffmbs.solve.events.native.bounds import breakpoint_of, departed, event_search_view, interval, left_out
+from stiffmbs.solve.events.native.bounds import breakpoint_of, departed, event_search_view, interval, note_changes
 from stiffmbs.solve.events.native.parameters import SEARCH
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 
@@ -43,11 +43,7 @@ def _crosses(c, w, s, t):
     """Return True if an event function has changed at the end of an attempted step; note the functions."""
     load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
     copied(w.value_after, evaluate(s, SWITCH, t), w.n)
-    changed = 0
-    for k in range(w.n_event_functions):
-        w.found[k] = int(departed(w, k, w.value_after[k]) and not left_out(w, k))
-        changed += w.found[k]
-    return changed > 0
+    return note_changes(w, w.value_after) > 0
 
 
 @compiled
@@ -73,7 +69,7 @@ def part_before_event(estimate, weights, ida):
     w = event_search_view(c.watch)
     call_int(c.time_of, (c.memory, address_of(c.attempted)))
     s = state_view(c.state)
-    if w.ready == 0 or w.by_accelerations != 0 or not (c.attempted > w.begun and _crosses(c, w, s, c.attempted)):
+    if w.by_accelerations != 0 or not (c.attempted > w.begun and _crosses(c, w, s, c.attempted)):
         return 1.0
     d, weight = array_of(c, estimate), array_of(c, weights)
     place = _first_crossing(c, w, s, d, c.attempted)

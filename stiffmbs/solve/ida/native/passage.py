@@ -25,8 +25,6 @@ def bound_passage(c, w, s, toward, stop):
     """
     if c.repeat:
         call_int(c.next_step_of, (c.memory, address_of(c.next_size)))
-    if c.returned < w.begins:
-        w.begins = c.returned
     w.passage, w.first = float("inf"), float("inf")
     of_every_law = w.n_turns > 0 or c.repeat
     ahead = _passage(c, w, s, toward, stop, w.n if of_every_law else w.n_event_functions)

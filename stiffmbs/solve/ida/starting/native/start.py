@@ -161,7 +161,7 @@ def begun(w, c, t, highest_order):
     iteration.cj = float("inf")
     iteration.growth = -1.0
     search = event_search_view(c.watch)
-    search.ready = 0
+    search.begun = float("inf")
     for k in range(w.n_watched):
         search.found[k] = 0
     for k in range(LOOP.samples * (1 + c.n_reported)):
