@@ -81,7 +81,7 @@ def element_groups(mesh: meshio.Mesh, kind: str) -> dict[str, np.ndarray]:
         if block.type != kind:
             continue
         for name, of_blocks in mesh.cell_sets.items():
-            if not name.startswith("gmsh:") and of_blocks[k] is not None and len(of_blocks[k]):
+            if len(of_blocks[k]):
                 found.setdefault(name, []).append(first + np.asarray(of_blocks[k], dtype=np.int64))
         for data, unnamed in UNNAMED.items():
             tags = np.asarray(mesh.cell_data[data][k]) if data in mesh.cell_data else np.empty(0, dtype=np.int64)

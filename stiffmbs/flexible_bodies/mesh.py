@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,10 +13,11 @@ import numpy as np
 
 from ..errors import InputError, needs
 from ..reading.files.quoted import first_line
+from .abaqus_sets import with_own_sets
 from .finite_elements import FiniteElements
 from .materials import PHYSICAL, element_groups, of_elements, parts_of, refuse_unknown
-from .mesh_checks import check_jacobians, check_repeated, check_shared, check_volumes
-from .mesh_files import for_reader, refuse_ignored, sets_of_sets
+from .mesh_checks import check_connected, check_jacobians, check_repeated, check_shared, check_volumes
+from .mesh_files import ABAQUS, GMSH, for_reader, refuse_ignored
 from .shapes import ELEMENTS, TOGETHER
 from .solid import Block, Solid
 
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from .description import Material
 
 LOGGER = logging.getLogger(__name__)
+GMSH_ORDER = {"wedge18": [0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16]}
+"""Order of the nodes of elements that meshio leaves in that of Gmsh."""
 HARMLESS = {"vertex", "line", "line3", "triangle", "triangle6", "quad", "quad8", "quad9"}
 """Elements of a mesh that are not solids and are used only as groups."""
 
@@ -48,7 +51,7 @@ def from_mesh(
     if PHYSICAL in mesh.cell_data:  # Gmsh repeats elements of several physical groups (format 2)
         for kind in kinds:
             connected[kind], groups[kind] = _each_once(connected[kind], groups[kind])
-    refuse_unknown(materials, {name for of_kind in groups.values() for name in of_kind})
+    refuse_unknown(materials, dict.fromkeys(name for of_kind in groups.values() for name in of_kind))
     used = np.unique(np.concatenate([cells.ravel() for cells in connected.values()]))
     numbers = np.full(len(mesh.points), -1)
     numbers[used] = np.arange(len(used))
@@ -64,7 +67,8 @@ def from_mesh(
         blocks.append(Block(kind, nodes, own.T, of_elements(materials, groups[kind], connected[kind])))
         check_jacobians(blocks[-1])
     check_shared(cells)
-    solid, of_nodes = Solid(tuple(blocks)), _groups(mesh, numbers, sets_of_sets(path))
+    check_connected(cells)
+    solid, of_nodes = Solid(tuple(blocks)), _groups(mesh, numbers)
     parts = "" if isinstance(materials, Mapping) else parts_of(path, mesh, list(groups.values()))
     return FiniteElements(nodes, solid.stiffness(), solid.mass(), of_nodes, cells, solid, parts=parts)
 
@@ -119,7 +123,16 @@ def _read(path: Path) -> meshio.Mesh:
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            return meshio.read(*for_reader(path))
+            found = meshio.read(*for_reader(path))
+        return (
+            _as_vtk(found)
+            if path.suffix.lower() == GMSH
+            else with_own_sets(found, path)
+            if path.suffix.lower() == ABAQUS
+            else found
+        )
+    except InputError:
+        raise
     except SystemExit:
         reason = said.getvalue().partition("\n")[0] or "unknown format"
     except Exception as error:  # readers raise many types
@@ -127,7 +140,16 @@ def _read(path: Path) -> meshio.Mesh:
     raise InputError(f"found no mesh ({reason}), expected Gmsh .msh, Abaqus .inp, Nastran .bdf, VTK .vtu or .vtk")
 
 
-def _groups(mesh: meshio.Mesh, numbers: np.ndarray, within: Mapping[str, Sequence[str]]) -> dict[str, np.ndarray]:
+def _as_vtk(mesh: meshio.Mesh) -> meshio.Mesh:
+    """Return a mesh of Gmsh with the order of VTK in all elements, without meshio's sets of geometric entities."""
+    mesh.cell_sets = {name: found for name, found in mesh.cell_sets.items() if not name.startswith("gmsh:")}
+    for block in mesh.cells:
+        if block.type in GMSH_ORDER:
+            block.data = block.data[:, GMSH_ORDER[block.type]]
+    return mesh
+
+
+def _groups(mesh: meshio.Mesh, numbers: np.ndarray) -> dict[str, np.ndarray]:
     """Return the named groups of nodes: sets of points, and nodes of sets or physical groups of elements."""
     found: dict[str, list[np.ndarray]] = {}
     for name, points in mesh.point_sets.items():
@@ -142,8 +164,6 @@ def _groups(mesh: meshio.Mesh, numbers: np.ndarray, within: Mapping[str, Sequenc
             members = np.flatnonzero(tags == tag)
             if len(members) and block.dim == dimension:
                 found.setdefault(name, []).append(np.unique(block.data[members]))
-    for name, members in within.items():
-        found[name] = [*found.get(name, []), *(part for member in members for part in found.get(member, []))]
     groups = {
         name: numbers[np.unique(np.concatenate([*parts, np.empty(0, dtype=np.int64)]))] for name, parts in found.items()
     }

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from itertools import combinations
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
 from .shapes import ELEMENTS
@@ -82,6 +84,23 @@ def _rows(cells: np.ndarray, between: tuple[int, ...], node: np.ndarray) -> np.n
     padded = np.full((len(cells), 4), -1)
     padded[:, : len(between)] = np.sort(cells[:, list(between)], axis=1)
     return np.column_stack([padded, node])
+
+
+def check_connected(cells: Mapping[str, np.ndarray]) -> None:
+    """Refuse parts that share no face of an element: they could rotate about their common corners and edges."""
+    first, rows = 0, []
+    for kind, of_kind in cells.items():
+        shape, numbers = ELEMENTS[kind].shape, first + np.arange(len(of_kind))
+        for face in (*shape.triangles, *shape.quadrilaterals):
+            rows.append(_rows(of_kind, face, numbers))
+        first += len(of_kind)
+    faces = np.concatenate(rows)
+    _, own = np.unique(faces[:, :4], axis=0, return_inverse=True)
+    own = own.ravel()
+    graph = coo_array((np.ones(len(faces)), (faces[:, 4], first + own)), shape=(first + len(own),) * 2)
+    parts = len(np.unique(connected_components(graph, directed=False)[1][:first]))
+    if parts > 1:
+        raise InputError(f"found {parts} parts that are not connected by faces of elements, expected one body")
 
 
 def _check_faces(cells: Mapping[str, np.ndarray]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from ..errors import InputError
@@ -18,7 +18,9 @@ GMSH = ".msh"
 ENDLESS = {".dat", ".tec", ".ele", ".node", ".off", ".ply", ".mdpa"}
 """Suffixes of formats (Tecplot, TetGen, OFF, PLY, Kratos) whose readers in meshio do not end at the end of an incomplete
 file."""
-GMSH_TRIANGLES = re.compile(r"^(\*ELEMENT\s*,\s*TYPE\s*=\s*)CPS6\b", re.IGNORECASE | re.MULTILINE)
+SETS = re.compile(r"\*(NSET|ELSET)\b", re.IGNORECASE)
+SAME_SURFACE = {"CPS6": "CPE6", "CPS8": "S8R", "M3D9": "S9R5"}
+GMSH_SURFACES = re.compile(rf"^(\*ELEMENT\s*,\s*TYPE\s*=\s*)({'|'.join(SAME_SURFACE)})\b", re.IGNORECASE)
 NOT_ZERO = re.compile(r"[^EeDd]*[1-9]")
 
 
@@ -38,7 +40,7 @@ def refuse_ignored(path: Path) -> None:
 def for_reader(path: Path) -> tuple[Path | io.StringIO, str | None]:
     """Return a mesh file, or what Gmsh writes with the words that meshio expects, and the format of that.
 
-    These are bulk data of Nastran without the line before them, and plane triangles of Abaqus, which form groups only.
+    These are bulk data of Nastran without the line before them, and Abaqus' elements of surfaces, which form groups only.
     """
     suffix = path.suffix.lower()
     if suffix not in {*NASTRAN, ABAQUS}:
@@ -46,22 +48,21 @@ def for_reader(path: Path) -> tuple[Path | io.StringIO, str | None]:
     text = path.read_text(encoding="utf-8", errors="replace")
     if suffix in NASTRAN and not BULK_LINE.search(text):
         return io.StringIO(f"{BULK}\n{text}"), "nastran"
-    if suffix == ABAQUS and (changed := GMSH_TRIANGLES.sub(r"\1CPE6", text)) != text:
-        found = io.StringIO(changed)
-        found.name = str(path)  # from which INCLUDE finds other files
+    if suffix == ABAQUS:
+        found = io.StringIO("\n".join(_without_sets(_lines(path))) + "\n")
+        found.name = str(path)
         return found, "abaqus"
     return path, None
 
 
-def sets_of_sets(path: Path) -> dict[str, list[str]]:
-    """Return the names of sets within each set of an Abaqus file."""
-    found: dict[str, list[str]] = {}
-    for keyword, options, words in data_lines(path) if path.suffix.lower() == ABAQUS else ():
-        name = options.get("NSET") if keyword == "*NSET" else options.get("ELSET") if keyword == "*ELSET" else None
-        names = [word for word in words if word and not word.isdigit()]
-        if name and names and "GENERATE" not in options:
-            found.setdefault(name, []).extend(names)
-    return found
+def _without_sets(lines: Iterable[str]) -> Iterator[str]:
+    """Yield the lines of an Abaqus file without its sets, and with the words of meshio for elements of surfaces."""
+    left_out = False
+    for line in lines:
+        if line.startswith("*"):
+            left_out = bool(SETS.match(line)) or line.upper().startswith("*INCLUDE")
+        if not left_out:
+            yield GMSH_SURFACES.sub(lambda found: found[1] + SAME_SURFACE[found[2].upper()], line)
 
 
 def materials_of_sections(path: Path) -> list[str]:
@@ -117,17 +118,25 @@ def _check_abaqus(path: Path) -> None:
         raise InputError(f"found {f'an instance moved by {moved}' if moved else f'{instances} instances'}, {numbers}")
 
 
-def data_lines(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:
-    """Yield the keyword, its options, and the words of each line of data."""
-    keyword, options = "", {}
+def sections(path: Path) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
+    """Yield each keyword of an Abaqus file, its options, and the words of its lines of data."""
+    keyword, options, lines = "", {}, list[list[str]]()
     for line in _lines(path):
         words = [word.strip() for word in line.split(",")]
-        if line.startswith("*"):
-            keyword = words[0].upper()
-            pairs = (word.partition("=") for word in words[1:])
-            options = {key.strip().upper(): value.strip() for key, _, value in pairs}
-        else:
-            yield keyword, options, words
+        if not line.startswith("*"):
+            lines.append(words)
+            continue
+        yield keyword, options, lines
+        keyword, lines = words[0].upper(), []
+        pairs = (word.partition("=") for word in words[1:])
+        options = {key.strip().upper(): value.strip() for key, _, value in pairs}
+    yield keyword, options, lines
+
+
+def data_lines(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:
+    """Yield the keyword, its options, and the words of each line of data."""
+    for keyword, options, lines in sections(path):
+        yield from ((keyword, options, words) for words in lines)
 
 
 def _lines(path: Path, depth: int = 0) -> Iterator[str]:

@@ -10,7 +10,7 @@ import pytest
 from meshio._helpers import extension_to_filetypes
 
 from stiffmbs.errors import InputError
-from stiffmbs.flexible_bodies.mesh import _read, from_mesh
+from stiffmbs.flexible_bodies.mesh import _as_vtk, _read, from_mesh
 from stiffmbs.flexible_bodies.mesh_files import for_reader
 from stiffmbs.flexible_bodies.shapes import ELEMENTS as KINDS
 from tests.flexible_bodies.bars import STEEL, mesh_of_bar
@@ -203,19 +203,25 @@ ORDERS = {
     ("wedge15", ".inp"): "01 12 20 34 45 53 03 14 25",
     ("wedge15", ".bdf"): "01 12 20 03 14 25 34 45 53",
     ("wedge15", ".msh"): "01 02 03 12 14 25 34 35 45",
+    ("wedge18", ".msh"): "01 02 03 12 14 25 34 35 45 0143 0352 1254",
     ("tetra10", ".inp"): "01 12 20 03 13 23",
     ("tetra10", ".bdf"): "01 12 20 03 13 23",
     ("tetra10", ".msh"): "01 12 20 03 23 13",
 }
 """Corners between which the nodes on edges are, in the order of Abaqus' and Nastran's manuals and of Gmsh."""
-WORDS = {"hexahedron20": ("C3D20", "CHEXA", 17), "wedge15": ("C3D15", "CPENTA", 18), "tetra10": ("C3D10", "CTETRA", 11)}
+WORDS = {
+    "hexahedron20": ("C3D20", "CHEXA", 17),
+    "wedge15": ("C3D15", "CPENTA", 18),
+    "tetra10": ("C3D10", "CTETRA", 11),
+    "wedge18": ("", "", 13),
+}
 
 
 @pytest.mark.parametrize(("kind", "suffix"), ORDERS)
 def test_nodes_on_edges_are_in_the_order_of_the_file(tmp_path, kind, suffix):
     corners = KINDS[kind].shape.corners.astype(float)
     edges = ORDERS[kind, suffix].split()
-    points = [*corners, *(corners[[int(a), int(b)]].mean(axis=0) for a, b in edges)]
+    points = [*corners, *(corners[[int(k) for k in between]].mean(axis=0) for between in edges)]
     grid = [(k + 1, *point) for k, point in enumerate(points)]
     numbers = [str(k + 1) for k in range(len(points))]
     abaqus, nastran, gmsh = WORDS[kind]
@@ -234,8 +240,61 @@ def test_nodes_on_edges_are_in_the_order_of_the_file(tmp_path, kind, suffix):
         text = f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(grid)}\n{nodes}$EndNodes\n"
         text += f"$Elements\n1\n1 {gmsh} 2 1 1 {' '.join(numbers)}\n$EndElements\n"
     found = read(tmp_path / f"a{suffix}", text)
-    volume = {"hexahedron20": 1.0, "wedge15": 0.5, "tetra10": 1 / 6}[kind]
+    volume = {"hexahedron20": 1.0, "wedge15": 0.5, "wedge18": 0.5, "tetra10": 1 / 6}[kind]
     assert found.mass.sum() / 3 == pytest.approx(7850 * volume)
     (cells,) = found.cells.values()
-    for k, (a, b) in enumerate(KINDS[kind].middles, len(corners)):
-        np.testing.assert_allclose(found.nodes[cells[:, k]], found.nodes[cells[:, [a, b]]].mean(axis=1))
+    for k, between in enumerate(KINDS[kind].middles, len(corners)):
+        np.testing.assert_allclose(found.nodes[cells[:, k]], found.nodes[cells[:, list(between)]].mean(axis=1))
+
+
+THIRD = "9, 13, 15, 11, 10, 14, 16, 12"
+ROW = ABAQUS.replace("*Element", "13, 3, 0, 0\n14, 3, 0, 1\n15, 3, 1, 0\n16, 3, 1, 1\n*Element", 1)
+"""Three bricks in a row, of which the third has an element section of its own."""
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        (f"*Element, type=C3D8, elset=body\n3, {THIRD}\n", {"body": 16}),
+        (f"*Elset, elset=some\n1\n*Element, type=C3D8\n3, {THIRD}\n*Elset, elset=some\n3\n", {"some": 16, "body": 12}),
+        (f"*Element, type=C3D8\n3, {THIRD}\n*Elset, elset=some, generate\n1, 2\n3, 3, 1\n", {"some": 16}),
+        (f"*Element, type=C3D8\n3, {THIRD}\n*Elset, elset=a\n3 ,\n*Elset, elset=none\n*Elset, elset=b\na, none\n", {"b": 8}),
+        (f"*Element, type=C3D8\n3, {THIRD}\n*Nset, nset=n\n1, 2\n*Nset, nset=n\n3\n*Nset, nset=\"m\"\nn, 16\n", {"n": 3, "m": 4}),
+        (f"*Element, type=C3D8\n3, {THIRD}\n*Element, type=S4, elset=s\n4, 1, 5, 7, 3\n*Element, type=S4, elset=s\n5, 5, 9, 11, 7\n6, 1, 2, 4, 3\n", {"s": 8}),
+    ],
+)  # fmt: skip
+def test_sets_of_abaqus_add_up(tmp_path, text, wanted):
+    """meshio gives all sections with one name the elements of the last, and replaces sets that are stated again."""
+    groups = read(tmp_path / "a.inp", ROW + text).groups
+    assert {name: len(groups[name]) for name in wanted} == wanted
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("*Nset, nset=n\n1, 77\n", "set n: found 77, expected numbers or sets of the file"),
+        ("*Nset, nset=a\nb\n*Nset, nset=b\na\n", "found the set 'a' within itself"),
+    ],
+)
+def test_members_that_are_not_in_the_file_are_refused(tmp_path, text, message):
+    with pytest.raises(InputError, match=message):
+        read(tmp_path / "a.inp", ABAQUS + text)
+
+
+def test_materials_of_sections_with_one_name(tmp_path):
+    text = f"{ROW}*Element, type=C3D8, elset=body\n3, {THIRD}\n"
+    (tmp_path / "a.inp").write_text(text)
+    assert from_mesh(tmp_path / "a.inp", 1.0, {"body": STEEL}).mass.sum() / 3 == pytest.approx(3 * 7850)
+
+
+def test_entities_of_gmsh_are_no_groups(tmp_path):
+    mesh = mesh_of_bar("hexahedron", 2, 1)
+    mesh.cell_sets["gmsh:bounding_entities"] = [np.array([5, 77])]
+    assert not _as_vtk(mesh).cell_sets
+
+
+def test_parts_joined_at_a_corner_are_refused(tmp_path):
+    points = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
+    meshio.Mesh(points, [("tetra", [[0, 1, 2, 3], [0, 5, 4, 6]])]).write(tmp_path / "a.vtu")
+    with pytest.raises(InputError, match="found 2 parts that are not connected by faces"):
+        from_mesh(tmp_path / "a.vtu", 1.0, STEEL)
