@@ -120,7 +120,7 @@ def _check_abaqus(path: Path) -> None:
 
 def sections(path: Path) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
     """Yield each keyword of an Abaqus file, its options, and the words of its lines of data."""
-    keyword, options, lines = "", {}, list[list[str]]()
+    keyword, options, lines = "", dict[str, str](), list[list[str]]()
     for line in _lines(path):
         words = [word.strip() for word in line.split(",")]
         if not line.startswith("*"):
