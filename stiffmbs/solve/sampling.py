@@ -142,7 +142,9 @@ def _before_breakpoints(found: Iterable[Sample], grid: Grid, features: InputFeat
     times = np.array([sample.t for sample in listed])
     before = grid.before(times, features)
     moved = times - before > 0.5 * grid.aside  # a sample at an output time is there already, up to rounding
-    return [sample._replace(t=t) if by else sample for sample, t, by in zip(listed, before.tolist(), moved, strict=True)]
+    return [
+        sample._replace(t=t) if by else sample for sample, t, by in zip(listed, before.tolist(), moved, strict=True)
+    ]
 
 
 def restarts(dynamics: Dynamics, grid: Grid) -> np.ndarray:
@@ -228,9 +230,7 @@ def _up_to_row(part: Trajectory, row: int) -> Trajectory:
     )  # fmt: skip
 
 
-def _joined(
-    parts: list[Trajectory], start: InitialValues, grid: Grid, ending: Ending, jumps: str
-) -> Trajectory:
+def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: Ending, jumps: str) -> Trajectory:
     """Join the intervals to one trajectory whose first row is the start, before a sample there.
 
     `jumps`: sentence on the jumps at restarts.
@@ -242,7 +242,9 @@ def _joined(
         ending.outcome, ending.message = parts[-1].outcome, parts[-1].message
     fields = in_common(parts)
     fields["statistics"] = {"steps": 0, "seconds": 0.0, **fields["statistics"]}
-    fields["note"] = "; ".join([*dict.fromkeys(note for note in (*(part.note for part in parts), jumps) if note)][:MOST_LISTED])
+    fields["note"] = "; ".join(
+        [*dict.fromkeys(note for note in (*(part.note for part in parts), jumps) if note)][:MOST_LISTED]
+    )
     return Trajectory(t, q, u, ending.outcome, ending.message, **fields)
 
 

@@ -106,5 +106,5 @@ ERROR_NORM = Layout({
 Cells: failures of the error test with a weight that decreases with each step; 1 to filter all estimates; cj at the last
 check of failures; steps and failures of the error test, and the same at the last check; step up to which estimates are
 filtered; order of the last step; number of periods of a law whose features are resolved, else 1; step up to which steps
-may not grow (0 for none), and least growth factor afterwards; current time, time at the end of the last attempted step,
-time at its start, factor of the norms of that step, number of its repetitions up to an event."""
+may not grow (0 for none), and least growth factor afterwards; current time. Cells of the last attempted step: time at
+its end and at its start, factor of its norms, number of its repetitions up to an event."""
