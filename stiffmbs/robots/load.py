@@ -30,6 +30,8 @@ def load_robot(
     coordinates: Mapping[str, float] = AS_DRAWN,
     rates: Mapping[str, float] = AS_DRAWN,
     limits: bool = False,
+    contacts: bool = False,
+    ground: float | None = None,
 ) -> Scene:
     """Read a scene from a robot file.
 
@@ -43,13 +45,18 @@ def load_robot(
         Initial coordinates of hinges and slides, rad or m, and their rates, by joint; others are as drawn, and at rest.
     limits : bool, optional
         True to hold joints within their limits by stops (`stiffmbs.robots.scene.limits`). By default a note lists the limits.
+    contacts : bool, optional
+        True for contacts of the shapes that may touch according to the file (`stiffmbs.robots.scene.contacts`). By default there are none.
+    ground : float, optional
+        Height of an added ground plane, m, which all shapes touch; `contacts` is then True.
 
     Raises
     ------
     InputError
         If the file cannot be read, or its robot is not a valid scene.
     """
-    return made_scene(_found(path, coordinates, rates, limits), changes, source_name(path), lambda _: None)
+    found = _found(path, coordinates, rates, limits, contacts, ground)
+    return made_scene(found, changes, source_name(path), lambda _: None)
 
 
 def convert_robot(
@@ -58,17 +65,25 @@ def convert_robot(
     coordinates: Mapping[str, float] = AS_DRAWN,
     rates: Mapping[str, float] = AS_DRAWN,
     limits: bool = False,
+    contacts: bool = False,
+    ground: float | None = None,
 ) -> str:
     """Return the scene of a robot file as the text of a scene file; parameters and errors as `load_robot`."""
-    load_robot(path, coordinates=coordinates, rates=rates, limits=limits)  # raises errors of the scene
-    return scene_text(_found(path, coordinates, rates, limits))
+    how = (coordinates, rates, limits, contacts, ground)
+    made_scene(_found(path, *how), (), source_name(path), lambda _: None)  # raises errors of the scene
+    return scene_text(_found(path, *how))
 
 
 def _found(
-    path: str | Path, coordinates: Mapping[str, float], rates: Mapping[str, float], limits: bool
+    path: str | Path,
+    coordinates: Mapping[str, float],
+    rates: Mapping[str, float],
+    limits: bool,
+    contacts: bool,
+    ground: float | None,
 ) -> dict[str, object]:
     try:
-        return scene(_read(path), coordinates, rates, limits)
+        return scene(_read(path, contacts or ground is not None, ground), coordinates, rates, limits)
     except FileFault as fault:
         raise InputError(f"{source_name(path)}: {fault}") from None
     except RecursionError:
@@ -77,15 +92,15 @@ def _found(
         raise InputError(f"{source_name(path)}: {BEYOND}") from None
 
 
-def _read(path: str | Path) -> Robot:
+def _read(path: str | Path, contacts: bool, ground: float | None) -> Robot:
     if Path(path).suffix.lower() == URDF:
         from .urdf import read_urdf
 
-        return read_urdf(file_text(path))
+        return read_urdf(file_text(path), contacts, ground)
     if Path(path).suffix.lower() in SDF:
         from .sdf.read import read_sdf
 
-        return read_sdf(Path(path))
+        return read_sdf(Path(path), contacts, ground)
     from .mjcf.model import read_mjcf
 
-    return read_mjcf(path)
+    return read_mjcf(path, contacts, ground)

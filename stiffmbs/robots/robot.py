@@ -11,6 +11,7 @@ import numpy as np
 from ..elements.spatial.marker import ORIGIN
 from ..elements.spatial.orientation import IDENTITY
 from ..reading.files.xml_nodes import FileFault
+from .contact import Contact
 
 JointKind = Literal["hinge", "slide", "screw", "ball", "free"]
 
@@ -163,6 +164,7 @@ class Robot:
     relations: tuple[Relation, ...] = ()
     connections: tuple[Connection, ...] = ()
     closures: tuple[Closure, ...] = ()
+    contacts: tuple[Contact, ...] = ()
     notes: tuple[str, ...] = ()
 
     def joints(self) -> dict[str, LinkJoint]:

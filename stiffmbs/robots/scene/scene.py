@@ -12,6 +12,7 @@ from ...reading.marker import GROUND
 from ..following import with_followers
 from ..robot import LinkJoint, Robot, RobotFault
 from .actuators import actuators
+from .contacts import contacts
 from .joints import Masses, bodies, joints, passive
 from .joints import notes as body_notes
 from .limits import stops
@@ -33,18 +34,19 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
     masses = Masses(robot.links, [frame for _, frame in mechanism.bodies.values()])
     acting = actuators(robot, mechanism)
     of_stops, stopping = stops(robot, mechanism, coordinates) if limits else ({}, {})
+    touching = contacts(robot, mechanism, coordinates)
     found: Content = {
         "name": robot.name,
         "dimensions": 3,
         "gravity": vector(robot.gravity),
-        "parameters": of_stops,
+        "parameters": of_stops | touching.parameters,
         "markers": mechanism.markers.get(GROUND, {}),
         "bodies": {},
         "joints": joints(robot, mechanism),
         "inputs": acting.inputs,
         "states": acting.states,
         "variables": acting.variables,
-        "forces": passive(robot, mechanism) | acting.forces | stopping | _lifted(robot, mechanism),
+        "forces": passive(robot, mechanism) | acting.forces | stopping | touching.forces | _lifted(robot, mechanism),
         "run": dict(RUN),
     }
     found["bodies"] = bodies(mechanism, masses)  # includes markers added by the other sections
@@ -54,6 +56,7 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
         *robot.notes,
         *body_notes(mechanism),
         *_limits(mechanism, coordinates, limits),
+        *touching.notes,
         *_notes(mechanism),
     ]
     return {key: value for key, value in found.items() if value or key == "bodies"}

@@ -1,0 +1,161 @@
+"""Contacts between the shapes of links, as impact forces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...elements.spatial.number_format import plain
+from ...elements.spatial.orientation import rotated
+from ...reading.files.quoted import listed
+from ...reading.files.yaml_text import Content
+from ..contact import BOX, CAPSULE, CYLINDER, ELLIPSOID, PLANE, SPHERE, Contact, Shape
+from ..effective_mass import inverse_masses
+from ..pose import WORLD, frames
+from ..robot import Robot
+from .mechanism import Mechanism
+
+STIFFNESS, DAMPING, FRICTION, SLIP = "contact_stiffness", "contact_damping", "contact_friction", "contact_slip"
+CONTACTS: Mapping[str, float] = {STIFFNESS: 1.0, DAMPING: 1.0, FRICTION: 1.0, SLIP: 1e-3}
+"""Parameters of a scene with contacts: factors of all stiffnesses, dampings and frictions, and the stiction velocity, m/s."""
+WEIGHT = 9.81
+"""Acceleration for the penetration under a shape's own effective mass, m/s^2."""
+
+
+@dataclass
+class Contacts:
+    """Contacts in a scene: parameters and forces by name, and notes."""
+
+    parameters: Content = field(default_factory=dict)
+    forces: Content = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+
+def contacts(robot: Robot, mechanism: Mechanism, coordinates: Mapping[str, float]) -> Contacts:
+    """Return the contacts of a robot between bodies that can move relative to each other.
+
+    The normal force at a penetration x is max(0, k x + c x'). The damper acts fully from half the depth at which the
+    effective mass of both links rests. Friction is smooth below the stiction velocity.
+    """
+    markers, found, deep = _Markers(mechanism), Contacts(), []
+    if not robot.contacts:
+        return found
+    names = {name: mechanism.names.take(name) for name in CONTACTS}
+    found.parameters = {names[name]: plain(value) for name, value in CONTACTS.items()}
+    inverse = inverse_masses(robot, coordinates)
+    heights = _Heights(robot, coordinates)
+    for contact in robot.contacts:
+        first, second = contact.first, contact.second
+        mobility = inverse[first.link] + inverse[second.link]
+        if not mobility > 0 or mechanism.seats[first.link].body == mechanism.seats[second.link].body:
+            continue
+        law, depth = _law(contact, 1.0 / mobility, names)
+        for kind, fields, i, j in _parts(first, second):
+            name = mechanism.names.take(f"{i.name}_on_{j.name}")
+            found.forces[name] = {"type": kind, "i": markers.of(i), "j": markers.of(j), **fields, **law}
+            if j.kind == PLANE and (below := heights.below(i, j)) > 2.0 * depth:
+                deep.append(f"{name} by {below:.3g} m")
+    if deep:
+        found.notes = [f"shapes start in the ground, which pushes them out: {listed(deep)}"]
+    return found
+
+
+def _law(contact: Contact, mass: float, names: Mapping[str, str]) -> tuple[Content, float]:
+    """Return the fields of the force law, and the penetration at which its damping is full, m."""
+    k, c = contact.softness.of(mass)
+    depth = WEIGHT * mass / k / 2.0
+    fields: Content = {"stiffness": f"{k!r}*{names[STIFFNESS]}", "exponent": 1, "depth": depth}
+    if c:
+        fields["damping"] = f"{c!r}*{names[DAMPING]}"
+    if contact.friction:
+        coefficient = f"{float(contact.friction)!r}*{names[FRICTION]}"
+        fields |= {"friction": coefficient, "static_friction": coefficient}
+        fields |= {"stiction_velocity": names[SLIP], "friction_velocity": f"2*{names[SLIP]}"}
+    return fields, depth
+
+
+Part = tuple[str, Content, Shape, Shape]
+"""Kind of a force with its fields of geometry, and the shapes of markers i and j."""
+
+
+def _parts(first: Shape, second: Shape) -> Iterator[Part]:
+    """Yield the forces of a contact: two for a capsule, one for other shapes."""
+    if first.kind == PLANE or (first.kind != second.kind and second.kind == SPHERE):
+        first, second = second, first
+    if second.kind == PLANE:
+        ends = list(_ends(first)) if first.kind == CAPSULE else [first]
+        yield from ((*ON_PLANE[each.kind](each), each, second) for each in ends)
+    else:
+        yield (*ON_SOLID[second.kind](first, second), first, second)
+
+
+def _ends(capsule: Shape) -> Iterator[Shape]:
+    """Yield the spheres at both ends of a capsule, which alone touch a plane."""
+    radius, length = capsule.size
+    for number, along in enumerate((length / 2, -length / 2), 1):
+        place = np.array(capsule.position) + rotated(capsule.orientation, (0.0, 0.0, along))
+        name = f"{capsule.name}_end_{number}"
+        yield replace(capsule, name=name, kind=SPHERE, size=(radius,), position=tuple(map(float, place)))
+
+
+def _lengths(names: str, values: tuple[float, ...]) -> Content:
+    return {name: plain(value) for name, value in zip(names.split(), values, strict=True)}
+
+
+ON_PLANE: Mapping[str, Callable[[Shape], tuple[str, Content]]] = {
+    SPHERE: lambda i: ("ellipsoid_plane_impact", _lengths("x y z", i.size * 3)),
+    ELLIPSOID: lambda i: ("ellipsoid_plane_impact", _lengths("x y z", i.size)),
+    BOX: lambda i: ("box_plane_impact", _lengths("x y z", i.size)),
+    CYLINDER: lambda i: ("cylinder_plane_impact", _lengths("radius length", i.size)),
+}
+ON_SOLID: Mapping[str, Callable[[Shape, Shape], tuple[str, Content]]] = {
+    SPHERE: lambda i, j: ("sphere_sphere_impact", _lengths("radius other_radius", i.size + j.size)),
+    BOX: lambda i, j: ("sphere_box_impact", _lengths("radius x y z", i.size + j.size)),
+    CYLINDER: lambda i, j: (
+        "sphere_cylinder_impact",
+        _lengths("radius cylinder_radius cylinder_length", i.size + j.size),
+    ),
+}
+
+
+class _Markers:
+    """Markers of shapes, one for each shape."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self._mechanism, self._found = mechanism, dict[Shape, str]()
+
+    def of(self, shape: Shape) -> str:
+        """Return the reference of a shape's marker."""
+        if shape not in self._found:
+            name = self._mechanism.names.take(shape.name, "shape")
+            self._found[shape] = self._mechanism.mark(shape.link, name, shape.position, shape.orientation)
+        return self._found[shape]
+
+
+class _Heights:
+    """Heights of shapes above planes at the start."""
+
+    def __init__(self, robot: Robot, coordinates: Mapping[str, float]) -> None:
+        placed = frames(robot, coordinates, {})
+        self._frames = {None: WORLD} | {name: each[-1] for name, each in placed.items()}
+
+    def below(self, shape: Shape, plane: Shape) -> float:
+        """Return the depth of a shape's lowest point below a plane, m; negative above it."""
+        frame, ground = self._frames[shape.link], self._frames[plane.link]
+        normal = rotated(ground.orientation, tuple(rotated(plane.orientation, (0.0, 0.0, 1.0))))
+        axes = [rotated(frame.orientation, tuple(rotated(shape.orientation, tuple(axis)))) for axis in np.eye(3)]
+        cosines = np.array([float(np.dot(axis, normal)) for axis in axes])
+        middle = frame.point(shape.position) - ground.point(plane.position)
+        return _reach(shape, cosines) - float(np.dot(middle, normal))
+
+
+def _reach(shape: Shape, cosines: np.ndarray) -> float:
+    """Return the distance of a shape's middle from a plane that it touches. `cosines`: the normal in its axes."""
+    size = np.array(shape.size)
+    if shape.kind == BOX:
+        return float(np.abs(cosines) @ size) / 2.0
+    if shape.kind == CYLINDER:
+        return float(size[0] * np.hypot(*cosines[:2]) + size[1] / 2.0 * abs(cosines[2]))
+    return float(np.linalg.norm(cosines * size))
