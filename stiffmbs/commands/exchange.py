@@ -17,6 +17,9 @@ from .scene import CHANGES, assigned, file_beside, is_written, option, output_op
 
 DATASET, ASSEMBLY, AT = ".adm", ".asmt", "--at JOINT=VALUE with a number"
 
+OPTIONS_OF_ROBOTS = {"coordinates": "--at", "limits": "--limits", "contacts": "--contacts", "ground": "--ground"}
+"""Options for robots by the arguments of `load_robot`."""
+
 
 @click.command(short_help="Convert datasets, robots and assemblies to scenes, and scenes to datasets and assemblies.")
 @click.argument("scene")
@@ -28,10 +31,12 @@ DATASET, ASSEMBLY, AT = ".adm", ".asmt", "--at JOINT=VALUE with a number"
     "coordinates",
 )
 @option("--limits", "Hold the joints of a robot within their limits by stops.")
+@option("--contacts", "Let the shapes of a robot touch each other and the ground, where its file has such contacts.")
+@option("--ground HEIGHT", "Add a ground plane at a height, m, and contacts.", type=float)
 @CHANGES
 def convert(
-    scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], limits: bool,
-    changes: list[tuple[str, str]],
+    scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], limits: bool, contacts: bool,
+    ground: float | None, changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
     """Convert an Adams/Solver dataset (.adm), a robot (URDF, SDF, MJCF) or an assembly (Simscape Multibody XML, .asmt) to a scene,
     or a planar scene to space.
@@ -48,8 +53,11 @@ def convert(
         refuse_own_input("-o", scene, output)
         of_robot: dict[str, Any] = {"coordinates": assigned(AT, coordinates, float)} if coordinates else {}
         of_robot |= {"limits": True} if limits else {}
+        of_robot |= {"contacts": True} if contacts else {}
+        of_robot |= {"ground": ground} if ground is not None else {}
         if of_robot and (in_space or not _is_robot(scene)):
-            raise InputError(f"{scene}: found {'--at' if coordinates else '--limits'}, expected it with a robot alone")
+            given = OPTIONS_OF_ROBOTS[next(iter(of_robot))]
+            raise InputError(f"{scene}: found {given}, expected it with a robot alone")
         if output is not None and output.suffix.lower() in (DATASET, ASSEMBLY):
             texts = _exported(scene, output, of_robot, changes)
         else:

@@ -80,8 +80,11 @@ def _contact(a: Collision, b: Collision) -> Contact:
     friction = min(a.friction, b.friction)
     if not stated:
         return Contact(a.shape, b.shape, USUAL, friction)
-    stiffness = 1.0 / sum(1.0 / each.stiffness for each in stated)
-    return Contact(a.shape, b.shape, Given(stiffness, sum(each.damping for each in stated)), friction)
+    softness = stated[0]
+    for other in stated[1:]:
+        stiffness = softness.stiffness * other.stiffness / (softness.stiffness + other.stiffness)
+        softness = Given(stiffness, softness.damping + other.damping)
+    return Contact(a.shape, b.shape, softness, friction)
 
 
 def _collisions(scope: Scope, model: int) -> Iterator[Collision]:
