@@ -85,12 +85,16 @@ USUAL: Final = impeded(frequency=1.0 / 0.02, damping=2.0 / 0.02, impedance=0.95)
 
 @dataclass(frozen=True)
 class Contact:
-    """Contact of two shapes. `friction`: coefficient of sliding friction."""
+    """Contact of two shapes.
+
+    `friction`: coefficient of sliding friction. `margin`: distance of the surfaces at which the contact begins, m.
+    """
 
     first: Shape
     second: Shape
     softness: PerMass | Given = USUAL
     friction: float = 1.0
+    margin: float = 0.0
 
 
 def are_partners(first: str, second: str) -> bool:

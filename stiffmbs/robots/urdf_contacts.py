@@ -26,9 +26,7 @@ class Surface:
     friction: float = 1.0
 
 
-def contacts(
-    root: Node, links: Mapping[str, Node], ground: float | None
-) -> tuple[tuple[Contact, ...], list[str]]:
+def contacts(root: Node, links: Mapping[str, Node], ground: float | None) -> tuple[tuple[Contact, ...], list[str]]:
     """Return the contacts of all links with the ground, a plane at a height in m, and notes; none without a height.
 
     Friction and stiffness are Gazebo's, ``mu1``, ``kp`` and ``kd`` in ``<gazebo reference=...>``, where the file states

@@ -3,13 +3,9 @@
 import mujoco
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
 
 import stiffmbs
-from stiffmbs.commands.main import main
-from stiffmbs.errors import InputError
-from stiffmbs.robots.contact import USUAL
 from stiffmbs.robots.effective_mass import inverse_masses
 from stiffmbs.robots.load import load_robot
 from stiffmbs.robots.mjcf.model import read_mjcf
@@ -75,6 +71,21 @@ def test_the_rebound_follows_from_the_damping_ratio(tmp_path, zeta):
     assert by_mujoco(path, 0.5)[6].max() / speed == pytest.approx(rebound(zeta), rel=0.06)
 
 
+@pytest.mark.parametrize("shape", ["sphere", "box"])
+def test_a_margin_lifts_a_shape(tmp_path, shape):
+    """Surfaces with a margin touch at a distance, along the normal of an inclined plane too."""
+    geom, height, points = SHAPES[shape]
+    path = on_floor(tmp_path, geom + ' margin="0.02"', "{z}", mu=1.5, turn="0 20 0")
+    normal = np.array([np.sin(np.radians(20)), 0, np.cos(np.radians(20))])
+    start = " ".join(map(str, [0.3, 0, 0.2] + (height + 0.03) * normal))
+    tilted = path.read_text().replace('pos="0 0 {z}"', f'pos="{start}"')
+    path.write_text(tilted.replace('size="1 1 1"', 'size="1 1 1" pos="0.3 0 0.2" euler="0 20 0" margin="0.01"'))
+    found = stiffmbs.run(load_robot(path, contacts=True), duration=0.3, rtol=1e-8)
+    place = np.array([found[f"body.{axis}"][-1] for axis in "xyz"]) - [0.3, 0, 0.2]
+    depth = G * np.cos(np.radians(20)) * (1 - 0.9) * 0.02**2 / points
+    assert place @ normal == pytest.approx(height + 0.03 - depth, abs=1e-5)
+
+
 def test_a_stiffness_and_damping_stated_directly(tmp_path):
     """solref of -k and -c: the frequency and damping of a unit mass."""
     path = on_floor(tmp_path, SHAPES["sphere"][0], 0.1, solref="-400 -30", d=0.8)
@@ -132,8 +143,10 @@ def test_random_drops_do_not_gain_energy(tmp_path, seed):
     scene = load_robot(path, start, contacts=True)
     found = stiffmbs.run(scene, duration=1.0, output=2e-3, rtol=1e-8)
     depth = np.maximum(-corners(found, kind, size), 0)
-    stored = found["energy.total"] + (2.0 / ((1 - d) * (T * zeta) ** 2) * depth**2 / 2).sum(axis=0)
+    springs = (2.0 / ((1 - d) * (T * zeta) ** 2) * depth**2 / 2).sum(axis=0)
+    stored = found["energy.kinetic"] + 2.0 * G * found["body.z"] + springs
     assert depth.max() > 1e-4
+    np.testing.assert_allclose(found["energy.total"], stored, atol=1e-9 * stored[0])
     assert np.diff(stored).max() < 1e-5 * stored[0]
     assert stored[-1] < 0.999 * stored[0]
 
@@ -158,7 +171,7 @@ def overlapping(rng, n=7):
         return (
             f'<geom name="g{k}" size="1" contype="{rng.integers(4)}" conaffinity="{rng.integers(4)}" priority="{rng.integers(2)}" '
             f'solmix="{rng.choice([0, 1, 2.5])}" solref="{solref}" solimp="0.1 {rng.uniform(0.3, 0.95)} 0.01" condim="{rng.choice([1, 3])}" '
-            f'friction="{rng.uniform(0.1, 1)} 0 0"/>'
+            f'friction="{rng.uniform(0.1, 1)} 0 0" margin="{rng.choice([0, 0.1])}" gap="{rng.choice([0, 0.2])}"/>'
         )
 
     def body(k):
@@ -170,7 +183,7 @@ def overlapping(rng, n=7):
     bodies = "".join(body(k) for k in range(n) if parents[k] < 0)
     pairs = "".join(f'<exclude body1="b{a}" body2="b{b}"/>' for a, b in [rng.choice(n, 2, replace=False)])
     pairs += "".join(
-        f'<pair geom1="g{a}" geom2="g{b}" solref="0.03 0.7" solimp="0.1 0.6 0.01" friction="0.33 0.33 0 0 0"/>'
+        f'<pair geom1="g{a}" geom2="g{b}" solref="0.03 0.7" solimp="0.1 0.6 0.01" margin="0.07" friction="0.33 0.33 0 0 0"/>'
         for a, b in [rng.choice(n, 2, replace=False)]
     )
     flags = '<flag filterparent="disable"/>' if rng.random() < 0.3 else ""
@@ -187,13 +200,21 @@ def test_pairs_and_their_stiffness_are_those_of_mujoco(tmp_path, seed):
     expected = {}
     for contact in d.contact:
         pair = frozenset(m.geom(int(geom)).name for geom in contact.geom)
-        w2, c = (
-            (1 / np.prod(contact.solref) ** 2, 2 / contact.solref[0]) if contact.solref[0] > 0 else -contact.solref
-        )
+        w2, c = (1 / np.prod(contact.solref) ** 2, 2 / contact.solref[0]) if contact.solref[0] > 0 else -contact.solref
         share = 1 - contact.solimp[1]
-        expected[pair] = w2 / share, c / np.sqrt(share), contact.friction[0] if contact.dim > 1 else 0.0
+        expected[pair] = (
+            w2 / share,
+            c / np.sqrt(share),
+            contact.friction[0] if contact.dim > 1 else 0.0,
+            contact.includemargin,
+        )
     found = {
-        frozenset((each.first.name, each.second.name)): (each.softness.stiffness, each.softness.damping, each.friction)
+        frozenset((each.first.name, each.second.name)): (
+            each.softness.stiffness,
+            each.softness.damping,
+            each.friction,
+            each.margin,
+        )
         for each in read_mjcf(path, contacts=True).contacts
     }
     assert found.keys() == expected.keys()

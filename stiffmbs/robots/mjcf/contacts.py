@@ -32,8 +32,7 @@ def contacts(m: RequestedModel, disabled: Disabled) -> tuple[tuple[Contact, ...]
     found = []
     for first, second in held:
         pair = numbers[first], numbers[second]
-        softness, friction = _of_pair(m, stated[pair]) if pair in stated else _mixed(m, *pair)
-        found.append(Contact(first, second, softness, friction))
+        found.append(Contact(first, second, *(_of_pair(m, stated[pair]) if pair in stated else _mixed(m, *pair))))
     return tuple(found), notes + list(_rolling(m, {geom for pair in pairs for geom in pair}, stated.values()))
 
 
@@ -86,13 +85,14 @@ def _touching(m: RequestedModel, disabled: Disabled) -> Iterator[tuple[int, int]
                 yield first, int(second)
 
 
-def _of_pair(m: RequestedModel, k: int) -> tuple[PerMass, float]:
+def _of_pair(m: RequestedModel, k: int) -> tuple[PerMass, float, float]:
+    """Return the stiffness, friction and margin of a stated pair."""
     friction = float(m.pair_friction[k][0]) if m.pair_dim[k] > 1 else 0.0
-    return _softness(m.pair_solref[k], m.pair_solimp[k]), friction
+    return _softness(m.pair_solref[k], m.pair_solimp[k]), friction, float(m.pair_margin[k])
 
 
-def _mixed(m: RequestedModel, first: int, second: int) -> tuple[PerMass, float]:
-    """Return the stiffness and friction of a pair by MuJoCo's rules: those of the geom with priority, or a mixture."""
+def _mixed(m: RequestedModel, first: int, second: int) -> tuple[PerMass, float, float]:
+    """Return the stiffness, friction and margin of a pair by MuJoCo's rules: those of the geom with priority, or a mixture."""
     order = int(m.geom_priority[first]) - int(m.geom_priority[second])
     if order:
         geom = first if order > 0 else second
@@ -105,7 +105,8 @@ def _mixed(m: RequestedModel, first: int, second: int) -> tuple[PerMass, float]:
         solimp = share * m.geom_solimp[first] + (1.0 - share) * m.geom_solimp[second]
         dimensions = max(m.geom_condim[first], m.geom_condim[second])
         friction = max(m.geom_friction[first][0], m.geom_friction[second][0])
-    return _softness(solref, solimp), float(friction) if dimensions > 1 else 0.0
+    margin = float(m.geom_margin[first] + m.geom_margin[second])
+    return _softness(solref, solimp), float(friction) if dimensions > 1 else 0.0, margin
 
 
 def _share(a: float, b: float) -> float:

@@ -81,7 +81,7 @@ REASONS: Mapping[str, Mapping[str, str]] = {
 
 WITH_CONTACTS: Mapping[str, Mapping[str, str]] = {
     **REASONS,
-    "geom": {**REASONS["geom"], **dict.fromkeys(("margin", "gap", "adhesion", "surfacevel"), "contacts act at the surfaces")},
+    "geom": {**REASONS["geom"], **dict.fromkeys(("gap", "adhesion", "surfacevel"), "contacts push alone")},
 }  # fmt: skip
 """Reasons for models whose contacts are read."""
 

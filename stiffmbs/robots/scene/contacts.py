@@ -52,7 +52,7 @@ def contacts(robot: Robot, mechanism: Mechanism, coordinates: Mapping[str, float
         if not mobility > 0 or mechanism.seats[first.link].body == mechanism.seats[second.link].body:
             continue
         law, depth = _law(contact, 1.0 / mobility, names)
-        for kind, fields, i, j in _parts(first, second):
+        for kind, fields, i, j in _parts(contact):
             name = mechanism.names.take(f"{i.name}_on_{j.name}")
             found.forces[name] = {"type": kind, "i": markers.of(i), "j": markers.of(j), **fields, **law}
             if j.kind == PLANE and (below := heights.below(i, j)) > 2.0 * depth:
@@ -80,15 +80,23 @@ Part = tuple[str, Content, Shape, Shape]
 """Kind of a force with its fields of geometry, and the shapes of markers i and j."""
 
 
-def _parts(first: Shape, second: Shape) -> Iterator[Part]:
+def _parts(contact: Contact) -> Iterator[Part]:
     """Yield the forces of a contact: two for a capsule, one for other shapes."""
+    first, second = contact.first, contact.second
     if first.kind == PLANE or (first.kind != second.kind and second.kind == SPHERE):
         first, second = second, first
     if second.kind == PLANE:
+        second = _raised(second, contact.margin)
         ends = list(_ends(first)) if first.kind == CAPSULE else [first]
         yield from ((*ON_PLANE[each.kind](each), each, second) for each in ends)
     else:
+        first = replace(first, size=(first.size[0] + contact.margin,))
         yield (*ON_SOLID[second.kind](first, second), first, second)
+
+
+def _raised(plane: Shape, margin: float) -> Shape:
+    place = np.array(plane.position) + rotated(plane.orientation, (0.0, 0.0, margin))
+    return replace(plane, position=tuple(map(float, place))) if margin else plane
 
 
 def _ends(capsule: Shape) -> Iterator[Shape]:
