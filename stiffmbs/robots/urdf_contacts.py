@@ -35,7 +35,7 @@ def contacts(root: Node, links: Mapping[str, Node], ground: float | None) -> tup
     if ground is None:
         return (), ["URDF states no ground that the links could touch (convert --ground HEIGHT adds one)"]
     plane = Shape("ground_plane", None, PLANE, position=(0.0, 0.0, ground))
-    surfaces = {name: surface for name, surface in _surfaces(root)}
+    surfaces = dict(_surfaces(root))
     shapes = [shape for name, link in links.items() for shape in _shapes(name, link)]
     held, notes = split((shape, plane) for shape in shapes)
     found = []

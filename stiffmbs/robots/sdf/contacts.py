@@ -26,20 +26,27 @@ GROUND_FRICTION = 100.0
 
 
 @dataclass(frozen=True)
+class Surface:
+    """Properties of the surface of a collision. `softness`: N/m and N s/m; None if the file states none."""
+
+    bits: int = ALL_BITS
+    friction: float = 1.0
+    softness: Given | None = None
+
+
+@dataclass(frozen=True)
 class Collision:
-    """Collision of a link with the properties of its surface.
+    """Collision of a link.
 
     `model`: number of the outermost model around it. `static`: True if it does not move. `within`: True if it touches
-    other links of its model. `softness`: N/m and N s/m; None if the file states none.
+    other links of its model.
     """
 
     shape: Shape
     model: int
     static: bool
     within: bool = False
-    bits: int = ALL_BITS
-    friction: float = 1.0
-    softness: Given | None = None
+    surface: Surface = Surface()
 
 
 def contacts(
@@ -50,12 +57,8 @@ def contacts(
     Links of a model touch each other by ``self_collide`` alone. `joined`: pairs of links with a joint between them.
     `grounds`: poses of ground planes without a file, in the world.
     """
-    found = [
-        Collision(
-            Shape("ground_plane", None, PLANE, (), pose.position, pose.orientation), -1, True, friction=GROUND_FRICTION
-        )
-        for pose in grounds
-    ]
+    planes = [Shape("ground_plane", None, PLANE, (), pose.position, pose.orientation) for pose in grounds]
+    found = [Collision(plane, -1, True, surface=Surface(friction=GROUND_FRICTION)) for plane in planes]
     for model, scope in enumerate((*root.merged, *root.models.values())):
         for inner in scope.scopes():
             found += _collisions(inner, model)
@@ -67,7 +70,7 @@ def contacts(
 
 
 def _may_touch(a: Collision, b: Collision, apart: Collection[frozenset[str | None]]) -> bool:
-    if (a.static and b.static) or a.shape.link == b.shape.link or not a.bits & b.bits:
+    if (a.static and b.static) or a.shape.link == b.shape.link or not a.surface.bits & b.surface.bits:
         return False
     if frozenset((a.shape.link, b.shape.link)) in apart:
         return False
@@ -76,8 +79,8 @@ def _may_touch(a: Collision, b: Collision, apart: Collection[frozenset[str | Non
 
 def _contact(a: Collision, b: Collision) -> Contact:
     """Return the contact of two surfaces: springs in series, dampers added, and the smaller friction, as in Gazebo."""
-    stated = [each.softness for each in (a, b) if each.softness is not None]
-    friction = min(a.friction, b.friction)
+    stated = [each.surface.softness for each in (a, b) if each.surface.softness is not None]
+    friction = min(a.surface.friction, b.surface.friction)
     if not stated:
         return Contact(a.shape, b.shape, USUAL, friction)
     softness = stated[0]
@@ -101,7 +104,7 @@ def _collisions(scope: Scope, model: int) -> Iterator[Collision]:
                 kind, size, turn = shape.tag, *_geometry(where, shape)
                 turned = product(pose.orientation, turn)
                 solid = Shape(called, full, kind, size, pose.position, turned)
-                yield Collision(solid, model, scope.static, own, **_surface(where, node.find("surface")))
+                yield Collision(solid, model, scope.static, own, _surface(where, node.find("surface")))
 
 
 def _geometry(where: str, node: Node) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -136,22 +139,17 @@ SIZES: Mapping[str, Callable[[str, Node], tuple[float, ...]]] = {
 }
 
 
-def _surface(where: str, surface: Node | None) -> dict[str, object]:
+def _surface(where: str, surface: Node | None) -> Surface:
     """Return the bits, friction and stiffness of a ``<surface>``."""
-    if surface is None:
-        return {}
-    contact, found = surface.find("contact"), dict[str, object]()
-    if contact is not None:
-        if bits := text_of(contact.find("collide_bitmask")):
-            found["bits"] = _bits(where, bits)
-        ode = contact.find("ode")
-        kp, kd = number(where, ode, "kp", 0.0), number(where, ode, "kd", 0.0)
-        if kp > 0:
-            found["softness"] = Given(kp, max(kd, 0.0))
-    friction = surface.find("friction")
-    if friction is not None:
-        found["friction"] = number(where, friction.find("ode"), "mu", 1.0)
-    return found
+    contact, friction = (None if surface is None else surface.find(tag) for tag in ("contact", "friction"))
+    bits = "" if contact is None else text_of(contact.find("collide_bitmask"))
+    of_contact, of_friction = (None if each is None else each.find("ode") for each in (contact, friction))
+    kp, kd = number(where, of_contact, "kp", 0.0), number(where, of_contact, "kd", 0.0)
+    return Surface(
+        _bits(where, bits) if bits else ALL_BITS,
+        number(where, of_friction, "mu", 1.0),
+        Given(kp, max(kd, 0.0)) if kp > 0 else None,
+    )
 
 
 def _bits(where: str, text: str) -> int:
