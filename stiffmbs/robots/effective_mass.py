@@ -19,8 +19,8 @@ Column = tuple[int, np.ndarray, np.ndarray, np.ndarray]
 def inverse_masses(robot: Robot, coordinates: Mapping[str, float]) -> dict[str | None, float]:
     """Return the acceleration of each link's centre of mass by a unit force there, averaged over directions, 1/kg.
 
-    It is a third of the trace of J M^-1 J^T at the given coordinates, with the mass matrix M of the tree and the
-    Jacobian J of the point. Couplings, loops and contacts are ignored, as in MuJoCo's ``body_invweight0``.
+    It is a third of the trace of J M^-1 J^T at the given coordinates. M is the mass matrix of the tree, and J the
+    Jacobian of the point. Couplings, loops and contacts are ignored, as in MuJoCo's ``body_invweight0``.
     """
     placed, columns, armatures = frames(robot, coordinates, {}), dict[str, list[Column]](), list[float]()
     for link in robot.links:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -181,7 +182,9 @@ def _moving(name: str, element: Node) -> Iterator[LinkJoint]:
     if limits is not None and kind in ("revolute", "prismatic"):
         bounds = (value_of(where, limits, "lower", 0.0), value_of(where, limits, "upper", 0.0))
     friction = value_of(where, dynamics, "friction", 0.0)
-    yield LinkJoint(name, KINDS[kind or ""], axis=axis, damping=damping, friction=friction, limits=bounds)
+    speed = value_of(where, limits, "velocity", 0.0)
+    moving = LinkJoint(name, KINDS[kind or ""], axis=axis, damping=damping, friction=friction, limits=bounds)
+    yield replace(moving, speed=speed) if speed > 0 else moving
 
 
 def _axis(name: str, element: Node) -> tuple[float, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import inf
 
 import numpy as np
 
@@ -87,10 +88,13 @@ def _limits(mechanism: Mechanism, coordinates: Mapping[str, float], held: bool) 
     """Yield notes on the limits of joints: whether a run holds them, and joints that start beyond theirs."""
     words, beyond = [], []
     for hold in mechanism.holds.values():
-        if (limits := hold.joint.limits) is None:
+        if not hold.joint.is_limited:
             continue
         unit = "rad" if hold.joint.is_rotary else "m"
-        words.append(f"{hold.name} {plain(limits[0]):g} .. {plain(limits[1]):g} {unit}")
+        limits, speed = hold.joint.limits or (-inf, inf), hold.joint.speed
+        parts = [] if hold.joint.limits is None else [f"{plain(limits[0]):g} .. {plain(limits[1]):g} {unit}"]
+        parts += [] if speed is None else [f"{plain(speed):g} {unit}/s"]
+        words.append(f"{hold.name} {' and '.join(parts)}")
         start = coordinates.get(hold.joint.name, hold.joint.zero)
         if not limits[0] <= start <= limits[1]:
             beyond.append(f"{hold.name} at {plain(start):g} {unit}")
