@@ -14,7 +14,8 @@ from ..elements.spatial.orientation import IDENTITY
 PLANE, SPHERE, CAPSULE, BOX, CYLINDER, ELLIPSOID = "plane", "sphere", "capsule", "box", "cylinder", "ellipsoid"
 PARTNERS: Mapping[str, tuple[str, ...]] = {
     PLANE: (SPHERE, CAPSULE, BOX, CYLINDER, ELLIPSOID),
-    SPHERE: (SPHERE, BOX, CYLINDER),
+    SPHERE: (SPHERE, CAPSULE, BOX, CYLINDER),
+    CAPSULE: (CAPSULE,),
 }
 """Kinds of shapes between which the package has contacts."""
 

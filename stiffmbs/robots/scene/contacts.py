@@ -90,7 +90,7 @@ def _parts(contact: Contact) -> Iterator[Part]:
         ends = list(_ends(first)) if first.kind == CAPSULE else [first]
         yield from ((*ON_PLANE[each.kind](each), each, second) for each in ends)
     else:
-        first = replace(first, size=(first.size[0] + contact.margin,))
+        first = replace(first, size=(first.size[0] + contact.margin, *first.size[1:]))
         yield (*ON_SOLID[second.kind](first, second), first, second)
 
 
@@ -120,6 +120,10 @@ ON_PLANE: Mapping[str, Callable[[Shape], tuple[str, Content]]] = {
 }
 ON_SOLID: Mapping[str, Callable[[Shape, Shape], tuple[str, Content]]] = {
     SPHERE: lambda i, j: ("sphere_sphere_impact", _lengths("radius other_radius", i.size + j.size)),
+    CAPSULE: lambda i, j: (
+        "capsule_impact",
+        _lengths("radius length", (*i.size, 0.0)[:2]) | _lengths("other_radius other_length", j.size),
+    ),
     BOX: lambda i, j: ("sphere_box_impact", _lengths("radius x y z", i.size + j.size)),
     CYLINDER: lambda i, j: (
         "sphere_cylinder_impact",
