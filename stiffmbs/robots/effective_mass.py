@@ -10,8 +10,6 @@ from ..elements.spatial.orientation import matrix, rotated
 from .pose import Placed, frames
 from .robot import Link, LinkJoint, Robot
 
-ROUNDING = 1e-12
-"""Singular values of a mass matrix below this fraction of the largest are those of joints that move no mass."""
 Column = tuple[int, np.ndarray, np.ndarray, np.ndarray]
 """Index of a joint rate; angular velocity of a link for the unit rate, its point at rest or on the axis, m, and the velocity there."""
 
@@ -35,7 +33,8 @@ def inverse_masses(robot: Robot, coordinates: Mapping[str, float]) -> dict[str |
         J, turning = _jacobian(columns[link.name], placed[link.name][-1], link, len(armatures))
         M += link.mass * J.T @ J + turning.T @ link.inertia @ turning
         at_centre[link.name] = J
-    inverse = np.linalg.pinv(M, rcond=ROUNDING, hermitian=True) if armatures else M
+    # The solution of least squares ignores joints that move no mass.
+    inverse = np.linalg.lstsq(M, np.eye(len(M)), rcond=None)[0] if armatures else M
     return {None: 0.0} | {name: float(np.sum((J @ inverse) * J)) / 3.0 for name, J in at_centre.items()}
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from math import sqrt
+from typing import Final
 
 import numpy as np
 
@@ -12,9 +13,10 @@ from ..contact import BOX, CAPSULE, CYLINDER, ELLIPSOID, SPHERE, Contact, PerMas
 from .actuators import Disabled
 from .fields import RequestedModel, name_of
 
-LEAST_IMPEDANCE, MOST_IMPEDANCE = 1e-4, 0.9999
+LEAST_IMPEDANCE: Final = 1e-4
+MOST_IMPEDANCE: Final = 0.9999
 """Bounds of impedances in MuJoCo."""
-LEAST_SHARE = 1e-15
+LEAST_SHARE: Final = 1e-15
 """Smallest weight of a geom in a mixture in MuJoCo."""
 NAMES = {"hfield": "height field", "sdf": "signed distance field"}
 """Kinds of geoms in notes."""

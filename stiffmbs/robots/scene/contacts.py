@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 import numpy as np
 
@@ -14,14 +15,14 @@ from ...reading.files.yaml_text import Content
 from ..contact import BOX, CAPSULE, CYLINDER, ELLIPSOID, PLANE, SPHERE, Contact, Shape
 from ..effective_mass import inverse_masses
 from ..pose import WORLD, frames
-from ..robot import Robot
+from ..robot import GRAVITY, Robot
 from .mechanism import Mechanism
 
 STIFFNESS, DAMPING, FRICTION, SLIP = "contact_stiffness", "contact_damping", "contact_friction", "contact_slip"
 CONTACTS: Mapping[str, float] = {STIFFNESS: 1.0, DAMPING: 1.0, FRICTION: 1.0, SLIP: 1e-3}
 """Parameters of a scene with contacts: factors of all stiffnesses, dampings and frictions, and the stiction velocity, m/s."""
-WEIGHT = 9.81
-"""Acceleration for the penetration under a shape's own effective mass, m/s^2."""
+WEIGHT: Final = -GRAVITY[2]
+"""Acceleration for the depth under a shape's own effective mass, also in files without gravity, m/s^2."""
 
 
 @dataclass

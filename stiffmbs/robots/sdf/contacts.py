@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Final
 
 import numpy as np
 
@@ -19,9 +20,9 @@ from .poses import Pose, flag, number, numbers, text_of
 from .scopes import Scope
 from .solids import placed
 
-ALL_BITS = 0xFFFF
+ALL_BITS: Final = 0xFFFF
 """Default of ``collide_bitmask``."""
-GROUND_FRICTION = 100.0
+GROUND_FRICTION: Final = 100.0
 """Friction of Gazebo's ground plane; a contact has the smaller one of both surfaces."""
 
 
