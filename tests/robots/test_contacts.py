@@ -151,6 +151,46 @@ def test_random_drops_do_not_gain_energy(tmp_path, seed):
     assert stored[-1] < 0.999 * stored[0]
 
 
+def dropped_tree(rng, n):
+    """A free tree of shapes of all kinds, above the floor."""
+
+    def turn():
+        return " ".join(map(str, rng.uniform(-180, 180, 3)))
+
+    def geom(k):
+        kind = rng.choice([*SHAPES])
+        sizes = rng.uniform(0.03, 0.08, {"sphere": 1, "capsule": 2, "cylinder": 2}.get(kind, 3))
+        return (
+            f'<geom name="g{k}" type="{kind}" size="{" ".join(map(str, sizes))}" pos="{rng.uniform(-0.05, 0.05)} 0 0" euler="{turn()}" '
+            f'friction="{rng.uniform(0, 1)} 0 0" solref="{rng.uniform(0.01, 0.04)} {rng.uniform(0.2, 1)}" solimp="0.9 {rng.uniform(0.7, 0.95)} 0.01"/>'
+        )
+
+    def body(k):
+        kind, axis = rng.choice(["hinge", "ball", "slide"], p=[0.7, 0.2, 0.1]), " ".join(map(str, rng.normal(size=3)))
+        joint = f'<joint type="{kind}" axis="{axis}" damping="{rng.uniform(0.001, 0.1)}"/>' if k else "<freejoint/>"
+        away = rng.normal(size=3)
+        place = " ".join(map(str, 0.25 * away / np.linalg.norm(away))) if k else "0 0 0.6"
+        inner = "".join(body(other) for other in range(n) if parents[other] == k)
+        return f'<body name="b{k}" pos="{place}" euler="{turn()}">{joint}{geom(k)}{inner}</body>'
+
+    parents = [-1, *(int(rng.integers(0, k)) for k in range(1, n))]
+    return f'<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/>{body(0)}</worldbody></mujoco>'
+
+
+@pytest.mark.sampled(8)
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(40))
+def test_random_robots_that_fall_do_not_gain_energy(tmp_path, seed):
+    """Floor and links touch; joints have dampers."""
+    rng, path = np.random.default_rng(seed), tmp_path / "tree.xml"
+    path.write_text(dropped_tree(rng, int(rng.integers(1, 6))))
+    found = stiffmbs.run(load_robot(path, contacts=True), duration=1.0, output=2e-3)
+    energy = found["energy.total"]
+    assert found.time[-1] == 1.0
+    assert np.diff(energy).max() < 1e-8 * energy[0]
+    assert energy[-1] < 0.6 * energy[0]
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("make", [tree_in_mjcf, free_tree_in_mjcf])
 def test_effective_masses_are_those_of_mujoco(tmp_path, make, seed):
