@@ -31,8 +31,8 @@ OPTIONS_OF_ROBOTS = {"coordinates": "--at", "limits": "--limits", "contacts": "-
     "coordinates",
 )
 @option("--limits", "Hold the joints of a robot within their limits by stops.")
-@option("--contacts", "Let the shapes of a robot touch each other and the ground, where its file has such contacts.")
-@option("--ground HEIGHT", "Add a ground plane at a height, m, and contacts.", type=float)
+@option("--contacts", "Add the contacts between shapes of a robot that its file states.")
+@option("--ground HEIGHT", "Add a level ground plane, and contacts with it; height in m.", type=float)
 @CHANGES
 def convert(
     scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], limits: bool, contacts: bool,

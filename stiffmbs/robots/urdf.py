@@ -35,6 +35,7 @@ REASONS: Mapping[str, Mapping[str, str]] = {
 """Reasons why attributes and children have no effect."""
 WITH_CONTACTS: Mapping[str, Mapping[str, str]] = {
     **REASONS, "link": {"<visual>": "graphics"}, "robot": {"<material>": "graphics"},
+    "link/collision/geometry/mesh": {"*": "meshes have no contact"},
 }  # fmt: skip
 """Reasons if the shapes of contacts are read."""
 

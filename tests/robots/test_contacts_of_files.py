@@ -184,17 +184,19 @@ def test_without_a_ground_links_of_urdf_touch_nothing(tmp_path):
 def test_notes_on_contacts_that_are_left_out(tmp_path):
     meshes = '<collision><geometry><mesh filename="m.stl"/></geometry></collision>' * 2
     path = robot(tmp_path, meshes)
-    assert "contacts of these kinds of shapes are left out: 2 of mesh and plane" in said(path, "--ground", "0")
+    found = said(path, "--ground", "0")
+    assert "contacts of these kinds of shapes are left out: 2 of mesh and plane" in found
+    assert "not used (meshes have no contact): link/collision/geometry/mesh filename of base" in found
     mjcf = tmp_path / "r.xml"
     mjcf.write_text(
         '<mujoco><worldbody><geom type="plane" size="1 1 1"/><body name="b" pos="0 0 0.05"><freejoint/><geom name="foot" size="0.1" condim="4"/>'
-        '</body><body name="c" pos="0 0 1"><freejoint/><geom type="box" size="0.1 0.1 0.1"/><geom type="capsule" size="0.1 0.1" pos="1 0 0"/></body>'
+        '</body><body name="c" pos="0 0 1"><freejoint/><geom type="box" size="0.1 0.1 0.1"/><geom type="ellipsoid" size="0.1 0.1 0.2" pos="1 0 0"/></body>'
         "</worldbody></mujoco>"
     )
     found = said(mjcf, "--contacts")
     assert "contacts have no rolling and drilling friction: foot" in found
     assert "shapes start in the ground, which pushes them out: foot_on_geom_0 by 0.05 m" in found
-    assert "1 of capsule and sphere" in found
+    assert "left out: 1 of ellipsoid and sphere" in found
     assert "contacts between the shapes of MJCF are left out (convert --contacts adds them)" in said(mjcf)
 
 
